@@ -1,0 +1,68 @@
+#include "cli/app.h"
+
+#include <iostream>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/core.h>
+
+#include <kerf/drivers/device.h>
+#include <kerf/schema/recording.h>
+
+#include "cli/verbs.h"
+
+namespace kerf::bench {
+namespace {
+
+int fail(Exit status, std::string_view message) {
+  fmt::print(stderr, "kerf: {}\n", message);
+  return static_cast<int>(status);
+}
+
+}  // namespace
+
+CLI::App& add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+                   const std::string& example, std::function<void()> action) {
+  CLI::App* verb = app.add_subcommand(name, description);
+  verb->add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
+  verb->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
+  verb->footer("Example:\n  " + example);
+  verb->callback(std::move(action));
+  return *verb;
+}
+
+void say(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+
+void warn(std::string_view line) { fmt::print(stderr, "warning: {}\n", line); }
+
+int run_program(int argc, char** argv) {
+  CLI::App app{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
+  app.set_version_flag("--version", std::string("kerf " KERF_VERSION));
+  app.require_subcommand(1);
+  Context context;
+  for (const auto add : {add_check, add_demo, add_devices, add_fit, add_import, add_info, add_record,
+                         add_report, add_segment, add_validate}) {
+    add(app, context);
+  }
+  try {
+    app.parse(argc, argv);
+    if (context.json) std::cout << context.result.dump(2) << '\n' << std::flush;
+    if (!std::cout) return fail(Exit::file_error, "standard output: could not write the JSON");
+    return static_cast<int>(context.exit);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return fail(Exit::bad_input,
+                fmt::format("{}; 'kerf --help' and 'kerf VERB --help' say more", error.what()));
+  } catch (const drivers::DeviceError& error) {
+    return fail(Exit::device_error, error.what());
+  } catch (const std::system_error& error) {
+    return fail(Exit::file_error, error.what());
+  } catch (const std::invalid_argument& error) {
+    return fail(Exit::bad_input, error.what());
+  } catch (const schema::FormatError& error) {
+    return fail(Exit::bad_input, error.what());
+  }
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "cli/app.h"
+
+namespace kerf::bench {
+
+// One function a verb, each in the file cli/verb_NAME.cpp.
+void add_check(CLI::App& app, Context& context);
+void add_demo(CLI::App& app, Context& context);
+void add_devices(CLI::App& app, Context& context);
+void add_fit(CLI::App& app, Context& context);
+void add_import(CLI::App& app, Context& context);
+void add_info(CLI::App& app, Context& context);
+void add_record(CLI::App& app, Context& context);
+void add_report(CLI::App& app, Context& context);
+void add_segment(CLI::App& app, Context& context);
+void add_validate(CLI::App& app, Context& context);
+
+}  // namespace kerf::bench

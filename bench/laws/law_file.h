@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <kerf/models/law.h>
+
+namespace kerf::bench {
+
+/// How a law came about, kept in its file.
+struct FitProvenance {
+  std::string recording_uuid;
+  std::string recording_sha256;
+  double rmse_n = 0.0;
+  std::string date;      ///< ISO 8601, UTC
+  std::string software;  ///< "kerf 0.1.0"
+};
+
+/// A law with everything that it takes to render it on an axis: `NAME.law.toml`.
+struct LawFile {
+  models::Law law;
+  models::Contact contact;
+  std::string axis;                 ///< name of the axis it was fitted on, for example "theta"
+  std::string position_unit = "m";  ///< "m" or "rad"
+  std::string force_unit = "N";
+  std::vector<double> std_errors;  ///< one a parameter, or empty
+  FitProvenance fit;               ///< empty strings if it was written by hand
+};
+
+/// Reads a law file. Parameters may be given in any unit of the same kind ("N/mm", "N/deg").
+/// @throws std::invalid_argument with file, line, what was found and what was expected: an unknown key, a
+///         missing unit, a unit of another kind, a parameter out of its bounds.
+/// @throws std::system_error if it cannot be read.
+[[nodiscard]] LawFile read_law_file(const std::filesystem::path& file);
+
+/// Writes a law file under a temporary name and renames it. @throws std::system_error.
+void write_law_file(const std::filesystem::path& file, const LawFile& law);
+
+/// A law file as TOML text, and back; `name` stands for the file in messages.
+[[nodiscard]] std::string to_toml(const LawFile& law);
+[[nodiscard]] LawFile parse_law_file(const std::string& text, const std::string& name);
+
+}  // namespace kerf::bench

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include <kerf/models/law.h>
+#include <kerf/schema/recording.h>
+
+namespace kerf::bench {
+
+/// One axis of a recording as a law sees it: penetration, velocity and resisting force, one a row.
+struct AxisSeries {
+  std::vector<double> time_s;
+  std::vector<double> penetration;
+  std::vector<double> velocity;
+  std::vector<double> force;
+  std::vector<std::uint32_t> cycle;  ///< cycle of each row, 0 for none; empty if the recording has no cycles
+};
+
+/// Takes the series of an axis out of a recording; the force is the measured one where there is a sensor,
+/// else the commanded one with its sign turned to resisting. @throws std::invalid_argument (no such axis).
+[[nodiscard]] AxisSeries axis_series(const schema::Recording& recording, std::size_t axis,
+                                     const models::Contact& contact);
+
+/// The contact of a recording: from its cycles if it was segmented, else from the attribute of a simulated
+/// scene, else the smallest position with direction +1.
+[[nodiscard]] models::Contact contact_of(const schema::Recording& recording, std::size_t axis);
+
+/// The force that a law gives along a series, tick by tick from a fresh state.
+[[nodiscard]] std::vector<double> render(const models::Law& law, const AxisSeries& series);
+
+}  // namespace kerf::bench

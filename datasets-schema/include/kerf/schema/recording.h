@@ -1,0 +1,135 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kerf::schema {
+
+inline constexpr std::size_t max_axes = 6;
+
+/// Thrown when a file is not what the schema says, in one line: file, dataset, found, expected, mend.
+struct FormatError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One axis of a recording.
+struct Axis {
+  std::string name = "position";    ///< "theta", "x_s", "position", ...
+  std::string position_unit = "m";  ///< "m" or "rad"
+  std::string force_unit = "N";     ///< "N" or "N·m"
+  double lever = 1.0;               ///< travel of the point where the force acts, per unit of position
+};
+
+/// Something that happened during a recording.
+struct Event {
+  double time_s = 0.0;
+  std::string kind;  ///< "start", "stop", "gap", "fault", ...
+  std::string text;
+};
+
+/// A further measured channel, one value a row.
+struct Channel {
+  std::string name;
+  std::string unit;
+  std::vector<double> values;
+};
+
+/// Bits of `/samples/flags`.
+enum Flag : std::uint32_t {
+  flag_missed_deadline = 1U << 0U,
+  flag_force_limited = 1U << 1U,
+  flag_slew_limited = 1U << 2U,
+  flag_soft_start = 1U << 3U,
+  flag_law_fault = 1U << 4U,
+  flag_device_fault = 1U << 5U,
+  flag_resampled = 1U << 6U,
+};
+
+/// Root attributes, and the texts that a recording came from.
+struct Header {
+  std::string created;   ///< ISO 8601, UTC
+  std::string software;  ///< "kerf 0.1.0"
+  std::string uuid;
+  std::string status = "complete";  ///< "recording", "complete" or "aborted: WHY"
+  std::string velocity_derived;     ///< how the velocity was derived from the position; empty if measured
+  std::string source;               ///< file name and SHA-256 of the imported data; empty if recorded
+  std::string device_uri;           ///< empty if imported
+  std::string device_toml;          ///< the device's configuration
+  std::string scene_toml;           ///< what was simulated or cut, and with which known parameters
+};
+
+/// One phase of a cycle: rows [begin, end).
+enum class Phase : std::uint8_t { opening = 1, open_to_close = 2, closing = 3, close_to_open = 4 };
+struct PhaseSpan {
+  std::uint32_t cycle = 0;
+  Phase phase = Phase::opening;
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+};
+
+/// What `kerf segment` finds and stores in `/cycles`.
+struct Cycles {
+  std::size_t axis = 0;            ///< the axis that opens and closes
+  double closing_direction = 1.0;  ///< +1 if the position grows while closing, -1 if it shrinks
+  double contact_position = 0.0;   ///< least engaged position, where penetration is zero
+  double filter_corner_hz = 0.0;   ///< zero-phase low-pass applied before averaging
+  std::vector<PhaseSpan> phases;
+  std::vector<double> grid;                  ///< uniform positions, G
+  std::vector<std::vector<double>> closing;  ///< cycles x G force; NaN where a cycle did not reach
+  std::vector<std::vector<double>> opening;  ///< cycles x G
+  std::vector<double> closing_mean;          ///< G
+  std::vector<double> opening_mean;          ///< G
+};
+
+/// A whole recording in memory, one vector a dataset. Arrays of N x D are row-major.
+struct Recording {
+  Header header;
+  std::vector<Axis> axes;
+  std::vector<double> time;             ///< [s] from the start
+  std::vector<std::uint64_t> tick;      ///< a jump is a gap
+  std::vector<double> position;         ///< N x D
+  std::vector<double> velocity;         ///< N x D
+  std::vector<double> force_commanded;  ///< N x D; empty if nothing was commanded
+  std::vector<double> force_measured;   ///< N x D; empty without a sensor
+  std::vector<float> wake_latency;      ///< [s]; these four are empty in an import
+  std::vector<float> read_time;
+  std::vector<float> compute_time;
+  std::vector<float> write_time;
+  std::vector<std::uint32_t> flags;
+  std::vector<Channel> channels;  ///< further channels by name
+  std::vector<Event> events;
+  std::optional<Cycles> cycles;
+
+  [[nodiscard]] std::size_t rows() const noexcept { return time.size(); }
+  [[nodiscard]] std::size_t dimensions() const noexcept { return axes.size(); }
+};
+
+/// One row as the tick hands it to a recorder: trivially copyable, axes beyond the device's unused.
+struct Row {
+  std::uint64_t tick = 0;
+  double time_s = 0.0;
+  std::array<double, max_axes> position{};
+  std::array<double, max_axes> velocity{};
+  std::array<double, max_axes> force_commanded{};
+  std::array<double, max_axes> force_measured{};
+  float wake_latency_s = 0.0F;
+  float read_time_s = 0.0F;
+  float compute_time_s = 0.0F;
+  float write_time_s = 0.0F;
+  std::uint32_t flags = 0;
+};
+
+/// Reads a whole recording. @throws FormatError, std::system_error (the file cannot be opened).
+[[nodiscard]] Recording read_recording(const std::filesystem::path& file);
+
+/// Writes a whole recording: to a temporary name beside `file`, then renamed, so that a half-written file
+/// never stands under the final name. @throws std::system_error (no space, no permission, ...).
+void write_recording(const std::filesystem::path& file, const Recording& recording);
+
+}  // namespace kerf::schema

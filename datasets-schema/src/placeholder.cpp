@@ -1,0 +1,1 @@
+// Replaced by the implementation of the schema.

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kerf::drivers {
+
+inline constexpr std::size_t max_axes = 6;
+
+/// One number per axis of a device, in the units of its AxisInfo; unused axes are zero.
+using Axes = std::array<double, max_axes>;
+
+/// One axis of a device. Frames and signs are those of drivers/README.md.
+struct AxisInfo {
+  std::string name;           ///< "theta", "x_s", "x", ...
+  std::string position_unit;  ///< "rad" or "m"
+  std::string force_unit;     ///< "N" or "N·m"
+  double lever = 1.0;         ///< travel of the point where the force acts, per unit of position [m/rad or 1]
+  double resolution = 0.0;    ///< encoder step, in the unit of position
+  double lower = 0.0;         ///< range of motion, in the unit of position
+  double upper = 0.0;
+  double force_limit = 0.0;  ///< largest force that may be commanded, in the unit of force
+  double slew_limit = 0.0;   ///< largest change of force per second
+};
+
+struct DeviceInfo {
+  std::string uri;
+  std::string model;
+  std::string about;  ///< one line for `kerf devices`
+  std::vector<AxisInfo> axes;
+  bool measures_force = false;
+  bool simulated = false;
+  std::string configuration;  ///< the settings that it runs with, as TOML, for the recording
+};
+
+/// What a device says in one tick.
+struct Sample {
+  Axes position{};
+  Axes velocity{};
+  Axes force_measured{};
+  std::uint32_t faults = 0;
+};
+
+/// Whether a device answered. Faults are values in the tick; exceptions belong to set-up.
+enum class Status : std::uint8_t { ok, fault, lost };
+
+/// Thrown while a device is looked for, opened or set up. The program then exits with 3.
+struct DeviceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A haptic device, real or simulated: the one virtual class of the bench.
+///
+/// read() and write() are called once a tick from one thread and do not allocate, lock, log or throw.
+class Device {
+ public:
+  Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+  virtual ~Device() = default;
+
+  [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
+
+  /// Reads the state at `now_s` seconds of loop time, which never goes back. A simulated device integrates
+  /// its physics up to then under the last force written; a real one ignores the argument.
+  [[nodiscard]] virtual Status read(double now_s, Sample& sample) noexcept = 0;
+
+  /// Commands a force per axis, held until the next write. The first read before any write sees zero force.
+  [[nodiscard]] virtual Status write(const Axes& force) noexcept = 0;
+};
+
+/// What a simulated tool meets: the force that tissue exerts on one axis, in the sense that decreases its
+/// position. Called in sub-steps of the physics with a fixed period; must not allocate or throw.
+using Tissue = std::function<double(double position, double velocity, double period_s)>;
+
+/// What exists around a simulated device, one tissue per axis (empty: none). Real devices refuse it.
+struct Surroundings {
+  std::array<Tissue, max_axes> tissue;
+};
+
+/// Opens a device by URI, for example "sim:scissors?seed=3&noise=off".
+/// @throws DeviceError with a sentence that says what is missing and how to mend it.
+[[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings = {});
+
+/// The devices that can be opened here now, simulated ones first.
+[[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+}  // namespace kerf::drivers

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Which branch of a closing-and-opening loop is felt, and how much of it (004, section 2.2 and eqs. 4-5).
+///
+/// The penetration passes a first-order filter with the corner `velocity_corner` before it is differenced;
+/// the sign of that velocity selects the branch. Two factors keep the force continuous in the hand:
+///
+///     s = min(1, reversal_scale |x - x_switch|) min(1, |v| / ramp_band)
+///
+/// with x_switch the penetration of the last reversal. Source: 004; the paper gives neither k_s nor the width
+/// of the band. Zero switches each of the three off: the given velocity is then taken as it is, and at zero
+/// velocity the last branch goes on, which is how a table is judged against a recording.
+struct BranchSelector {
+  double velocity_corner =
+      0.0;                      ///< corner of the velocity filter [rad/s], 10 in 004; 0: take motion.velocity
+  double ramp_band = 0.0;       ///< |v| below which the force fades to zero [position/s]; 0: no band
+  double reversal_scale = 0.0;  ///< k_s [1/position]; 0: the full force at once after a reversal
+
+  struct State {
+    double filtered_penetration = 0.0;
+    double switch_penetration = 0.0;
+    int direction = 0;  ///< +1 closing, -1 opening, 0 before the first motion
+    bool started = false;
+  };
+  struct Branch {
+    bool closing = true;
+    double scale = 1.0;
+  };
+
+  /// The options of a law that has a BranchSelector, and how it is made from them.
+  static std::vector<OptionInfo> options();
+  static BranchSelector make(const OptionReader& reader);
+
+  Branch step(State& state, const Motion& motion, double period_s) const noexcept {
+    const double x = motion.penetration;
+    if (!state.started) {
+      state.filtered_penetration = x;
+      state.switch_penetration = x;
+      state.started = true;
+    }
+    double velocity = motion.velocity;
+    if (velocity_corner > 0.0) {
+      const double change = -std::expm1(-velocity_corner * period_s) * (x - state.filtered_penetration);
+      state.filtered_penetration += change;
+      velocity = change / period_s;
+    }
+    const int direction = velocity > 0.0 ? 1 : velocity < 0.0 ? -1 : state.direction;
+    if (direction != state.direction) {
+      state.switch_penetration = x;
+      state.direction = direction;
+    }
+    double scale = 1.0;
+    if (reversal_scale > 0.0) scale = std::min(1.0, reversal_scale * std::abs(x - state.switch_penetration));
+    if (ramp_band > 0.0) scale *= std::min(1.0, std::abs(velocity) / ramp_band);
+    return {.closing = direction >= 0, .scale = scale};
+  }
+};
+
+}  // namespace kerf::models

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Exponentially stiffening tissue with viscosity.
+///
+///     F = alpha exp(beta x / L0) + B0 v   for x > 0, else 0
+///
+/// With the option `zero_at_contact` the elastic part is alpha (exp(beta x / L0) - 1). L0 is the sample's
+/// thickness: it only scales beta, so it is a setting and not fitted. B0 is signed, since some tissue
+/// resists less when it is cut faster. The stiffness beta F / L0 grows with the force: past some depth no
+/// sampled loop renders it passively.
+///
+/// Source: 001, eqs. 11-13, whose B0 enters the closed loop as an acceleration term; here it is N·s/m.
+template <typename T>
+struct Exponential {
+  static constexpr std::string_view name = "exponential";
+  static constexpr std::string_view equation = "F = alpha exp(beta x / L0) + B0 v";
+
+  T amplitude{};           ///< alpha [N], > 0
+  T exponent{};            ///< beta [1], > 0
+  T viscosity{};           ///< B0 [N·s/m]
+  double thickness = 0.1;  ///< L0 [m or rad], > 0
+  bool zero_at_contact = false;
+
+  struct State {};
+
+  static std::vector<ParameterInfo> parameters(const Options&) {
+    return {{"amplitude", Quantity::force, 1e-15, 1e6, Scale::logarithmic, "alpha, force at contact"},
+            {"exponent", Quantity::ratio, 1e-6, 1e3, Scale::logarithmic,
+             "beta, stiffening over the thickness L0"},
+            {"viscosity", Quantity::damping, -1e6, 1e6, Scale::linear, "B0, force per speed"}};
+  }
+  static std::vector<OptionInfo> options() {
+    return {{"thickness", 0.1, "L0, thickness of the sample in the unit of position"},
+            {"zero_at_contact", false, "subtract alpha, so that the force begins at zero"}};
+  }
+  static Exponential make(std::span<const T> values, const Options& given) {
+    const OptionReader reader(name, options(), given);
+    return {values[0], values[1], values[2], reader.number("thickness", 1e-9, 1e9),
+            reader.flag("zero_at_contact")};
+  }
+
+  /// Elastic part of the force [N].
+  [[nodiscard]] T elastic_force(double penetration) const {
+    using std::exp;
+    using std::expm1;
+    if (penetration <= 0.0) return T(0.0);
+    const T growth = exponent * (penetration / thickness);
+    return zero_at_contact ? T(amplitude * expm1(growth)) : T(amplitude * exp(growth));
+  }
+  /// dF/dx [N/m]
+  [[nodiscard]] T stiffness(double penetration) const {
+    using std::exp;
+    return amplitude * exponent / thickness * exp(exponent * (penetration / thickness));
+  }
+  /// Elastic energy since contact [J].
+  [[nodiscard]] T stored_energy(double penetration) const {
+    using std::expm1;
+    const T whole = amplitude * thickness / exponent * expm1(exponent * (penetration / thickness));
+    return zero_at_contact ? T(whole - amplitude * penetration) : whole;
+  }
+
+  T step(State&, const Motion& motion, double) const noexcept {
+    if (motion.penetration <= 0.0) return T(0.0);
+    return elastic_force(motion.penetration) + viscosity * motion.velocity;
+  }
+};
+
+}  // namespace kerf::models

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace kerf::models {
+
+/// What a parameter measures, so that one law serves forces over depth [m] and over an angle [rad].
+enum class Quantity { force, position, velocity, stiffness, damping, ratio };
+
+/// The unit of a quantity on an axis: `unit_of(Quantity::stiffness, "N", "rad")` is "N/rad".
+[[nodiscard]] std::string unit_of(Quantity quantity, std::string_view force_unit,
+                                  std::string_view position_unit);
+
+/// How a parameter is searched: a logarithmic one is positive and may span decades.
+enum class Scale { linear, logarithmic };
+
+/// One parameter of a law: its name in law files, what it measures, and the range a law accepts.
+struct ParameterInfo {
+  std::string name;
+  Quantity quantity = Quantity::ratio;
+  double lower = 0.0;  ///< smallest value accepted, inclusive
+  double upper = 0.0;  ///< largest value accepted, inclusive
+  Scale scale = Scale::linear;
+  std::string meaning;
+};
+
+/// A setting of a law that is chosen and not fitted: an integrator, a table's grid, a ramp band.
+using OptionValue = std::variant<bool, double, std::string>;
+using Options = std::map<std::string, OptionValue, std::less<>>;
+
+/// One option of a law, with the value that it has when a law file does not name it.
+struct OptionInfo {
+  std::string name;
+  OptionValue standard;
+  std::string meaning;
+};
+
+/// Reads the options that a law knows, and refuses the others.
+///
+/// Each accessor throws std::invalid_argument if the option has another type than asked for.
+class OptionReader {
+ public:
+  /// @throws std::invalid_argument for an option that is not in `known`.
+  OptionReader(std::string_view model, const std::vector<OptionInfo>& known, const Options& given);
+
+  [[nodiscard]] double number(std::string_view name, double lower, double upper) const;
+  [[nodiscard]] bool flag(std::string_view name) const;
+  [[nodiscard]] std::string text(std::string_view name) const;
+
+ private:
+  const OptionValue& value(std::string_view name) const;
+
+  std::string model_;
+  Options values_;
+};
+
+}  // namespace kerf::models

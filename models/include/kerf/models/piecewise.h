@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/branch.h>
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Segmented (piecewise-linear) empirical law over the penetration, continuous at its knots.
+///
+///     F(x) = F_i + (F_{i+1} - F_i) (x - x_i) / (x_{i+1} - x_i)   for x_i <= x <= x_{i+1}
+///
+/// With the option `loop` it has a second set of forces on the same knots for opening, and a BranchSelector
+/// chooses between them; a positive force resists closing, so an opening branch that resists opening is
+/// negative. Before the first knot the first force holds; past the last one the last trend goes on.
+///
+/// Source: 004, section 3.2 (2 to 7 segments were enough for the hand).
+template <typename T>
+struct Piecewise {
+  static constexpr std::string_view name = "piecewise";
+  static constexpr std::string_view equation = "F linear between knots, closing and opening branch";
+  static constexpr std::size_t max_segments = 12;
+
+  std::size_t knots = 2;
+  std::array<T, max_segments + 1> knot{};
+  std::array<T, max_segments + 1> closing{};
+  std::array<T, max_segments + 1> opening{};
+  bool loop = false;
+  BranchSelector selector;
+
+  using State = BranchSelector::State;
+
+  static std::vector<OptionInfo> options() {
+    auto all = BranchSelector::options();
+    all.insert(all.begin(), {{"segments", 5.0, "number of linear segments, 1 to 12"},
+                             {"loop", false, "opening has forces of its own"}});
+    return all;
+  }
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    const OptionReader reader(name, options(), given);
+    const auto count = segments(reader) + 1;
+    std::vector<ParameterInfo> all;
+    const auto add = [&](const char* what, Quantity quantity, double bound, const char* meaning) {
+      for (std::size_t i = 0; i < count; ++i) {
+        all.push_back({std::string(what) + "[" + std::to_string(i) + "]", quantity, -bound, bound,
+                       Scale::linear, meaning});
+      }
+    };
+    add("knot", Quantity::position, 1e6, "penetration of a knot, increasing");
+    add("closing", Quantity::force, 1e6, "force at the knot while closing");
+    if (reader.flag("loop")) add("opening", Quantity::force, 1e6, "force at the knot while opening");
+    return all;
+  }
+  static Piecewise make(std::span<const T> values, const Options& given) {
+    const OptionReader reader(name, options(), given);
+    Piecewise law;
+    law.knots = segments(reader) + 1;
+    law.loop = reader.flag("loop");
+    law.selector = BranchSelector::make(reader);
+    for (std::size_t i = 0; i < law.knots; ++i) {
+      law.knot[i] = values[i];
+      law.closing[i] = values[law.knots + i];
+      law.opening[i] = law.loop ? values[2 * law.knots + i] : law.closing[i];
+      if (i > 0 && !(law.knot[i - 1] < law.knot[i])) {
+        throw std::invalid_argument("law 'piecewise': knot[" + std::to_string(i) +
+                                    "] must be greater than knot[" + std::to_string(i - 1) + "]");
+      }
+    }
+    return law;
+  }
+
+  /// Force of one branch at a penetration [N].
+  [[nodiscard]] T branch_force(bool is_closing, double penetration) const noexcept {
+    const auto& force = is_closing ? closing : opening;
+    if (knot[0] >= penetration) return force[0];
+    std::size_t i = 0;
+    while (i + 2 < knots && knot[i + 1] < penetration) ++i;
+    return force[i] + (force[i + 1] - force[i]) * ((penetration - knot[i]) / (knot[i + 1] - knot[i]));
+  }
+
+  T step(State& state, const Motion& motion, double period_s) const noexcept {
+    if (!loop) return branch_force(true, motion.penetration);
+    const auto branch = selector.step(state, motion, period_s);
+    return branch.scale * branch_force(branch.closing, motion.penetration);
+  }
+
+ private:
+  static std::size_t segments(const OptionReader& reader) {
+    return static_cast<std::size_t>(reader.number("segments", 1.0, static_cast<double>(max_segments)));
+  }
+};
+
+}  // namespace kerf::models

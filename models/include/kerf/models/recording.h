@@ -1,0 +1,99 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/branch.h>
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Haptic recording: the recorded forces themselves, looked up over the penetration.
+///
+///     F(x) = s f_close(x) while closing, s f_open(x) while opening
+///
+/// Two tables on one uniform grid, linear in between; a BranchSelector chooses the table and the factor s.
+/// Before the first grid point the first value holds; past the last one the last trend goes on, to the
+/// fully closed scissors. Without the option `loop` there is one table for both ways.
+///
+/// Source: 004, section 3.1, eqs. 4-5.
+template <typename T>
+struct Recording {
+  static constexpr std::string_view name = "recording";
+  static constexpr std::string_view equation = "F = s f_close(x) or s f_open(x), tables over x";
+  static constexpr std::size_t max_points = 4096;
+
+  double first = 0.0;  ///< penetration of the first grid point
+  double last = 1.0;   ///< penetration of the last grid point
+  std::vector<T> closing;
+  std::vector<T> opening;  ///< empty without `loop`
+  BranchSelector selector;
+
+  using State = BranchSelector::State;
+
+  static std::vector<OptionInfo> options() {
+    auto all = BranchSelector::options();
+    all.insert(all.begin(), {{"points", 101.0, "grid points of a table, 2 to 4096"},
+                             {"first", 0.0, "penetration of the first grid point"},
+                             {"last", 1.0, "penetration of the last grid point"},
+                             {"loop", false, "opening has a table of its own"}});
+    return all;
+  }
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    const OptionReader reader(name, options(), given);
+    std::vector<ParameterInfo> all;
+    const auto add = [&](const char* what, const char* meaning) {
+      for (std::size_t i = 0; i < points(reader); ++i) {
+        all.push_back({std::string(what) + "[" + std::to_string(i) + "]", Quantity::force, -1e6, 1e6,
+                       Scale::linear, meaning});
+      }
+    };
+    add("closing", "force at a grid point while closing");
+    if (reader.flag("loop")) add("opening", "force at a grid point while opening");
+    return all;
+  }
+  static Recording make(std::span<const T> values, const Options& given) {
+    const OptionReader reader(name, options(), given);
+    Recording law;
+    law.first = reader.number("first", -1e6, 1e6);
+    law.last = reader.number("last", -1e6, 1e6);
+    if (!(law.first < law.last)) {
+      throw std::invalid_argument("law 'recording': option 'last' must be greater than option 'first'");
+    }
+    law.selector = BranchSelector::make(reader);
+    const auto count = static_cast<std::ptrdiff_t>(points(reader));
+    law.closing.assign(values.begin(), values.begin() + count);
+    if (reader.flag("loop")) law.opening.assign(values.begin() + count, values.begin() + 2 * count);
+    return law;
+  }
+
+  /// Force of one branch at a penetration [N].
+  [[nodiscard]] T branch_force(bool is_closing, double penetration) const noexcept {
+    const auto& table = is_closing || opening.empty() ? closing : opening;
+    const double place = (penetration - first) * (static_cast<double>(table.size() - 1) / (last - first));
+    if (!(place > 0.0)) return table.front();
+    const double cell = std::min(std::floor(place), static_cast<double>(table.size() - 2));
+    const auto i = static_cast<std::size_t>(cell);
+    return table[i] + (table[i + 1] - table[i]) * (place - cell);
+  }
+
+  T step(State& state, const Motion& motion, double period_s) const noexcept {
+    if (opening.empty()) return branch_force(true, motion.penetration);
+    const auto branch = selector.step(state, motion, period_s);
+    return branch.scale * branch_force(branch.closing, motion.penetration);
+  }
+
+ private:
+  static std::size_t points(const OptionReader& reader) {
+    return static_cast<std::size_t>(reader.number("points", 2.0, static_cast<double>(max_points)));
+  }
+};
+
+}  // namespace kerf::models
