@@ -4,13 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace kerf::schema {
 
+inline constexpr std::string_view schema_name = "kerf.recording";
+inline constexpr std::uint32_t schema_version = 1;
 inline constexpr std::size_t max_axes = 6;
 
 /// Thrown when a file is not what the schema says, in one line: file, dataset, found, expected, mend.
@@ -51,18 +56,26 @@ enum Flag : std::uint32_t {
   flag_resampled = 1U << 6U,
 };
 
+/// Further numbers and texts about a device or a scene, by name.
+using Properties = std::map<std::string, std::variant<double, std::string>>;
+
 /// Root attributes, and the texts that a recording came from.
 struct Header {
-  std::string created;   ///< ISO 8601, UTC
-  std::string software;  ///< "kerf 0.1.0"
-  std::string uuid;
+  std::string created;              ///< ISO 8601, UTC: "2026-01-31T12:00:00Z"
+  std::string software;             ///< "kerf 0.1.0"
+  std::string uuid;                 ///< RFC 9562, lower case
   std::string status = "complete";  ///< "recording", "complete" or "aborted: WHY"
   std::string velocity_derived;     ///< how the velocity was derived from the position; empty if measured
   std::string source;               ///< file name and SHA-256 of the imported data; empty if recorded
   std::string device_uri;           ///< empty if imported
   std::string device_toml;          ///< the device's configuration
   std::string scene_toml;           ///< what was simulated or cut, and with which known parameters
+  Properties device_properties;     ///< attributes of /device beside its URI and TOML
+  Properties scene_properties;      ///< attributes of /scene beside its TOML
 };
+
+/// A header of a recording that begins now: created, software and a new random uuid.
+[[nodiscard]] Header new_header(std::string software);
 
 /// One phase of a cycle: rows [begin, end).
 enum class Phase : std::uint8_t { opening = 1, open_to_close = 2, closing = 3, close_to_open = 4 };
@@ -87,7 +100,8 @@ struct Cycles {
   std::vector<double> opening_mean;          ///< G
 };
 
-/// A whole recording in memory, one vector a dataset. Arrays of N x D are row-major.
+/// A whole recording in memory, one vector a dataset. Arrays of N x D are row-major. Time, tick, position and
+/// velocity have N rows; any other may be empty and is then left out of the file.
 struct Recording {
   Header header;
   std::vector<Axis> axes;
@@ -125,11 +139,13 @@ struct Row {
   std::uint32_t flags = 0;
 };
 
-/// Reads a whole recording. @throws FormatError, std::system_error (the file cannot be opened).
+/// Reads a whole recording, also the `NAME.partial` of a writer that is still at work or has died: then the
+/// rows are those that reached every dataset. @throws FormatError, std::system_error (it cannot be opened).
 [[nodiscard]] Recording read_recording(const std::filesystem::path& file);
 
 /// Writes a whole recording: to a temporary name beside `file`, then renamed, so that a half-written file
-/// never stands under the final name. @throws std::system_error (no space, no permission, ...).
+/// never stands under the final name. An existing file is replaced.
+/// @throws std::invalid_argument (a column whose length does not fit), std::system_error (no space, ...).
 void write_recording(const std::filesystem::path& file, const Recording& recording);
 
 }  // namespace kerf::schema

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "h5.h"
+
+namespace kerf::schema {
+
+/// A file under a temporary name beside its target; removed unless it was committed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::filesystem::path target);
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile();
+
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+  /// Renames it to its target. @throws std::system_error
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path path_;
+};
+
+/// Waits until the file's bytes are on the disk. @throws std::system_error
+void synchronise(const std::filesystem::path& file);
+
+/// Renames a file. @throws std::system_error that names the target.
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Throws what a user can act on when writing `file` failed.
+[[noreturn]] void throw_write_error(const std::filesystem::path& file, const h5::Error& error);
+
+/// @throws std::system_error if the file cannot be opened or is a folder.
+void require_readable(const std::filesystem::path& file);
+
+}  // namespace kerf::schema

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+/// HDF5's C API as values that clean up after themselves. The only place of the house that includes it.
+namespace kerf::schema::h5 {
+
+/// A failed HDF5 call: the innermost line of HDF5's own error stack.
+struct Error : std::runtime_error {
+  Error(const std::string& line, int errno_of_cause)
+      : std::runtime_error(line), system_error(errno_of_cause) {}
+  int system_error;  ///< errno of the system call that failed; 0 if HDF5 itself refused
+};
+
+/// Keeps HDF5 from printing in this thread and from touching files at exit().
+void silence() noexcept;
+[[noreturn]] void throw_last_error();
+
+/// Calls a function of HDF5. @throws Error if it fails.
+template <typename Function, typename... Arguments>
+auto call(Function function, Arguments... arguments) {
+  silence();
+  const auto result = function(arguments...);
+  if (result < 0) throw_last_error();
+  return result;
+}
+
+/// Owns one HDF5 identifier, of whatever kind.
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(hid_t id) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, none)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Handle();
+
+  /// @throws Error if what was written cannot be brought to the file.
+  void close();
+  [[nodiscard]] hid_t id() const noexcept { return id_; }
+
+ private:
+  static constexpr hid_t none = -1;
+  hid_t id_ = none;
+};
+
+using Extent = std::vector<hsize_t>;
+
+// Files.
+enum class Format { oldest_readers, live_readers };
+[[nodiscard]] Handle create_file(const std::filesystem::path& file, Format format);
+/// Opens for reading, also while it is written or after its writer died.
+[[nodiscard]] Handle open_file(const std::filesystem::path& file);
+[[nodiscard]] Handle open_for_change(const std::filesystem::path& file);
+/// From here on other processes may follow the file; nothing but rows can be added.
+void start_live(const Handle& file);
+void flush(const Handle& file);
+
+// The tree.
+[[nodiscard]] bool is_group(hid_t parent, const std::string& path);
+[[nodiscard]] bool is_dataset(hid_t parent, const std::string& path);
+[[nodiscard]] Handle create_group(hid_t parent, const std::string& path);
+[[nodiscard]] Handle open(hid_t parent, const std::string& path);
+/// Names in a group, in the order in which they were made where the file knows it.
+[[nodiscard]] std::vector<std::string> children(hid_t group);
+
+// Types. A file's type is compared by its name: "float64", "uint32", "text", "{time float64, text text}".
+template <typename T>
+[[nodiscard]] hid_t native();
+[[nodiscard]] std::string type_name(hid_t type);
+struct Field {
+  std::string name;
+  std::string type;
+  std::size_t size;    ///< bytes; of a text its room
+  std::size_t offset;  ///< in memory
+};
+[[nodiscard]] Handle record_type(std::span<const Field> fields, std::size_t record_size);
+[[nodiscard]] Handle packed(const Handle& type);
+/// Bytes that a file gives to each field of its records.
+[[nodiscard]] std::vector<std::size_t> field_sizes(hid_t dataset);
+
+struct Description {
+  std::string type;
+  Extent extent;
+};
+
+// Datasets. Rows are dimension 0 and can grow.
+struct DatasetOptions {
+  Extent extent;
+  hsize_t chunk_rows = 1;
+  const void* fill = nullptr;  ///< value of rows that never reached the file
+};
+[[nodiscard]] Handle create_dataset(hid_t parent, const std::string& path, hid_t type,
+                                    const DatasetOptions& options);
+[[nodiscard]] Description describe(hid_t dataset);
+void write(hid_t dataset, hid_t memory_type, const void* values);
+/// Adds rows after the first `rows_before`.
+void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows, const void* values);
+/// Reads the first `rows` rows.
+void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values);
+
+// Attributes: one value or a list of them.
+void write_attribute(hid_t object, const std::string& name, const std::string& text);
+void write_attribute(hid_t object, const std::string& name, std::span<const std::string> texts);
+void write_attribute(hid_t object, const std::string& name, hid_t native_type, const Extent& extent,
+                     const void* values);
+void delete_attribute(hid_t object, const std::string& name);
+[[nodiscard]] bool has_attribute(hid_t object, const std::string& name);
+[[nodiscard]] std::vector<std::string> attributes(hid_t object);
+[[nodiscard]] Description describe_attribute(hid_t object, const std::string& name);
+[[nodiscard]] std::vector<std::string> read_texts(hid_t object, const std::string& name);
+void read_attribute(hid_t object, const std::string& name, hid_t native_type, void* values);
+
+// Dimension scales.
+void make_scale(hid_t dataset, const std::string& name);
+void attach_scale(hid_t dataset, hid_t scale, unsigned dimension);
+void label(hid_t dataset, unsigned dimension, const std::string& name);
+[[nodiscard]] bool is_scale(hid_t dataset);
+[[nodiscard]] bool is_attached(hid_t dataset, hid_t scale, unsigned dimension);
+
+}  // namespace kerf::schema::h5

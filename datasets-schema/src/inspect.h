@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include <kerf/schema/recording.h>
+#include <kerf/schema/validate.h>
+
+#include "h5.h"
+
+namespace kerf::schema {
+
+/// A way in which a file's tree departs from the tables; `fatal` if the recording cannot be read for it.
+struct Finding {
+  Violation violation;
+  bool fatal = false;
+};
+
+/// A file whose tree was compared with the tables.
+struct Inspection {
+  h5::Handle file;
+  std::vector<Finding> findings;
+  bool live = false;  ///< still written, or left by a crash: rows may differ in number
+
+  [[nodiscard]] const Finding* first_fatal() const;
+};
+
+/// @throws FormatError if it is no HDF5 file, std::system_error if it cannot be opened.
+[[nodiscard]] Inspection inspect(const std::filesystem::path& file);
+
+/// Reads what was inspected; nothing in it may be fatal.
+[[nodiscard]] Recording read_inspected(const Inspection& inspection);
+
+}  // namespace kerf::schema
