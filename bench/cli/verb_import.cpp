@@ -1,9 +1,111 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
 #include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "import/import.h"
+#include "recordings/summary.h"
 
 namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string data;
+  std::string output;
+  std::vector<std::string> maps;
+  ImportOptions options;
+  bool force = false;
+};
+
+std::string name_of(char separator) {
+  switch (separator) {
+    case '\t':
+      return "tab";
+    case ' ':
+      return "blanks";
+    default:
+      return {separator};
+  }
+}
+
+nlohmann::ordered_json to_json(const Imported& imported) {
+  nlohmann::ordered_json result = recording_summary(imported.recording);
+  for (const std::string& warning : imported.warnings) result["warnings"].push_back(warning);
+  result["bad_lines"] = imported.bad_lines.size();
+  result["bad_line_numbers"] = imported.bad_lines;
+  result["misplaced_lines"] = imported.misplaced_lines.size();
+  result["misplaced_line_numbers"] = imported.misplaced_lines;
+  result["layout"] = {{"separator", name_of(imported.layout.separator)},
+                      {"decimal", std::string(1, imported.layout.point)},
+                      {"preamble_lines", imported.layout.preamble_lines},
+                      {"header_line", imported.layout.header_line},
+                      {"units_line", imported.layout.units_line}};
+  result["parse_seconds"] = imported.parse_seconds;
+  return result;
+}
+
+void run_import(const Arguments& arguments, Context& context) {
+  if (arguments.maps.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: --map is needed to tell what the columns are, for example --map "
+                    "'time=1[s],position=2[mm],force=3[N]'; they are\n{}",
+                    arguments.data, explain_columns(arguments.data)));
+  }
+  if (arguments.output.empty())
+    throw std::invalid_argument("-o is needed: the recording to write, for example -o r.h5");
+  refuse_to_replace(arguments.output, arguments.force);
+  ImportOptions options = arguments.options;
+  std::string map;
+  for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
+  options.map = parse_map(map);
+
+  const Imported imported = import_text(arguments.data, options);
+  schema::write_recording(arguments.output, imported.recording);
+  context.result = to_json(imported);
+  for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
+  for (const MappedColumn& column : imported.columns) {
+    if (column.unit_from_file)
+      say(fmt::format("{}: unit {} taken from the file", column.channel, column.unit.si));
+  }
+  say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
+                  imported.recording.time.back()));
+}
+
+}  // namespace
 
 void add_import(CLI::App& app, Context& context) {
-  add_verb(app, context, "import", "", "kerf import", [] {});
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& verb = add_verb(
+      app, context, "import", "Turn CSV, TSV or an instrument's text file into a recording, in SI",
+      "kerf import punch.txt --map 'time=5[ms],position=4[deg],force=2[gf]' -o punch.h5\n\n"
+      "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
+      "raw\n"
+      "counts: position=2[0.0439453125 deg]. Without a unit, the one in the file is taken. Channels: time, "
+      "position,\n"
+      "velocity (derived if not mapped), force, force_commanded, and any further name. Separator, decimal "
+      "comma,\n"
+      "quotes, preamble, header, units row and encoding are recognised. Lines that are not data are reported "
+      "and\n"
+      "left out, and so are lines whose time repeats or goes back; NaN and infinity are kept and reported.",
+      [arguments, &context] { run_import(*arguments, context); });
+  verb.add_option("DATA", arguments->data, "Text file")->required();
+  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)");
+  verb.add_option("-o,--output", arguments->output, "Recording to write");
+  verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--velocity-window", arguments->options.velocity_window_s,
+                  "Window of the derived velocity [s] (default: 0.02, and at least five samples)")
+      ->check(CLI::PositiveNumber);
+  verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
+  verb.add_flag("--force", arguments->force, "Replace an existing recording");
 }
 
 }  // namespace kerf::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <complex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -64,6 +65,12 @@ struct Kelvin {
 
   /// Relaxation time tau = b / k2 [s].
   [[nodiscard]] T relaxation_time() const { return damping / series_stiffness; }
+
+  /// Force over penetration for a sinusoidal motion, k1 + k2 i w tau / (1 + i w tau) [N/m], at w [rad/s].
+  [[nodiscard]] std::complex<double> dynamic_stiffness(double frequency_rad_s) const {
+    const std::complex<double> lag(0.0, frequency_rad_s * relaxation_time());
+    return parallel_stiffness + series_stiffness * lag / (1.0 + lag);
+  }
 
   /// Energy held by the two springs [J], for a penetration in metres.
   [[nodiscard]] T stored_energy(const State& state) const {

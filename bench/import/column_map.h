@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "import/text_layout.h"
+#include "units/units.h"
+
+namespace kerf::bench {
+
+/// One entry of `--map`: which column of a text file becomes which channel.
+struct MapEntry {
+  std::string
+      channel;         ///< "time", "position", "force", "velocity", "force_commanded", or a name of one's own
+  std::string column;  ///< 1-based number or header name
+  std::string unit;    ///< as given in brackets; empty if not given
+};
+
+/// Reads `time=5[ms],position=4[deg],force=2[gf]`. Header names may stand in double quotes, and must if they
+/// hold a comma; the last pair of square brackets is the unit.
+/// @throws std::invalid_argument that quotes the entry and shows how one is written.
+[[nodiscard]] std::vector<MapEntry> parse_map(std::string_view text);
+
+/// An entry matched with a file.
+struct MappedColumn {
+  std::string channel;
+  std::size_t index = 0;  ///< column, from 0
+  Unit unit;
+  bool unit_from_file = false;
+};
+
+/// Matches the entries with the columns that a file has.
+/// @throws std::invalid_argument for a column that does not exist, a unit that is neither given nor in the
+///         file, a unit of the wrong kind, a channel given twice, no force and no position, listing the
+///         columns.
+[[nodiscard]] std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries,
+                                                      const TextLayout& layout, const std::string& name);
+
+/// The columns of a file, one a line, and a map to begin with: what a user needs to write `--map`.
+[[nodiscard]] std::string describe_columns(const TextLayout& layout, std::string_view text);
+
+}  // namespace kerf::bench

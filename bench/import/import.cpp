@@ -1,0 +1,254 @@
+#include "import/import.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <span>
+#include <stdexcept>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "cli/progress.h"
+#include "files/mapped_file.h"
+#include "import/resample.h"
+#include "import/text_table.h"
+#include "recordings/provenance.h"
+#include "signal/signal.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t most_lines_named = 10;
+
+/// "3, 7, 9 and 12 more"
+std::string named_lines(const std::vector<std::size_t>& lines) {
+  const std::size_t shown = std::min(lines.size(), most_lines_named);
+  const std::string text =
+      fmt::format("{}", fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  return shown == lines.size() ? text : fmt::format("{} and {} more", text, lines.size() - shown);
+}
+
+const MappedColumn* find_channel(const std::vector<MappedColumn>& columns, std::string_view channel) {
+  const auto place =
+      std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.channel == channel; });
+  return place == columns.end() ? nullptr : &*place;
+}
+
+double median_period(const std::vector<double>& time) {
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < time.size(); ++i) periods.push_back(time[i] - time[i - 1]);
+  if (periods.empty()) return 0.0;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return *middle;
+}
+
+/// The table's numbers in the order of the mapped columns, in SI but for the time, and the lines they came
+/// from.
+class Rows {
+ public:
+  Rows(TextTable table, const std::vector<MappedColumn>& columns) : table_(std::move(table)) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      if (columns[i].unit.factor == 1.0 || columns[i].channel == "time") continue;
+      for (double& value : table_.columns[i]) value *= columns[i].unit.factor;
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return table_.columns.front().size(); }
+  [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }
+  [[nodiscard]] const std::vector<std::size_t>& bad_lines() const { return table_.bad_lines; }
+
+  /// Leaves out the rows whose time is not finite or not after all before it; returns their lines.
+  std::vector<std::size_t> leave_out_misplaced(std::size_t time_column) {
+    const auto& time = table_.columns[time_column];
+    std::vector<std::size_t> lines;
+    std::vector<std::size_t> kept;
+    double last = -std::numeric_limits<double>::infinity();
+    bool whole = true;
+    for (std::size_t row = 0; row < time.size(); ++row) {
+      if (std::isfinite(time[row]) && time[row] > last) {
+        last = time[row];
+        if (!whole) kept.push_back(row);
+        continue;
+      }
+      if (whole) {
+        for (std::size_t before = 0; before < row; ++before) kept.push_back(before);
+        whole = false;
+      }
+      lines.push_back(table_.line_of(row));
+    }
+    if (!whole) {
+      for (auto& column : table_.columns) {
+        for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
+        column.resize(kept.size());
+      }
+    }
+    return lines;
+  }
+
+ private:
+  TextTable table_;
+};
+
+/// Numbers the rows, with a jump at every gap.
+void number_ticks(Imported& imported, double period_s) {
+  schema::Recording& recording = imported.recording;
+  std::uint64_t tick = 0;
+  std::size_t gaps = 0;
+  double longest_s = 0.0;
+  recording.tick.reserve(recording.rows());
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    const double step = row > 0 ? recording.time[row] - recording.time[row - 1] : 0.0;
+    const bool gap = step > gap_in_periods * period_s;
+    tick += row == 0 ? 0 : gap ? static_cast<std::uint64_t>(std::llround(step / period_s)) : 1;
+    gaps += gap ? 1U : 0U;
+    if (gap) longest_s = std::max(longest_s, step);
+    recording.tick.push_back(tick);
+  }
+  if (gaps > 0) {
+    imported.warnings.push_back(fmt::format("{} gaps of more than {} periods, the longest {:.4g} s", gaps,
+                                            gap_in_periods, longest_s));
+  }
+}
+
+void report_irregular_lines(Imported& imported) {
+  auto& events = imported.recording.events;
+  if (!imported.bad_lines.empty()) {
+    const std::string text =
+        fmt::format("{} lines are not data: {}", imported.bad_lines.size(), named_lines(imported.bad_lines));
+    imported.warnings.push_back(text);
+    events.push_back({.time_s = 0.0, .kind = "bad_lines", .text = text});
+  }
+  if (!imported.misplaced_lines.empty()) {
+    const std::string text =
+        fmt::format("{} lines repeat a time or go back, and are left out: {}",
+                    imported.misplaced_lines.size(), named_lines(imported.misplaced_lines));
+    imported.warnings.push_back(text);
+    events.push_back({.time_s = 0.0, .kind = "misplaced_lines", .text = text});
+  }
+}
+
+void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
+  auto& time = imported.recording.time;
+  const MappedColumn* column = find_channel(imported.columns, "time");
+  if (column == nullptr) {
+    if (!(options.rate_hz > 0.0)) {
+      throw std::invalid_argument(fmt::format(
+          "{}: --map maps no time; map one, or give --rate HZ for samples at a uniform rate", name));
+    }
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      time.push_back(static_cast<double>(row) / options.rate_hz);
+    return;
+  }
+  const auto index = static_cast<std::size_t>(column - imported.columns.data());
+  imported.misplaced_lines = rows.leave_out_misplaced(index);
+  time = std::move(rows.column(index));
+  if (time.empty()) return;
+  // Stamps are subtracted as they were written, where whole milliseconds are exact, and scaled after that.
+  const double start = time.front();
+  for (double& t : time) t = (t - start) * column->unit.factor;
+}
+
+void take_channels(Imported& imported, Rows& rows, const ImportOptions& options, double period_s) {
+  schema::Recording& recording = imported.recording;
+  for (std::size_t i = 0; i < imported.columns.size(); ++i) {
+    const MappedColumn& column = imported.columns[i];
+    if (column.channel == "time") continue;
+    std::vector<double>& values = rows.column(i);
+    if (column.channel == "position") {
+      recording.axes[0].position_unit = column.unit.si;
+      recording.position = std::move(values);
+    } else if (column.channel == "velocity") {
+      recording.velocity = std::move(values);
+    } else if (column.channel == "force_measured" || column.channel == "force_commanded") {
+      recording.axes[0].force_unit = column.unit.si;
+      (column.channel == "force_measured" ? recording.force_measured : recording.force_commanded) =
+          std::move(values);
+    } else {
+      recording.channels.push_back(
+          {.name = column.channel, .unit = column.unit.si, .values = std::move(values)});
+    }
+  }
+  if (recording.velocity.empty()) {
+    const double window_s =
+        options.velocity_window_s > 0.0 ? options.velocity_window_s : std::max(0.02, 4.0 * period_s);
+    recording.velocity = differentiate(recording.time, recording.position, window_s * (1.0 + 1e-6));
+    recording.header.velocity_derived =
+        fmt::format("slope of a parabola fitted to the positions within {:.4g} s, zero phase", window_s);
+  }
+}
+
+void check_units(const Imported& imported) {
+  const MappedColumn* velocity = find_channel(imported.columns, "velocity");
+  const std::string expected = imported.recording.axes[0].position_unit + "/s";
+  if (velocity != nullptr && velocity->unit.si != expected) {
+    throw std::invalid_argument(
+        fmt::format("--map: velocity in {} does not fit a position in {}; expected {}", velocity->unit.si,
+                    imported.recording.axes[0].position_unit, expected));
+  }
+}
+
+}  // namespace
+
+Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
+  const std::string name = file.string();
+  const MappedFile mapped(file);
+  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.text()); });
+  Imported imported;
+  imported.layout = find_layout(mapped.text(), name);
+  imported.columns = match_columns(options.map, imported.layout, name);
+
+  std::vector<std::size_t> indices;
+  for (const MappedColumn& column : imported.columns) indices.push_back(column.index);
+  Progress progress("importing", mapped.text().size());
+  const auto begin = std::chrono::steady_clock::now();
+  Rows rows(parse_table(mapped.text(), imported.layout, indices, progress.done), imported.columns);
+  imported.parse_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  imported.bad_lines = rows.bad_lines();
+  if (rows.size() == 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: no line has a number in every mapped column; its columns are\n{}", name,
+                    describe_columns(imported.layout, mapped.text())));
+  }
+  if (options.strict && !imported.bad_lines.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: {} lines are not data: {}; without --strict they are left out", name,
+                    imported.bad_lines.size(), named_lines(imported.bad_lines)));
+  }
+
+  schema::Recording& recording = imported.recording;
+  recording.axes.resize(1);
+  take_time(imported, rows, name, options);
+  if (options.strict && !imported.misplaced_lines.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: lines {} repeat a time or go back; without --strict they are left out", name,
+                    named_lines(imported.misplaced_lines)));
+  }
+  const double period_s = median_period(recording.time);
+  take_channels(imported, rows, options, period_s);
+  check_units(imported);
+  report_irregular_lines(imported);
+  number_ticks(imported, period_s);
+  recording.flags.assign(recording.rows(), 0);
+  if (period_s > 0.0 && (period_s > 10.0 || period_s < 1e-5)) {
+    imported.warnings.push_back(
+        fmt::format("the rate is {:.4g} Hz; is the unit of time right?", 1.0 / period_s));
+  }
+  if (options.resample_hz > 0.0) resample(recording, options.resample_hz, period_s);
+
+  const std::string derived = recording.header.velocity_derived;
+  recording.header = schema::new_header(software());
+  recording.header.velocity_derived = derived;
+  recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
+  return imported;
+}
+
+std::string explain_columns(const std::filesystem::path& file) {
+  const MappedFile mapped(file);
+  const TextLayout layout = find_layout(mapped.text(), file.string());
+  return describe_columns(layout, mapped.text());
+}
+
+}  // namespace kerf::bench

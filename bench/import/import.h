@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <kerf/schema/recording.h>
+
+#include "import/column_map.h"
+#include "import/text_layout.h"
+
+namespace kerf::bench {
+
+struct ImportOptions {
+  std::vector<MapEntry> map;
+  double rate_hz = 0.0;            ///< of a file without a time column; 0: there is one
+  double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
+  double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, and at least five samples
+  bool strict = false;             ///< refuse a file that has lines which are not data
+};
+
+/// A text file turned into a recording, and everything that was not as it should be.
+struct Imported {
+  schema::Recording recording;
+  TextLayout layout;
+  std::vector<MappedColumn> columns;
+  std::vector<std::size_t> bad_lines;        ///< lines that are not data
+  std::vector<std::size_t> misplaced_lines;  ///< lines whose time repeats or goes back
+  std::vector<std::string> warnings;
+  double parse_seconds = 0.0;
+};
+
+/// Reads a text file into a recording with one axis, in SI.
+///
+/// Time starts at zero. Rows whose time repeats or goes back cannot stand in a recording: they are left out,
+/// and told of in `misplaced_lines`, a warning and an event. Gaps become jumps of `tick`. NaN and infinity
+/// stay as they are and are told of. The velocity is derived from the position by a zero-phase parabolic fit
+/// unless the map names one.
+/// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
+[[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
+
+/// The columns of a file and a map to begin with, for a user who gave none.
+[[nodiscard]] std::string explain_columns(const std::filesystem::path& file);
+
+}  // namespace kerf::bench

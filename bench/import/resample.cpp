@@ -1,0 +1,73 @@
+#include "import/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "signal/signal.h"
+
+namespace kerf::bench {
+namespace {
+
+/// The new grid, without the times that lie in a gap of the old one.
+struct Grid {
+  std::vector<double> time;
+  std::vector<std::uint64_t> tick;
+};
+
+Grid make_grid(const std::vector<double>& time, double rate_hz, double period_s) {
+  Grid grid;
+  const auto last = static_cast<std::uint64_t>(std::floor(time.back() * rate_hz * (1.0 + 1e-12)));
+  std::size_t after = 0;
+  for (std::uint64_t tick = 0; tick <= last; ++tick) {
+    const double t = static_cast<double>(tick) / rate_hz;
+    while (after + 1 < time.size() && time[after] < t) ++after;
+    const bool in_gap = after > 0 && t < time[after] &&
+                        time[after] - time[after - 1] > gap_in_periods * period_s && t > time[after - 1];
+    if (in_gap) continue;
+    grid.time.push_back(t);
+    grid.tick.push_back(tick);
+  }
+  return grid;
+}
+
+std::vector<double> resampled(const std::vector<double>& time, const std::vector<double>& values,
+                              const Grid& grid, double rate_hz, double period_s) {
+  if (rate_hz * period_s > 0.8) return interpolate(time, values, grid.time);
+  std::vector<double> uniform_time;
+  for (std::size_t i = 0; static_cast<double>(i) * period_s <= time.back(); ++i) {
+    uniform_time.push_back(static_cast<double>(i) * period_s);
+  }
+  const auto smooth =
+      low_pass_zero_phase(interpolate(time, values, uniform_time), 1.0 / period_s, 0.4 * rate_hz);
+  return interpolate(uniform_time, smooth, grid.time);
+}
+
+}  // namespace
+
+void resample(schema::Recording& recording, double rate_hz, double period_s) {
+  if (recording.rows() < 3) throw std::invalid_argument("--resample needs at least three samples");
+  const Grid grid = make_grid(recording.time, rate_hz, period_s);
+  const auto apply = [&](std::vector<double>& values, std::string_view channel) {
+    if (values.empty()) return;
+    if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+      throw std::invalid_argument(fmt::format(
+          "--resample: {} holds values that are not finite, which resampling would spread; import without it",
+          channel));
+    }
+    values = resampled(recording.time, values, grid, rate_hz, period_s);
+  };
+  apply(recording.position, "position");
+  apply(recording.velocity, "velocity");
+  apply(recording.force_commanded, "force_commanded");
+  apply(recording.force_measured, "force_measured");
+  for (schema::Channel& channel : recording.channels) apply(channel.values, channel.name);
+  recording.time = grid.time;
+  recording.tick = grid.tick;
+  recording.flags.assign(grid.time.size(), schema::flag_resampled);
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kerf::bench {
+
+/// One column of a text file, as far as the lines before the data tell.
+struct TextColumn {
+  std::string name;  ///< from the header in UTF-8 without its unit; empty without a header
+  std::string
+      unit;  ///< from the units row, or from the name ("Time [ms]", "Load (N)", "t_s"); empty if unknown
+};
+
+/// How a text file of numbers is laid out, found by looking at its first lines.
+struct TextLayout {
+  char separator = '\t';  ///< '\t', ',', ';' or ' ' (any run of blanks)
+  char point = '.';       ///< decimal point or comma
+  bool quoted = false;    ///< fields may stand in double quotes
+  std::vector<TextColumn> columns;
+  std::size_t data_begin = 0;      ///< byte at which the first line of numbers begins
+  std::size_t preamble_lines = 0;  ///< lines before it, empty ones included
+  std::size_t header_line = 0;     ///< number of the header's line; 0: none
+  std::size_t units_line = 0;      ///< number of the units' line; 0: none
+};
+
+/// Finds the layout. `name` stands for the file in messages.
+/// @throws std::invalid_argument for an empty file, a binary one, or one without a line of numbers.
+[[nodiscard]] TextLayout find_layout(std::string_view text, const std::string& name);
+
+/// Splits a line into its fields: blanks around them and quotes taken off.
+[[nodiscard]] std::vector<std::string_view> split_line(std::string_view line, char separator);
+
+/// Text in UTF-8, GB 18030 or Latin-1 to UTF-8.
+[[nodiscard]] std::string to_utf8(std::string_view text);
+
+/// Takes the next line, without its line end, off `rest`.
+[[nodiscard]] std::string_view take_line(std::string_view& rest) noexcept;
+
+}  // namespace kerf::bench

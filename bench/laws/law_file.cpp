@@ -1,0 +1,334 @@
+#include "laws/law_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "files/whole_file.h"
+#include "laws/law_toml.h"
+#include "units/units.h"
+
+namespace kerf::bench {
+namespace {
+
+/// Where in which file a message is about.
+class Place {
+ public:
+  explicit Place(std::string file) : file_(std::move(file)) {}
+
+  template <typename... Arguments>
+  [[noreturn]] void refuse(const toml::node& node, fmt::format_string<Arguments...> format,
+                           Arguments&&... arguments) const {
+    throw std::invalid_argument(fmt::format("{}:{}: {}", file_, node.source().begin.line,
+                                            fmt::format(format, std::forward<Arguments>(arguments)...)));
+  }
+
+  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys,
+                  std::string_view where) const {
+    for (const auto& [key, node] : table) {
+      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
+      refuse(node, "unknown key '{}' in {}; known are {}", key.str(), where, fmt::join(keys, ", "));
+    }
+  }
+
+  const toml::table& table(const toml::table& parent, std::string_view key) const {
+    const toml::node* node = parent.get(key);
+    if (node == nullptr || !node->is_table()) refuse(node ? *node : parent, "expected a table [{}]", key);
+    return *node->as_table();
+  }
+
+  std::string text(const toml::table& parent, std::string_view key, std::string_view standard) const {
+    const toml::node* node = parent.get(key);
+    if (node == nullptr) return std::string(standard);
+    if (!node->is_string()) refuse(*node, "'{}' must be a text in quotes", key);
+    return **node->as_string();
+  }
+
+  double number(const toml::node& node, std::string_view what) const {
+    if (!node.is_number()) refuse(node, "{} must be a number", what);
+    return *node.value<double>();
+  }
+
+ private:
+  std::string file_;
+};
+
+/// The numbers under `value` or `std_error` of a parameter: one, or an array of them.
+std::vector<double> numbers(const Place& place, const toml::node& node, const std::string& what) {
+  std::vector<double> values;
+  if (const toml::array* array = node.as_array()) {
+    for (const auto& element : *array) values.push_back(place.number(element, what));
+  } else {
+    values.push_back(place.number(node, what));
+  }
+  return values;
+}
+
+struct Measured {
+  std::vector<double> values;
+  std::vector<double> std_errors;
+};
+
+/// Reads `{value = ..., unit = "...", std_error = ...}` and converts it to `expected`, an SI unit.
+Measured measured(const Place& place, const toml::node& node, const std::string& name,
+                  const std::string& expected) {
+  const toml::table* table = node.as_table();
+  if (table == nullptr) {
+    place.refuse(node, "'{}' must be written {{ value = ..., unit = \"{}\" }}", name, expected);
+  }
+  place.allow_only(*table, {"value", "unit", "std_error"}, fmt::format("'{}'", name));
+  const toml::node* value = table->get("value");
+  if (value == nullptr) place.refuse(node, "'{}' has no value", name);
+  const toml::node* unit_node = table->get("unit");
+  if (unit_node == nullptr)
+    place.refuse(node, "'{}' has no unit; expected one such as \"{}\"", name, expected);
+  const std::string text = place.text(*table, "unit", "");
+  Unit unit;
+  try {
+    unit = parse_unit(text);
+  } catch (const std::invalid_argument& error) {
+    place.refuse(*unit_node, "'{}': {}", name, error.what());
+  }
+  if (unit.si != expected) {
+    place.refuse(*unit_node, "'{}' is given in {}, expected {} or a multiple of it", name, text, expected);
+  }
+  Measured result{.values = numbers(place, *value, "the value of '" + name + "'"), .std_errors = {}};
+  if (const toml::node* errors = table->get("std_error")) {
+    result.std_errors = numbers(place, *errors, "the std_error of '" + name + "'");
+    if (result.std_errors.size() != result.values.size()) {
+      place.refuse(*errors, "'{}' has {} values and {} standard errors", name, result.values.size(),
+                   result.std_errors.size());
+    }
+  }
+  for (double& number : result.values) number *= unit.factor;
+  for (double& number : result.std_errors) number *= std::abs(unit.factor);
+  return result;
+}
+
+models::Options read_options(const Place& place, const toml::table& root) {
+  models::Options options;
+  if (root.get("fidelity") == nullptr) return options;
+  for (const auto& [key, node] : place.table(root, "fidelity")) {
+    const std::string name(key.str());
+    if (node.is_boolean()) {
+      options[name] = **node.as_boolean();
+    } else if (node.is_string()) {
+      options[name] = **node.as_string();
+    } else {
+      options[name] = place.number(node, "'" + name + "'");
+    }
+  }
+  return options;
+}
+
+/// "closing" for "closing[3]": parameters of that kind stand in the file as one array.
+std::string_view group_of(std::string_view parameter) { return parameter.substr(0, parameter.find('[')); }
+
+models::Contact read_contact(const Place& place, const toml::table& root, const std::string& position_unit) {
+  models::Contact contact;
+  if (root.get("contact") == nullptr) return contact;
+  const toml::table& table = place.table(root, "contact");
+  place.allow_only(table, {"position", "direction"}, "[contact]");
+  if (const toml::node* position = table.get("position")) {
+    const auto values = measured(place, *position, "position", position_unit).values;
+    if (values.size() != 1 || !std::isfinite(values[0]))
+      place.refuse(*position, "'position' must be one number");
+    contact.position = values[0];
+  }
+  const std::string direction = place.text(table, "direction", "increasing");
+  if (direction != "increasing" && direction != "decreasing") {
+    place.refuse(*table.get("direction"), "'direction' is \"{}\", expected \"increasing\" or \"decreasing\"",
+                 direction);
+  }
+  contact.direction = direction == "increasing" ? 1.0 : -1.0;
+  return contact;
+}
+
+FitProvenance read_provenance(const Place& place, const toml::table& root) {
+  FitProvenance fit;
+  if (root.get("fit") == nullptr) return fit;
+  const toml::table& table = place.table(root, "fit");
+  place.allow_only(table, {"recording", "sha256", "rmse", "date", "software"}, "[fit]");
+  fit.recording_uuid = place.text(table, "recording", "");
+  fit.recording_sha256 = place.text(table, "sha256", "");
+  fit.date = place.text(table, "date", "");
+  fit.software = place.text(table, "software", "");
+  if (const toml::node* rmse = table.get("rmse"))
+    fit.rmse_n = measured(place, *rmse, "rmse", "N").values.at(0);
+  return fit;
+}
+
+std::string unit_choice(const Place& place, const toml::table& root, std::string_view key,
+                        std::string_view standard, std::initializer_list<std::string_view> allowed) {
+  std::string unit = place.text(root, key, standard);
+  if (std::find(allowed.begin(), allowed.end(), unit) == allowed.end()) {
+    place.refuse(*root.get(key), "'{}' is \"{}\", expected {}; parameters may be in other units", key, unit,
+                 fmt::join(allowed, " or "));
+  }
+  return unit;
+}
+
+/// The parameters of a law file, put in the order in which the law takes them.
+Measured read_parameters(const Place& place, const toml::table& root,
+                         const std::vector<models::ParameterInfo>& infos, const std::string& force_unit,
+                         const std::string& position_unit) {
+  const toml::table& table = place.table(root, "parameters");
+  for (const auto& [key, node] : table) {
+    if (std::none_of(infos.begin(), infos.end(),
+                     [&](const auto& info) { return group_of(info.name) == key.str(); })) {
+      std::vector<std::string_view> known;
+      for (const auto& info : infos) {
+        if (known.empty() || known.back() != group_of(info.name)) known.push_back(group_of(info.name));
+      }
+      place.refuse(node, "unknown parameter '{}'; the law takes {}", key.str(), fmt::join(known, ", "));
+    }
+  }
+  Measured all;
+  for (std::size_t i = 0; i < infos.size();) {
+    const std::string group(group_of(infos[i].name));
+    const auto end = static_cast<std::size_t>(
+        std::find_if(infos.begin() + static_cast<std::ptrdiff_t>(i), infos.end(),
+                     [&](const auto& info) { return group_of(info.name) != group; }) -
+        infos.begin());
+    const toml::node* node = table.get(group);
+    if (node == nullptr) place.refuse(table, "parameter '{}' is missing", group);
+    const Measured one =
+        measured(place, *node, group, models::unit_of(infos[i].quantity, force_unit, position_unit));
+    if (one.values.size() != end - i) {
+      place.refuse(*node, "'{}' has {} values, expected {}", group, one.values.size(), end - i);
+    }
+    for (std::size_t k = i; k < end; ++k) {
+      const double value = one.values[k - i];
+      if (!(value >= infos[k].lower && value <= infos[k].upper)) {
+        place.refuse(*node, "parameter '{}' is {} in SI, expected a number from {} to {}", infos[k].name,
+                     value, infos[k].lower, infos[k].upper);
+      }
+    }
+    all.values.insert(all.values.end(), one.values.begin(), one.values.end());
+    all.std_errors.insert(all.std_errors.end(), one.std_errors.begin(), one.std_errors.end());
+    i = end;
+  }
+  if (all.std_errors.size() != all.values.size()) all.std_errors.clear();
+  return all;
+}
+
+std::string quoted(const std::string& text) {
+  std::ostringstream stream;
+  stream << toml::value<std::string>(text);
+  return stream.str();
+}
+
+std::string option_text(const models::OptionValue& value) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  return quoted(std::get<std::string>(value));
+}
+
+/// `value` or `[a, b, c]`
+std::string value_text(const std::vector<double>& all, std::size_t begin, std::size_t end, bool is_array) {
+  if (!is_array) return fmt::format("{}", all[begin]);
+  return fmt::format("[{}]", fmt::join(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                       all.begin() + static_cast<std::ptrdiff_t>(end), ", "));
+}
+
+std::string parameters_text(const LawFile& file) {
+  const auto infos = file.law.parameters();
+  const auto& values = file.law.values();
+  std::string text = "\n[parameters]\n";
+  for (std::size_t i = 0; i < infos.size();) {
+    const auto group = group_of(infos[i].name);
+    std::size_t end = i + 1;
+    while (end < infos.size() && group_of(infos[end].name) == group) ++end;
+    const bool is_array = group.size() != infos[i].name.size();
+    text += fmt::format("{} = {{ value = {}, unit = \"{}\"", group, value_text(values, i, end, is_array),
+                        models::unit_of(infos[i].quantity, file.force_unit, file.position_unit));
+    if (!file.std_errors.empty()) {
+      text += fmt::format(", std_error = {}", value_text(file.std_errors, i, end, is_array));
+    }
+    text += fmt::format(" }}  # {}\n", infos[i].meaning);
+    i = end;
+  }
+  return text;
+}
+
+}  // namespace
+
+toml::table parse_toml(const std::string& text, const std::string& name) {
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    throw std::invalid_argument(
+        fmt::format("{}:{}: not TOML: {}", name, error.source().begin.line, error.description()));
+  }
+}
+
+LawFile law_from_table(const toml::table& root, const std::string& name) {
+  const Place place(name);
+  place.allow_only(
+      root, {"model", "axis", "position_unit", "force_unit", "contact", "parameters", "fidelity", "fit"},
+      "a law");
+  const std::string model = place.text(root, "model", "");
+  if (model.empty()) place.refuse(root, "no 'model'; expected for example model = \"kelvin\"");
+  const std::string position_unit = unit_choice(place, root, "position_unit", "m", {"m", "rad"});
+  const std::string force_unit = unit_choice(place, root, "force_unit", "N", {"N", "N·m"});
+  const models::Options options = read_options(place, root);
+  const auto in_file = [&](const auto& action) {
+    try {
+      return action();
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
+    }
+  };
+  const auto infos = in_file([&] { return models::Law::parameters(model, options); });
+  Measured parameters = read_parameters(place, root, infos, force_unit, position_unit);
+  return {.law = in_file([&] { return models::Law::make(model, parameters.values, options); }),
+          .contact = read_contact(place, root, position_unit),
+          .axis = place.text(root, "axis", ""),
+          .position_unit = position_unit,
+          .force_unit = force_unit,
+          .std_errors = std::move(parameters.std_errors),
+          .fit = read_provenance(place, root)};
+}
+
+LawFile parse_law_file(const std::string& text, const std::string& name) {
+  return law_from_table(parse_toml(text, name), name);
+}
+
+LawFile read_law_file(const std::filesystem::path& file) {
+  return parse_law_file(read_whole_file(file), file.string());
+}
+
+std::string to_toml(const LawFile& file) {
+  std::string text = fmt::format("model = \"{}\"\n", file.law.model());
+  if (!file.axis.empty()) text += fmt::format("axis = {}\n", quoted(file.axis));
+  text += fmt::format("position_unit = \"{}\"\nforce_unit = \"{}\"\n", file.position_unit, file.force_unit);
+  text += fmt::format("\n[contact]\nposition = {{ value = {}, unit = \"{}\" }}\ndirection = \"{}\"\n",
+                      file.contact.position, file.position_unit,
+                      file.contact.direction > 0.0 ? "increasing" : "decreasing");
+  text += parameters_text(file);
+  if (!file.law.options().empty()) {
+    text += "\n[fidelity]\n";
+    for (const auto& [name, value] : file.law.options())
+      text += fmt::format("{} = {}\n", name, option_text(value));
+  }
+  if (!file.fit.recording_uuid.empty()) {
+    text += fmt::format(
+        "\n[fit]\nrecording = {}\nsha256 = {}\nrmse = {{ value = {}, unit = \"N\" }}\ndate = {}\nsoftware = "
+        "{}\n",
+        quoted(file.fit.recording_uuid), quoted(file.fit.recording_sha256), file.fit.rmse_n,
+        quoted(file.fit.date), quoted(file.fit.software));
+  }
+  return text;
+}
+
+void write_law_file(const std::filesystem::path& file, const LawFile& law) {
+  write_whole_file(file, to_toml(law));
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,71 @@
+#include "laws/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "laws/law_toml.h"
+
+namespace kerf::bench {
+
+AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, const models::Contact& contact) {
+  const std::size_t dimensions = recording.dimensions();
+  if (axis >= dimensions) throw std::invalid_argument("the recording has no such axis");
+  const bool measured = !recording.force_measured.empty();
+  const auto& force = measured ? recording.force_measured : recording.force_commanded;
+  if (force.empty()) throw std::invalid_argument("the recording holds no force");
+
+  AxisSeries series;
+  series.time_s = recording.time;
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    const std::size_t at = row * dimensions + axis;
+    const models::Motion motion = contact.motion(recording.position[at], recording.velocity[at]);
+    series.penetration.push_back(motion.penetration);
+    series.velocity.push_back(motion.velocity);
+    // A sensor gives the resisting force as it is; a command pushes against the direction of engagement.
+    series.force.push_back(measured ? force[at] : -contact.direction * force[at]);
+  }
+  if (recording.cycles) {
+    series.cycle.assign(recording.rows(), 0);
+    for (const schema::PhaseSpan& phase : recording.cycles->phases) {
+      std::fill(series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.begin),
+                series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.end), phase.cycle);
+    }
+  }
+  return series;
+}
+
+models::Contact contact_of(const schema::Recording& recording, std::size_t axis) {
+  if (recording.cycles && recording.cycles->axis == axis) {
+    return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
+  }
+  if (!recording.header.scene_toml.empty()) {
+    const toml::table scene = parse_toml(recording.header.scene_toml, "the recording's scene");
+    if (const toml::table* tissue = scene["tissue"].as_table()) {
+      const LawFile law = law_from_table(*tissue, "the recording's scene");
+      if (law.axis == recording.axes.at(axis).name) return law.contact;
+    }
+  }
+  double smallest = recording.rows() > 0 ? std::numeric_limits<double>::infinity() : 0.0;
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    smallest = std::fmin(smallest, recording.position[row * recording.dimensions() + axis]);
+  }
+  return {.position = smallest, .direction = 1.0};
+}
+
+std::vector<double> render(const models::Law& law, const AxisSeries& series) {
+  std::vector<double> force;
+  force.reserve(series.time_s.size());
+  models::Law::State state = law.initial_state();
+  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
+    // The first row has no period before it; the next one's stands in, since a law only starts there.
+    const std::size_t end = std::min(std::max<std::size_t>(i, 1), series.time_s.size() - 1);
+    const double period_s = end > 0 ? series.time_s[end] - series.time_s[end - 1] : 1e-3;
+    force.push_back(
+        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s).force);
+  }
+  return force;
+}
+
+}  // namespace kerf::bench

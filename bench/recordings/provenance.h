@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace kerf::bench {
+
+/// "kerf 0.1.0", as recordings and law files name the program that wrote them.
+[[nodiscard]] std::string software();
+
+/// SHA-256 in lower-case hexadecimal.
+[[nodiscard]] std::string sha256_of(std::string_view content);
+/// Of a file's content. @throws as MappedFile does.
+[[nodiscard]] std::string sha256_of(const std::filesystem::path& file);
+
+}  // namespace kerf::bench

@@ -1,0 +1,151 @@
+#include "signal/signal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+/// A second-order low-pass by the bilinear transform, in transposed direct form II.
+class Butterworth {
+ public:
+  Butterworth(double rate_hz, double corner_hz) {
+    const double warped = std::tan(std::numbers::pi * corner_hz / rate_hz);
+    const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * warped + warped * warped);
+    b0_ = warped * warped * norm;
+    a1_ = 2.0 * (warped * warped - 1.0) * norm;
+    a2_ = (1.0 - std::numbers::sqrt2 * warped + warped * warped) * norm;
+  }
+
+  /// Takes the filter to be settled at `value`.
+  void settle(double value) noexcept {
+    second_ = (b0_ - a2_) * value;
+    first_ = (2.0 * b0_ - a1_) * value + second_;
+  }
+
+  double step(double in) noexcept {
+    const double out = b0_ * in + first_;
+    first_ = 2.0 * b0_ * in - a1_ * out + second_;
+    second_ = b0_ * in - a2_ * out;
+    return out;
+  }
+
+ private:
+  double b0_ = 0.0;
+  double a1_ = 0.0;
+  double a2_ = 0.0;
+  double first_ = 0.0;
+  double second_ = 0.0;
+};
+
+void run_once(std::vector<double>& values, Butterworth filter) {
+  filter.settle(values.front());
+  for (double& value : values) value = filter.step(value);
+}
+
+/// Slope at the origin of the parabola fitted to the points (time, value) around it, a straight line for two.
+class SlopeFit {
+ public:
+  void add(double time, double value) noexcept {
+    double power = 1.0;
+    for (std::size_t k = 0; k < moments_.size(); ++k, power *= time) {
+      moments_[k] += power;
+      if (k < products_.size()) products_[k] += power * value;
+    }
+  }
+
+  [[nodiscard]] double slope() const noexcept {
+    const auto& [s0, s1, s2, s3, s4] = moments_;
+    const auto& [y0, y1, y2] = products_;
+    const double determinant = s0 * (s2 * s4 - s3 * s3) - s1 * (s1 * s4 - s2 * s3) + s2 * (s1 * s3 - s2 * s2);
+    const double scale = s0 * s2 * s4;
+    if (determinant > 1e-12 * scale) {
+      return (s0 * (y1 * s4 - y2 * s3) - y0 * (s1 * s4 - s2 * s3) + s2 * (s1 * y2 - s2 * y1)) / determinant;
+    }
+    const double line = s0 * s2 - s1 * s1;
+    return line > 0.0 ? (s0 * y1 - s1 * y0) / line : 0.0;
+  }
+
+ private:
+  std::array<double, 5> moments_{};
+  std::array<double, 3> products_{};
+};
+
+}  // namespace
+
+std::vector<double> low_pass_zero_phase(std::span<const double> values, double rate_hz, double corner_hz) {
+  if (!(corner_hz > 0.0 && corner_hz < 0.5 * rate_hz)) {
+    throw std::invalid_argument(
+        fmt::format("a corner of {} Hz is not between zero and half the rate of {} Hz; choose a lower one",
+                    corner_hz, rate_hz));
+  }
+  if (values.size() < 2) throw std::invalid_argument("a filter needs at least two samples");
+  const std::size_t count = values.size();
+  const auto reach = std::min(count - 1, static_cast<std::size_t>(5.0 * rate_hz / corner_hz) + 1);
+  std::vector<double> extended;
+  extended.reserve(count + 2 * reach);
+  for (std::size_t i = reach; i > 0; --i) extended.push_back(2.0 * values.front() - values[i]);
+  extended.insert(extended.end(), values.begin(), values.end());
+  for (std::size_t i = 1; i <= reach; ++i) extended.push_back(2.0 * values.back() - values[count - 1 - i]);
+
+  const Butterworth filter(rate_hz, corner_hz);
+  run_once(extended, filter);
+  std::reverse(extended.begin(), extended.end());
+  run_once(extended, filter);
+  std::reverse(extended.begin(), extended.end());
+  const auto begin = extended.begin() + static_cast<std::ptrdiff_t>(reach);
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+}
+
+std::vector<double> differentiate(std::span<const double> time_s, std::span<const double> values,
+                                  double window_s) {
+  if (time_s.size() != values.size()) throw std::invalid_argument("times and values differ in number");
+  if (!(window_s > 0.0)) throw std::invalid_argument("the window of a derivative must be greater than zero");
+  const std::size_t count = values.size();
+  std::vector<double> slopes(count, 0.0);
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    while (begin < i && time_s[i] - time_s[begin] > 0.5 * window_s) ++begin;
+    while (end < count && time_s[end] - time_s[i] <= 0.5 * window_s) ++end;
+    // A sparse stretch takes its nearest neighbours, so that there is always a slope.
+    const std::size_t first = std::min(begin, i > 0 ? i - 1 : 0);
+    const std::size_t last = std::max(end, std::min(i + 2, count));
+    const double span_s = std::max(time_s[last - 1] - time_s[i], time_s[i] - time_s[first]);
+    if (!(span_s > 0.0)) continue;
+    SlopeFit fit;
+    for (std::size_t k = first; k < last; ++k) fit.add((time_s[k] - time_s[i]) / span_s, values[k]);
+    slopes[i] = fit.slope() / span_s;
+  }
+  return slopes;
+}
+
+std::vector<double> interpolate(std::span<const double> time_s, std::span<const double> values,
+                                std::span<const double> new_time_s) {
+  if (time_s.empty() || time_s.size() != values.size()) {
+    throw std::invalid_argument("an interpolation needs as many values as times, and at least one");
+  }
+  std::vector<double> result;
+  result.reserve(new_time_s.size());
+  for (const double time : new_time_s) {
+    const auto above = std::upper_bound(time_s.begin(), time_s.end(), time);
+    if (above == time_s.begin()) {
+      result.push_back(values.front());
+    } else if (above == time_s.end()) {
+      result.push_back(values.back());
+    } else {
+      const auto i = static_cast<std::size_t>(above - time_s.begin());
+      const double share = (time - time_s[i - 1]) / (time_s[i] - time_s[i - 1]);
+      result.push_back(values[i - 1] + share * (values[i] - values[i - 1]));
+    }
+  }
+  return result;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,124 @@
+#include "units/units.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr double standard_gravity = 9.80665;  // [m/s^2], by definition; makes gram-force a force
+
+struct Symbol {
+  std::string_view text;
+  double factor;
+  std::string_view si;
+};
+
+constexpr std::array symbols{
+    Symbol{"1", 1.0, "1"},
+    Symbol{"s", 1.0, "s"},
+    Symbol{"ms", 1e-3, "s"},
+    Symbol{"us", 1e-6, "s"},
+    Symbol{"µs", 1e-6, "s"},
+    Symbol{"min", 60.0, "s"},
+    Symbol{"m", 1.0, "m"},
+    Symbol{"cm", 1e-2, "m"},
+    Symbol{"mm", 1e-3, "m"},
+    Symbol{"um", 1e-6, "m"},
+    Symbol{"µm", 1e-6, "m"},
+    Symbol{"rad", 1.0, "rad"},
+    Symbol{"mrad", 1e-3, "rad"},
+    Symbol{"deg", std::numbers::pi / 180.0, "rad"},
+    Symbol{"°", std::numbers::pi / 180.0, "rad"},
+    Symbol{"N", 1.0, "N"},
+    Symbol{"mN", 1e-3, "N"},
+    Symbol{"kN", 1e3, "N"},
+    Symbol{"gf", 1e-3 * standard_gravity, "N"},
+    Symbol{"kgf", standard_gravity, "N"},
+    Symbol{"V", 1.0, "V"},
+    Symbol{"mV", 1e-3, "V"},
+    Symbol{"A", 1.0, "A"},
+    Symbol{"mA", 1e-3, "A"},
+    Symbol{"Hz", 1.0, "Hz"},
+    Symbol{"Pa", 1.0, "Pa"},
+    Symbol{"kPa", 1e3, "Pa"},
+    Symbol{"MPa", 1e6, "Pa"},
+    Symbol{"kg", 1.0, "kg"},
+    Symbol{"g", 1e-3, "kg"},
+    Symbol{"%", 1e-2, "1"},
+};
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+const Symbol& find_symbol(std::string_view text, std::string_view whole) {
+  const auto* const place =
+      std::find_if(symbols.begin(), symbols.end(), [&](const Symbol& symbol) { return symbol.text == text; });
+  if (place != symbols.end()) return *place;
+  std::string known;
+  for (const Symbol& symbol : symbols) known += fmt::format("{}{}", known.empty() ? "" : " ", symbol.text);
+  throw std::invalid_argument(fmt::format("unknown unit '{}' in '{}'; known are {}", text, whole, known));
+}
+
+/// Takes a leading number ("0.0439 deg", "1/mm") off the text.
+double take_factor(std::string_view& text) {
+  double factor = 1.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), factor);
+  if (error != std::errc{}) return 1.0;
+  text = trimmed(text.substr(static_cast<std::size_t>(end - text.data())));
+  return factor;
+}
+
+/// Joins factors of a product in the order written, "1" left out.
+std::string joined(const std::vector<std::string_view>& parts) {
+  std::string text;
+  for (const auto part : parts) {
+    if (part != "1") text += fmt::format("{}{}", text.empty() ? "" : "·", part);
+  }
+  return text;
+}
+
+}  // namespace
+
+Unit parse_unit(std::string_view given) {
+  std::string_view text = trimmed(given);
+  if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
+  Unit unit{.factor = take_factor(text), .si = {}};
+  if (!std::isfinite(unit.factor) || unit.factor == 0.0) {
+    throw std::invalid_argument(
+        fmt::format("the factor in unit '{}' must be a finite number other than zero", given));
+  }
+
+  std::vector<std::string_view> above;
+  std::vector<std::string_view> below;
+  bool divides = false;
+  while (!text.empty()) {
+    const auto end = std::min({text.find("·"), text.find('*'), text.find('/'), text.size()});
+    const bool begins_with_divisor = above.empty() && text.starts_with('/');
+    const Symbol& symbol = find_symbol(begins_with_divisor ? "1" : trimmed(text.substr(0, end)), given);
+    unit.factor = divides ? unit.factor / symbol.factor : unit.factor * symbol.factor;
+    (divides ? below : above).push_back(symbol.si);
+    if (end == text.size()) break;
+    divides = divides || text[end] == '/';
+    text.remove_prefix(end + (text.substr(end).starts_with("·") ? std::string_view("·").size() : 1));
+    if (trimmed(text).empty())
+      throw std::invalid_argument(fmt::format("unit '{}' ends in an operator", given));
+  }
+  unit.si = joined(above);
+  if (unit.si.empty()) unit.si = "1";
+  if (const std::string divisor = joined(below); !divisor.empty()) unit.si += "/" + divisor;
+  return unit;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+namespace kerf::bench {
+
+/// A unit as a lab writes it, and what it is in SI.
+///
+/// `parse_unit("N·s/mm")` has the factor 1000 and the SI unit "N·s/m". A factor may stand before a unit for
+/// raw counts: `parse_unit("0.0439453125 deg")` has the factor 0.0439453125 pi / 180 and the SI unit "rad".
+struct Unit {
+  double factor = 1.0;  ///< value in SI = factor * value
+  std::string si;       ///< "m", "s", "rad", "N", "V", "1", or a product such as "N·s/rad"
+
+  friend bool operator==(const Unit&, const Unit&) = default;
+};
+
+/// Reads a unit: symbols with SI prefixes where usual (`ms s us min`, `m cm mm um`, `rad mrad deg`, `N mN kN
+/// gf kgf`, `V mV`, `A mA`, `Hz`, `Pa kPa MPa`, `kg g`, `%`, `1`), products with `·` or `*`, quotients with
+/// `/`.
+/// @throws std::invalid_argument that names the symbol and lists those known.
+[[nodiscard]] Unit parse_unit(std::string_view text);
+
+}  // namespace kerf::bench

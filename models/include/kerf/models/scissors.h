@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+namespace kerf::models {
+
+/// Where the blades of a pair of scissors cut, from the angle between them.
+///
+///     t(theta) = t_max tan(theta/2) / (tan(theta/2) + (t_max - t_min) / l_t)
+///     x_c      = t(theta) / sin(theta/2)
+///
+/// t is half the width of a blade at the cutting point, from t_max at the pivot to t_min at the tip, a length
+/// l_t away; x_c is the distance of the cutting point from the pivot. The blades cut only between the angle
+/// at which the tips have met, theta = 2 atan(t_min / l_t), and the one at which they lose contact at the
+/// wide end.
+///
+/// Source: 004, eqs. 1-2, fig. 3; the limits follow from its section 3.3.
+struct ScissorsGeometry {
+  double pivot_half_width_m = 4e-3;  ///< t_max, > tip_half_width_m
+  double tip_half_width_m = 1e-3;    ///< t_min, > 0
+  double blade_length_m = 35e-3;     ///< l_t, > 0
+  double widest_angle_rad = 0.7;     ///< angle at which the blades lose contact, < pi
+
+  /// Angle at which the tips have met [rad]; below it there is nothing left to cut.
+  [[nodiscard]] double closing_angle() const noexcept {
+    return 2.0 * std::atan(tip_half_width_m / blade_length_m);
+  }
+
+  /// Half width of a blade at the cutting point, t(theta) [m], for an angle in (0, pi).
+  [[nodiscard]] double half_width(double theta_rad) const noexcept {
+    const double slope = std::tan(0.5 * theta_rad);
+    return pivot_half_width_m * slope / (slope + (pivot_half_width_m - tip_half_width_m) / blade_length_m);
+  }
+
+  /// Distance of the cutting point from the pivot, x_c [m]; none where the blades do not cut.
+  [[nodiscard]] std::optional<double> cutting_point(double theta_rad) const noexcept {
+    if (!(theta_rad >= closing_angle() && theta_rad <= widest_angle_rad)) return std::nullopt;
+    return half_width(theta_rad) / std::sin(0.5 * theta_rad);
+  }
+};
+
+}  // namespace kerf::models

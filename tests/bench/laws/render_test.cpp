@@ -1,0 +1,91 @@
+#include "laws/render.h"
+
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+using testing::DoubleEq;
+using testing::ElementsAre;
+
+schema::Recording closing_scissors() {
+  schema::Recording recording;
+  recording.axes = {{.name = "x_s"}, {.name = "theta", .position_unit = "rad"}};
+  recording.time = {0.0, 0.5, 1.0};
+  recording.position = {0.0, 0.5, 0.0, 0.4, 0.0, 0.2};
+  recording.velocity = {0.0, 0.0, 0.0, -0.2, 0.0, -0.4};
+  recording.force_measured = {9.0, 0.0, 9.0, 1.0, 9.0, 3.0};
+  return recording;
+}
+
+const models::Contact half_open{.position = 0.5, .direction = -1.0};
+
+TEST(AxisSeries, IsSeenInTheDirectionOfEngagement) {
+  const AxisSeries series = axis_series(closing_scissors(), 1, half_open);
+  EXPECT_THAT(series.penetration, ElementsAre(0.0, DoubleEq(0.1), DoubleEq(0.3)));
+  EXPECT_THAT(series.velocity, ElementsAre(0.0, 0.2, 0.4));
+  EXPECT_THAT(series.force, ElementsAre(0.0, 1.0, 3.0));
+  EXPECT_TRUE(series.cycle.empty());
+}
+
+TEST(AxisSeries, TurnsACommandIntoTheResistanceThatItRenders) {
+  schema::Recording recording = closing_scissors();
+  recording.force_commanded = recording.force_measured;
+  recording.force_measured.clear();
+  EXPECT_THAT(axis_series(recording, 1, half_open).force, ElementsAre(0.0, 1.0, 3.0))
+      << "closing shrinks the angle, so a command that opens resists";
+  EXPECT_THAT(axis_series(recording, 1, {}).force, ElementsAre(0.0, -1.0, -3.0));
+}
+
+TEST(AxisSeries, KnowsTheCycleOfEachRow) {
+  schema::Recording recording = closing_scissors();
+  recording.cycles = schema::Cycles{.axis = 1, .closing_direction = -1.0, .contact_position = 0.5};
+  recording.cycles->phases = {{.cycle = 1, .phase = schema::Phase::closing, .begin = 1, .end = 3}};
+  EXPECT_THAT(axis_series(recording, 1, half_open).cycle, ElementsAre(0U, 1U, 1U));
+}
+
+TEST(AxisSeries, RefusesARecordingWithoutForce) {
+  schema::Recording recording = closing_scissors();
+  recording.force_measured.clear();
+  EXPECT_THROW((void)axis_series(recording, 1, half_open), std::invalid_argument);
+  EXPECT_THROW((void)axis_series(closing_scissors(), 2, half_open), std::invalid_argument);
+}
+
+TEST(Contact, ComesFromTheCyclesOrTheSceneOrTheLeastPosition) {
+  schema::Recording recording = closing_scissors();
+  EXPECT_EQ(contact_of(recording, 1).position, 0.2);
+  EXPECT_EQ(contact_of(recording, 1).direction, 1.0);
+  recording.header.scene_toml = R"(name = "cut"
+[tissue]
+model = "exponential"
+axis = "theta"
+position_unit = "rad"
+contact = { position = { value = 0.45, unit = "rad" }, direction = "decreasing" }
+parameters = { amplitude = { value = 0.1, unit = "N" }, exponent = { value = 1, unit = "1" }, viscosity = { value = 0.0, unit = "N·s/rad" } }
+)";
+  EXPECT_EQ(contact_of(recording, 1).position, 0.45);
+  EXPECT_EQ(contact_of(recording, 1).direction, -1.0);
+  recording.cycles = schema::Cycles{.axis = 1, .closing_direction = -1.0, .contact_position = 0.5};
+  EXPECT_EQ(contact_of(recording, 1).position, 0.5);
+}
+
+TEST(Render, GivesWhatTheLawGivesTickByTick) {
+  const auto law = models::Law::make("kelvin", std::vector{8.0, 7.0, 130.0});
+  AxisSeries ramp;
+  for (int i = 0; i <= 2500; ++i) {
+    ramp.time_s.push_back(1e-3 * i);
+    ramp.penetration.push_back(2e-6 * i);
+    ramp.velocity.push_back(2e-3);
+  }
+  const auto force = render(law, ramp);
+  ASSERT_EQ(force.size(), 2501U);
+  EXPECT_EQ(force.front(), 0.0);
+  EXPECT_NEAR(force.back() / 0.0727464745656, 1.0, 1e-10);
+}
+
+}  // namespace
+}  // namespace kerf::bench

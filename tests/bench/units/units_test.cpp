@@ -1,0 +1,61 @@
+#include "units/units.h"
+
+#include <numbers>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+TEST(Units, ConvertWhatLabsWriteToSi) {
+  EXPECT_EQ(parse_unit("ms"), (Unit{1e-3, "s"}));
+  EXPECT_EQ(parse_unit("um"), (Unit{1e-6, "m"}));
+  EXPECT_EQ(parse_unit("deg"), (Unit{degree, "rad"}));
+  EXPECT_EQ(parse_unit("mN"), (Unit{1e-3, "N"}));
+  EXPECT_EQ(parse_unit("1"), (Unit{1.0, "1"}));
+}
+
+TEST(Units, GramForceIsAGramUnderStandardGravity) {
+  EXPECT_DOUBLE_EQ(parse_unit("gf").factor, 9.80665e-3);
+  EXPECT_DOUBLE_EQ(parse_unit("kgf").factor, 9.80665);
+}
+
+TEST(Units, TakeAFactorForRawCounts) {
+  const Unit unit = parse_unit("0.0439453125 deg");
+  EXPECT_DOUBLE_EQ(unit.factor, 0.0439453125 * degree);
+  EXPECT_EQ(unit.si, "rad");
+  EXPECT_DOUBLE_EQ(parse_unit("3.9811e-5 N·m").factor, 3.9811e-5);
+  EXPECT_DOUBLE_EQ(parse_unit("-2 mm").factor, -2e-3);
+  EXPECT_EQ(parse_unit("4"), (Unit{4.0, "1"}));
+}
+
+TEST(Units, MultiplyAndDivide) {
+  EXPECT_EQ(parse_unit("N·s/mm"), (Unit{1e3, "N·s/m"}));
+  EXPECT_EQ(parse_unit("N*s/m"), (Unit{1.0, "N·s/m"}));
+  EXPECT_EQ(parse_unit("N / deg"), (Unit{1.0 / degree, "N/rad"}));
+  EXPECT_EQ(parse_unit("1/mm"), (Unit{1.0 / 1e-3, "1/m"}));
+  EXPECT_EQ(parse_unit("2 /s"), (Unit{2.0, "1/s"}));
+}
+
+TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
+  const auto message = [](const char* text) -> std::string {
+    try {
+      (void)parse_unit(text);
+      return "accepted";
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(message("furlong"), testing::AllOf(testing::HasSubstr("'furlong'"), testing::HasSubstr("mm")));
+  EXPECT_THAT(message("N/"), testing::HasSubstr("operator"));
+  EXPECT_THAT(message(""), testing::HasSubstr("empty"));
+  EXPECT_THAT(message("nan mm"), testing::HasSubstr("finite"));
+  EXPECT_THAT(message("0 mm"), testing::HasSubstr("zero"));
+}
+
+}  // namespace
+}  // namespace kerf::bench

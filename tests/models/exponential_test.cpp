@@ -1,0 +1,54 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <kerf/models/exponential.h>
+
+namespace kerf::models {
+namespace {
+
+// Porcine intestine in vivo (001).
+constexpr Exponential<double> intestine{
+    .amplitude = 4.3e-7, .exponent = 13.0, .viscosity = 20.0, .thickness = 0.1, .zero_at_contact = false};
+
+double still(const Exponential<double>& law, double penetration) {
+  Exponential<double>::State state;
+  return law.step(state, {.penetration = penetration, .velocity = 0.0}, 1e-3);
+}
+
+TEST(Exponential, MeetsTheCheckValuesOfPorcineIntestine) {
+  EXPECT_NEAR(still(intestine, 0.1) / 0.190237758564, 1.0, 1e-10);
+  const double two_newtons_m = 0.118097136991;
+  EXPECT_NEAR(still(intestine, two_newtons_m) / 2.0, 1.0, 1e-10);
+  EXPECT_NEAR(intestine.stiffness(two_newtons_m) / 260.0, 1.0, 1e-10);
+  EXPECT_NEAR(intestine.stored_energy(two_newtons_m) / 0.0153846120769, 1.0, 1e-10);
+}
+
+TEST(Exponential, GivesNothingOutsideTheTissue) {
+  EXPECT_EQ(still(intestine, 0.0), 0.0);
+  EXPECT_EQ(still(intestine, -0.05), 0.0);
+}
+
+TEST(Exponential, AddsTheViscousForceInContactOnly) {
+  Exponential<double>::State state;
+  const double moving = intestine.step(state, {.penetration = 0.1, .velocity = 0.01}, 1e-3);
+  EXPECT_NEAR(moving - still(intestine, 0.1), 0.2, 1e-15);
+  EXPECT_EQ(intestine.step(state, {.penetration = -0.1, .velocity = 0.01}, 1e-3), 0.0);
+}
+
+TEST(Exponential, MayBeginAtZero) {
+  Exponential<double> law = intestine;
+  law.zero_at_contact = true;
+  EXPECT_NEAR(still(law, 1e-9), 0.0, 1e-12);
+  EXPECT_NEAR(still(law, 0.1), still(intestine, 0.1) - 4.3e-7, 1e-16);
+  EXPECT_NEAR(law.stored_energy(0.1), intestine.stored_energy(0.1) - 4.3e-7 * 0.1, 1e-16);
+}
+
+TEST(Exponential, StiffnessIsTheSlopeOfTheForce) {
+  const double step = 1e-6;
+  const double slope = (still(intestine, 0.11 + step) - still(intestine, 0.11 - step)) / (2.0 * step);
+  EXPECT_NEAR(intestine.stiffness(0.11) / slope, 1.0, 1e-8);
+}
+
+}  // namespace
+}  // namespace kerf::models
