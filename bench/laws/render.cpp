@@ -63,7 +63,8 @@ std::vector<double> render(const models::Law& law, const AxisSeries& series) {
     const std::size_t end = std::min(std::max<std::size_t>(i, 1), series.time_s.size() - 1);
     const double period_s = end > 0 ? series.time_s[end] - series.time_s[end - 1] : 1e-3;
     force.push_back(
-        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s).force);
+        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s)
+            .force);
   }
   return force;
 }
