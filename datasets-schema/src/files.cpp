@@ -1,7 +1,6 @@
 #include "files.h"
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -61,12 +60,12 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
   if (error) throw std::system_error(error, to.string() + ": cannot give the file its name");
 }
 
-void throw_write_error(const std::filesystem::path& file, const h5::Error& error) {
+std::system_error write_error(const std::filesystem::path& file, const h5::Error& error) {
   if (error.system_error != 0) {
-    throw std::system_error(error.system_error, std::generic_category(), file.string() + ": cannot write");
+    return std::system_error(error.system_error, std::generic_category(), file.string() + ": cannot write");
   }
-  throw std::system_error(EIO, std::generic_category(),
-                          file.string() + ": cannot write (" + error.what() + ')');
+  return std::system_error(EIO, std::generic_category(),
+                           file.string() + ": cannot write (" + error.what() + ')');
 }
 
 void require_readable(const std::filesystem::path& file) {

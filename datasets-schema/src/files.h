@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "h5.h"
 
@@ -30,8 +31,8 @@ void synchronise(const std::filesystem::path& file);
 /// Renames a file. @throws std::system_error that names the target.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Throws what a user can act on when writing `file` failed.
-[[noreturn]] void throw_write_error(const std::filesystem::path& file, const h5::Error& error);
+/// What a user can act on when writing `file` failed.
+[[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 
 /// @throws std::system_error if the file cannot be opened or is a folder.
 void require_readable(const std::filesystem::path& file);

@@ -50,6 +50,13 @@ Handle text_type(std::size_t size) {
 
 Handle property_list(hid_t kind) { return Handle(call(H5Pcreate, kind)); }
 
+/// Names of links and of attributes are UTF-8.
+Handle utf8_names(hid_t kind) {
+  auto properties = property_list(kind);
+  call(H5Pset_char_encoding, properties.id(), H5T_CSET_UTF8);
+  return properties;
+}
+
 std::string number_name(hid_t type, std::string_view kind) {
   return std::string(kind) +
          std::to_string(8 * call([](hid_t id) { return static_cast<long long>(H5Tget_size(id)); }, type));
@@ -98,12 +105,34 @@ void Handle::close() {
   if (id_ != none) call(H5Idec_ref, std::exchange(id_, none));
 }
 
-Handle create_file(const std::filesystem::path& file, Format format) {
-  const auto access = property_list(H5P_FILE_ACCESS);
+WritableFile WritableFile::create(const std::filesystem::path& file, Format format) {
+  auto failure = std::make_unique<int>(0);
+  const auto access = sturdy_access(*failure);
   const auto oldest = format == Format::live_readers ? H5F_LIBVER_V110 : H5F_LIBVER_EARLIEST;
   call(H5Pset_libver_bounds, access.id(), oldest, H5F_LIBVER_V110);
-  call(H5Pset_fclose_degree, access.id(), H5F_CLOSE_SEMI);
-  return Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()));
+  return {std::move(failure), Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()))};
+}
+
+WritableFile WritableFile::open(const std::filesystem::path& file) {
+  auto failure = std::make_unique<int>(0);
+  const auto access = sturdy_access(*failure);
+  return {std::move(failure), Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()))};
+}
+
+void WritableFile::start_live() { call(H5Fstart_swmr_write, id()); }
+
+void WritableFile::check() const {
+  if (failure_ && *failure_ != 0) throw Error(std::strerror(*failure_), *failure_);
+}
+
+void WritableFile::close() {
+  handle_.close();
+  check();
+}
+
+Error WritableFile::cause_of(const Error& error) const {
+  if (failure_ && *failure_ != 0) return {std::strerror(*failure_), *failure_};
+  return error;
 }
 
 Handle open_file(const std::filesystem::path& file) {
@@ -116,14 +145,6 @@ Handle open_file(const std::filesystem::path& file) {
     return Handle(live);
   }
 }
-
-Handle open_for_change(const std::filesystem::path& file) {
-  return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
-}
-
-void start_live(const Handle& file) { call(H5Fstart_swmr_write, file.id()); }
-
-void flush(const Handle& file) { call(H5Fflush, file.id(), H5F_SCOPE_LOCAL); }
 
 namespace {
 
@@ -149,7 +170,8 @@ bool is_dataset(hid_t parent, const std::string& path) { return is_kind(parent, 
 Handle create_group(hid_t parent, const std::string& path) {
   const auto creation = property_list(H5P_GROUP_CREATE);
   call(H5Pset_link_creation_order, creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  return Handle(call(H5Gcreate2, parent, path.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT));
+  return Handle(
+      call(H5Gcreate2, parent, path.c_str(), utf8_names(H5P_LINK_CREATE).id(), creation.id(), H5P_DEFAULT));
 }
 
 Handle open(hid_t parent, const std::string& path) {
@@ -248,7 +270,7 @@ Handle create_dataset(hid_t parent, const std::string& path, hid_t type, const D
   call(H5Pset_chunk, creation.id(), static_cast<int>(chunk.size()), chunk.data());
   if (options.fill != nullptr) call(H5Pset_fill_value, creation.id(), type, options.fill);
   return Handle(call(H5Dcreate2, parent, path.c_str(), type, dataspace(options.extent, true).id(),
-                     H5P_DEFAULT, creation.id(), H5P_DEFAULT));
+                     utf8_names(H5P_LINK_CREATE).id(), creation.id(), H5P_DEFAULT));
 }
 
 Description describe(hid_t dataset) {
@@ -272,6 +294,8 @@ void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows,
   call(H5Dwrite, dataset, memory_type, dataspace(extent, false).id(), in_file.id(), H5P_DEFAULT, values);
 }
 
+void flush(hid_t dataset) { call(H5Dflush, dataset); }
+
 void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values) {
   const Handle in_file(call(H5Dget_space, dataset));
   Extent extent = extent_of(in_file);
@@ -286,7 +310,8 @@ namespace {
 void put_attribute(hid_t object, const std::string& name, hid_t type, const Extent& extent,
                    const void* values) {
   const auto space = dataspace(extent, false);
-  const Handle attribute(call(H5Acreate2, object, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT));
+  const Handle attribute(call(H5Acreate2, object, name.c_str(), type, space.id(),
+                              utf8_names(H5P_ATTRIBUTE_CREATE).id(), H5P_DEFAULT));
   call(H5Awrite, attribute.id(), type, values);
 }
 

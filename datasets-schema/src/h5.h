@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -57,15 +58,40 @@ class Handle {
 
 using Extent = std::vector<hsize_t>;
 
-// Files.
-enum class Format { oldest_readers, live_readers };
-[[nodiscard]] Handle create_file(const std::filesystem::path& file, Format format);
+/// A file that is written. HDF5 itself never learns of a write that fails (it would crash on it): from then
+/// on nothing more reaches the disk, and check() tells why.
+class WritableFile {
+ public:
+  enum class Format { oldest_readers, live_readers };
+
+  WritableFile() = default;
+  [[nodiscard]] static WritableFile create(const std::filesystem::path& file, Format format);
+  [[nodiscard]] static WritableFile open(const std::filesystem::path& file);
+
+  [[nodiscard]] hid_t id() const noexcept { return handle_.id(); }
+  /// From here on other processes may follow the file; nothing but rows can be added.
+  void start_live();
+  /// @throws Error if something could not be written so far.
+  void check() const;
+  /// Closes, then checks.
+  void close();
+  /// Why a call failed: what could not be written, else HDF5's own reason.
+  [[nodiscard]] Error cause_of(const Error& error) const;
+
+ private:
+  WritableFile(std::unique_ptr<int> failure, Handle handle)
+      : failure_(std::move(failure)), handle_(std::move(handle)) {}
+
+  std::unique_ptr<int> failure_;  // HDF5 has its address until the handle is closed.
+  Handle handle_;
+};
+
+/// Settings of a file whose writes never fail as HDF5 sees them; `failure` is the errno of the first that
+/// did.
+[[nodiscard]] Handle sturdy_access(int& failure);
+
 /// Opens for reading, also while it is written or after its writer died.
 [[nodiscard]] Handle open_file(const std::filesystem::path& file);
-[[nodiscard]] Handle open_for_change(const std::filesystem::path& file);
-/// From here on other processes may follow the file; nothing but rows can be added.
-void start_live(const Handle& file);
-void flush(const Handle& file);
 
 // The tree.
 [[nodiscard]] bool is_group(hid_t parent, const std::string& path);
@@ -107,6 +133,8 @@ struct DatasetOptions {
 void write(hid_t dataset, hid_t memory_type, const void* values);
 /// Adds rows after the first `rows_before`.
 void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows, const void* values);
+/// Hands it to the operating system.
+void flush(hid_t dataset);
 /// Reads the first `rows` rows.
 void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values);
 

@@ -181,14 +181,14 @@ void write_recording(const std::filesystem::path& file, const Recording& recordi
                                 " axes, expected 1 to " + std::to_string(max_axes));
   }
   TemporaryFile temporary(file);
+  h5::WritableFile output;
   try {
-    auto handle = h5::create_file(temporary.path(), h5::Format::oldest_readers);
-    write_head(handle.id(), {recording.header, recording.axes});
-    write_datasets(handle.id(), recording);
-    h5::flush(handle);
-    handle.close();
+    output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
+    write_head(output.id(), {recording.header, recording.axes});
+    write_datasets(output.id(), recording);
+    output.close();
   } catch (const h5::Error& error) {
-    throw_write_error(file, error);
+    throw write_error(file, output.cause_of(error));
   }
   temporary.commit();
 }

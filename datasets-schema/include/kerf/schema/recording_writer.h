@@ -16,7 +16,8 @@ namespace kerf::schema {
 /// Writes a recording row by row while it happens, in SWMR mode, so that other processes can follow it.
 ///
 /// The file stands under `NAME.partial` until close() has put everything in its place and renamed it. After
-/// a crash the partial file holds every row up to the last flush().
+/// a crash the partial file holds every row up to the last flush(), and read_recording() reads it.
+/// May be handed from thread to thread, but is used by one at a time.
 class RecordingWriter {
  public:
   struct Options {
@@ -25,23 +26,32 @@ class RecordingWriter {
     bool replace = false;  ///< an existing target is replaced, but only by close()
   };
 
-  /// @throws std::system_error if the target exists and may not be replaced, or cannot be created.
+  /// @throws std::invalid_argument if the target exists and may not be replaced, if a `NAME.partial` exists
+  ///         (an earlier recording that nobody closed: it is never overwritten), or for bad axes.
+  /// @throws std::system_error if it cannot be created.
   RecordingWriter(std::filesystem::path file, Header header, std::vector<Axis> axes, const Options& options);
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
-  /// Leaves the partial file as a crash would; call close() to keep the recording.
+  /// Leaves the partial file as a crash would, or nothing if no row was appended; call close() to keep the
+  /// recording.
   ~RecordingWriter();
 
-  /// Appends rows. @throws std::system_error (disk full); what was appended before stays readable.
+  /// Appends rows: they reach the file chunk by chunk and with flush().
+  /// @throws std::system_error (disk full); what was flushed before stays readable, nothing more is taken.
   void append(std::span<const Row> rows);
+  /// Appends an event; `kind` is cut to 32 bytes, `text` to 256. @throws as append().
   void append_event(const Event& event);
 
   /// Hands everything to the operating system. @throws std::system_error.
   void flush();
 
-  /// Ends the recording with a status ("complete", "aborted: WHY") and renames it to its final name.
-  /// @throws std::system_error
+  /// Ends the recording with a status ("complete", "aborted: WHY"), brings it to the disk and renames it to
+  /// its final name. Nothing may be appended after it.
+  /// @throws std::invalid_argument for another status; std::system_error, and then the partial file stays.
   void close(std::string_view status);
+
+  /// Rows appended so far.
+  [[nodiscard]] std::uint64_t rows() const noexcept;
 
   /// Where the rows are now: `NAME.partial` before close(), the final name after it.
   [[nodiscard]] const std::filesystem::path& path() const noexcept;
