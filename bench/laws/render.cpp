@@ -37,15 +37,15 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
 }
 
 models::Contact contact_of(const schema::Recording& recording, std::size_t axis) {
-  if (recording.cycles && recording.cycles->axis == axis) {
-    return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
-  }
   if (!recording.header.scene_toml.empty()) {
     const toml::table scene = parse_toml(recording.header.scene_toml, "the recording's scene");
     if (const toml::table* tissue = scene["tissue"].as_table()) {
       const LawFile law = law_from_table(*tissue, "the recording's scene");
       if (law.axis == recording.axes.at(axis).name) return law.contact;
     }
+  }
+  if (recording.cycles && recording.cycles->axis == axis) {
+    return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
   }
   double smallest = recording.rows() > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (std::size_t row = 0; row < recording.rows(); ++row) {
