@@ -158,7 +158,7 @@ std::vector<double> mean_of(const std::vector<std::vector<double>>& cycles, std:
       sum += cycle[point];
       count += 1.0;
     }
-    if (count > 0.0) mean[point] = sum / count;
+    if (2.0 * count >= static_cast<double>(cycles.size())) mean[point] = sum / count;
   }
   return mean;
 }
