@@ -8,6 +8,7 @@
 
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
+#include "signal/signal.h"
 
 namespace kerf::bench {
 namespace {
@@ -37,6 +38,14 @@ std::size_t keep_finite(AxisSeries& series) {
     values->resize(kept);
   if (!series.cycle.empty()) series.cycle.resize(kept);
   return count - kept;
+}
+
+void take_zero_phase_velocity(AxisSeries& series) {
+  if (series.time_s.size() < 5) return;
+  constexpr double window_s = 0.02;
+  const double period_s =
+      (series.time_s.back() - series.time_s.front()) / static_cast<double>(series.time_s.size() - 1);
+  series.velocity = differentiate(series.time_s, series.penetration, std::max(window_s, 4.0 * period_s));
 }
 
 /// The rendering aids of 004 for a law with branches, scaled to the recording.
@@ -142,6 +151,8 @@ std::string as_csv(const RecordingFit& fit) {
 RecordingFit fit_recording(const schema::Recording& recording, const FitRecordingOptions& options) {
   const models::Contact contact = options.contact.value_or(contact_of(recording, options.axis));
   AxisSeries series = axis_series(recording, options.axis, contact);
+  // What a driver gives as velocity lags behind the position; in hindsight there is a better one.
+  if (recording.header.velocity_derived.empty()) take_zero_phase_velocity(series);
   RecordingFit all{.uuid = recording.header.uuid, .samples = recording.rows(), .choice = {}};
   all.left_out = keep_finite(series);
   if (all.left_out > 0)

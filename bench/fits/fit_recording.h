@@ -41,7 +41,9 @@ struct RecordingFit {
   std::vector<std::string> warnings;
 };
 
-/// Fits laws to an axis of a recording. A law that cannot be fitted is told of in the warnings.
+/// Fits laws to an axis of a recording. The velocity of a device, which lags, is replaced by the zero-phase
+/// slope of its positions (a parabola over 20 ms, at least five samples). A law that cannot be fitted is told
+/// of in the warnings.
 /// @throws std::invalid_argument for an unknown law, or a recording without force.
 [[nodiscard]] RecordingFit fit_recording(const schema::Recording& recording,
                                          const FitRecordingOptions& options);

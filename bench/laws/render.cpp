@@ -54,6 +54,12 @@ models::Contact contact_of(const schema::Recording& recording, std::size_t axis)
   return {.position = smallest, .direction = 1.0};
 }
 
+models::Law without_rendering_aids(const models::Law& law) {
+  models::Options options = law.options();
+  for (const models::OptionInfo& aid : models::BranchSelector::options()) options.erase(aid.name);
+  return models::Law::make(law.model(), law.values(), options);
+}
+
 std::vector<double> render(const models::Law& law, const AxisSeries& series) {
   std::vector<double> force;
   force.reserve(series.time_s.size());

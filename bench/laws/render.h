@@ -25,6 +25,10 @@ struct AxisSeries {
 /// it was segmented, else the smallest position with direction +1.
 [[nodiscard]] models::Contact contact_of(const schema::Recording& recording, std::size_t axis);
 
+/// The law without the rendering aids of a BranchSelector (velocity filter, ramp band, reversal scaling):
+/// what its tables say themselves.
+[[nodiscard]] models::Law without_rendering_aids(const models::Law& law);
+
 /// The force that a law gives along a series, tick by tick from a fresh state.
 [[nodiscard]] std::vector<double> render(const models::Law& law, const AxisSeries& series);
 

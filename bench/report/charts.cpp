@@ -14,17 +14,6 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Angles are drawn in degrees, lengths in millimetres: what a reader thinks in.
-struct DrawnUnit {
-  double factor = 1.0;
-  std::string unit;
-};
-
-DrawnUnit drawn_position(const schema::Axis& axis) {
-  if (axis.position_unit == "rad") return {.factor = 180.0 / std::numbers::pi, .unit = "deg"};
-  return {.factor = 1e3, .unit = "mm"};
-}
-
 std::vector<double> column(const std::vector<double>& values, const schema::Recording& recording,
                            std::size_t axis, double factor) {
   std::vector<double> one;
@@ -71,6 +60,11 @@ Colour colour_of(schema::Phase phase) {
 }
 
 }  // namespace
+
+DrawnUnit drawn_position(const schema::Axis& axis) {
+  if (axis.position_unit == "rad") return {.factor = 180.0 / std::numbers::pi, .unit = "deg"};
+  return {.factor = 1e3, .unit = "mm"};
+}
 
 Chart position_chart(const schema::Recording& recording, std::size_t axis) {
   const DrawnUnit unit = drawn_position(recording.axes[axis]);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
@@ -76,6 +77,9 @@ std::string script_of(const Chart& chart, const std::string& output) {
   if (chart.log_x) script += "set logscale x\n";
   if (chart.log_y) script += "set logscale y\n";
   if (chart.log_x || chart.log_y) script += "set offsets 0, 0, 0, 0\n";
+  for (const auto& [axis, range] : {std::pair{'x', chart.x_range}, std::pair{'y', chart.y_range}}) {
+    if (range.begin < range.end) fmt::format_to(out, "set {}range [{}:{}]\n", axis, range.begin, range.end);
+  }
   for (const Band& band : chart.bands) {
     fmt::format_to(
         out,

@@ -36,6 +36,12 @@ struct Marker {
   std::string label;
 };
 
+/// A range of an axis; empty while begin is not less than end.
+struct Range {
+  double begin = 0.0;
+  double end = 0.0;
+};
+
 struct Chart {
   std::string title;
   std::string x_label;  ///< with its unit: "time [s]"
@@ -44,6 +50,8 @@ struct Chart {
   std::vector<Band> bands;
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
+  Range x_range;  ///< empty: what the curves need
+  Range y_range;
   bool log_x = false;
   bool log_y = false;
   int width_px = 900;

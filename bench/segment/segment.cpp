@@ -235,7 +235,9 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
   Motion motion{.position = smoother.smooth(position), .force = smoother.smooth(force)};
   const auto [least, most] = std::minmax_element(motion.position.begin(), motion.position.end());
   const double height = options.prominence * (*most - *least);
-  std::vector<Turn> turns = height > 0.0 ? find_turns(motion.position, height) : std::vector<Turn>{};
+  // A filter leaves rounding on a constant, which turns often.
+  const bool moves = *most - *least > 1e-9 * std::max(std::abs(*most), std::abs(*least));
+  std::vector<Turn> turns = moves ? find_turns(motion.position, height) : std::vector<Turn>{};
 
   schema::Cycles cycles;
   cycles.axis = options.axis;

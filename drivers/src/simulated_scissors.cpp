@@ -113,14 +113,15 @@ void SimulatedScissors::step() noexcept {
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double lever = info_.axes[axis].lever;
     SimulatedAxis::State& state = states_[axis];
-    if (const Tissue& tissue = surroundings_.tissue[axis]) {
-      tissue_force_[axis] = tissue(state.travel_m / lever, state.speed_m_s / lever, sub_step_s);
-    }
     axes_[axis].step(state,
                      {.equilibrium_m = axis == 0 ? wish.angle_rad * lever : 0.0,
                       .equilibrium_speed_m_s = axis == 0 ? wish.speed_rad_s * lever : 0.0,
                       .force_n = command_[axis] + tissue_force_[axis]},
                      sub_step_s);
+    // After the move, so that the sensor and the encoder speak of the same moment.
+    if (const Tissue& tissue = surroundings_.tissue[axis]) {
+      tissue_force_[axis] = tissue(state.travel_m / lever, state.speed_m_s / lever, sub_step_s);
+    }
   }
 }
 

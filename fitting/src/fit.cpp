@@ -50,30 +50,60 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
   result.bic = likelihood + p * std::log(n);
 }
 
-/// Variances of the free parameters on their search scale; infinite for those that the data do not tell
-/// apart.
-Eigen::VectorXd variances(const Eigen::MatrixXd& jacobian, double noise_variance) {
-  const Eigen::VectorXd scale = jacobian.colwise().norm();
-  Eigen::MatrixXd scaled = jacobian;
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    if (scale[k] > 0.0) scaled.col(k) /= scale[k];
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(scaled.transpose() * scaled);
+/// Inverse of J^T J, with the directions that the data do not determine left out and told of.
+struct Inverse {
+  Eigen::MatrixXd matrix;
+  std::vector<bool> undetermined;
+};
+
+Inverse inverse_of(const Eigen::MatrixXd& normal) {
+  const Eigen::VectorXd diagonal = normal.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (diagonal.array() > 0.0).select(diagonal.cwiseInverse(), 0.0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(scale.asDiagonal() * normal *
+                                                                scale.asDiagonal());
   const double threshold = 1e-12 * spectrum.eigenvalues().maxCoeff();
-  Eigen::VectorXd result(scale.size());
+  const Eigen::VectorXd inverted =
+      (spectrum.eigenvalues().array() > threshold).select(spectrum.eigenvalues().cwiseInverse(), 0.0);
+  const Eigen::MatrixXd basis = scale.asDiagonal() * spectrum.eigenvectors();
+  Inverse inverse{.matrix = basis * inverted.asDiagonal() * basis.transpose(), .undetermined = {}};
   for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    double sum = 0.0;
+    double lost = 0.0;
     for (Eigen::Index j = 0; j < scale.size(); ++j) {
-      const double component = spectrum.eigenvectors()(k, j);
-      if (spectrum.eigenvalues()[j] > threshold) {
-        sum += component * component / spectrum.eigenvalues()[j];
-      } else if (component * component > 1e-6) {
-        sum = infinite;
-      }
+      if (spectrum.eigenvalues()[j] <= threshold) lost += std::pow(spectrum.eigenvectors()(k, j), 2);
     }
-    result[k] = scale[k] > 0.0 ? noise_variance * sum / (scale[k] * scale[k]) : infinite;
+    inverse.undetermined.push_back(lost > 1e-6 || scale[k] == 0.0);
   }
-  return result;
+  return inverse;
+}
+
+/// Half the width of each free parameter's interval is `quantile * deviation`, on its search scale.
+struct Spread {
+  double deviation;
+  double quantile;
+};
+
+/// The larger of two variances: the residuals' own, stretched by their correlation time, and that of the
+/// scores summed over stretches of time, which also sees errors that stay while the tool stands still
+/// (encoder steps).
+std::vector<Spread> spreads(const Solution& solution, double noise_variance, double effective_samples,
+                            double confidence) {
+  const Inverse inverse = inverse_of(solution.normal);
+  const Eigen::MatrixXd influence = solution.scores * inverse.matrix;
+  const auto batches = static_cast<double>(score_batches);
+  const double by_residuals =
+      student_t(confidence, effective_samples - static_cast<double>(solution.normal.rows()));
+  const double by_scores = student_t(confidence, batches - 1.0);
+  std::vector<Spread> all;
+  for (Eigen::Index k = 0; k < solution.normal.rows(); ++k) {
+    if (inverse.undetermined[static_cast<std::size_t>(k)]) {
+      all.push_back({.deviation = infinite, .quantile = by_residuals});
+      continue;
+    }
+    const double first = std::sqrt(noise_variance * inverse.matrix(k, k));
+    const double second = std::sqrt(batches / (batches - 1.0)) * influence.col(k).norm();
+    all.push_back(first >= second ? Spread{first, by_residuals} : Spread{second, by_scores});
+  }
+  return all;
 }
 
 void estimate_parameters(FitResult& result, const Problem& problem, const Solution& solution,
@@ -81,20 +111,19 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Soluti
   const auto n = static_cast<double>(residuals.size());
   const auto p = static_cast<double>(problem.free_count());
   result.correlation_time = correlation_time(residuals);
-  const double noise_variance = sum_of_squares(residuals) / std::max(1.0, n - p);
-  const Eigen::VectorXd spread = variances(solution.jacobian, noise_variance * result.correlation_time);
-  const double t = student_t(confidence, n / result.correlation_time - p);
-  Eigen::Index next = 0;
+  const double noise_variance = sum_of_squares(residuals) / std::max(1.0, n - p) * result.correlation_time;
+  const auto searched = spreads(solution, noise_variance, n / result.correlation_time, confidence);
+  auto next = searched.begin();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
     const models::ParameterInfo& info = problem.parameters[i];
     Estimate estimate{.info = info, .value = solution.values[i]};
-    const double deviation = problem.free[i] ? std::sqrt(spread[next++]) : 0.0;
+    const Spread spread = problem.free[i] ? *next++ : Spread{0.0, 0.0};
     const bool logarithmic = info.scale == models::Scale::logarithmic;
     const double centre = to_search_scale(info, estimate.value);
-    estimate.std_error = logarithmic ? estimate.value * deviation : deviation;
-    estimate.lower = from_search_scale(info, centre - t * deviation);
-    estimate.upper = from_search_scale(info, centre + t * deviation);
-    if (!std::isfinite(deviation)) {
+    estimate.std_error = logarithmic ? estimate.value * spread.deviation : spread.deviation;
+    estimate.lower = from_search_scale(info, centre - spread.quantile * spread.deviation);
+    estimate.upper = from_search_scale(info, centre + spread.quantile * spread.deviation);
+    if (!std::isfinite(spread.deviation)) {
       result.warnings.push_back("the data do not determine '" + info.name + "'");
     } else if (problem.free[i] && (estimate.value <= info.lower * (info.lower > 0.0 ? 1.001 : 1.0) ||
                                    estimate.value >= info.upper)) {

@@ -42,12 +42,14 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Mask
   const auto points = static_cast<Eigen::Index>(grid.size());
   const Eigen::Index branches = loop ? 2 : 1;
   Solution solution;
-  solution.jacobian = Eigen::MatrixXd::Zero(points * branches, points * branches);
+  solution.normal.setZero(points * branches, points * branches);
+  solution.scores.setZero(score_batches, points * branches);
   solution.converged = true;
   solution.iterations = 1;
   solution.message = "linear least squares";
   for (Eigen::Index branch = 0; branch < branches; ++branch) {
-    HatEquations equations = hat_equations(samples, mask, grid, {.loop = loop, .closing = branch == 0});
+    const BranchOf mine{.loop = loop, .closing = branch == 0};
+    HatEquations equations = hat_equations(samples, mask, grid, mine);
     equations.normal +=
         bridge * std::max(1.0, equations.normal.trace() / static_cast<double>(points)) * roughness(points);
     const Eigen::LLT<Eigen::MatrixXd> factor(equations.normal);
@@ -59,7 +61,9 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Mask
     }
     const Eigen::VectorXd forces = factor.solve(equations.right);
     solution.values.insert(solution.values.end(), forces.begin(), forces.end());
-    solution.jacobian.block(branch * points, branch * points, points, points) = factor.matrixU();
+    solution.normal.block(branch * points, branch * points, points, points) = equations.normal;
+    solution.scores.middleCols(branch * points, points) =
+        hat_scores(samples, mask, grid, mine, forces, score_batches);
   }
   return solution;
 }
