@@ -56,8 +56,7 @@ void run_check(const Arguments& arguments, Context& context) {
   print_table(context.result);
   for (const std::string& reason : verdict.reasons) say("  " + reason);
   say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", verdict.passed ? "pass" : "FAIL",
-                  options.law->law.model(), options.rate_hz, result.device.uri,
-                  result.report.executed + result.report.skipped));
+                  options.law->law.model(), options.rate_hz, result.device.uri, result.report.ticks()));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ Verdict judge(const RunResult& result) {
     fail(fmt::format("the law is too slow: 99.9 % of its ticks take up to {:.1f} us of a period of {:.0f} us",
                      to_us(compute_ns), to_us(period_ns)));
   }
-  const double ticks = static_cast<double>(report.executed + report.skipped);
+  const double ticks = static_cast<double>(report.ticks());
   const auto by_wake = report.missed_by[static_cast<std::size_t>(Stage::wake)];
   const double missed = static_cast<double>(report.missed());
   const std::string lateness =
@@ -76,9 +76,11 @@ Verdict judge(const RunResult& result) {
 
 nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& verdict) {
   const LoopReport& report = result.report;
-  nlohmann::ordered_json json{{"device", result.device.uri}, {"ticks", report.executed + report.skipped},
-                              {"executed", report.executed}, {"skipped", report.skipped},
-                              {"period_s", result.period_s}, {"missed", report.missed()}};
+  nlohmann::ordered_json json{{"device", result.device.uri},
+                              {"ticks", report.ticks()},
+                              {"executed", report.executed},
+                              {"period_s", result.period_s},
+                              {"missed", report.missed()}};
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
     json["missed_by"][stage_names[stage]] = report.missed_by[stage];
   }

@@ -46,8 +46,20 @@ class LawRendering {
   std::size_t axis_;
 };
 
+/// Whether every number that a device gave for its axes is finite.
+[[nodiscard]] inline bool is_finite(const drivers::Sample& sample, std::size_t axes) noexcept {
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    if (!std::isfinite(sample.position[axis]) || !std::isfinite(sample.velocity[axis]) ||
+        !std::isfinite(sample.force_measured[axis])) {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// Keeps a command within what a device may do: a linear soft start, the limit of each axis, and its slew
-/// limit. A number that is not finite makes the whole command zero.
+/// limit. A fault of the law, or a number that is not finite, makes the whole command zero at once: the slew
+/// limit is there to spare the hand a jump, not to hold on to a force that nobody vouches for.
 class SafetyLimiter {
  public:
   SafetyLimiter(const std::vector<drivers::AxisInfo>& axes, double period_s, double soft_start_s) noexcept
@@ -62,11 +74,12 @@ class SafetyLimiter {
     const double ramp = soft_start_s_ > 0.0 ? std::min(1.0, time_s / soft_start_s_) : 1.0;
     if (ramp < 1.0) command.flags |= schema::flag_soft_start;
     for (std::size_t axis = 0; axis < count_; ++axis) {
-      if (!std::isfinite(command.force[axis])) {
-        command.force = {};
-        command.flags |= schema::flag_law_fault;
-        break;
-      }
+      if (!std::isfinite(command.force[axis])) command.flags |= schema::flag_law_fault;
+    }
+    if ((command.flags & schema::flag_law_fault) != 0) {
+      command.force = {};
+      reset();
+      return;
     }
     for (std::size_t axis = 0; axis < count_; ++axis) {
       const double wanted = ramp * command.force[axis];
@@ -79,7 +92,7 @@ class SafetyLimiter {
     }
   }
 
-  /// What zero_force() of the loop did: the next command starts from zero.
+  /// The device was given zero force: the next command starts from there.
   void reset() noexcept { last_ = {}; }
 
  private:

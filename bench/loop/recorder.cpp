@@ -61,7 +61,10 @@ void Recorder::close(const std::string& status) {
   if (failure_) std::rethrow_exception(failure_);
   if (lost() > 0) {
     writer_.append_event(
-        {.time_s = 0.0, .kind = "lost", .text = fmt::format("{} rows found the ring full", lost())});
+        {.time_s = first_lost_s_,
+         .kind = "gap",
+         .text = fmt::format("{} rows lost from here on: the writer did not keep up and the ring was full",
+                             lost())});
   }
   for (const schema::Event& event : events_) writer_.append_event(event);
   writer_.close(status);

@@ -40,7 +40,7 @@ class Recorder {
   void push(const schema::Row& row) noexcept {
     while (!ring_.try_enqueue(row)) {
       if (!lossless_ || failed_.load(std::memory_order_relaxed)) {
-        lost_.fetch_add(1, std::memory_order_relaxed);
+        if (lost_.fetch_add(1, std::memory_order_relaxed) == 0) first_lost_s_ = row.time_s;
         return;
       }
       std::this_thread::yield();
@@ -64,6 +64,7 @@ class Recorder {
   moodycamel::ReaderWriterQueue<schema::Row> ring_;
   bool lossless_;
   std::atomic<std::uint64_t> lost_{0};
+  double first_lost_s_ = 0.0;  ///< written by the tick, read by close() after the last one
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::vector<schema::Row> chunk_;

@@ -17,7 +17,6 @@ namespace kerf::bench {
 namespace {
 
 std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
 
 std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
   std::vector<schema::Axis> axes;
@@ -51,21 +50,21 @@ std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const drivers
 /// The loop with the law or without, recorded or not: four instances of one template.
 template <typename Clock, typename Log>
 void run(Clock clock, drivers::Device& device, Log& log, const RunOptions& options, const LoopOptions& loop,
-         const std::atomic<bool>& stop, LoopReport& report) {
+         const LoopControl& control, LoopReport& report) {
   if (options.law) {
     LawRendering rendering(options.law->law, options.law->contact, axis_for(*options.law, device.info()));
-    run_loop(clock, device, rendering, log, loop, stop, report);
+    run_loop(clock, device, rendering, log, loop, control, report);
   } else {
     NoForce free;
-    run_loop(clock, device, free, log, loop, stop, report);
+    run_loop(clock, device, free, log, loop, control, report);
   }
 }
 
 template <typename Log>
 void run_by_clock(drivers::Device& device, Log& log, const RunOptions& options, const LoopOptions& loop,
-                  const std::atomic<bool>& stop, RunResult& result) {
+                  const LoopControl& control, RunResult& result) {
   if (options.virtual_time) {
-    run(VirtualClock(), device, log, options, loop, stop, result.report);
+    run(VirtualClock(), device, log, options, loop, control, result.report);
     return;
   }
   // A thread of its own takes the real-time measures, so that they end with it.
@@ -74,7 +73,7 @@ void run_by_clock(drivers::Device& device, Log& log, const RunOptions& options, 
     try {
       const AwakeProcessors awake;
       result.realtime = {use_realtime_scheduling(), lock_memory(), pin_to_processor(), awake.measure()};
-      run(WallClock(), device, log, options, loop, stop, result.report);
+      run(WallClock(), device, log, options, loop, control, result.report);
     } catch (...) {
       failure = std::current_exception();
     }
@@ -83,11 +82,21 @@ void run_by_clock(drivers::Device& device, Log& log, const RunOptions& options, 
 }
 
 void close(Recorder& recorder, const RunResult& result) {
-  const auto at = static_cast<double>(result.report.executed + result.report.skipped) * result.period_s;
-  if (result.report.end == LoopEnd::stopped) {
+  const LoopReport& report = result.report;
+  const auto at = static_cast<double>(report.ticks()) * result.period_s;
+  if (report.missed() > 0) {
+    std::string text = fmt::format("{} deadlines missed, charged to", report.missed());
+    for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
+      if (report.missed_by[stage] > 0) {
+        text += fmt::format(" {} {}", stage_names[stage], report.missed_by[stage]);
+      }
+    }
+    recorder.note({.time_s = at, .kind = "gap", .text = std::move(text)});
+  }
+  if (report.end == LoopEnd::stopped) {
     recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
   }
-  if (result.report.end == LoopEnd::device_lost) {
+  if (report.end == LoopEnd::device_lost) {
     recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost"});
     recorder.close("aborted: the device was lost");
     return;
@@ -109,13 +118,20 @@ RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop
       .period_s = result.period_s,
       .ticks = static_cast<std::uint64_t>(std::llround(options.seconds * options.rate_hz))};
   const auto recorder = open_recorder(options, result.device);
+  {
+    Progress progress(recorder ? "recording " + options.record->string() : "running " + options.device_uri,
+                      static_cast<std::size_t>(loop.ticks));
+    const LoopControl control{.stop = stop, .done = progress.done};
+    NoRecorder none;
+    if (recorder) {
+      run_by_clock(*device, *recorder, options, loop, control, result);
+    } else {
+      run_by_clock(*device, none, options, loop, control, result);
+    }
+  }
   if (recorder) {
-    run_by_clock(*device, *recorder, options, loop, stop, result);
     result.rows_lost = recorder->lost();
     close(*recorder, result);
-  } else {
-    NoRecorder none;
-    run_by_clock(*device, none, options, loop, stop, result);
   }
   if (result.report.end == LoopEnd::device_lost) {
     throw drivers::DeviceError(

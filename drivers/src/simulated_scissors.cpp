@@ -63,7 +63,7 @@ std::string as_toml(const SimulatedScissors::Options& options) {
 SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
   Options options;
-  options.seed = static_cast<std::uint64_t>(given.number("seed", {"1", 1.0, 0.0, 9e15}));
+  options.seed = given.count("seed", 1);
   options.with_hand = given.flag("hand", true);
   options.with_noise = given.flag("noise", true);
   options.with_encoder = given.flag("encoder", true);

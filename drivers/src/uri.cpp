@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <numbers>
 #include <sstream>
 
@@ -49,6 +50,16 @@ double UriOptions::number(const std::string& name, const Quantity& quantity) {
     throw DeviceError(message.str());
   }
   return value;
+}
+
+std::uint64_t UriOptions::count(const std::string& name, std::uint64_t standard) {
+  constexpr double largest = 0x1p53;
+  const double value = number(name, {"1", static_cast<double>(standard), 0.0, largest});
+  if (value != std::floor(value)) {
+    throw DeviceError("device '" + uri_.name + "': option '" + name + "' is '" + uri_.options.at(name) +
+                      "', expected a whole number");
+  }
+  return static_cast<std::uint64_t>(value);
 }
 
 bool UriOptions::flag(const std::string& name, bool standard) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -31,6 +32,8 @@ class UriOptions {
     double upper;
   };
   [[nodiscard]] double number(const std::string& name, const Quantity& quantity);
+  /// A whole number from 0 to 2^53. @throws DeviceError for any other.
+  [[nodiscard]] std::uint64_t count(const std::string& name, std::uint64_t standard);
   /// "on" or "off".
   [[nodiscard]] bool flag(const std::string& name, bool standard);
 
