@@ -62,6 +62,8 @@ int run_program(int argc, char** argv) {
     return fail(Exit::bad_input, error.what());
   } catch (const schema::FormatError& error) {
     return fail(Exit::bad_input, error.what());
+  } catch (const std::exception& error) {
+    return fail(Exit::file_error, error.what());  // no memory, a program that is missing
   }
 }
 

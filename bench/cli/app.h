@@ -23,7 +23,7 @@ struct Context {
 
 /// Adds a verb with --json and --seed, its description and an example under --help; `action` runs after
 /// parsing. Exceptions leave through run_program(): std::invalid_argument and schema::FormatError exit 2,
-/// drivers::DeviceError 3, std::system_error 4, each with one line on standard error.
+/// drivers::DeviceError 3, std::system_error and anything else 4, each with one line on standard error.
 CLI::App& add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
                    const std::string& example, std::function<void()> action);
 

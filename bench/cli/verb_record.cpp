@@ -1,9 +1,68 @@
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
 #include "cli/verbs.h"
+#include "loop/run.h"
+#include "recordings/summary.h"
 
 namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  RunOptions options;
+  std::string scene;
+  std::string law;
+  std::string output;
+};
+
+void run_record(const Arguments& arguments, Context& context) {
+  RunOptions options = arguments.options;
+  options.record = arguments.output;
+  if (!arguments.law.empty()) options.law = read_law_file(arguments.law);
+  if (!arguments.scene.empty()) {
+    options.scene = read_scene(arguments.scene);
+  } else if (!options.law && options.device_uri.starts_with("sim:")) {
+    options.scene = default_scene();
+  }
+  if (options.device_uri.starts_with("sim:") && options.device_uri.find("seed=") == std::string::npos) {
+    options.device_uri +=
+        fmt::format("{}seed={}", options.device_uri.find('?') == std::string::npos ? '?' : '&', context.seed);
+  }
+  const StopOnSignal signals;
+  const RunResult result = run_on_device(options, signals.requested());
+  const schema::Recording recording = schema::read_recording(arguments.output);
+  context.result = recording_summary(recording);
+  context.result["missed"] = result.report.missed();
+  context.result["rows_lost"] = result.rows_lost;
+  for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
+  say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
+                  recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),
+                  result.report.missed(), result.rows_lost));
+}
+
+}  // namespace
 
 void add_record(CLI::App& app, Context& context) {
-  add_verb(app, context, "record", "", "kerf record", [] {});
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& verb =
+      add_verb(app, context, "record", "Record a device's trajectory and forces",
+               "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
+               "A simulated device meets the tissue of --scene, or a Kelvin tissue. Ctrl-C ends a\n"
+               "recording cleanly.",
+               [arguments, &context] { run_record(*arguments, context); });
+  verb.add_option("--device", arguments->options.device_uri, "Device URI; 'kerf devices' lists them")
+      ->capture_default_str();
+  verb.add_option("--seconds", arguments->options.seconds, "Duration [s]")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  verb.add_option("--rate", arguments->options.rate_hz, "Rate of the loop [Hz]")->capture_default_str();
+  verb.add_flag("--virtual", arguments->options.virtual_time, "In virtual time: as fast as the machine can");
+  verb.add_option("--scene", arguments->scene, "Scene file: the tissue that a simulated device meets");
+  verb.add_option("--law", arguments->law, "Law file to render while recording");
+  verb.add_option("-o,--output", arguments->output, "Recording to write")->required();
+  verb.add_flag("--force", arguments->options.replace, "Replace an existing recording");
 }
 
 }  // namespace kerf::bench

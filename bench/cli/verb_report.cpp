@@ -1,9 +1,47 @@
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
 #include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "report/page.h"
 
 namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string recording;
+  std::string fits;
+  std::string check;
+  std::string axis;
+  std::string output;
+  bool force = false;
+};
+
+void run_report(const Arguments& arguments, Context& context) {
+  refuse_to_replace(arguments.output, arguments.force);
+  ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
+  if (!arguments.fits.empty()) input.fits = arguments.fits;
+  if (!arguments.check.empty()) input.check = arguments.check;
+  write_whole_file(arguments.output, report_page(input));
+  context.result = {{"report", arguments.output}};
+  say(arguments.output);
+}
+
+}  // namespace
 
 void add_report(CLI::App& app, Context& context) {
-  add_verb(app, context, "report", "", "kerf report", [] {});
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& verb = add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
+                            "kerf report punch.h5 --fits fits --check check.json -o punch.html",
+                            [arguments, &context] { run_report(*arguments, context); });
+  verb.add_option("RECORDING", arguments->recording, "Recording")->required();
+  verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");
+  verb.add_option("--check", arguments->check, "JSON that 'kerf check -o' wrote");
+  verb.add_option("--axis", arguments->axis, "Axis to report (default: that of the cycles, or the first)");
+  verb.add_option("-o,--output", arguments->output, "Page to write")->required();
+  verb.add_flag("--force", arguments->force, "Replace an existing page");
 }
 
 }  // namespace kerf::bench

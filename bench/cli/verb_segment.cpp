@@ -1,9 +1,111 @@
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/core.h>
+
 #include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "recordings/axes.h"
+#include "report/charts.h"
+#include "segment/segment.h"
 
 namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string recording;
+  std::string axis;
+  std::string closing;
+  std::string charts;
+  SegmentOptions options;
+};
+
+const char* name_of(schema::Phase phase) {
+  switch (phase) {
+    case schema::Phase::opening:
+      return "opening";
+    case schema::Phase::open_to_close:
+      return "open_to_close";
+    case schema::Phase::closing:
+      return "closing";
+    case schema::Phase::close_to_open:
+      return "close_to_open";
+  }
+  return "";
+}
+
+nlohmann::ordered_json to_json(const schema::Recording& recording) {
+  const schema::Cycles& cycles = *recording.cycles;
+  const schema::Axis& axis = recording.axes[cycles.axis];
+  std::map<schema::Phase, std::size_t> counts;
+  nlohmann::ordered_json phases = nlohmann::ordered_json::array();
+  for (const schema::PhaseSpan& span : cycles.phases) {
+    ++counts[span.phase];
+    phases.push_back({{"cycle", span.cycle},
+                      {"phase", name_of(span.phase)},
+                      {"begin_s", recording.time[span.begin]},
+                      {"end_s", recording.time[span.end - 1]}});
+  }
+  return {{"recording", recording.header.uuid},
+          {"axis", axis.name},
+          {"closings", counts[schema::Phase::closing]},
+          {"openings", counts[schema::Phase::opening]},
+          {"closing_direction", cycles.closing_direction},
+          {"contact_position", {{"value", cycles.contact_position}, {"unit", axis.position_unit}}},
+          {"filter_corner_hz", cycles.filter_corner_hz},
+          {"phases", phases}};
+}
+
+void run_segment(const Arguments& arguments, Context& context) {
+  schema::Recording recording = schema::read_recording(arguments.recording);
+  SegmentOptions options = arguments.options;
+  options.axis = find_axis(recording, arguments.axis);
+  if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
+  try {
+    recording.cycles = find_cycles(recording, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", arguments.recording, error.what()));
+  }
+  schema::write_recording(arguments.recording, recording);
+  if (!arguments.charts.empty()) {
+    std::filesystem::create_directories(arguments.charts);
+    const std::filesystem::path folder = arguments.charts;
+    write_whole_file(folder / "cycles.svg", draw(position_chart(recording, options.axis)));
+    write_whole_file(folder / "loops.svg", draw(loop_chart(recording, options.axis)));
+  }
+  context.result = to_json(recording);
+  say(fmt::format(
+      "{}: {} closings and {} openings; closing {}", arguments.recording,
+      context.result["closings"].get<int>(), context.result["openings"].get<int>(),
+      recording.cycles->closing_direction > 0.0 ? "increases the position" : "decreases the position"));
+}
+
+}  // namespace
 
 void add_segment(CLI::App& app, Context& context) {
-  add_verb(app, context, "segment", "", "kerf segment", [] {});
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& verb = add_verb(
+      app, context, "segment", "Find the cycles of opening and closing in a recording and store them in it",
+      "kerf segment punch.h5 -o charts", [arguments, &context] { run_segment(*arguments, context); });
+  verb.add_option("RECORDING", arguments->recording, "Recording; its cycles are added or replaced")
+      ->required();
+  verb.add_option("--axis", arguments->axis, "Axis that opens and closes (default: the first)");
+  verb.add_option("--prominence", arguments->options.prominence,
+                  "Share of the range that a stroke must cover")
+      ->check(CLI::Range(0.01, 0.99))
+      ->capture_default_str();
+  verb.add_option("--corner", arguments->options.corner_hz, "Corner of the zero-phase low-pass [Hz]")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb.add_option("--points", arguments->options.points, "Points of the grid of the averaged cycle")
+      ->check(CLI::Range(2, 4096))
+      ->capture_default_str();
+  verb.add_option("--closing", arguments->closing, "Way of closing (default: the one that costs more work)")
+      ->check(CLI::IsMember({"increasing", "decreasing"}));
+  verb.add_option("-o,--output", arguments->charts, "Folder for charts: cycles.svg and loops.svg");
 }
 
 }  // namespace kerf::bench

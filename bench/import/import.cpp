@@ -174,7 +174,7 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
   if (recording.velocity.empty()) {
     const double window_s =
         options.velocity_window_s > 0.0 ? options.velocity_window_s : std::max(0.02, 4.0 * period_s);
-    recording.velocity = differentiate(recording.time, recording.position, window_s * (1.0 + 1e-6));
+    recording.velocity = differentiate(recording.time, recording.position, window_s);
     recording.header.velocity_derived =
         fmt::format("slope of a parabola fitted to the positions within {:.4g} s, zero phase", window_s);
   }
@@ -195,7 +195,6 @@ void check_units(const Imported& imported) {
 Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
   const std::string name = file.string();
   const MappedFile mapped(file);
-  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.text()); });
   Imported imported;
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
@@ -206,6 +205,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   const auto begin = std::chrono::steady_clock::now();
   Rows rows(parse_table(mapped.text(), imported.layout, indices, progress.done), imported.columns);
   imported.parse_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.text()); });
   imported.bad_lines = rows.bad_lines();
   if (rows.size() == 0) {
     throw std::invalid_argument(

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <limits>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 
 #include <fmt/core.h>
 #include <iconv.h>
@@ -36,8 +38,9 @@ bool is_number(std::string_view field, char point) noexcept {
 struct Reading {
   char separator;
   char point;
-  std::size_t lines = 0;    ///< lines that are numbers in this reading
-  std::size_t columns = 0;  ///< of the most of them
+  std::size_t lines = 0;      ///< lines that are numbers in this reading
+  std::size_t strangers = 0;  ///< fields in them that are no numbers
+  std::size_t columns = 0;    ///< of the most of them
 
   [[nodiscard]] bool reads(std::string_view line) const {
     if (trimmed(line).empty()) return false;
@@ -49,25 +52,31 @@ struct Reading {
   }
 };
 
-/// The reading under which most sampled lines are numbers, and then the one with most columns.
+/// The reading under which most sampled lines are numbers, then the one with fewest other fields, then the
+/// one with most columns.
 Reading best_reading(const std::vector<std::string_view>& lines) {
   // In order of preference between equals: a comma separates before it is a decimal comma.
   std::array readings{Reading{'\t', '.'}, Reading{';', '.'}, Reading{',', '.'}, Reading{' ', '.'},
                       Reading{'\t', ','}, Reading{';', ','}, Reading{' ', ','}, Reading{',', ','}};
   Reading best = readings[0];
   for (Reading& reading : readings) {
-    std::vector<std::size_t> widths;
     std::size_t numbers = 0;
     for (const auto line : lines) {
       if (!reading.reads(line)) continue;
-      const auto fields = split_line(line, reading.separator);
-      numbers += static_cast<std::size_t>(
-          std::count_if(fields.begin(), fields.end(), [&](auto f) { return is_number(f, reading.point); }));
       ++reading.lines;
+      for (const auto field : split_line(line, reading.separator)) {
+        if (is_number(field, reading.point)) {
+          ++numbers;
+        } else if (!field.empty()) {
+          ++reading.strangers;
+        }
+      }
     }
     reading.columns = reading.lines > 0 ? (numbers + reading.lines / 2) / reading.lines : 0;
-    if (reading.lines > best.lines || (reading.lines == best.lines && reading.columns > best.columns))
-      best = reading;
+    const auto worth = [](const Reading& r) {
+      return std::tuple(r.lines, std::numeric_limits<std::size_t>::max() - r.strangers, r.columns);
+    };
+    if (worth(reading) > worth(best)) best = reading;
   }
   return best;
 }

@@ -37,9 +37,6 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
 }
 
 models::Contact contact_of(const schema::Recording& recording, std::size_t axis) {
-  if (recording.cycles && recording.cycles->axis == axis) {
-    return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
-  }
   if (!recording.header.scene_toml.empty()) {
     const toml::table scene = parse_toml(recording.header.scene_toml, "the recording's scene");
     if (const toml::table* tissue = scene["tissue"].as_table()) {
@@ -47,11 +44,20 @@ models::Contact contact_of(const schema::Recording& recording, std::size_t axis)
       if (law.axis == recording.axes.at(axis).name) return law.contact;
     }
   }
+  if (recording.cycles && recording.cycles->axis == axis) {
+    return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
+  }
   double smallest = recording.rows() > 0 ? std::numeric_limits<double>::infinity() : 0.0;
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     smallest = std::fmin(smallest, recording.position[row * recording.dimensions() + axis]);
   }
   return {.position = smallest, .direction = 1.0};
+}
+
+models::Law without_rendering_aids(const models::Law& law) {
+  models::Options options = law.options();
+  for (const models::OptionInfo& aid : models::BranchSelector::options()) options.erase(aid.name);
+  return models::Law::make(law.model(), law.values(), options);
 }
 
 std::vector<double> render(const models::Law& law, const AxisSeries& series) {
@@ -63,7 +69,8 @@ std::vector<double> render(const models::Law& law, const AxisSeries& series) {
     const std::size_t end = std::min(std::max<std::size_t>(i, 1), series.time_s.size() - 1);
     const double period_s = end > 0 ? series.time_s[end] - series.time_s[end - 1] : 1e-3;
     force.push_back(
-        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s).force);
+        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s)
+            .force);
   }
   return force;
 }

@@ -21,9 +21,13 @@ struct AxisSeries {
 [[nodiscard]] AxisSeries axis_series(const schema::Recording& recording, std::size_t axis,
                                      const models::Contact& contact);
 
-/// The contact of a recording: from its cycles if it was segmented, else from the attribute of a simulated
-/// scene, else the smallest position with direction +1.
+/// The contact of a recording: that of the tissue in its scene if it was simulated, else from its cycles if
+/// it was segmented, else the smallest position with direction +1.
 [[nodiscard]] models::Contact contact_of(const schema::Recording& recording, std::size_t axis);
+
+/// The law without the rendering aids of a BranchSelector (velocity filter, ramp band, reversal scaling):
+/// what its tables say themselves.
+[[nodiscard]] models::Law without_rendering_aids(const models::Law& law);
 
 /// The force that a law gives along a series, tick by tick from a fresh state.
 [[nodiscard]] std::vector<double> render(const models::Law& law, const AxisSeries& series);

@@ -77,6 +77,59 @@ class SlopeFit {
   std::array<double, 3> products_{};
 };
 
+struct Stretch {
+  std::size_t begin;
+  std::size_t end;
+};
+
+/// The slopes of a stretch of samples, each from the samples around it at whatever times they have.
+void fit_slopes(std::span<const double> time_s, std::span<const double> values, double window_s,
+                Stretch stretch, std::vector<double>& slopes) {
+  const std::size_t count = values.size();
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
+    while (begin < i && time_s[i] - time_s[begin] > 0.5 * window_s) ++begin;
+    while (end < count && time_s[end] - time_s[i] <= 0.5 * window_s) ++end;
+    // A sparse stretch takes its nearest neighbours, so that there is always a slope.
+    const std::size_t first = std::min(begin, i > 0 ? i - 1 : 0);
+    const std::size_t last = std::max(end, std::min(i + 2, count));
+    const double span_s = std::max(time_s[last - 1] - time_s[i], time_s[i] - time_s[first]);
+    if (!(span_s > 0.0)) continue;
+    SlopeFit fit;
+    for (std::size_t k = first; k < last; ++k) fit.add((time_s[k] - time_s[i]) / span_s, values[k]);
+    slopes[i] = fit.slope() / span_s;
+  }
+}
+
+/// How many samples a window reaches to each side if the times are uniform; 0 if they are not.
+std::size_t uniform_reach(std::span<const double> time_s, double window_s) {
+  if (time_s.size() < 2) return 0;
+  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  const double reach = 0.5 * window_s / period_s;
+  if (!(reach >= 1.0) || 2.0 * reach + 1.0 >= static_cast<double>(time_s.size())) return 0;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    if (!(std::abs(time_s[i] - time_s[i - 1] - period_s) <= 1e-6 * period_s)) return 0;
+  }
+  return static_cast<std::size_t>(reach);
+}
+
+/// The same slopes at uniform times, where the parabola's slope is a sum of differences: the ends are left
+/// out.
+void convolve_slopes(std::span<const double> time_s, std::span<const double> values, std::size_t reach,
+                     std::vector<double>& slopes) {
+  const std::size_t count = values.size();
+  const double period_s = (time_s.back() - time_s.front()) / static_cast<double>(count - 1);
+  double squares = 0.0;
+  for (std::size_t k = 1; k <= reach; ++k) squares += static_cast<double>(k * k);
+  const double scale = 0.5 / (squares * period_s);
+  for (std::size_t i = reach; i + reach < count; ++i) {
+    double sum = 0.0;
+    for (std::size_t k = 1; k <= reach; ++k) sum += static_cast<double>(k) * (values[i + k] - values[i - k]);
+    slopes[i] = scale * sum;
+  }
+}
+
 }  // namespace
 
 std::vector<double> low_pass_zero_phase(std::span<const double> values, double rate_hz, double corner_hz) {
@@ -107,21 +160,15 @@ std::vector<double> differentiate(std::span<const double> time_s, std::span<cons
                                   double window_s) {
   if (time_s.size() != values.size()) throw std::invalid_argument("times and values differ in number");
   if (!(window_s > 0.0)) throw std::invalid_argument("the window of a derivative must be greater than zero");
-  const std::size_t count = values.size();
-  std::vector<double> slopes(count, 0.0);
-  std::size_t begin = 0;
-  std::size_t end = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    while (begin < i && time_s[i] - time_s[begin] > 0.5 * window_s) ++begin;
-    while (end < count && time_s[end] - time_s[i] <= 0.5 * window_s) ++end;
-    // A sparse stretch takes its nearest neighbours, so that there is always a slope.
-    const std::size_t first = std::min(begin, i > 0 ? i - 1 : 0);
-    const std::size_t last = std::max(end, std::min(i + 2, count));
-    const double span_s = std::max(time_s[last - 1] - time_s[i], time_s[i] - time_s[first]);
-    if (!(span_s > 0.0)) continue;
-    SlopeFit fit;
-    for (std::size_t k = first; k < last; ++k) fit.add((time_s[k] - time_s[i]) / span_s, values[k]);
-    slopes[i] = fit.slope() / span_s;
+  window_s *= 1.0 + 1e-6;  // a neighbour on the very edge counts, however its time was rounded
+  std::vector<double> slopes(values.size(), 0.0);
+  const std::size_t reach = uniform_reach(time_s, window_s);
+  if (reach == 0) {
+    fit_slopes(time_s, values, window_s, {.begin = 0, .end = values.size()}, slopes);
+  } else {
+    fit_slopes(time_s, values, window_s, {.begin = 0, .end = reach}, slopes);
+    convolve_slopes(time_s, values, reach, slopes);
+    fit_slopes(time_s, values, window_s, {.begin = values.size() - reach, .end = values.size()}, slopes);
   }
   return slopes;
 }

@@ -33,7 +33,7 @@ TEST(SimulatedCut, IsRecordedTheSameTwiceInVirtualTime) {
   const test::TemporaryFolder folder;
   std::string dumps[2];
   for (const int i : {0, 1}) {
-    const auto file = (folder / ("r" + std::to_string(i) + ".h5")).string();
+    const auto file = (folder / (i == 0 ? "first.h5" : "second.h5")).string();
     const auto outcome =
         run_kerf({"record", "--device", "sim:scissors?seed=3", "--virtual", "--seconds", "4", "-o", file});
     ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;

@@ -55,10 +55,13 @@ TEST(AxisSeries, RefusesARecordingWithoutForce) {
   EXPECT_THROW((void)axis_series(closing_scissors(), 2, half_open), std::invalid_argument);
 }
 
-TEST(Contact, ComesFromTheCyclesOrTheSceneOrTheLeastPosition) {
+TEST(Contact, ComesFromTheSceneOrTheCyclesOrTheLeastPosition) {
   schema::Recording recording = closing_scissors();
   EXPECT_EQ(contact_of(recording, 1).position, 0.2);
   EXPECT_EQ(contact_of(recording, 1).direction, 1.0);
+  recording.cycles = schema::Cycles{.axis = 1, .closing_direction = -1.0, .contact_position = 0.5};
+  EXPECT_EQ(contact_of(recording, 1).position, 0.5);
+  EXPECT_EQ(contact_of(recording, 1).direction, -1.0);
   recording.header.scene_toml = R"(name = "cut"
 [tissue]
 model = "exponential"
@@ -68,9 +71,6 @@ contact = { position = { value = 0.45, unit = "rad" }, direction = "decreasing" 
 parameters = { amplitude = { value = 0.1, unit = "N" }, exponent = { value = 1, unit = "1" }, viscosity = { value = 0.0, unit = "N·s/rad" } }
 )";
   EXPECT_EQ(contact_of(recording, 1).position, 0.45);
-  EXPECT_EQ(contact_of(recording, 1).direction, -1.0);
-  recording.cycles = schema::Cycles{.axis = 1, .closing_direction = -1.0, .contact_position = 0.5};
-  EXPECT_EQ(contact_of(recording, 1).position, 0.5);
 }
 
 TEST(Render, GivesWhatTheLawGivesTickByTick) {

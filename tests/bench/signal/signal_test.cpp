@@ -59,6 +59,17 @@ TEST(Derivative, IsExactOnParabolasAtAnyTimes) {
   for (std::size_t i = 0; i < time.size(); ++i) ASSERT_NEAR(slope[i], -2.0 + 10.0 * time[i], 1e-8) << i;
 }
 
+TEST(Derivative, IsTheSameAtUniformTimesAsAtAnyOthers) {
+  const auto time = sampled(300, 1000.0, [](double t) { return t; });
+  const auto value =
+      sampled(300, 1000.0, [](double t) { return std::sin(30.0 * t) + 0.01 * std::cos(2000.0 * t); });
+  auto shifted = time;
+  shifted.back() += 1e-6;  // no longer uniform: the general way
+  const auto uniform = differentiate(time, value, 0.02);
+  const auto general = differentiate(shifted, value, 0.02);
+  for (std::size_t i = 0; i < 280; ++i) ASSERT_NEAR(uniform[i], general[i], 1e-9) << i;
+}
+
 TEST(Derivative, StillHasNeighboursAcrossAGap) {
   const std::vector<double> time{0.0, 0.001, 1.0, 2.0, 2.001};
   const std::vector<double> value{0.0, 0.002, 2.0, 4.0, 4.002};

@@ -76,8 +76,8 @@ class Device {
   [[nodiscard]] virtual Status write(const Axes& force) noexcept = 0;
 };
 
-/// What a simulated tool meets: the force that tissue exerts on one axis, in the sense that decreases its
-/// position. Called in sub-steps of the physics with a fixed period; must not allocate or throw.
+/// What a simulated tool meets: the force that tissue exerts along one axis, positive where it pushes the
+/// position up. Called in sub-steps of the physics with a fixed period; must not allocate or throw.
 using Tissue = std::function<double(double position, double velocity, double period_s)>;
 
 /// What exists around a simulated device, one tissue per axis (empty: none). Real devices refuse it.

@@ -1,0 +1,192 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <kerf/drivers/device.h>
+#include <kerf/schema/recording.h>
+
+#include "loop/command.h"
+#include "loop/histogram.h"
+
+namespace kerf::bench {
+
+/// The stages of a tick, and the wake-up before them.
+enum class Stage : std::uint8_t { wake, read, compute, write, record };
+inline constexpr std::array<const char*, 5> stage_names{"wake", "read", "compute", "write", "record"};
+
+struct LoopOptions {
+  double period_s = 1e-3;
+  std::uint64_t ticks = 0;     ///< deadlines on the grid: executed and missed ticks together
+  double soft_start_s = 0.25;  ///< linear ramp of the force at the start
+};
+
+/// What the loop and the rest of the program tell each other while it runs.
+struct LoopControl {
+  const std::atomic<bool>& stop;   ///< set from outside: the tick at work is the last one
+  std::atomic<std::size_t>& done;  ///< deadlines behind the loop
+  static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
+};
+
+enum class LoopEnd : std::uint8_t { completed, stopped, device_lost };
+
+/// When the stages of one tick ended, on the loop's clock.
+struct TickTimes {
+  std::int64_t deadline_ns = 0;  ///< the one that the loop slept for
+  std::array<std::int64_t, stage_names.size()> end_ns{};
+
+  [[nodiscard]] std::int64_t duration_ns(Stage stage) const noexcept {
+    const auto at = static_cast<std::size_t>(stage);
+    return end_ns[at] - (at > 0 ? end_ns[at - 1] : deadline_ns);
+  }
+  [[nodiscard]] float seconds(Stage stage) const noexcept {
+    return static_cast<float>(duration_ns(stage)) * 1e-9F;
+  }
+};
+
+/// Deadlines at fixed times. A loop that is late passes over those it cannot keep and stays on the grid.
+struct Grid {
+  std::int64_t start_ns = 0;
+  std::int64_t period_ns = 0;
+  std::uint64_t ticks = 0;
+
+  [[nodiscard]] std::int64_t deadline_ns(std::uint64_t tick) const noexcept {
+    return start_ns + static_cast<std::int64_t>(tick) * period_ns;
+  }
+  /// The tick in whose period a loop is that slept for `tick`; at most the last one.
+  [[nodiscard]] std::uint64_t current(std::uint64_t tick, std::int64_t now_ns) const noexcept {
+    const auto passed = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns - start_ns, 0) / period_ns);
+    return std::max(tick, std::min(passed, ticks - 1));
+  }
+  /// The first tick after `tick` whose deadline has not passed; `ticks` if there is none.
+  [[nodiscard]] std::uint64_t next(std::uint64_t tick, std::int64_t now_ns) const noexcept {
+    const std::int64_t elapsed_ns = std::max<std::int64_t>(now_ns - start_ns, 0);
+    const auto ahead = static_cast<std::uint64_t>((elapsed_ns + period_ns - 1) / period_ns);
+    return std::max(tick + 1, std::min(ahead, ticks));
+  }
+};
+
+/// What a run of the loop did. Everything it needs is inside, so that counting allocates nothing.
+struct LoopReport {
+  std::uint64_t executed = 0;
+  std::array<std::uint64_t, stage_names.size()> missed_by{};  ///< deadlines, by the stage charged with them
+  std::array<Histogram, stage_names.size()> stages;  ///< wake latency and the four stages of executed ticks
+  Histogram cycle;                                   ///< read to record
+  std::uint64_t law_faults = 0;
+  std::uint64_t device_faults = 0;
+  std::uint64_t limited = 0;  ///< ticks whose force was limited in size or slew
+  double energy_j = 0.0;      ///< taken out of the hand by the rendering
+  double least_energy_j = 0.0;
+  LoopEnd end = LoopEnd::completed;
+
+  [[nodiscard]] std::uint64_t missed() const noexcept {
+    std::uint64_t sum = 0;
+    for (const auto count : missed_by) sum += count;
+    return sum;
+  }
+
+  /// Deadlines that the run has behind it.
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return executed + missed(); }
+
+  /// Charges missed deadlines to a stage.
+  void charge(Stage stage, std::uint64_t deadlines) noexcept {
+    missed_by[static_cast<std::size_t>(stage)] += deadlines;
+  }
+  /// Counts a tick that was executed.
+  void count(const TickTimes& times, std::uint32_t flags) noexcept;
+};
+
+/// The stage that broke a budget: the longest one. Of the wake-up only what is within the tick's own period
+/// counts, because the deadlines that it slept through are charged to it already.
+[[nodiscard]] Stage longest_stage(const TickTimes& times, std::int64_t tick_deadline_ns) noexcept;
+
+/// Runs device, computation and recorder in a loop on a grid of absolute deadlines.
+///
+/// A deadline is missed if no tick begins in its period, because the machine woke the loop a period or more
+/// late (charged to `wake`) or because the tick before was still at work (charged to its longest stage, the
+/// wake-up included). Missed deadlines are skipped, never made up in a burst, and no tick inherits the
+/// lateness of the one before: executed and missed ticks together are the deadlines of the grid. The row
+/// after a miss says so in its flags. The device gets zero force before the first tick, on every fault, and
+/// at the end, however the loop ends. Nothing in it allocates, locks, throws or logs.
+template <typename Clock, typename Compute, typename Recorder>
+void run_loop(Clock& clock, drivers::Device& device, Compute& compute, Recorder& recorder,
+              const LoopOptions& options, const LoopControl& control, LoopReport& report) noexcept {
+  static_assert(std::is_nothrow_invocable_r_v<Command, Compute&, const drivers::Sample&, double>);
+  static_assert(noexcept(recorder.push(std::declval<const schema::Row&>())));
+  static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
+                std::is_trivially_copyable_v<drivers::Sample>);
+  const std::size_t axes = device.info().axes.size();
+  SafetyLimiter limiter(device.info().axes, options.period_s, options.soft_start_s);
+  PassivityObserver observer(device.info().axes);
+  drivers::Sample sample;
+  Command held;
+  (void)device.write({});
+
+  const auto period_ns = static_cast<std::int64_t>(options.period_s * 1e9 + 0.5);
+  const Grid grid{.start_ns = clock.now_ns() + period_ns, .period_ns = period_ns, .ticks = options.ticks};
+  std::uint64_t due = 0;
+  std::uint64_t expected = 0;
+  while (due < options.ticks && report.end == LoopEnd::completed) {
+    TickTimes times{.deadline_ns = grid.deadline_ns(due)};
+    clock.sleep_until(times.deadline_ns);
+    times.end_ns[0] = clock.now_ns();
+    const std::uint64_t tick = grid.current(due, times.end_ns[0]);
+    report.charge(Stage::wake, tick - due);
+    const double time_s = static_cast<double>(tick) * options.period_s;
+
+    const drivers::Status status = device.read(time_s, sample);
+    const bool answered = status == drivers::Status::ok && is_finite(sample, axes);
+    times.end_ns[1] = clock.now_ns();
+
+    Command command;
+    if (answered) {
+      observer.observe(held.force, sample.position);
+      command = compute(sample, static_cast<double>(tick + 1 - expected) * options.period_s);
+      limiter.apply(time_s, command);
+    }
+    if (tick != expected) command.flags |= schema::flag_missed_deadline;
+    times.end_ns[2] = clock.now_ns();
+
+    const drivers::Status written = answered ? device.write(command.force) : drivers::Status::fault;
+    if (written != drivers::Status::ok) {
+      command = {.force = {}, .flags = command.flags | schema::flag_device_fault};
+      limiter.reset();
+      (void)device.write({});
+    }
+    held = command;
+    times.end_ns[3] = clock.now_ns();
+
+    recorder.push({.tick = tick,
+                   .time_s = time_s,
+                   .position = sample.position,
+                   .velocity = sample.velocity,
+                   .force_commanded = command.force,
+                   .force_measured = sample.force_measured,
+                   .wake_latency_s = times.seconds(Stage::wake),
+                   .read_time_s = times.seconds(Stage::read),
+                   .compute_time_s = times.seconds(Stage::compute),
+                   .write_time_s = times.seconds(Stage::write),
+                   .flags = command.flags});
+    times.end_ns[4] = clock.now_ns();
+
+    report.count(times, command.flags);
+    expected = tick + 1;
+    due = grid.next(tick, times.end_ns[4]);
+    if (due != expected) report.charge(longest_stage(times, grid.deadline_ns(tick)), due - expected);
+    if (control.stop.load(std::memory_order_relaxed)) report.end = LoopEnd::stopped;
+    if (status == drivers::Status::lost || written == drivers::Status::lost)
+      report.end = LoopEnd::device_lost;
+    control.done.store(static_cast<std::size_t>(due), std::memory_order_relaxed);
+  }
+  (void)device.write({});
+  report.energy_j = observer.energy_j();
+  report.least_energy_j = observer.least_j();
+}
+
+}  // namespace kerf::bench

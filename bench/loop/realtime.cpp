@@ -1,0 +1,92 @@
+#include "loop/realtime.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr int priority = 80;
+
+std::string reason() { return std::strerror(errno); }
+
+}  // namespace
+
+RealtimeMeasure use_realtime_scheduling() {
+  const sched_param parameters{.sched_priority = priority};
+  if (sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) {
+    return {
+        .name = "scheduling", .obtained = true, .detail = fmt::format("SCHED_FIFO at priority {}", priority)};
+  }
+  return {
+      .name = "scheduling",
+      .obtained = false,
+      .detail = fmt::format("ordinary scheduling, SCHED_FIFO refused: {}; permit it by 'USER - rtprio {}' in "
+                            "/etc/security/limits.conf and log in again",
+                            reason(), priority)};
+}
+
+RealtimeMeasure lock_memory() {
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  // Locking future memory under a small limit would make later allocations fail.
+  if (geteuid() == 0 || limit.rlim_cur == RLIM_INFINITY) {
+    if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
+      std::array<volatile char, 256 * 1024> stack{};
+      for (std::size_t page = 0; page < stack.size(); page += 4096) stack[page] = 1;
+      return {.name = "memory", .obtained = true, .detail = "locked, stack touched"};
+    }
+    return {.name = "memory", .obtained = false, .detail = fmt::format("not locked: {}", reason())};
+  }
+  return {.name = "memory",
+          .obtained = false,
+          .detail = fmt::format("not locked: the limit is {} kB; permit it by 'USER - memlock unlimited' in "
+                                "/etc/security/limits.conf and log in again",
+                                limit.rlim_cur / 1024)};
+}
+
+RealtimeMeasure pin_to_processor() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  int last = -1;
+  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
+    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+      if (CPU_ISSET(cpu, &allowed)) last = cpu;
+    }
+  }
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  if (last >= 0) CPU_SET(last, &one);
+  if (last >= 0 && sched_setaffinity(0, sizeof one, &one) == 0) {
+    return {.name = "processor", .obtained = true, .detail = fmt::format("stays on processor {}", last)};
+  }
+  return {.name = "processor", .obtained = false, .detail = fmt::format("not pinned: {}", reason())};
+}
+
+AwakeProcessors::AwakeProcessors() : measure_{.name = "sleep_states", .obtained = false, .detail = {}} {
+  descriptor_ = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  const std::int32_t no_latency = 0;
+  if (descriptor_ >= 0 && write(descriptor_, &no_latency, sizeof no_latency) == sizeof no_latency) {
+    measure_.obtained = true;
+    measure_.detail = "deep sleep states held off";
+  } else {
+    measure_.detail = fmt::format(
+        "deep sleep states stay on, /dev/cpu_dma_latency: {}; permit it by a udev rule that "
+        "gives your group write access",
+        reason());
+  }
+}
+
+AwakeProcessors::~AwakeProcessors() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,19 @@
+#include "recordings/axes.h"
+
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+
+std::size_t find_axis(const schema::Recording& recording, const std::string& name) {
+  if (name.empty()) return 0;
+  std::string known;
+  for (std::size_t axis = 0; axis < recording.dimensions(); ++axis) {
+    if (recording.axes[axis].name == name) return axis;
+    known += (axis > 0 ? ", " : "") + recording.axes[axis].name;
+  }
+  throw std::invalid_argument(fmt::format("the recording has no axis '{}'; it has {}", name, known));
+}
+
+}  // namespace kerf::bench

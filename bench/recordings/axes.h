@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <kerf/schema/recording.h>
+
+namespace kerf::bench {
+
+/// The place of the axis with that name; an empty name means the first one.
+/// @throws std::invalid_argument that lists the axes there are.
+[[nodiscard]] std::size_t find_axis(const schema::Recording& recording, const std::string& name);
+
+}  // namespace kerf::bench

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include <kerf/schema/recording.h>
+
+#include "report/plot.h"
+
+namespace kerf::bench {
+
+/// Angles are drawn in degrees and lengths in millimetres, which is what a reader thinks in.
+struct DrawnUnit {
+  double factor = 1.0;  ///< drawn value = factor * value in SI
+  std::string unit;
+};
+[[nodiscard]] DrawnUnit drawn_position(const schema::Axis& axis);
+
+/// Position of an axis over time, with the phases of its cycles as bands if it was segmented.
+[[nodiscard]] Chart position_chart(const schema::Recording& recording, std::size_t axis);
+
+/// Force of an axis over time: measured and commanded, as far as there are.
+[[nodiscard]] Chart force_chart(const schema::Recording& recording, std::size_t axis);
+
+/// Force against position: every closing and opening, and their averages over them if it was segmented.
+[[nodiscard]] Chart loop_chart(const schema::Recording& recording, std::size_t axis);
+
+}  // namespace kerf::bench

@@ -1,0 +1,107 @@
+#include "report/loop_section.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "report/html.h"
+#include "report/plot.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(const json::exception& error) {
+  throw std::invalid_argument(fmt::format("the check is not what 'kerf check' writes: {}", error.what()));
+}
+
+/// A histogram as the outline of its buckets, four to a power of two, so that counts are comparable by eye.
+Curve outline(const json& histogram, const char* label, Colour colour) {
+  Curve curve{.label = label, .colour = colour, .width = 2.0};
+  const json& edges = histogram.at("edges");
+  const json& counts = histogram.at("counts");
+  constexpr std::size_t merged = 8;
+  const double floor = 0.5;  // an empty bucket on a logarithmic axis
+  for (std::size_t begin = 0; begin < counts.size(); begin += merged) {
+    const std::size_t end = std::min(begin + merged, counts.size());
+    double sum = 0.0;
+    for (std::size_t i = begin; i < end; ++i) sum += counts[i].get<double>();
+    for (const std::size_t edge : {begin, end}) {
+      curve.x.push_back(std::max(edges[edge].get<double>(), 1e-2));
+      curve.y.push_back(std::max(sum, floor));
+    }
+  }
+  return curve;
+}
+
+std::string histogram_figure(const json& check) {
+  const double period_us = 1e6 * check.at("period_s").get<double>();
+  Chart chart{.title = "Wake latency and cycle time of every tick",
+              .x_label = "duration [us]",
+              .y_label = "ticks",
+              .log_x = true,
+              .log_y = true};
+  chart.curves.push_back(outline(check.at("histograms").at("wake_us"), "wake latency", Colour::blue));
+  chart.curves.push_back(
+      outline(check.at("histograms").at("cycle_us"), "cycle (read to record)", Colour::vermillion));
+  chart.vertical.push_back({.at = period_us, .label = "deadline"});
+  chart.x_range = {
+      1e-2,
+      std::max(2.0 * period_us, 1.2 * std::max(chart.curves[0].x.empty() ? 0.0 : chart.curves[0].x.back(),
+                                               chart.curves[1].x.empty() ? 0.0 : chart.curves[1].x.back()))};
+  return "<figure>" + draw(chart) + "</figure>\n";
+}
+
+std::string stage_table(const json& check) {
+  std::vector<std::vector<std::string>> rows{
+      {"stage", "mean [us]", "median", "99 %", "99.9 %", "largest", "missed"}};
+  for (const auto* stage : {"wake", "read", "compute", "write", "record", "cycle"}) {
+    const json& row = check.at(std::string(stage) + "_us");
+    const auto number = [&](const char* key) { return fmt::format("{:.2f}", row.at(key).get<double>()); };
+    const json& missed = check.at("missed_by");
+    rows.push_back({stage, number("mean"), number("p50"), number("p99"), number("p999"), number("max"),
+                    missed.contains(stage) ? fmt::format("{}", missed.at(stage).get<std::uint64_t>()) : ""});
+  }
+  return html_table(rows);
+}
+
+}  // namespace
+
+std::string verdict_paragraph(const json& check) {
+  try {
+    const bool passed = check.at("verdict") == "pass";
+    std::string text = fmt::format(
+        "<p class=\"answer{}\"><strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed.",
+        passed ? "" : " bad", passed ? "pass" : "FAIL", check.at("ticks").get<std::uint64_t>(),
+        1.0 / check.at("period_s").get<double>(), check.at("missed").get<std::uint64_t>());
+    for (const json& reason : check.at("reasons")) text += " " + escaped(reason.get<std::string>()) + ".";
+    return text + "</p>\n";
+  } catch (const json::exception& error) {
+    refuse(error);
+  }
+}
+
+std::string loop_section(const json& check) {
+  try {
+    std::string html = "<h2>Closed loop</h2>\n";
+    html += fmt::format(
+        "<p>{} on <code>{}</code>. The rendering took {:.4g} J out of the hand; it is {}.</p>\n",
+        escaped(check.value("law", std::string("the law"))), escaped(check.at("device").get<std::string>()),
+        check.at("energy_J").get<double>(), check.at("passive").get<bool>() ? "passive" : "not passive");
+    html += stage_table(check) + histogram_figure(check);
+    std::vector<std::vector<std::string>> measures{{"real-time measure", "obtained", "detail"}};
+    for (const json& measure : check.at("realtime")) {
+      measures.push_back({measure.at("name").get<std::string>(),
+                          measure.at("obtained").get<bool>() ? "yes" : "no",
+                          measure.at("detail").get<std::string>()});
+    }
+    return html + (measures.size() > 1 ? html_table(measures) : "<p class=\"soft\">In virtual time.</p>\n");
+  } catch (const json::exception& error) {
+    refuse(error);
+  }
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,183 @@
+#include "report/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <stdio.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "files/whole_file.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::array colours{"#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                             "#E69F00", "#56B4E9", "#F0E442", "#8A8A8A"};
+
+std::string_view hex(Colour colour) { return colours[static_cast<std::size_t>(colour)]; }
+
+/// A gnuplot string: single quotes doubled, no line breaks.
+std::string gnuplot_text(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) {
+    if (c == '\'') result += '\'';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result + "'";
+}
+
+std::string style_of(const Curve& curve) {
+  switch (curve.mark) {
+    case Mark::line:
+      return fmt::format("lines lw {} dt {}", curve.width, curve.dashed ? 2 : 1);
+    case Mark::points:
+      return fmt::format("points pt 7 ps {}", 0.2 * curve.width);
+    case Mark::steps:
+      return fmt::format("histeps lw {}", curve.width);
+    case Mark::boxes:
+      return "boxes fs solid 0.6 noborder";
+  }
+  return "lines";
+}
+
+void add_data(std::string& script, const Curve& curve, std::size_t index) {
+  auto out = std::back_inserter(script);
+  fmt::format_to(out, "$d{} << EOD\n", index);
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (std::isfinite(curve.x[i]) && std::isfinite(curve.y[i])) {
+      fmt::format_to(out, "{:.7g} {:.7g}\n", curve.x[i], curve.y[i]);
+    } else {
+      script += '\n';
+    }
+  }
+  script += "EOD\n";
+}
+
+std::string script_of(const Chart& chart, const std::string& output) {
+  std::string script;
+  auto out = std::back_inserter(script);
+  fmt::format_to(out, "set terminal svg noenhanced size {},{} font 'DejaVu Sans,13' background '#ffffff'\n",
+                 chart.width_px, chart.height_px);
+  fmt::format_to(out, "set output {}\nset title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_text(output),
+                 gnuplot_text(chart.title), gnuplot_text(chart.x_label), gnuplot_text(chart.y_label));
+  script +=
+      "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror out\nset grid lc rgb '#dddddd' lw "
+      "1 dt 1\n"
+      "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\nset offsets graph 0, 0, "
+      "0.05, 0.05\n";
+  if (chart.log_x) script += "set logscale x\n";
+  if (chart.log_y) script += "set logscale y\n";
+  if (chart.log_x || chart.log_y) script += "set offsets 0, 0, 0, 0\n";
+  for (const auto& [axis, range] : {std::pair{'x', chart.x_range}, std::pair{'y', chart.y_range}}) {
+    if (range.begin < range.end) fmt::format_to(out, "set {}range [{}:{}]\n", axis, range.begin, range.end);
+  }
+  for (const Band& band : chart.bands) {
+    fmt::format_to(
+        out,
+        "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '{}' fs solid 0.18 "
+        "noborder\n",
+        band.begin, band.end, hex(band.colour));
+  }
+  for (const Marker& marker : chart.vertical) {
+    fmt::format_to(
+        out, "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead lc rgb '{1}' lw 1.5 dt 3\n",
+        marker.at, hex(Colour::vermillion));
+    fmt::format_to(out, "set label {} at first {}, graph 0.96 right offset -0.5,0 textcolor rgb '{}'\n",
+                   gnuplot_text(marker.label), marker.at, hex(Colour::vermillion));
+  }
+  for (const Marker& marker : chart.horizontal) {
+    fmt::format_to(out,
+                   "set arrow from graph 0, first {0} to graph 1, first {0} nohead lc rgb '{1}' lw 1 dt 3\n",
+                   marker.at, hex(Colour::grey));
+    fmt::format_to(out, "set label {} at graph 0.99, first {} right offset 0,0.6 textcolor rgb '{}'\n",
+                   gnuplot_text(marker.label), marker.at, hex(Colour::grey));
+  }
+  for (std::size_t i = 0; i < chart.curves.size(); ++i) add_data(script, chart.curves[i], i);
+  for (std::size_t i = 0; i < chart.curves.size(); ++i) {
+    const Curve& curve = chart.curves[i];
+    fmt::format_to(out, "{} $d{} using 1:2 with {} lc rgb '{}' {}", i == 0 ? "plot" : ",", i, style_of(curve),
+                   hex(curve.colour), curve.label.empty() ? "notitle" : "title " + gnuplot_text(curve.label));
+  }
+  return script + "\n";
+}
+
+/// A temporary file's name, removed with the object.
+class TemporaryName {
+ public:
+  TemporaryName() : path_((std::filesystem::temp_directory_path() / "kerf-chart-XXXXXX").string()) {
+    const int descriptor = mkstemp(path_.data());
+    if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot write " + path_);
+    close(descriptor);
+  }
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
+  ~TemporaryName() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+std::string draw(const Chart& chart) {
+  const TemporaryName output;
+  const TemporaryName errors;
+  const std::string command = "gnuplot - 2>" + errors.path();
+  FILE* pipe = popen(command.c_str(), "w");
+  if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");
+  const std::string script = script_of(chart, output.path());
+  fwrite(script.data(), 1, script.size(), pipe);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
+    throw std::runtime_error("gnuplot is not installed; charts need it: apt-get install gnuplot-nox");
+  }
+  const std::string svg = read_whole_file(output.path());
+  const auto begin = svg.find("<svg");
+  if (status != 0 || begin == std::string::npos || svg.rfind("</svg>") == std::string::npos) {
+    throw std::runtime_error(
+        fmt::format("gnuplot could not draw '{}': {}", chart.title, read_whole_file(errors.path())));
+  }
+  return svg.substr(begin);
+}
+
+Curve decimated(const Curve& curve, std::size_t most) {
+  const std::size_t count = curve.x.size();
+  if (count <= most) return curve;
+  Curve fewer = curve;
+  fewer.x.clear();
+  fewer.y.clear();
+  const std::size_t stretches = std::max<std::size_t>(1, most / 4);
+  for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
+    const std::size_t begin = stretch * count / stretches;
+    const std::size_t end = (stretch + 1) * count / stretches;
+    std::size_t smallest = begin;
+    std::size_t largest = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (curve.y[i] < curve.y[smallest] || std::isnan(curve.y[smallest])) smallest = i;
+      if (curve.y[i] > curve.y[largest] || std::isnan(curve.y[largest])) largest = i;
+    }
+    std::array kept{begin, smallest, largest, end - 1};
+    std::sort(kept.begin(), kept.end());
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      if (k > 0 && kept[k] == kept[k - 1]) continue;
+      fewer.x.push_back(curve.x[kept[k]]);
+      fewer.y.push_back(curve.y[kept[k]]);
+    }
+  }
+  return fewer;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace kerf::bench {
+
+/// Colours that colour-blind readers tell apart (Okabe and Ito 2008), in the order in which charts use them.
+enum class Colour { black, blue, vermillion, green, purple, orange, sky, yellow, grey };
+
+enum class Mark { line, points, steps, boxes };
+
+/// One set of data in a chart. NaN breaks a line.
+struct Curve {
+  std::string label;  ///< empty: not in the legend
+  std::vector<double> x;
+  std::vector<double> y;
+  Colour colour = Colour::black;
+  Mark mark = Mark::line;
+  double width = 1.5;
+  bool dashed = false;
+};
+
+/// A stretch of the x axis laid behind the curves.
+struct Band {
+  double begin = 0.0;
+  double end = 0.0;
+  Colour colour = Colour::sky;
+};
+
+/// A line across the chart with a text at it.
+struct Marker {
+  double at = 0.0;
+  std::string label;
+};
+
+/// A range of an axis; empty while begin is not less than end.
+struct Range {
+  double begin = 0.0;
+  double end = 0.0;
+};
+
+struct Chart {
+  std::string title;
+  std::string x_label;  ///< with its unit: "time [s]"
+  std::string y_label;
+  std::vector<Curve> curves;
+  std::vector<Band> bands;
+  std::vector<Marker> vertical;
+  std::vector<Marker> horizontal;
+  Range x_range;  ///< empty: what the curves need
+  Range y_range;
+  bool log_x = false;
+  bool log_y = false;
+  int width_px = 900;
+  int height_px = 340;
+};
+
+/// Draws a chart with gnuplot and returns it as one `<svg>` element, without the XML prolog.
+/// @throws std::runtime_error that names the package if gnuplot is missing, or what it printed if it fails.
+[[nodiscard]] std::string draw(const Chart& chart);
+
+/// Fewer points for a long curve: of every stretch the first, the smallest, the largest and the last in their
+/// order, so that no spike is lost. Curves of up to `most` points stay as they are.
+[[nodiscard]] Curve decimated(const Curve& curve, std::size_t most = 4000);
+
+}  // namespace kerf::bench

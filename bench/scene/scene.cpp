@@ -1,0 +1,81 @@
+#include "scene/scene.h"
+
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "files/whole_file.h"
+#include "laws/law_toml.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr auto default_scene_toml = R"(name = "tissue between the blades"
+
+[tissue]
+model = "kelvin"
+axis = "theta"
+position_unit = "rad"
+force_unit = "N"
+
+[tissue.contact]
+position = { value = 30, unit = "deg" }
+direction = "decreasing"
+
+[tissue.parameters]
+parallel_stiffness = { value = 5.0, unit = "N/rad" }
+series_stiffness = { value = 8.0, unit = "N/rad" }
+damping = { value = 1.6, unit = "N·s/rad" }
+)";
+
+}  // namespace
+
+Scene parse_scene(const std::string& text, const std::string& name) {
+  const toml::table root = parse_toml(text, name);
+  for (const auto& [key, node] : root) {
+    if (key.str() != "name" && key.str() != "tissue") {
+      throw std::invalid_argument(fmt::format("{}:{}: unknown key '{}' in a scene; known are name, tissue",
+                                              name, node.source().begin.line, key.str()));
+    }
+  }
+  const toml::table* tissue = root["tissue"].as_table();
+  if (tissue == nullptr) throw std::invalid_argument(name + ": a scene needs a table [tissue]");
+  return {
+      .name = root["name"].value_or(std::string()), .tissue = law_from_table(*tissue, name), .toml = text};
+}
+
+Scene read_scene(const std::filesystem::path& file) {
+  return parse_scene(read_whole_file(file), file.string());
+}
+
+Scene default_scene() { return parse_scene(default_scene_toml, "the default scene"); }
+
+std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device) {
+  const auto fits = [&](const drivers::AxisInfo& axis) {
+    return axis.position_unit == law.position_unit && axis.force_unit == law.force_unit;
+  };
+  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
+    if (device.axes[axis].name != law.axis) continue;
+    if (fits(device.axes[axis])) return axis;
+    throw std::invalid_argument(fmt::format("the law gives {} over {}, but axis '{}' of {} has {} over {}",
+                                            law.force_unit, law.position_unit, law.axis, device.model,
+                                            device.axes[axis].force_unit, device.axes[axis].position_unit));
+  }
+  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
+    if (fits(device.axes[axis])) return axis;
+  }
+  throw std::invalid_argument(fmt::format("the law gives {} over {}, and no axis of {} has these units",
+                                          law.force_unit, law.position_unit, device.model));
+}
+
+drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device) {
+  drivers::Surroundings surroundings;
+  surroundings.tissue[axis_for(scene.tissue, device)] =
+      [law = scene.tissue.law, state = scene.tissue.law.initial_state(), contact = scene.tissue.contact](
+          double position, double velocity, double period_s) mutable {
+        return -contact.direction * law.step(state, contact.motion(position, velocity), period_s).force;
+      };
+  return surroundings;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kerf::drivers {
+
+/// A device URI taken apart: "sim:scissors?seed=3&noise=off" has the name "sim:scissors" and two options.
+struct Uri {
+  std::string name;
+  std::map<std::string, std::string> options;
+};
+
+/// @throws DeviceError if an option has no '=' or stands twice.
+[[nodiscard]] Uri parse_uri(std::string_view text);
+
+/// Takes the options out of a URI one by one, and refuses those that nobody asked for.
+class UriOptions {
+ public:
+  explicit UriOptions(Uri uri) : uri_(std::move(uri)) {}
+
+  /// A number with its unit behind it ("40deg", "1.2s"), in SI; `standard` if it is not given.
+  /// `unit` is one of "deg", "s", "N", "N/m", "1".
+  /// @throws DeviceError if it is not such a number or not in [lower, upper], both in SI.
+  struct Quantity {
+    std::string_view unit;
+    double standard;
+    double lower;
+    double upper;
+  };
+  [[nodiscard]] double number(const std::string& name, const Quantity& quantity);
+  /// A whole number from 0 to 2^53. @throws DeviceError for any other.
+  [[nodiscard]] std::uint64_t count(const std::string& name, std::uint64_t standard);
+  /// "on" or "off".
+  [[nodiscard]] bool flag(const std::string& name, bool standard);
+
+  /// @throws DeviceError for an option that was not taken, listing those that exist.
+  void refuse_others() const;
+
+ private:
+  Uri uri_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace kerf::drivers

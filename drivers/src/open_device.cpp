@@ -1,0 +1,18 @@
+#include "kerf/drivers/device.h"
+#include "kerf/drivers/simulated_scissors.h"
+#include "kerf/drivers/uri.h"
+
+namespace kerf::drivers {
+
+std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings) {
+  Uri parsed = parse_uri(uri);
+  if (parsed.name == "sim:scissors") {
+    return std::make_unique<SimulatedScissors>(uri, SimulatedScissors::parse_options(std::move(parsed)),
+                                               std::move(surroundings));
+  }
+  throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
+}
+
+std::vector<DeviceInfo> list_devices() { return {open_device("sim:scissors")->info()}; }
+
+}  // namespace kerf::drivers

@@ -1,0 +1,85 @@
+#include "kerf/drivers/uri.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "kerf/drivers/device.h"
+
+namespace kerf::drivers {
+
+Uri parse_uri(std::string_view text) {
+  const auto question = text.find('?');
+  Uri uri{.name = std::string(text.substr(0, question)), .options = {}};
+  std::string_view rest = question == std::string_view::npos ? std::string_view{} : text.substr(question + 1);
+  while (!rest.empty()) {
+    const auto end = std::min(rest.find('&'), rest.size());
+    const std::string_view option = rest.substr(0, end);
+    const auto equals = option.find('=');
+    if (equals == std::string_view::npos || equals == 0) {
+      throw DeviceError("device '" + std::string(text) + "': '" + std::string(option) +
+                        "' is not an option; expected NAME=VALUE, joined by '&'");
+    }
+    const auto [place, added] = uri.options.emplace(option.substr(0, equals), option.substr(equals + 1));
+    if (!added)
+      throw DeviceError("device '" + std::string(text) + "': option '" + place->first + "' stands twice");
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return uri;
+}
+
+double UriOptions::number(const std::string& name, const Quantity& quantity) {
+  known_.push_back(name);
+  const auto place = uri_.options.find(name);
+  if (place == uri_.options.end()) return quantity.standard;
+  const std::string& text = place->second;
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const double factor = quantity.unit == "deg" ? std::numbers::pi / 180.0 : 1.0;
+  value *= factor;
+  const bool plain = quantity.unit == "1" && unit.empty();
+  if (error != std::errc{} || (unit != quantity.unit && !plain) ||
+      !(value >= quantity.lower && value <= quantity.upper)) {
+    std::ostringstream message;
+    message << "device '" << uri_.name << "': option '" << name << "' is '" << text << "', expected a number"
+            << (quantity.unit == "1" ? "" : " with the unit ") << (quantity.unit == "1" ? "" : quantity.unit)
+            << " from " << quantity.lower / factor << " to " << quantity.upper / factor;
+    throw DeviceError(message.str());
+  }
+  return value;
+}
+
+std::uint64_t UriOptions::count(const std::string& name, std::uint64_t standard) {
+  constexpr double largest = 0x1p53;
+  const double value = number(name, {"1", static_cast<double>(standard), 0.0, largest});
+  if (value != std::floor(value)) {
+    throw DeviceError("device '" + uri_.name + "': option '" + name + "' is '" + uri_.options.at(name) +
+                      "', expected a whole number");
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
+bool UriOptions::flag(const std::string& name, bool standard) {
+  known_.push_back(name);
+  const auto place = uri_.options.find(name);
+  if (place == uri_.options.end()) return standard;
+  if (place->second != "on" && place->second != "off") {
+    throw DeviceError("device '" + uri_.name + "': option '" + name + "' is '" + place->second +
+                      "', expected on or off");
+  }
+  return place->second == "on";
+}
+
+void UriOptions::refuse_others() const {
+  for (const auto& [name, value] : uri_.options) {
+    if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+    std::string all;
+    for (const auto& known : known_) all += (all.empty() ? "" : ", ") + known;
+    throw DeviceError("device '" + uri_.name + "' has no option '" + name + "'; it has " + all);
+  }
+}
+
+}  // namespace kerf::drivers

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace kerf::fitting {
+
+/// Integrated autocorrelation time in samples, 1 + 2 sum rho(k), summed over Sokal's window: up to the first
+/// lag that is five times the sum so far. 1 for white noise, never less.
+[[nodiscard]] double correlation_time(const std::vector<double>& residuals);
+
+/// Two-sided quantile of Student's t: the interval is estimate +- t * standard error.
+[[nodiscard]] double student_t(double confidence, double degrees_of_freedom);
+
+}  // namespace kerf::fitting

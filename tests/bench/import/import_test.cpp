@@ -1,0 +1,140 @@
+#include "import/import.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::DoubleEq;
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Imported imported(const std::string& text, ImportOptions options = {},
+                  const std::string& map = "time=1[s],position=2[mm],force=3[mN]") {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "data.txt", text);
+  options.map = parse_map(map);
+  return import_text(folder / "data.txt", options);
+}
+
+std::string table(int rows, const auto& line) {
+  std::string text;
+  for (int i = 0; i < rows; ++i) text += line(i) + "\n";
+  return text;
+}
+
+TEST(Import, GoesToSiAndCountsTimeFromZero) {
+  const auto recording = imported("5.0,1,100\n5.5,2,-200\n6.0,4,50\n").recording;
+  EXPECT_THAT(recording.time, ElementsAre(0.0, 0.5, 1.0));
+  EXPECT_THAT(recording.position, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3), DoubleEq(4e-3)));
+  EXPECT_THAT(recording.force_measured, ElementsAre(DoubleEq(0.1), DoubleEq(-0.2), DoubleEq(0.05)));
+  EXPECT_EQ(recording.axes[0].position_unit, "m");
+  EXPECT_THAT(recording.tick, ElementsAre(0U, 1U, 2U));
+}
+
+TEST(Import, DerivesTheVelocityAndSaysSo) {
+  const auto text = table(200, [](int i) {
+    const double t = 1e-3 * i;
+    return std::to_string(t) + "," + std::to_string(1000.0 * t * t) + ",0";
+  });
+  const auto recording = imported(text).recording;
+  EXPECT_NEAR(recording.velocity[100], 0.2, 1e-6);
+  EXPECT_THAT(recording.header.velocity_derived, HasSubstr("zero phase"));
+  const auto given =
+      imported("0,1,0\n1,2,0\n2,3,0\n", {}, "time=1[s],position=2[mm],velocity=2[mm*1/s]").recording;
+  EXPECT_THAT(given.velocity, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3), DoubleEq(3e-3)));
+  EXPECT_EQ(given.header.velocity_derived, "");
+}
+
+TEST(Import, ReportsLinesThatAreNotDataByTheirNumbers) {
+  const Imported result = imported("t,x,f\n0,1,2\n# pause\n1,1,2\n\n2,1\n3,1,2\n}");
+  EXPECT_EQ(result.recording.rows(), 3U);
+  EXPECT_THAT(result.bad_lines, ElementsAre(3U, 6U, 8U));
+  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("3 lines are not data: 3, 6, 8")));
+  EXPECT_THROW((void)imported("0,1,2\nx\n1,1,2\n", {.strict = true}), std::invalid_argument);
+}
+
+TEST(Import, IgnoresWhatStandsInColumnsThatAreNotMapped) {
+  const Imported result = imported("0\t1\t2\t\\\n1\t1\t2\t\n2\t1\t2\tx\t9\n3\t1\t2\n");
+  EXPECT_EQ(result.recording.rows(), 4U);
+  EXPECT_TRUE(result.bad_lines.empty());
+}
+
+TEST(Import, LeavesOutAndReportsTimesThatRepeatOrGoBack) {
+  const Imported result = imported("0,1,2\n1,2,2\n1,3,2\n0.5,4,2\nnan,4,2\n2,5,2\n");
+  EXPECT_THAT(result.recording.time, ElementsAre(0.0, 1.0, 2.0));
+  EXPECT_THAT(result.recording.position, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3), DoubleEq(5e-3)));
+  EXPECT_THAT(result.misplaced_lines, ElementsAre(3U, 4U, 5U));
+  EXPECT_THAT(result.warnings,
+              testing::Contains(HasSubstr("3 lines repeat a time or go back, and are left out: 3, 4, 5")));
+  EXPECT_EQ(result.recording.events.size(), 1U);
+}
+
+TEST(Import, KeepsNaNAndInfinity) {
+  const auto recording = imported("0,1,nan\n1,1,inf\n2,1,3\n").recording;
+  EXPECT_TRUE(std::isnan(recording.force_measured[0]));
+  EXPECT_TRUE(std::isinf(recording.force_measured[1]));
+}
+
+TEST(Import, MarksGapsByAJumpOfTheTick) {
+  const Imported result = imported("0,1,2\n1,1,2\n2,1,2\n7,1,2\n8,1,2\n");
+  EXPECT_THAT(result.recording.tick, ElementsAre(0U, 1U, 2U, 7U, 8U));
+  EXPECT_THAT(result.warnings,
+              testing::Contains(HasSubstr("1 gaps of more than 2.5 periods, the longest 5 s")));
+}
+
+TEST(Import, CountsTimeByARateWhereThereIsNone) {
+  const auto recording =
+      imported("1 2\n2 3\n3 4\n", {.rate_hz = 10.0}, "position=1[mm],force=2[N]").recording;
+  EXPECT_THAT(recording.time, ElementsAre(0.0, DoubleEq(0.1), DoubleEq(0.2)));
+  EXPECT_THROW((void)imported("1 2\n2 3\n", {}, "position=1[mm],force=2[N]"), std::invalid_argument);
+}
+
+TEST(Import, ResamplesALineExactlyAndLeavesGapsOpen) {
+  const auto text = table(400, [](int i) {
+    const double t = 3e-3 * i + (i >= 200 ? 1.0 : 0.0) + 4e-4 * ((i * 7) % 3);
+    return std::to_string(t) + "," + std::to_string(10.0 * t) + ",1";
+  });
+  const auto recording = imported(text, {.resample_hz = 1000.0}).recording;
+  bool jumped = false;
+  for (std::size_t i = 1; i < recording.rows(); ++i) {
+    const double t = recording.time[i];
+    ASSERT_EQ(t, static_cast<double>(recording.tick[i]) / 1000.0);
+    ASSERT_NEAR(recording.position[i], 10e-3 * t, 1e-8);
+    ASSERT_FALSE(t > 0.6 && t < 1.6) << "a row in the gap";
+    jumped = jumped || recording.tick[i] - recording.tick[i - 1] > 900;
+  }
+  EXPECT_TRUE(jumped);
+  EXPECT_EQ(recording.flags[5], schema::flag_resampled);
+}
+
+TEST(Import, ResamplingDownDoesNotAlias) {
+  // 40 Hz would fold to 10 Hz at a rate of 50 Hz; the filter before it takes it out.
+  const auto text = table(2000, [](int i) {
+    const double t = 1e-3 * i;
+    return std::to_string(t) + "," + std::to_string(std::sin(2.0 * std::numbers::pi * 40.0 * t)) + ",1";
+  });
+  const auto recording = imported(text, {.resample_hz = 50.0}).recording;
+  for (std::size_t i = 20; i + 20 < recording.rows(); ++i) ASSERT_NEAR(recording.position[i], 0.0, 0.07e-3);
+}
+
+TEST(Import, RefusesToResampleOverNaN) {
+  EXPECT_THROW((void)imported("0,1,nan\n1,1,2\n2,1,2\n3,1,2\n", {.resample_hz = 2.0}), std::invalid_argument);
+}
+
+TEST(Import, DoubtsARateThatNoLabHas) {
+  EXPECT_THAT(imported("0,1,2\n100,1,2\n200,1,2\n").warnings,
+              testing::Contains(HasSubstr("is the unit of time right?")));
+}
+
+}  // namespace
+}  // namespace kerf::bench

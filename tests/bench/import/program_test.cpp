@@ -1,0 +1,107 @@
+#include "support/program.h"
+
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+// `kerf import` as a user meets it: exit status, one clear line, nothing half-written.
+
+namespace kerf {
+namespace {
+
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+
+constexpr auto map = "time=1[s],position=2[mm],force=3[N]";
+
+class ImportProgram : public testing::Test {
+ protected:
+  Outcome import(const std::string& content, const std::vector<std::string>& more = {"--map", map}) {
+    test::write_text(folder_ / "data.txt", content);
+    std::vector<std::string> arguments{"import", (folder_ / "data.txt").string(), "-o", output()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_kerf(arguments);
+  }
+  void expect_refusal(const Outcome& outcome, const std::string& message, int status = 2) {
+    EXPECT_EQ(outcome.exit_status, status);
+    EXPECT_THAT(outcome.errors, HasSubstr(message));
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1)
+        << "only the data is there";
+  }
+  [[nodiscard]] std::string output() const { return (folder_ / "r.h5").string(); }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ImportProgram, SaysWhatItFoundAsOneJsonObject) {
+  const Outcome outcome = import("t,x,f\n0,1,2\n1,2,nan\n2,3,2\n!\n", {"--map", map, "--json"});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json.at("samples"), 3);
+  EXPECT_EQ(json.at("duration_s"), 2.0);
+  EXPECT_EQ(json.at("rate_hz"), 1.0);
+  EXPECT_EQ(json.at("gaps"), 0);
+  EXPECT_EQ(json.at("bad_lines"), 1);
+  EXPECT_EQ(json.at("bad_line_numbers").at(0), 5);
+  EXPECT_EQ(json.at("channels").at("position").at("unit"), "m");
+  EXPECT_EQ(json.at("channels").at("position").at("max"), 3e-3);
+  EXPECT_THAT(json.at("warnings").dump(), HasSubstr("force_measured holds 1 values that are not finite"));
+  EXPECT_THAT(outcome.errors, HasSubstr("1 lines are not data: 5"));
+}
+
+TEST_F(ImportProgram, RefusesAMapThatDoesNotFit) {
+  expect_refusal(import("0,1,2\n1,2,3\n", {"--map", "time=1[s],position=7[mm]"}), "asks for column '7'");
+  expect_refusal(import("0,1,2\n1,2,3\n", {"--map", "time=1[parsec],position=2[mm]"}),
+                 "unknown unit 'parsec'");
+  expect_refusal(import("a,b,c\n1,2,x\n2,3,y\n"), "no line has a number in every mapped column");
+}
+
+TEST_F(ImportProgram, ShowsTheColumnsToAUserWhoGaveNoMap) {
+  const Outcome outcome = import("t,Angle [deg]\n0,1\n1,2\n", {});
+  expect_refusal(outcome, "--map is needed");
+  EXPECT_THAT(outcome.errors, HasSubstr("2  Angle [deg]  first value 1"));
+}
+
+TEST_F(ImportProgram, RefusesFilesThatAreNoTables) {
+  expect_refusal(import(""), "the file is empty");
+  expect_refusal(import("no numbers here\nat all\n"), "no line of numbers");
+  expect_refusal(import(std::string("\x89HDF\r\n\x1a\n\0\0\0\0", 12)), "a binary file");
+  expect_refusal(import("0,1,2\n1,2,3\n", {"--map", map, "--strict", "--rate", "-1"}), "--rate");
+  expect_refusal(import("0,1,2\nbad\n1,2,3\n", {"--map", map, "--strict"}), "1 lines are not data: 2");
+}
+
+TEST_F(ImportProgram, RefusesAFileThatDoesNotExist) {
+  const Outcome outcome = run_kerf({"import", (folder_ / "none.txt").string(), "--map", map, "-o", output()});
+  EXPECT_EQ(outcome.exit_status, 2);
+  EXPECT_THAT(outcome.errors, HasSubstr("none.txt: no such file"));
+  EXPECT_EQ(run_kerf({"import", folder_.path().string(), "--map", map, "-o", output()}).exit_status, 2);
+}
+
+TEST_F(ImportProgram, KeepsAnExistingRecordingUnlessForced) {
+  ASSERT_EQ(import("0,1,2\n1,2,3\n").exit_status, 0);
+  const std::string before = test::read_text(output());
+  const Outcome refused = import("0,1,2\n1,2,3\n2,2,2\n");
+  EXPECT_EQ(refused.exit_status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("--force"));
+  EXPECT_EQ(import("no numbers", {"--map", map, "--force"}).exit_status, 2);
+  EXPECT_EQ(test::read_text(output()), before);
+  EXPECT_EQ(import("0,1,2\n1,2,3\n2,2,2\n", {"--map", map, "--force"}).exit_status, 0);
+  EXPECT_NE(test::read_text(output()), before);
+}
+
+TEST_F(ImportProgram, SaysSoWhereItCannotWrite) {
+  const auto nowhere = (folder_ / "no" / "folder" / "r.h5").string();
+  test::write_text(folder_ / "data.txt", "0,1,2\n1,2,3\n");
+  const Outcome outcome = run_kerf({"import", (folder_ / "data.txt").string(), "--map", map, "-o", nowhere});
+  EXPECT_EQ(outcome.exit_status, 4);
+  EXPECT_THAT(outcome.errors, HasSubstr(nowhere));
+}
+
+}  // namespace
+}  // namespace kerf

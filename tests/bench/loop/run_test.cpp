@@ -1,0 +1,164 @@
+#include "loop/run.h"
+
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "loop/clock.h"
+#include "loop/recorder.h"
+#include "support/allocation_counter.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+const LawFile kelvin = parse_law_file(R"(model = "kelvin"
+axis = "theta"
+position_unit = "rad"
+[contact]
+position = { value = 30, unit = "deg" }
+direction = "decreasing"
+[parameters]
+parallel_stiffness = { value = 5.0, unit = "N/rad" }
+series_stiffness = { value = 8.0, unit = "N/rad" }
+damping = { value = 1.6, unit = "N·s/rad" }
+)",
+                                      "kelvin.law.toml");
+
+RunOptions virtual_seconds(double seconds) {
+  return {.device_uri = "sim:scissors?seed=3", .seconds = seconds, .virtual_time = true};
+}
+
+RunResult run(const RunOptions& options) {
+  const std::atomic<bool> stop{false};
+  return run_on_device(options, stop);
+}
+
+TEST(Run, IsTheSameBitForBitInVirtualTime) {
+  const test::TemporaryFolder folder;
+  schema::Recording recordings[2];
+  for (const std::size_t i : {0U, 1U}) {
+    RunOptions options = virtual_seconds(5.0);
+    options.law = kelvin;
+    options.record = folder / ("r" + std::to_string(i) + ".h5");
+    EXPECT_EQ(run(options).rows_lost, 0U);
+    recordings[i] = schema::read_recording(*options.record);
+  }
+  const auto& [first, second] = recordings;
+  ASSERT_EQ(first.rows(), 5000U);
+  EXPECT_EQ(first.time, second.time);
+  EXPECT_EQ(first.position, second.position);
+  EXPECT_EQ(first.velocity, second.velocity);
+  EXPECT_EQ(first.force_commanded, second.force_commanded);
+  EXPECT_EQ(first.force_measured, second.force_measured);
+  EXPECT_EQ(first.flags, second.flags);
+  EXPECT_THAT(first.wake_latency, testing::Each(0.0F));
+  EXPECT_THAT(first.compute_time, testing::Each(0.0F));
+}
+
+TEST(Run, KeepsTheSceneAndTheDeviceInTheRecording) {
+  const test::TemporaryFolder folder;
+  RunOptions options = virtual_seconds(0.5);
+  options.scene = default_scene();
+  options.record = folder / "r.h5";
+  (void)run(options);
+  const schema::Recording recording = schema::read_recording(*options.record);
+  EXPECT_EQ(recording.header.scene_toml, default_scene().toml);
+  EXPECT_EQ(recording.header.device_uri, "sim:scissors?seed=3");
+  EXPECT_THAT(recording.header.device_toml, testing::HasSubstr("stiffness"));
+  EXPECT_EQ(recording.axes[0].name, "theta");
+  EXPECT_EQ(recording.axes[0].position_unit, "rad");
+}
+
+TEST(Run, MeetsATissueOfAFewNewtonsByDefault) {
+  const test::TemporaryFolder folder;
+  RunOptions options = virtual_seconds(10.0);
+  options.scene = default_scene();
+  options.record = folder / "r.h5";
+  (void)run(options);
+  const schema::Recording recording = schema::read_recording(*options.record);
+  double largest = 0.0;
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    largest = std::max(largest, recording.force_measured[2 * row]);
+  }
+  EXPECT_GT(largest, 2.0);
+  EXPECT_LT(largest, 6.0);
+}
+
+TEST(Run, RendersALawSoThatTheHandFeelsIt) {
+  const auto least_angle = [](bool rendered) {
+    const test::TemporaryFolder folder;
+    RunOptions options = virtual_seconds(3.0);
+    if (rendered) options.law = kelvin;
+    options.record = folder / "r.h5";
+    const double energy_j = run(options).report.energy_j;
+    EXPECT_EQ(energy_j > 0.0, rendered) << "a Kelvin law takes energy from the hand, no law takes none";
+    const schema::Recording recording = schema::read_recording(*options.record);
+    double least = 1.0;
+    for (std::size_t row = 0; row < recording.rows(); ++row)
+      least = std::min(least, recording.position[2 * row]);
+    return least;
+  };
+  EXPECT_GT(least_angle(true), least_angle(false) + 0.05);
+}
+
+TEST(Run, RefusesARateOutOfRangeAndALawOfOtherUnits) {
+  RunOptions options = virtual_seconds(0.1);
+  options.rate_hz = 99.0;
+  EXPECT_THROW((void)run(options), std::invalid_argument);
+  options = virtual_seconds(0.1);
+  options.law = kelvin;
+  options.law->position_unit = "m";
+  EXPECT_THROW((void)run(options), std::invalid_argument);
+}
+
+TEST(Run, HasEveryTickOfItsRate) {
+  for (const double rate_hz : {100.0, 333.0, 10'000.0}) {
+    RunOptions options = virtual_seconds(2.0);
+    options.rate_hz = rate_hz;
+    EXPECT_EQ(run(options).report.ticks(), static_cast<std::uint64_t>(2.0 * rate_hz));
+  }
+}
+
+template <typename Clock>
+std::size_t allocations_of_a_run(std::uint64_t ticks, bool lossless) {
+  const test::TemporaryFolder folder;
+  const auto device = drivers::open_device("sim:scissors");
+  const auto scene_device =
+      drivers::open_device("sim:scissors", surroundings_of(default_scene(), device->info()));
+  Recorder recorder({folder / "r.h5",
+                     schema::new_header("kerf test"),
+                     {{.name = "theta"}, {.name = "x_s"}},
+                     {.measures_force = true}},
+                    {.lossless = lossless});
+  LawRendering rendering(kelvin.law, kelvin.contact, 0);
+  Clock clock;
+  const std::atomic<bool> stop{false};
+  std::atomic<std::size_t> done{0};
+  LoopReport report;
+  const std::size_t before = test::allocations();
+  run_loop(clock, *scene_device, rendering, recorder, {.ticks = ticks}, {.stop = stop, .done = done}, report);
+  const std::size_t after = test::allocations();
+  EXPECT_EQ(report.ticks(), ticks);
+  EXPECT_GT(report.executed, 0U);
+  recorder.close("complete");
+  return after - before;
+}
+
+TEST(Run, AllocatesNothingInATickInVirtualTime) {
+  EXPECT_EQ(allocations_of_a_run<VirtualClock>(20'000, true), 0U);
+}
+
+TEST(Run, AllocatesNothingInATickByTheWallClock) {
+  EXPECT_EQ(allocations_of_a_run<WallClock>(200, false), 0U);
+}
+
+TEST(AllocationCounter, SeesWhatTheLoopMustNotDo) {
+  const std::size_t before = test::allocations();
+  const auto something = std::make_unique<int>(1);
+  EXPECT_EQ(test::allocations(), before + 1);
+}
+
+}  // namespace
+}  // namespace kerf::bench

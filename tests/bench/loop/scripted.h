@@ -1,0 +1,129 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include <kerf/drivers/device.h>
+#include <kerf/schema/recording.h>
+
+#include "loop/loop.h"
+
+namespace kerf::bench::test {
+
+inline constexpr double period_s = 1e-3;
+inline constexpr std::int64_t period_ns = 1'000'000;
+
+/// Time that stands still but for the delays that a test asks for, by stage and tick.
+struct Script {
+  std::int64_t now_ns = 0;
+  std::array<std::map<std::uint64_t, std::int64_t>, stage_names.size()> delays_ns;
+
+  void delay(Stage stage, std::uint64_t tick, double periods) {
+    delays_ns[static_cast<std::size_t>(stage)][tick] = std::llround(periods * static_cast<double>(period_ns));
+  }
+  void pass(Stage stage, std::uint64_t tick) noexcept {
+    const auto& delays = delays_ns[static_cast<std::size_t>(stage)];
+    if (const auto found = delays.find(tick); found != delays.end()) now_ns += found->second;
+  }
+};
+
+/// The loop puts its first deadline one period after it asks for the time.
+struct ScriptedClock {
+  Script& script;
+
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return script.now_ns; }
+  void sleep_until(std::int64_t deadline_ns) const noexcept {
+    script.now_ns = std::max(script.now_ns, deadline_ns);
+    script.pass(Stage::wake, static_cast<std::uint64_t>(deadline_ns / period_ns - 1));
+  }
+};
+
+/// One axis; answers as a test tells it to, and keeps every force it was given.
+class ScriptedDevice final : public drivers::Device {
+ public:
+  explicit ScriptedDevice(Script& script) : script_(script) {
+    info_.axes = {{.name = "theta",
+                   .position_unit = "rad",
+                   .force_unit = "N",
+                   .lever = 0.04,
+                   .lower = -1.0,
+                   .upper = 1.0,
+                   .force_limit = 7.0,
+                   .slew_limit = 2000.0}};
+  }
+
+  std::function<drivers::Status(std::uint64_t tick, drivers::Sample&)> answer;
+  std::map<std::uint64_t, drivers::Status> write_answers;
+  std::vector<double> written;
+
+  [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] drivers::Status read(double now_s, drivers::Sample& sample) noexcept override {
+    tick_ = static_cast<std::uint64_t>(std::llround(now_s / period_s));
+    was_read_ = true;
+    script_.pass(Stage::read, tick_);
+    return answer ? answer(tick_, sample) : drivers::Status::ok;
+  }
+  [[nodiscard]] drivers::Status write(const drivers::Axes& force) noexcept override {
+    written.push_back(force[0]);
+    const bool first_of_tick = was_read_;
+    was_read_ = false;
+    if (!first_of_tick) return drivers::Status::ok;
+    script_.pass(Stage::write, tick_);
+    const auto found = write_answers.find(tick_);
+    return found != write_answers.end() ? found->second : drivers::Status::ok;
+  }
+  [[nodiscard]] std::uint64_t tick() const noexcept { return tick_; }
+
+ private:
+  Script& script_;
+  drivers::DeviceInfo info_;
+  std::uint64_t tick_ = 0;
+  bool was_read_ = false;
+};
+
+/// Keeps every row.
+struct ScriptedRecorder {
+  Script& script;
+  std::vector<schema::Row> rows;
+
+  void push(const schema::Row& row) noexcept {
+    rows.push_back(row);
+    script.pass(Stage::record, row.tick);
+  }
+};
+
+/// Runs the loop over a script. Set up what should happen, then call run().
+struct Bench {
+  Script script;
+  ScriptedDevice device{script};
+  ScriptedRecorder recorder{script, {}};
+  std::function<double(std::uint64_t tick)> force;
+  std::vector<double> periods_s;  ///< that the computation was given
+  std::atomic<bool> stop{false};
+  std::atomic<std::size_t> done{0};
+
+  LoopReport run(std::uint64_t ticks, double soft_start_s = 0.0) {
+    ScriptedClock clock{script};
+    auto compute = [this](const drivers::Sample&, double elapsed_s) noexcept {
+      script.pass(Stage::compute, device.tick());
+      periods_s.push_back(elapsed_s);
+      return Command{.force = {force ? force(device.tick()) : 0.0}};
+    };
+    LoopReport report;
+    run_loop(clock, device, compute, recorder,
+             {.period_s = period_s, .ticks = ticks, .soft_start_s = soft_start_s},
+             {.stop = stop, .done = done}, report);
+    return report;
+  }
+  [[nodiscard]] std::vector<std::uint64_t> ticks() const {
+    std::vector<std::uint64_t> all;
+    for (const schema::Row& row : recorder.rows) all.push_back(row.tick);
+    return all;
+  }
+};
+
+}  // namespace kerf::bench::test

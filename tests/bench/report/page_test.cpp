@@ -1,0 +1,88 @@
+#include <filesystem>
+#include <regex>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+// The page as a reader gets it, made by the program from a simulated cut.
+
+namespace kerf {
+namespace {
+
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+using testing::Not;
+
+class ReportProgram : public testing::Test {
+ protected:
+  void record(const std::string& name) {
+    file_ = (folder_ / name).string();
+    ASSERT_EQ(run_kerf({"record", "--virtual", "--seconds", "8", "-o", file_}).exit_status, 0);
+  }
+  Outcome report(std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {"report", file_, "-o", page()});
+    return run_kerf(more);
+  }
+  [[nodiscard]] std::string page() const { return (folder_ / "report.html").string(); }
+  [[nodiscard]] std::string fits() const { return (folder_ / "fits").string(); }
+  [[nodiscard]] std::string check() const { return (folder_ / "check.json").string(); }
+
+  test::TemporaryFolder folder_;
+  std::string file_;
+};
+
+TEST_F(ReportProgram, ShowsEverythingAndNeedsNothingElse) {
+  record("cut & <b>run.h5");
+  ASSERT_EQ(run_kerf({"segment", file_}).exit_status, 0);
+  ASSERT_EQ(run_kerf({"fit", file_, "-o", fits()}).exit_status, 0);
+  ASSERT_LE(run_kerf({"check", fits() + "/kelvin.law.toml", "--seconds", "0.5", "-o", check()}).exit_status,
+            1);
+  const Outcome outcome = report({"--fits", fits(), "--check", check()});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+
+  const std::string html = test::read_text(page());
+  for (const auto* part : {"What was recorded", "Choice: kelvin", "Closed loop", "Force against position",
+                           "Residuals", "parallel_stiffness", "95 % interval", "straight line",
+                           "Wake latency and cycle time", "cut &amp; &lt;b&gt;run"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+  }
+  EXPECT_THAT(html, Not(HasSubstr("<b>run"))) << "a file's name is text";
+  EXPECT_FALSE(std::regex_search(html, std::regex(R"((src|href)\s*=\s*["'](?!#))"))) << "nothing is loaded";
+  EXPECT_FALSE(std::regex_search(html, std::regex(R"(@import|url\(\s*["']?http)")));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+}
+
+TEST_F(ReportProgram, SaysWhatIsNotThere) {
+  record("cut.h5");
+  ASSERT_EQ(report().exit_status, 0);
+  EXPECT_THAT(test::read_text(page()), HasSubstr("No fit was given"));
+  EXPECT_THAT(test::read_text(page()), HasSubstr("No check was given"));
+}
+
+TEST_F(ReportProgram, RefusesWhatIsNoFitOrNoCheck) {
+  record("cut.h5");
+  std::filesystem::create_directory(fits());
+  test::write_text(fits() + "/fit.json", "{\"fits\": 3}");
+  EXPECT_EQ(report({"--fits", fits()}).exit_status, 2);
+  test::write_text(check(), "not json");
+  const Outcome outcome = report({"--check", check()});
+  EXPECT_EQ(outcome.exit_status, 2);
+  EXPECT_THAT(outcome.errors, HasSubstr("check.json: not JSON"));
+  EXPECT_EQ(report({"--fits", (folder_ / "none").string()}).exit_status, 4);
+  EXPECT_FALSE(std::filesystem::exists(page()));
+}
+
+TEST_F(ReportProgram, KeepsAnExistingPageUnlessForced) {
+  record("cut.h5");
+  test::write_text(page(), "mine");
+  EXPECT_EQ(report().exit_status, 2);
+  EXPECT_EQ(test::read_text(page()), "mine");
+  EXPECT_EQ(report({"--force"}).exit_status, 0);
+}
+
+}  // namespace
+}  // namespace kerf

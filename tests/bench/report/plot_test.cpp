@@ -1,0 +1,76 @@
+#include "report/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+TEST(Plot, IsOneSvgElementWithItsLabels) {
+  const std::string svg = draw({.title = "Force over time",
+                                .x_label = "time [s]",
+                                .y_label = "force [N]",
+                                .curves = {{.label = "measured", .x = {0, 1, 2}, .y = {0, 3, 1}}}});
+  EXPECT_THAT(svg, StartsWith("<svg"));
+  EXPECT_THAT(svg, HasSubstr("</svg>"));
+  for (const auto* text : {"Force over time", "time [s]", "force [N]", "measured"})
+    EXPECT_THAT(svg, HasSubstr(text));
+}
+
+TEST(Plot, TakesHostileTextAsText) {
+  const std::string svg = draw({.title = "a_b^2 <script>alert(1)</script> 'quoted' \"; system('true') äöü",
+                                .x_label = "x\nset output '/dev/null'",
+                                .y_label = "`date` $HOME",
+                                .curves = {{.label = "{/Symbol a} & @b", .x = {0, 1}, .y = {0, 1}}}});
+  EXPECT_THAT(svg, Not(HasSubstr("<script>")));
+  EXPECT_THAT(svg, HasSubstr("a_b^2"));
+  EXPECT_THAT(svg, HasSubstr("'quoted'"));
+  EXPECT_THAT(svg, HasSubstr("`date`"));
+  EXPECT_THAT(svg, HasSubstr("äöü"));
+}
+
+TEST(Plot, DrawsAroundWhatIsNotFinite) {
+  EXPECT_THAT(draw({.curves = {{.x = {0, 1, 2, 3, 4},
+                                .y = {0, 1, nothing, 3, std::numeric_limits<double>::infinity()}}}}),
+              HasSubstr("</svg>"));
+}
+
+TEST(Plot, SaysWhatGnuplotComplainsOf) {
+  EXPECT_THROW((void)draw({.title = "nothing to draw", .curves = {{.x = {}, .y = {}}}}), std::runtime_error);
+}
+
+TEST(Decimated, KeepsASpikeOfOneSample) {
+  Curve curve;
+  for (int i = 0; i < 1'000'000; ++i) {
+    curve.x.push_back(i);
+    curve.y.push_back(std::sin(1e-5 * i));
+  }
+  curve.y[543'210] = 40.0;
+  curve.y[123'456] = -40.0;
+  const Curve fewer = decimated(curve);
+  EXPECT_LE(fewer.x.size(), 4000U);
+  EXPECT_EQ(*std::max_element(fewer.y.begin(), fewer.y.end()), 40.0);
+  EXPECT_EQ(*std::min_element(fewer.y.begin(), fewer.y.end()), -40.0);
+  EXPECT_TRUE(std::is_sorted(fewer.x.begin(), fewer.x.end()));
+  EXPECT_EQ(fewer.x.front(), 0.0);
+  EXPECT_EQ(fewer.x.back(), 999'999.0);
+}
+
+TEST(Decimated, LeavesAShortCurveAlone) {
+  const Curve curve{.x = {0, 1, 2}, .y = {5, nothing, 7}};
+  EXPECT_EQ(decimated(curve).x, curve.x);
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,91 @@
+#include "scene/scene.h"
+
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string spring = R"(name = "a spring"
+
+[tissue]
+model = "kelvin"
+axis = "theta"
+position_unit = "rad"
+
+[tissue.contact]
+position = { value = 0.5, unit = "rad" }
+direction = "decreasing"
+
+[tissue.parameters]
+parallel_stiffness = { value = 10.0, unit = "N/rad" }
+series_stiffness = { value = 1e-9, unit = "N/rad" }
+damping = { value = 1e-9, unit = "N·s/rad" }
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    (void)parse_scene(text, "liver.toml");
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const drivers::DeviceInfo scissors = drivers::open_device("sim:scissors")->info();
+
+TEST(Scene, IsATissueOnAnAxisThatPushesBack) {
+  const Scene scene = parse_scene(spring, "liver.toml");
+  EXPECT_EQ(scene.name, "a spring");
+  EXPECT_EQ(scene.toml, spring);
+  const drivers::Surroundings around = surroundings_of(scene, scissors);
+  ASSERT_TRUE(around.tissue[0]);
+  EXPECT_FALSE(around.tissue[1]);
+  EXPECT_NEAR(around.tissue[0](0.3, -0.1, 50e-6), 10.0 * 0.2, 1e-9) << "it opens blades that have closed";
+  EXPECT_EQ(around.tissue[0](0.6, 0.0, 50e-6), 0.0);
+}
+
+TEST(Scene, OnThetaIsGivenByDefault) {
+  EXPECT_EQ(default_scene().tissue.axis, "theta");
+  EXPECT_TRUE(surroundings_of(default_scene(), scissors).tissue[0]);
+}
+
+TEST(Scene, IsRefusedWithFileAndLine) {
+  EXPECT_THAT(refusal(replaced(spring, "damping", "dampening")),
+              AllOf(HasSubstr("liver.toml:1"), HasSubstr("dampening")));
+  EXPECT_THAT(refusal(replaced(spring, "\"N/rad\"", "\"N/m\"")),
+              AllOf(HasSubstr("liver.toml:13:"), HasSubstr("N/m")));
+  EXPECT_THAT(refusal(replaced(spring, "\"kelvin\"", "\"jelly\"")),
+              AllOf(HasSubstr("liver.toml"), HasSubstr("jelly")));
+  EXPECT_THAT(refusal(spring + "[weather]\n"), AllOf(HasSubstr("liver.toml:16:"), HasSubstr("'weather'")));
+  EXPECT_THAT(refusal("name = \"nothing\"\n"), HasSubstr("[tissue]"));
+  EXPECT_THAT(refusal("name = \n"), HasSubstr("liver.toml:1: not TOML"));
+}
+
+TEST(Scene, IsRefusedOnADeviceOfOtherUnits) {
+  const Scene scene = parse_scene(replaced(spring, "\"theta\"", "\"x_s\""), "liver.toml");
+  EXPECT_THROW((void)surroundings_of(scene, scissors), std::invalid_argument);
+}
+
+TEST(AxisForALaw, IsTheOneItNamesOrTheFirstOfItsUnits) {
+  LawFile law = parse_scene(spring, "liver.toml").tissue;
+  EXPECT_EQ(axis_for(law, scissors), 0U);
+  law.axis = "";
+  law.position_unit = "m";
+  EXPECT_EQ(axis_for(law, scissors), 1U);
+  law.force_unit = "N·m";
+  EXPECT_THROW((void)axis_for(law, scissors), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,134 @@
+#include "segment/segment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+
+/// Scissors that open and close by cosines, with pauses: 1 N more while closing, on a spring of 2 N/rad.
+struct Cutting {
+  double direction = 1.0;  ///< of closing
+  int strokes = 8;         ///< closings and openings together, a closing first
+  double stroke_s = 0.5;
+  double pause_s = 0.2;
+  double noise = 0.0;  ///< of position and force, as a share of their range
+
+  [[nodiscard]] schema::Recording recording() const {
+    schema::Recording recording;
+    recording.axes = {{.name = "theta", .position_unit = "rad"}};
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal(0.0, noise);
+    const double cycle_s = stroke_s + pause_s;
+    const auto rows = static_cast<int>(std::lround((strokes * cycle_s + pause_s) * 1000.0));
+    for (int row = 0; row < rows; ++row) {
+      const double t = 1e-3 * row - pause_s;
+      const int stroke = std::clamp(static_cast<int>(std::floor(t / cycle_s)), 0, strokes - 1);
+      const double phase = std::clamp((t - stroke * cycle_s) / stroke_s, 0.0, 1.0);
+      const double way = 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
+      const bool closing = stroke % 2 == 0;
+      const double closed = closing ? way : 1.0 - way;
+      const bool moving = phase > 0.0 && phase < 1.0;
+      recording.time.push_back(1e-3 * row);
+      recording.position.push_back(direction * 0.5 * closed + normal(random) * 0.5);
+      recording.force_measured.push_back(closed + (closing && moving ? 1.0 : 0.0) + normal(random) * 2.0);
+    }
+    return recording;
+  }
+};
+
+long count(const schema::Cycles& cycles, schema::Phase phase) {
+  return std::count_if(cycles.phases.begin(), cycles.phases.end(),
+                       [&](const auto& span) { return span.phase == phase; });
+}
+
+TEST(Segment, FindsEveryCycleWithItsFourPhasesInOrder) {
+  const auto cycles = find_cycles(Cutting{}.recording(), {});
+  EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
+  EXPECT_EQ(count(cycles, schema::Phase::opening), 4);
+  EXPECT_EQ(count(cycles, schema::Phase::open_to_close), 4);
+  EXPECT_EQ(count(cycles, schema::Phase::close_to_open), 4);
+  EXPECT_EQ(cycles.closing_direction, 1.0);
+  EXPECT_NEAR(cycles.contact_position, 0.0, 1e-3);
+  for (std::size_t i = 1; i < cycles.phases.size(); ++i) {
+    EXPECT_EQ(cycles.phases[i].begin, cycles.phases[i - 1].end) << "phases follow each other without a gap";
+    EXPECT_LE(cycles.phases[i - 1].cycle, cycles.phases[i].cycle);
+  }
+}
+
+TEST(Segment, TakesForClosingTheWayThatCostsMore) {
+  const auto cycles = find_cycles(Cutting{.direction = -1.0}.recording(), {});
+  EXPECT_EQ(cycles.closing_direction, -1.0);
+  EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
+  EXPECT_LT(cycles.grid.front(), cycles.grid.back()) << "the grid increases whichever way closing is";
+  const auto told = find_cycles(Cutting{.direction = -1.0}.recording(), {.closing_direction = 1.0});
+  EXPECT_EQ(told.closing_direction, 1.0);
+}
+
+TEST(Segment, CountsStrokesAndNotNoise) {
+  const auto cycles = find_cycles(Cutting{.noise = 0.02}.recording(), {});
+  EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
+  EXPECT_EQ(count(cycles, schema::Phase::opening), 4);
+}
+
+TEST(Segment, KeepsAClosingThatNeverOpens) {
+  const auto cycles = find_cycles(Cutting{.strokes = 5}.recording(), {});
+  EXPECT_EQ(count(cycles, schema::Phase::closing), 3);
+  EXPECT_EQ(count(cycles, schema::Phase::opening), 2);
+  ASSERT_EQ(cycles.opening.size(), 3U);
+  EXPECT_TRUE(std::isnan(cycles.opening[2][50]));
+}
+
+TEST(Segment, AveragesTheBranchesOnTheGrid) {
+  const auto cycles = find_cycles(Cutting{.noise = 0.01}.recording(), {.corner_hz = 40.0});
+  for (std::size_t i = 20; i < 80; ++i) {
+    const double closed = cycles.grid[i] / 0.5;
+    EXPECT_NEAR(cycles.closing_mean[i], closed + 1.0, 0.03) << "at " << cycles.grid[i];
+    EXPECT_NEAR(cycles.opening_mean[i], closed, 0.03) << "at " << cycles.grid[i];
+  }
+}
+
+TEST(Segment, StartsInTheMiddleOfAnOpening) {
+  schema::Recording recording = Cutting{}.recording();
+  const std::ptrdiff_t cut = 1150;  // within the first opening
+  recording.time.erase(recording.time.begin(), recording.time.begin() + cut);
+  recording.position.erase(recording.position.begin(), recording.position.begin() + cut);
+  recording.force_measured.erase(recording.force_measured.begin(), recording.force_measured.begin() + cut);
+  const auto cycles = find_cycles(recording, {});
+  EXPECT_EQ(count(cycles, schema::Phase::closing), 3);
+  EXPECT_EQ(cycles.phases.front().phase, schema::Phase::open_to_close) << "that opening belongs to no cycle";
+}
+
+TEST(Segment, RefusesWhatHasNoCycles) {
+  const auto refusal = [](const schema::Recording& recording) -> std::string {
+    try {
+      (void)find_cycles(recording, {});
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(refusal(Cutting{.strokes = 1}.recording()), HasSubstr("no cycle of opening and closing"));
+  schema::Recording still = Cutting{}.recording();
+  std::fill(still.position.begin(), still.position.end(), 0.3);
+  EXPECT_THAT(refusal(still), HasSubstr("no cycle"));
+  schema::Recording gap = Cutting{}.recording();
+  gap.force_measured[7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(gap), HasSubstr("row 7 is not finite"));
+  schema::Recording forceless = Cutting{}.recording();
+  forceless.force_measured.clear();
+  EXPECT_THAT(refusal(forceless), HasSubstr("no force"));
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,71 @@
+#include "kerf/drivers/uri.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/drivers/device.h>
+
+namespace kerf::drivers {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::string& uri) {
+  try {
+    (void)open_device(uri);
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Uri, IsANameAndOptions) {
+  const Uri uri = parse_uri("sim:scissors?seed=3&noise=off");
+  EXPECT_EQ(uri.name, "sim:scissors");
+  EXPECT_EQ(uri.options, (std::map<std::string, std::string>{{"seed", "3"}, {"noise", "off"}}));
+  EXPECT_TRUE(parse_uri("falcon:0").options.empty());
+}
+
+TEST(Uri, TakesNumbersWithTheirUnit) {
+  UriOptions options(parse_uri("x?open=40deg&stroke=1.2s&grip=500"));
+  EXPECT_NEAR(options.number("open", {"deg", 0.0, 0.0, 1.0}), 40.0 * std::numbers::pi / 180.0, 1e-15);
+  EXPECT_EQ(options.number("stroke", {"s", 0.0, 0.0, 10.0}), 1.2);
+  EXPECT_THROW((void)options.number("grip", {"N/m", 0.0, 0.0, 1000.0}), DeviceError) << "the unit is missing";
+  EXPECT_EQ(options.number("pause", {"s", 0.3, 0.0, 10.0}), 0.3);
+}
+
+TEST(Uri, RefusesWhatIsNoDevice) {
+  EXPECT_THAT(refusal("sim:saw"), AllOf(HasSubstr("sim:saw"), HasSubstr("kerf devices")));
+  EXPECT_THAT(refusal(""), HasSubstr("kerf devices"));
+}
+
+TEST(Uri, RefusesAnUnknownOptionAndListsThoseThereAre) {
+  EXPECT_THAT(refusal("sim:scissors?sed=3"),
+              AllOf(HasSubstr("'sed'"), HasSubstr("seed"), HasSubstr("stroke")));
+}
+
+TEST(Uri, RefusesABadValueAndSaysWhatWasExpected) {
+  EXPECT_THAT(refusal("sim:scissors?seed=three"), AllOf(HasSubstr("'three'"), HasSubstr("a number")));
+  EXPECT_THAT(refusal("sim:scissors?seed=3.5"), HasSubstr("whole number"));
+  EXPECT_THAT(refusal("sim:scissors?seed=-1"), HasSubstr("from 0"));
+  EXPECT_THAT(refusal("sim:scissors?seed=nan"), HasSubstr("'nan'"));
+  EXPECT_THAT(refusal("sim:scissors?seed="), HasSubstr("'seed'"));
+  EXPECT_THAT(refusal("sim:scissors?noise=no"), AllOf(HasSubstr("'no'"), HasSubstr("on or off")));
+  EXPECT_THAT(refusal("sim:scissors?open=40rad"), HasSubstr("with the unit deg"));
+  EXPECT_THAT(refusal("sim:scissors?stroke=0s"), HasSubstr("from 0.05 to 100"));
+  EXPECT_THAT(refusal("sim:scissors?open=10deg&close=20deg"), HasSubstr("smaller angle"));
+}
+
+TEST(Uri, RefusesOptionsThatAreNone) {
+  EXPECT_THAT(refusal("sim:scissors?noise"), HasSubstr("NAME=VALUE"));
+  EXPECT_THAT(refusal("sim:scissors?seed=1&&noise=off"), HasSubstr("NAME=VALUE"));
+  EXPECT_THAT(refusal("sim:scissors?seed=1&seed=2"), HasSubstr("twice"));
+}
+
+}  // namespace
+}  // namespace kerf::drivers
