@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "signal/signal.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -53,15 +55,6 @@ void add_axes(nlohmann::ordered_json& summary, const schema::Recording& recordin
     add_channel(summary, dimensions == 1 ? name : name + "." + recording.axes[axis].name,
                 unit(recording.axes[axis]), range);
   }
-}
-
-double median_period(const std::vector<double>& time) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < time.size(); ++i) periods.push_back(time[i] - time[i - 1]);
-  if (periods.empty()) return 0.0;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
 }
 
 }  // namespace
