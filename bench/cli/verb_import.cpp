@@ -41,6 +41,12 @@ nlohmann::ordered_json to_json(const Imported& imported) {
   result["bad_line_numbers"] = imported.bad_lines;
   result["misplaced_lines"] = imported.misplaced_lines.size();
   result["misplaced_line_numbers"] = imported.misplaced_lines;
+  for (const MappedColumn& column : imported.columns) {
+    result["columns"][column.channel] = {{"number", column.index + 1},
+                                         {"heading", imported.layout.columns[column.index].heading},
+                                         {"unit", column.unit_text},
+                                         {"unit_from_file", column.unit_from_file}};
+  }
   result["layout"] = {{"separator", name_of(imported.layout.separator)},
                       {"decimal", std::string(1, imported.layout.point)},
                       {"preamble_lines", imported.layout.preamble_lines},
@@ -52,13 +58,15 @@ nlohmann::ordered_json to_json(const Imported& imported) {
 
 void run_import(const Arguments& arguments, Context& context) {
   if (arguments.maps.empty()) {
-    throw std::invalid_argument(
-        fmt::format("{}: --map is needed to tell what the columns are, for example --map "
-                    "'time=1[s],position=2[mm],force=3[N]'; they are\n{}",
-                    arguments.data, explain_columns(arguments.data)));
+    throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}",
+                                            arguments.data, explain_columns(arguments.data)));
   }
   if (arguments.output.empty())
     throw std::invalid_argument("-o is needed: the recording to write, for example -o r.h5");
+  std::error_code absent;
+  if (std::filesystem::equivalent(arguments.data, arguments.output, absent))
+    throw std::invalid_argument(
+        fmt::format("{}: -o names the data itself; give another name", arguments.data));
   refuse_to_replace(arguments.output, arguments.force);
   ImportOptions options = arguments.options;
   std::string map;
@@ -71,7 +79,7 @@ void run_import(const Arguments& arguments, Context& context) {
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   for (const MappedColumn& column : imported.columns) {
     if (column.unit_from_file)
-      say(fmt::format("{}: unit {} taken from the file", column.channel, column.unit.si));
+      say(fmt::format("{}: unit {} taken from the file", column.channel, column.unit_text));
   }
   say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
                   imported.recording.time.back()));
@@ -92,10 +100,12 @@ void add_import(CLI::App& app, Context& context) {
       "comma,\n"
       "quotes, preamble, header, units row and encoding are recognised. Lines that are not data are reported "
       "and\n"
-      "left out, and so are lines whose time repeats or goes back; NaN and infinity are kept and reported.",
+      "left out, and so are lines whose time repeats or goes back; NaN and infinity are kept and reported.\n"
+      "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data, "Text file")->required();
-  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)");
+  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)")
+      ->allow_extra_args(false);
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
       ->check(CLI::PositiveNumber);

@@ -41,6 +41,12 @@ std::vector<std::string_view> split_entries(std::string_view text) {
   return entries;
 }
 
+std::string_view trimmed(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return text;
+}
+
 bool is_channel_name(std::string_view name) {
   return !name.empty() && !std::isdigit(static_cast<unsigned char>(name[0])) &&
          std::all_of(name.begin(), name.end(),
@@ -50,20 +56,18 @@ bool is_channel_name(std::string_view name) {
 MapEntry parse_entry(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos) refuse_entry(text, "has no '='");
-  MapEntry entry{.channel = std::string(text.substr(0, equals)), .column = {}, .unit = {}};
-  while (!entry.channel.empty() && entry.channel.front() == ' ') entry.channel.erase(0, 1);
+  MapEntry entry{.channel = std::string(trimmed(text.substr(0, equals))), .column = {}, .unit = {}};
   if (entry.channel == "force") entry.channel = "force_measured";
   if (!is_channel_name(entry.channel))
     refuse_entry(text, "has no channel name of letters, digits and _ before '='");
-  std::string_view column = text.substr(equals + 1);
+  std::string_view column = trimmed(text.substr(equals + 1));
   if (column.ends_with(']')) {
     const auto open = column.rfind('[');
     if (open == std::string_view::npos) refuse_entry(text, "closes a bracket that is not open");
     entry.unit = column.substr(open + 1, column.size() - open - 2);
     if (entry.unit.empty()) refuse_entry(text, "has an empty unit; write [1] for a plain number");
-    column = column.substr(0, open);
+    column = trimmed(column.substr(0, open));
   }
-  while (column.ends_with(' ')) column.remove_suffix(1);
   if (column.size() >= 2 && column.front() == '"' && column.back() == '"')
     column = column.substr(1, column.size() - 2);
   if (column.empty()) refuse_entry(text, "names no column");
@@ -81,17 +85,18 @@ std::optional<std::size_t> column_number(const std::string& text) {
 std::string column_list(const TextLayout& layout) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-    const auto& name = layout.columns[i].name;
-    names.push_back(name.empty() ? fmt::format("{}", i + 1) : fmt::format("{} '{}'", i + 1, name));
+    const auto& heading = layout.columns[i].heading;
+    names.push_back(heading.empty() ? fmt::format("{}", i + 1) : fmt::format("{} '{}'", i + 1, heading));
   }
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::size_t find_column(const MapEntry& entry, const TextLayout& layout, const std::string& name) {
-  const auto named = std::find_if(layout.columns.begin(), layout.columns.end(),
-                                  [&](const TextColumn& column) { return column.name == entry.column; });
-  if (named != layout.columns.end()) {
-    if (std::any_of(named + 1, layout.columns.end(), [&](const auto& c) { return c.name == entry.column; })) {
+  for (const auto part : {&TextColumn::heading, &TextColumn::name}) {
+    const auto is_meant = [&](const TextColumn& column) { return column.*part == entry.column; };
+    const auto named = std::find_if(layout.columns.begin(), layout.columns.end(), is_meant);
+    if (named == layout.columns.end()) continue;
+    if (std::any_of(named + 1, layout.columns.end(), is_meant)) {
       throw std::invalid_argument(fmt::format("{}: two columns are named '{}'; give a number: {}", name,
                                               entry.column, column_list(layout)));
     }
@@ -108,7 +113,7 @@ std::vector<std::string_view> kinds_of(std::string_view channel) {
   if (channel == "time") return {"s"};
   if (channel == "position") return {"m", "rad"};
   if (channel == "velocity") return {"m/s", "rad/s"};
-  if (channel == "force_measured" || channel == "force_commanded") return {"N", "N·m"};
+  if (channel == "force" || channel == "force_measured" || channel == "force_commanded") return {"N", "N·m"};
   return {};
 }
 
@@ -129,10 +134,32 @@ Unit unit_for(const MapEntry& entry, const TextColumn& column, const std::string
   const auto kinds = kinds_of(entry.channel);
   if (!kinds.empty() && std::find(kinds.begin(), kinds.end(), unit.si) == kinds.end()) {
     throw std::invalid_argument(
-        fmt::format("--map: {} in '{}' is not a unit of {}; expected one of the kind {}", entry.channel, text,
-                    entry.channel, fmt::join(kinds, " or ")));
+        fmt::format("--map: {} in '{}' is not a unit of {}; expected one of the kind {}{}", entry.channel,
+                    text, entry.channel, fmt::join(kinds, " or "),
+                    kinds.front() == "N" && unit.si == "kg" ? "; a weight is written gf or kgf" : ""));
   }
   return unit;
+}
+
+/// Forces share one unit, and a velocity has that of the position by the second.
+void check_units_agree(const std::vector<MappedColumn>& columns) {
+  std::string position;
+  std::string velocity;
+  std::string force;
+  for (const MappedColumn& column : columns) {
+    if (column.channel == "position") position = column.unit.si;
+    if (column.channel == "velocity") velocity = column.unit.si;
+    if (column.channel != "force_measured" && column.channel != "force_commanded") continue;
+    if (!force.empty() && force != column.unit.si) {
+      throw std::invalid_argument(fmt::format(
+          "--map: one force is in {} and the other in {}; expected the same", force, column.unit.si));
+    }
+    force = column.unit.si;
+  }
+  if (!velocity.empty() && velocity != position + "/s") {
+    throw std::invalid_argument(fmt::format(
+        "--map: velocity in {} does not fit a position in {}; expected {}/s", velocity, position, position));
+  }
 }
 
 }  // namespace
@@ -154,28 +181,66 @@ std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries, co
   std::vector<MappedColumn> columns;
   for (const MapEntry& entry : entries) {
     const std::size_t index = find_column(entry, layout, name);
+    const TextColumn& column = layout.columns[index];
     columns.push_back({.channel = entry.channel,
                        .index = index,
-                       .unit = unit_for(entry, layout.columns[index], name),
+                       .unit = unit_for(entry, column, name),
+                       .unit_text = entry.unit.empty() ? column.unit : entry.unit,
                        .unit_from_file = entry.unit.empty()});
   }
   if (std::none_of(columns.begin(), columns.end(), [](const auto& c) { return c.channel == "position"; })) {
     throw std::invalid_argument(fmt::format("{}: --map maps no position; for example {}", name, map_example));
   }
+  check_units_agree(columns);
   return columns;
 }
 
 std::string describe_columns(const TextLayout& layout, std::string_view text) {
+  constexpr std::size_t lines_shown = 3;
   std::string_view rest = text.substr(layout.data_begin);
-  const auto fields = split_line(take_line(rest), layout.separator);
+  std::vector<std::vector<std::string_view>> lines;
+  while (lines.size() < lines_shown && !rest.empty())
+    lines.push_back(split_line(take_line(rest), layout.separator));
   std::string description;
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const TextColumn& column = layout.columns[i];
-    description += fmt::format("  {}  {}{}{}\n", i + 1, column.name.empty() ? "(no name)" : column.name,
-                               column.unit.empty() ? "" : fmt::format(" [{}]", column.unit),
-                               i < fields.size() ? fmt::format("  first value {}", fields[i]) : "");
+    description += fmt::format("{}  {}  {}{}: ", i == 0 ? "" : "\n", i + 1,
+                               column.name.empty() ? "(no name)" : column.name,
+                               column.unit.empty() ? "" : fmt::format(" [{}]", column.unit));
+    for (const auto& line : lines) {
+      if (i < line.size()) description += fmt::format("{} ", to_utf8(line[i]));
+    }
+    description += "...";
   }
   return description;
+}
+
+std::string suggest_map(const TextLayout& layout) {
+  const auto has_unit_of = [&](std::size_t i, std::string_view channel) {
+    if (layout.columns[i].unit.empty()) return false;
+    const auto kinds = kinds_of(channel);
+    return std::find(kinds.begin(), kinds.end(), parse_unit(layout.columns[i].unit).si) != kinds.end();
+  };
+  const bool units_known = std::any_of(layout.columns.begin(), layout.columns.end(),
+                                       [](const TextColumn& column) { return !column.unit.empty(); });
+  const std::size_t width = layout.columns.size();
+  std::vector<bool> taken(width, false);
+  std::vector<std::string> entries;
+  const auto suggest = [&](std::string_view channel, std::string_view usual_unit, bool by_place) {
+    std::size_t i = 0;
+    while (i < width && (taken[i] || !has_unit_of(i, channel))) ++i;
+    const bool known = i < width;
+    if (!known && by_place)
+      i = static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    if (i == width) return;
+    taken[i] = true;
+    entries.push_back(fmt::format("{}={}[{}]", channel, i + 1, known ? layout.columns[i].unit : usual_unit));
+  };
+  suggest("time", "s", !units_known && width > 2);
+  const bool has_time = !entries.empty();
+  suggest("position", "mm", true);
+  suggest("force", "N", true);
+  return fmt::format("--map '{}'{}", fmt::join(entries, ","), has_time ? "" : " --rate 100");
 }
 
 }  // namespace kerf::bench

@@ -19,7 +19,7 @@ struct MapEntry {
 };
 
 /// Reads `time=5[ms],position=4[deg],force=2[gf]`. Header names may stand in double quotes, and must if they
-/// hold a comma; the last pair of square brackets is the unit.
+/// hold a comma; the last pair of square brackets outside quotes is the unit.
 /// @throws std::invalid_argument that quotes the entry and shows how one is written.
 [[nodiscard]] std::vector<MapEntry> parse_map(std::string_view text);
 
@@ -28,17 +28,20 @@ struct MappedColumn {
   std::string channel;
   std::size_t index = 0;  ///< column, from 0
   Unit unit;
+  std::string unit_text;  ///< the unit as the map or the file writes it
   bool unit_from_file = false;
 };
 
 /// Matches the entries with the columns that a file has.
 /// @throws std::invalid_argument for a column that does not exist, a unit that is neither given nor in the
-///         file, a unit of the wrong kind, a channel given twice, no force and no position, listing the
-///         columns.
+///         file, a unit of the wrong kind, forces in units that do not fit each other, or no position.
 [[nodiscard]] std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries,
                                                       const TextLayout& layout, const std::string& name);
 
-/// The columns of a file, one a line, and a map to begin with: what a user needs to write `--map`.
+/// The columns of a file, one a line: number, heading, unit and first values.
 [[nodiscard]] std::string describe_columns(const TextLayout& layout, std::string_view text);
+
+/// A map to begin with, for this very file: columns are guessed by their units, then by their place.
+[[nodiscard]] std::string suggest_map(const TextLayout& layout);
 
 }  // namespace kerf::bench

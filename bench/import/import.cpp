@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <span>
 #include <stdexcept>
@@ -14,6 +15,7 @@
 #include "files/mapped_file.h"
 #include "import/resample.h"
 #include "import/text_table.h"
+#include "import/time_order.h"
 #include "recordings/provenance.h"
 #include "signal/signal.h"
 
@@ -36,15 +38,6 @@ const MappedColumn* find_channel(const std::vector<MappedColumn>& columns, std::
   return place == columns.end() ? nullptr : &*place;
 }
 
-double median_period(const std::vector<double>& time) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < time.size(); ++i) periods.push_back(time[i] - time[i - 1]);
-  if (periods.empty()) return 0.0;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
-}
-
 /// The table's numbers in the order of the mapped columns, in SI but for the time, and the lines they came
 /// from.
 class Rows {
@@ -60,30 +53,27 @@ class Rows {
   [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }
   [[nodiscard]] const std::vector<std::size_t>& bad_lines() const { return table_.bad_lines; }
 
-  /// Leaves out the rows whose time is not finite or not after all before it; returns their lines.
+  /// Leaves out the rows whose times do not increase; returns their lines.
   std::vector<std::size_t> leave_out_misplaced(std::size_t time_column) {
     const auto& time = table_.columns[time_column];
-    std::vector<std::size_t> lines;
-    std::vector<std::size_t> kept;
-    double last = -std::numeric_limits<double>::infinity();
-    bool whole = true;
-    for (std::size_t row = 0; row < time.size(); ++row) {
-      if (std::isfinite(time[row]) && time[row] > last) {
-        last = time[row];
-        if (!whole) kept.push_back(row);
-        continue;
-      }
-      if (whole) {
-        for (std::size_t before = 0; before < row; ++before) kept.push_back(before);
-        whole = false;
-      }
-      lines.push_back(table_.line_of(row));
+    const auto follows = [](double before, double after) { return before < after && std::isfinite(after); };
+    if (std::isfinite(time.front()) &&
+        std::adjacent_find(time.begin(), time.end(), std::not_fn(follows)) == time.end()) {
+      return {};
     }
-    if (!whole) {
-      for (auto& column : table_.columns) {
-        for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
-        column.resize(kept.size());
+    const std::vector<std::size_t> kept = rows_in_order(time);
+    std::vector<std::size_t> lines;
+    auto next = kept.begin();
+    for (std::size_t row = 0; row < time.size(); ++row) {
+      if (next != kept.end() && *next == row) {
+        ++next;
+      } else {
+        lines.push_back(table_.line_of(row));
       }
+    }
+    for (auto& column : table_.columns) {
+      for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
+      column.resize(kept.size());
     }
     return lines;
   }
@@ -123,16 +113,22 @@ void report_irregular_lines(Imported& imported) {
   }
   if (!imported.misplaced_lines.empty()) {
     const std::string text =
-        fmt::format("{} lines repeat a time or go back, and are left out: {}",
+        fmt::format("{} lines are left out, whose time repeats, goes back or is not finite: {}",
                     imported.misplaced_lines.size(), named_lines(imported.misplaced_lines));
     imported.warnings.push_back(text);
     events.push_back({.time_s = 0.0, .kind = "misplaced_lines", .text = text});
+    if (imported.misplaced_lines.size() * 10 > imported.recording.rows()) {
+      imported.warnings.push_back(
+          "that is much of the file; if its clock restarts or is coarse, map no time and give --rate HZ");
+    }
   }
 }
 
 void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
   auto& time = imported.recording.time;
   const MappedColumn* column = find_channel(imported.columns, "time");
+  if (column != nullptr && options.rate_hz > 0.0)
+    throw std::invalid_argument("--rate counts the time that --map takes from a column; give one of them");
   if (column == nullptr) {
     if (!(options.rate_hz > 0.0)) {
       throw std::invalid_argument(fmt::format(
@@ -145,7 +141,10 @@ void take_time(Imported& imported, Rows& rows, const std::string& name, const Im
   const auto index = static_cast<std::size_t>(column - imported.columns.data());
   imported.misplaced_lines = rows.leave_out_misplaced(index);
   time = std::move(rows.column(index));
-  if (time.empty()) return;
+  if (time.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: no line has a finite time in column {}", name, column->index + 1));
+  }
   // Stamps are subtracted as they were written, where whole milliseconds are exact, and scaled after that.
   const double start = time.front();
   for (double& t : time) t = (t - start) * column->unit.factor;
@@ -177,16 +176,6 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
     recording.velocity = differentiate(recording.time, recording.position, window_s);
     recording.header.velocity_derived =
         fmt::format("slope of a parabola fitted to the positions within {:.4g} s, zero phase", window_s);
-  }
-}
-
-void check_units(const Imported& imported) {
-  const MappedColumn* velocity = find_channel(imported.columns, "velocity");
-  const std::string expected = imported.recording.axes[0].position_unit + "/s";
-  if (velocity != nullptr && velocity->unit.si != expected) {
-    throw std::invalid_argument(
-        fmt::format("--map: velocity in {} does not fit a position in {}; expected {}", velocity->unit.si,
-                    imported.recording.axes[0].position_unit, expected));
   }
 }
 
@@ -223,12 +212,12 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   take_time(imported, rows, name, options);
   if (options.strict && !imported.misplaced_lines.empty()) {
     throw std::invalid_argument(
-        fmt::format("{}: lines {} repeat a time or go back; without --strict they are left out", name,
-                    named_lines(imported.misplaced_lines)));
+        fmt::format("{}: lines {} have a time that repeats, goes back or is not finite; without --strict "
+                    "they are left out",
+                    name, named_lines(imported.misplaced_lines)));
   }
   const double period_s = median_period(recording.time);
   take_channels(imported, rows, options, period_s);
-  check_units(imported);
   report_irregular_lines(imported);
   number_ticks(imported, period_s);
   recording.flags.assign(recording.rows(), 0);
@@ -248,7 +237,8 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
 std::string explain_columns(const std::filesystem::path& file) {
   const MappedFile mapped(file);
   const TextLayout layout = find_layout(mapped.text(), file.string());
-  return describe_columns(layout, mapped.text());
+  return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
+                     suggest_map(layout));
 }
 
 }  // namespace kerf::bench

@@ -26,15 +26,16 @@ struct Imported {
   TextLayout layout;
   std::vector<MappedColumn> columns;
   std::vector<std::size_t> bad_lines;        ///< lines that are not data
-  std::vector<std::size_t> misplaced_lines;  ///< lines whose time repeats or goes back
+  std::vector<std::size_t> misplaced_lines;  ///< lines left out for their time
   std::vector<std::string> warnings;
   double parse_seconds = 0.0;
 };
 
 /// Reads a text file into a recording with one axis, in SI.
 ///
-/// Time starts at zero. Rows whose time repeats or goes back cannot stand in a recording: they are left out,
-/// and told of in `misplaced_lines`, a warning and an event. Gaps become jumps of `tick`. NaN and infinity
+/// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
+/// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
+/// `misplaced_lines`, a warning and an event. Gaps become jumps of `tick`. NaN and infinity
 /// stay as they are and are told of. The velocity is derived from the position by a zero-phase parabolic fit
 /// unless the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.

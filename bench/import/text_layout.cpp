@@ -83,7 +83,8 @@ Reading best_reading(const std::vector<std::string_view>& lines) {
 
 /// "Time [ms]" -> {"Time", "ms"}; "t_s" -> {"t_s", "s"}: the name keeps what may be part of it.
 TextColumn named_column(std::string_view field) {
-  TextColumn column{.name = to_utf8(trimmed(field)), .unit = {}};
+  const std::string heading = to_utf8(trimmed(field));
+  TextColumn column{.heading = heading, .name = heading, .unit = {}};
   const auto known = [](std::string_view text) {
     try {
       (void)parse_unit(text);
@@ -257,6 +258,13 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
   if (rest.substr(0, std::size_t{1} << 16U).find('\0') != std::string_view::npos) {
     throw std::invalid_argument(fmt::format(
         "{}: a binary file (or UTF-16 text); expected text in UTF-8 or another 8-bit encoding", name));
+  }
+
+  if (rest.find('\n') == std::string_view::npos &&
+      rest.substr(0, rest.size() - 1).find('\r') != std::string_view::npos) {
+    throw std::invalid_argument(fmt::format(
+        "{}: lines end in a carriage return alone; expected a line feed: tr '\\r' '\\n' <{} makes them", name,
+        name));
   }
 
   // The reading is chosen on the first lines and on some from the middle, where a long preamble has ended.

@@ -9,7 +9,8 @@ namespace kerf::bench {
 
 /// One column of a text file, as far as the lines before the data tell.
 struct TextColumn {
-  std::string name;  ///< from the header in UTF-8 without its unit; empty without a header
+  std::string heading;  ///< from the header in UTF-8, with its unit; empty without a header
+  std::string name;     ///< the heading without its unit
   std::string
       unit;  ///< from the units row, or from the name ("Time [ms]", "Load (N)", "t_s"); empty if unknown
 };

@@ -17,7 +17,7 @@ class LineReader {
  public:
   LineReader(const TextLayout& layout, std::span<const std::size_t> columns) : layout_(&layout) {
     slots_.assign(*std::max_element(columns.begin(), columns.end()) + 1, not_wanted);
-    for (std::size_t slot = 0; slot < columns.size(); ++slot) slots_[columns[slot]] = static_cast<int>(slot);
+    for (std::size_t slot = columns.size(); slot-- > 0;) slots_[columns[slot]] = static_cast<int>(slot);
   }
 
   /// Puts the number of each wanted column into values[slot][row]; false if one is missing or none.
@@ -181,6 +181,11 @@ TextTable parse_table(std::string_view text, const TextLayout& layout, std::span
     line += part.lines;
   }
   for (auto& column : table.columns) column.resize(rows);
+  for (std::size_t i = 0; i < columns.size(); ++i) {  // a column that was asked for twice is read once
+    const auto first =
+        static_cast<std::size_t>(std::find(columns.begin(), columns.end(), columns[i]) - columns.begin());
+    if (first != i) table.columns[i] = table.columns[first];
+  }
   return table;
 }
 

@@ -21,9 +21,9 @@ struct TextTable {
   [[nodiscard]] std::size_t line_of(std::size_t row) const;
 };
 
-/// Reads the columns with these indices (from 0) out of the lines from `layout.data_begin` on, on all cores.
-/// A line is bad if one of them is missing or is not a number; other fields may hold anything.
-/// `bytes_done` grows to the size of the text while it is read, for a progress bar.
+/// Reads the columns with these indices (from 0, in any order, any of them twice) out of the lines from
+/// `layout.data_begin` on, on all cores. A line is bad if one of them is missing or is not a number; other
+/// fields may hold anything. `bytes_done` grows to the size of the text while it is read, for a progress bar.
 [[nodiscard]] TextTable parse_table(std::string_view text, const TextLayout& layout,
                                     std::span<const std::size_t> columns,
                                     std::atomic<std::size_t>& bytes_done);

@@ -10,6 +10,8 @@
 
 #include <fmt/core.h>
 
+#include "signal/signal.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -61,19 +63,6 @@ void add_latency(nlohmann::ordered_json& summary, const std::string& name, const
   Range range;
   for (const float value : values) range.add(static_cast<double>(value));
   add_channel(summary, name, "s", range);
-}
-
-/// Of the periods that make sense: what repeats or goes back is told of apart.
-double median_period(const std::vector<double>& time) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < time.size(); ++i) {
-    const double period = time[i] - time[i - 1];
-    if (period > 0.0 && std::isfinite(period)) periods.push_back(period);
-  }
-  if (periods.empty()) return 0.0;
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
 }
 
 /// Places where ticks are missing, or where a period is far longer than the others.

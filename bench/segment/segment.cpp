@@ -39,11 +39,7 @@ std::vector<double> axis_of(const std::vector<double>& values, const schema::Rec
 class Smoother {
  public:
   Smoother(const std::vector<double>& time, double corner_hz) : time_(time) {
-    std::vector<double> periods;
-    for (std::size_t i = 1; i < time.size(); ++i) periods.push_back(time[i] - time[i - 1]);
-    std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
-                     periods.end());
-    const double period_s = periods[periods.size() / 2];
+    const double period_s = median_period(time);
     rate_hz_ = 1.0 / period_s;
     corner_hz_ = std::min(corner_hz, 0.2 * rate_hz_);
     const double span_s = time.back() - time.front();

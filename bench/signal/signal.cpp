@@ -195,4 +195,14 @@ std::vector<double> interpolate(std::span<const double> time_s, std::span<const 
   return result;
 }
 
+double median_period(std::span<const double> time_s) {
+  std::vector<double> periods;
+  periods.reserve(time_s.size());
+  for (std::size_t i = 1; i < time_s.size(); ++i) periods.push_back(time_s[i] - time_s[i - 1]);
+  if (periods.empty()) return 0.0;
+  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+  std::nth_element(periods.begin(), middle, periods.end());
+  return *middle;
+}
+
 }  // namespace kerf::bench

@@ -20,4 +20,7 @@ namespace kerf::bench {
 [[nodiscard]] std::vector<double> interpolate(std::span<const double> time_s, std::span<const double> values,
                                               std::span<const double> new_time_s);
 
+/// Median step between times that increase; 0 for less than two of them.
+[[nodiscard]] double median_period(std::span<const double> time_s);
+
 }  // namespace kerf::bench

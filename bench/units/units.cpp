@@ -43,6 +43,8 @@ constexpr std::array symbols{
     Symbol{"kN", 1e3, "N"},
     Symbol{"gf", 1e-3 * standard_gravity, "N"},
     Symbol{"kgf", standard_gravity, "N"},
+    Symbol{"Nm", 1.0, "N·m"},
+    Symbol{"mNm", 1e-3, "N·m"},
     Symbol{"V", 1.0, "V"},
     Symbol{"mV", 1e-3, "V"},
     Symbol{"A", 1.0, "A"},

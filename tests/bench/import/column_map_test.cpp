@@ -13,7 +13,11 @@ namespace {
 using testing::HasSubstr;
 
 const TextLayout punch{.separator = ',',
-                       .columns = {{"t", "ms"}, {"Angle", ""}, {"Load, total", "gf"}, {"x", "mm"}}};
+                       .columns = {{"t", "t", "ms"},
+                                   {"Angle", "Angle", ""},
+                                   {"Load, total [gf]", "Load, total", "gf"},
+                                   {"x", "x", "mm"},
+                                   {"Load [V]", "Load [V]", "V"}}};
 
 std::string refusal(const std::string& map) {
   try {
@@ -39,6 +43,27 @@ TEST(ColumnMap, TakesNumbersNamesFactorsAndTheFilesUnits) {
   EXPECT_EQ(columns[3].unit, (Unit{1e-3, "m"}));
 }
 
+TEST(ColumnMap, TakesAHeadingWithOrWithoutItsUnit) {
+  const auto columns = match_columns(
+      parse_map(R"( time = t , force = "Load, total [gf]", raw = "Load [V]"[1], position = 4 [mm] )"), punch,
+      "punch.csv");
+  EXPECT_EQ(columns[1].index, 2U);
+  EXPECT_EQ(columns[1].unit_text, "gf");
+  EXPECT_EQ(columns[2].index, 4U);
+  EXPECT_EQ(columns[2].unit_text, "1");
+  EXPECT_EQ(columns[3].index, 3U);
+}
+
+TEST(ColumnMap, SuggestsOneByTheUnitsThatAreKnownAndElseByPlace) {
+  EXPECT_EQ(suggest_map(punch), "--map 'time=1[ms],position=4[mm],force=3[gf]'");
+  TextLayout layout{.columns = {{}, {}, {}}};
+  EXPECT_EQ(suggest_map(layout), "--map 'time=1[s],position=2[mm],force=3[N]'");
+  layout.columns.pop_back();
+  EXPECT_EQ(suggest_map(layout), "--map 'position=1[mm],force=2[N]' --rate 100");
+  layout.columns = {{"site", "site", ""}, {"F_N", "F_N", "N"}, {"depth_mm", "depth_mm", "mm"}};
+  EXPECT_EQ(suggest_map(layout), "--map 'position=3[mm],force=2[N]' --rate 100");
+}
+
 TEST(ColumnMap, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal("time"), HasSubstr("'time' has no '='; expected CHANNEL=COLUMN[unit]"));
   EXPECT_THAT(refusal("=1[s]"), HasSubstr("no channel name"));
@@ -58,6 +83,13 @@ TEST(ColumnMap, SaysWhatIsWrongWithIt) {
               HasSubstr("position in 'N' is not a unit of position; expected one of the kind m or rad"));
   EXPECT_THAT(refusal("time=1[mm],position=2[deg]"), HasSubstr("expected one of the kind s"));
   EXPECT_THAT(refusal("time=1[s]"), HasSubstr("maps no position"));
+  EXPECT_THAT(refusal("position=4,force=3[g]"),
+              HasSubstr("expected one of the kind N or N·m; a weight is written gf"));
+  EXPECT_THAT(refusal("position=4,force=3[V]"), HasSubstr("'V' is not a unit of force"));
+  EXPECT_THAT(refusal("position=4,force=3[N],force_commanded=2[N*m]"),
+              HasSubstr("one force is in N and the other in N·m"));
+  EXPECT_THAT(refusal("position=4,velocity=2[deg/s]"),
+              HasSubstr("velocity in rad/s does not fit a position in m"));
 }
 
 }  // namespace

@@ -29,12 +29,15 @@ Read read(const std::string& text, char point = '.') {
 TEST(Decimal, IsTheNearestDoubleBitForBit) {
   std::mt19937_64 random(11);
   std::uniform_int_distribution<int> digits(1, 19);
+  std::uniform_int_distribution<int> few_digits(0, 15);
   std::uniform_int_distribution<int> exponent(-30, 30);
   std::uniform_real_distribution<double> mantissa(-10.0, 10.0);
   for (int i = 0; i < 100'000; ++i) {
     char text[64];
     const double value = mantissa(random);
-    if (i % 3 == 0) {
+    if (i % 3 == 2) {
+      std::snprintf(text, sizeof text, "%.*e", few_digits(random), value * std::pow(10.0, exponent(random)));
+    } else if (i % 3 == 0) {
       std::snprintf(text, sizeof text, "%.*e", digits(random), value * std::pow(10.0, exponent(random)));
     } else {
       std::snprintf(text, sizeof text, "%.*f", digits(random) % 17,
@@ -60,6 +63,18 @@ TEST(Decimal, TakesWhatInstrumentsWrite) {
   EXPECT_EQ(read("3,25e1", ',').value, 32.5);
   EXPECT_TRUE(std::isnan(read("NaN").value));
   EXPECT_EQ(read("-inf").value, -INFINITY);
+  EXPECT_EQ(read("1e00005").value, 1e5);
+  EXPECT_EQ(read("00000000000000000000001.5").value, 1.5);
+}
+
+TEST(Decimal, BeyondTheRangeOfADoubleIsInfinityOrZero) {
+  EXPECT_EQ(read("1e400").value, INFINITY);
+  EXPECT_EQ(read("-1e400").value, -INFINITY);
+  EXPECT_EQ(read("1e99999999999999999999").value, INFINITY);
+  EXPECT_EQ(read("1e-400").value, 0.0);
+  EXPECT_EQ(read("1e-400").length, 6U);
+  EXPECT_EQ(read("4.9e-324").value, 4.9e-324);
+  EXPECT_EQ(read("3,5e-400", ',').length, 8U);
 }
 
 TEST(Decimal, StopsWhereTheNumberEnds) {
@@ -67,6 +82,10 @@ TEST(Decimal, StopsWhereTheNumberEnds) {
   EXPECT_EQ(read("1.5.2").length, 3U);
   EXPECT_EQ(read("1,5", '.').length, 1U);
   EXPECT_EQ(read("1.5", ',').length, 1U);
+  EXPECT_EQ(read("12345678901234567890,5", '.').length, 20U);
+  EXPECT_EQ(read("12345678901234567890.5", ',').length, 20U);
+  EXPECT_EQ(read("1e").length, 1U);
+  EXPECT_EQ(read("1e+").length, 1U);
 }
 
 TEST(Decimal, TakesNothingFromWhatIsNoNumber) {

@@ -69,14 +69,46 @@ TEST(Import, IgnoresWhatStandsInColumnsThatAreNotMapped) {
   EXPECT_TRUE(result.bad_lines.empty());
 }
 
+TEST(Import, ReadsAColumnAsOftenAsItIsMapped) {
+  const auto recording =
+      imported("0,1,2\n1,2,3\n", {}, "time=1[s],position=2[mm],raw=2[1],force=3[N]").recording;
+  EXPECT_THAT(recording.position, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3)));
+  EXPECT_THAT(recording.channels.at(0).values, ElementsAre(1.0, 2.0));
+}
+
 TEST(Import, LeavesOutAndReportsTimesThatRepeatOrGoBack) {
   const Imported result = imported("0,1,2\n1,2,2\n1,3,2\n0.5,4,2\nnan,4,2\n2,5,2\n");
   EXPECT_THAT(result.recording.time, ElementsAre(0.0, 1.0, 2.0));
   EXPECT_THAT(result.recording.position, ElementsAre(DoubleEq(1e-3), DoubleEq(2e-3), DoubleEq(5e-3)));
   EXPECT_THAT(result.misplaced_lines, ElementsAre(3U, 4U, 5U));
-  EXPECT_THAT(result.warnings,
-              testing::Contains(HasSubstr("3 lines repeat a time or go back, and are left out: 3, 4, 5")));
-  EXPECT_EQ(result.recording.events.size(), 1U);
+  EXPECT_THAT(
+      result.warnings,
+      testing::Contains("3 lines are left out, whose time repeats, goes back or is not finite: 3, 4, 5"));
+  ASSERT_EQ(result.recording.events.size(), 1U);
+  EXPECT_EQ(result.recording.events[0].kind, "misplaced_lines");
+  EXPECT_THROW((void)imported("0,1,2\n0,1,2\n", {.strict = true}), std::invalid_argument);
+}
+
+TEST(Import, LosesOneRowToAStampThatLeapsAhead) {
+  const auto text = table(40, [](int i) { return std::to_string(i == 20 ? 99999 : i) + ",1,2"; });
+  const Imported result = imported(text);
+  EXPECT_EQ(result.recording.rows(), 39U);
+  EXPECT_THAT(result.misplaced_lines, ElementsAre(21U));
+}
+
+TEST(Import, DoubtsAClockThatMakesItLeaveOutMuchOfTheFile) {
+  const auto text = table(40, [](int i) { return std::to_string(i / 4) + ",1,2"; });
+  const Imported result = imported(text);
+  EXPECT_THAT(result.recording.time, testing::SizeIs(10));
+  EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("map no time and give --rate HZ")));
+}
+
+TEST(Import, NeedsATimeThatIsFinite) {
+  EXPECT_THROW((void)imported("nan,1,2\nnan,1,2\n"), std::invalid_argument);
+}
+
+TEST(Import, DoesNotCountATimeThatIsMapped) {
+  EXPECT_THROW((void)imported("0,1,2\n1,1,2\n", {.rate_hz = 10.0}), std::invalid_argument);
 }
 
 TEST(Import, KeepsNaNAndInfinity) {
@@ -129,6 +161,10 @@ TEST(Import, ResamplingDownDoesNotAlias) {
 
 TEST(Import, RefusesToResampleOverNaN) {
   EXPECT_THROW((void)imported("0,1,nan\n1,1,2\n2,1,2\n3,1,2\n", {.resample_hz = 2.0}), std::invalid_argument);
+}
+
+TEST(Import, RefusesToResampleToMoreThanMemoryHolds) {
+  EXPECT_THROW((void)imported("0,1,2\n1,1,2\n2,1,2\n", {.resample_hz = 1e13}), std::invalid_argument);
 }
 
 TEST(Import, DoubtsARateThatNoLabHas) {

@@ -63,14 +63,42 @@ TEST_F(ImportProgram, RefusesAMapThatDoesNotFit) {
 }
 
 TEST_F(ImportProgram, ShowsTheColumnsToAUserWhoGaveNoMap) {
-  const Outcome outcome = import("t,Angle [deg]\n0,1\n1,2\n", {});
+  const Outcome outcome = import("t_s,Angle [deg],Load\n0,1,2\n1,2,4\n", {});
   expect_refusal(outcome, "--map is needed");
-  EXPECT_THAT(outcome.errors, HasSubstr("2  Angle [deg]  first value 1"));
+  EXPECT_THAT(outcome.errors, HasSubstr("\n  2  Angle [deg]: 1 2 ...\n"));
+  EXPECT_THAT(outcome.errors, HasSubstr("for example --map 'time=1[s],position=2[deg],force=3[N]'\n"));
+}
+
+TEST_F(ImportProgram, SaysWhichUnitsItTookFromTheFile) {
+  const Outcome outcome =
+      import("t [ms],x [mm],f\n0,1,2\n1,2,4\n", {"--map", "time=t,position=x,force=f[N]", "--json"});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("position: unit mm taken from the file"));
+  const auto columns = nlohmann::json::parse(outcome.output).at("columns");
+  EXPECT_EQ(columns.at("time").at("unit_from_file"), true);
+  EXPECT_EQ(columns.at("position").at("heading"), "x [mm]");
+  EXPECT_EQ(columns.at("force_measured").at("unit_from_file"), false);
+  EXPECT_EQ(columns.at("force_measured").at("number"), 3);
+}
+
+TEST_F(ImportProgram, TakesItsOptionsInAnyOrder) {
+  test::write_text(folder_ / "data.txt", "0,1,2\n1,2,3\n");
+  EXPECT_EQ(run_kerf({"import", "--map", map, (folder_ / "data.txt").string(), "-o", output()}).exit_status,
+            0);
+}
+
+TEST_F(ImportProgram, NeverReplacesTheDataItself) {
+  const std::string data = "0,1,2\n1,2,3\n";
+  test::write_text(folder_ / "data.txt", data);
+  const auto name = (folder_ / "data.txt").string();
+  expect_refusal(run_kerf({"import", name, "--map", map, "-o", name, "--force"}), "-o names the data itself");
+  EXPECT_EQ(test::read_text(name), data);
 }
 
 TEST_F(ImportProgram, RefusesFilesThatAreNoTables) {
   expect_refusal(import(""), "the file is empty");
   expect_refusal(import("no numbers here\nat all\n"), "no line of numbers");
+  expect_refusal(import("t,x\r0,1\r1,2\r"), "carriage return");
   expect_refusal(import(std::string("\x89HDF\r\n\x1a\n\0\0\0\0", 12)), "a binary file");
   expect_refusal(import("0,1,2\n1,2,3\n", {"--map", map, "--strict", "--rate", "-1"}), "--rate");
   expect_refusal(import("0,1,2\nbad\n1,2,3\n", {"--map", map, "--strict"}), "1 lines are not data: 2");

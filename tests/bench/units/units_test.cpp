@@ -30,6 +30,7 @@ TEST(Units, TakeAFactorForRawCounts) {
   EXPECT_EQ(unit.si, "rad");
   EXPECT_DOUBLE_EQ(parse_unit("3.9811e-5 N·m").factor, 3.9811e-5);
   EXPECT_DOUBLE_EQ(parse_unit("-2 mm").factor, -2e-3);
+  EXPECT_EQ(parse_unit("mNm"), (Unit{1e-3, "N·m"}));
   EXPECT_EQ(parse_unit("4"), (Unit{4.0, "1"}));
 }
 
