@@ -71,7 +71,7 @@ void run_demo(const Arguments& arguments, Context& context) {
   check_json["law"] = fit.choice.model;
   write_whole_file(check, check_json.dump(2) + "\n");
   say(fmt::format("   {}: {} of {} deadlines missed", verdict.passed ? "pass" : "FAIL",
-                  result.report.missed(), result.report.executed + result.report.skipped));
+                  result.report.missed(), result.report.ticks()));
   for (const std::string& reason : verdict.reasons) say("   " + reason);
 
   const fs::path report = folder / "report.html";
