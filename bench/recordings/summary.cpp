@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/core.h>
@@ -55,29 +56,99 @@ void add_axes(nlohmann::ordered_json& summary, const schema::Recording& recordin
   }
 }
 
+void add_latency(nlohmann::ordered_json& summary, const std::string& name, const std::vector<float>& values) {
+  if (values.empty()) return;
+  Range range;
+  for (const float value : values) range.add(static_cast<double>(value));
+  add_channel(summary, name, "s", range);
+}
+
+/// Of the periods that make sense: what repeats or goes back is told of apart.
 double median_period(const std::vector<double>& time) {
   std::vector<double> periods;
-  for (std::size_t i = 1; i < time.size(); ++i) periods.push_back(time[i] - time[i - 1]);
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    const double period = time[i] - time[i - 1];
+    if (period > 0.0 && std::isfinite(period)) periods.push_back(period);
+  }
   if (periods.empty()) return 0.0;
   const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
   std::nth_element(periods.begin(), middle, periods.end());
   return *middle;
 }
 
+/// Places where ticks are missing, or where a period is far longer than the others.
+std::size_t count_gaps(const schema::Recording& recording, double period_s) {
+  constexpr double far_longer = 2.5;
+  std::size_t gaps = 0;
+  for (std::size_t i = 1; i < recording.rows(); ++i) {
+    const bool jumps =
+        recording.tick.size() == recording.rows() && recording.tick[i] > recording.tick[i - 1] + 1;
+    const bool pauses = recording.time[i] - recording.time[i - 1] > far_longer * period_s;
+    gaps += jumps || pauses ? 1 : 0;
+  }
+  return gaps;
+}
+
+void add_time_warnings(nlohmann::ordered_json& summary, const std::vector<double>& time) {
+  std::size_t repeated = 0;
+  std::size_t backward = 0;
+  std::size_t not_finite = 0;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    not_finite += std::isfinite(time[i]) ? 0 : 1;
+    repeated += i > 0 && time[i] == time[i - 1] ? 1 : 0;
+    backward += i > 0 && time[i] < time[i - 1] ? 1 : 0;
+  }
+  auto& warnings = summary["warnings"];
+  if (not_finite > 0) warnings.push_back(fmt::format("time holds {} values that are not finite", not_finite));
+  if (repeated > 0) warnings.push_back(fmt::format("time repeats at {} rows", repeated));
+  if (backward > 0) warnings.push_back(fmt::format("time goes back at {} rows", backward));
+}
+
+void add_header(nlohmann::ordered_json& summary, const schema::Recording& recording) {
+  const schema::Header& header = recording.header;
+  summary["schema"] = schema::schema_name;
+  summary["schema_version"] = schema::schema_version;
+  summary["status"] = header.status;
+  summary["created"] = header.created;
+  summary["software"] = header.software;
+  summary["uuid"] = header.uuid;
+  if (!header.source.empty()) summary["source"] = header.source;
+  if (!header.device_uri.empty()) summary["device"] = header.device_uri;
+  if (!header.velocity_derived.empty()) summary["velocity_derived"] = header.velocity_derived;
+  summary["axes"] = nlohmann::ordered_json::array();
+  for (const schema::Axis& axis : recording.axes) {
+    summary["axes"].push_back({{"name", axis.name},
+                               {"position_unit", axis.position_unit},
+                               {"force_unit", axis.force_unit},
+                               {"lever", axis.lever}});
+  }
+  summary["events"] = recording.events.size();
+}
+
+void add_cycles(nlohmann::ordered_json& summary, const schema::Recording& recording) {
+  if (!recording.cycles) return;
+  const schema::Cycles& cycles = *recording.cycles;
+  summary["cycles"] = {{"count", cycles.closing.size()},
+                       {"axis", cycles.axis < recording.axes.size() ? recording.axes[cycles.axis].name : "?"},
+                       {"closing_direction", cycles.closing_direction},
+                       {"contact_position", cycles.contact_position},
+                       {"filter_corner_hz", cycles.filter_corner_hz},
+                       {"phases", cycles.phases.size()},
+                       {"grid_points", cycles.grid.size()}};
+}
+
 }  // namespace
 
 nlohmann::ordered_json recording_summary(const schema::Recording& recording) {
   const double period_s = median_period(recording.time);
-  std::size_t gaps = 0;
-  for (std::size_t i = 1; i < recording.tick.size(); ++i)
-    gaps += recording.tick[i] - recording.tick[i - 1] > 1 ? 1 : 0;
   nlohmann::ordered_json summary{
       {"samples", recording.rows()},
       {"duration_s", recording.time.empty() ? 0.0 : recording.time.back() - recording.time.front()},
       {"rate_hz", period_s > 0.0 ? 1.0 / period_s : 0.0},
-      {"gaps", gaps},
+      {"gaps", count_gaps(recording, period_s)},
       {"channels", nlohmann::ordered_json::object()},
       {"warnings", nlohmann::ordered_json::array()}};
+  add_time_warnings(summary, recording.time);
   const auto position = [](const schema::Axis& axis) { return axis.position_unit; };
   const auto velocity = [](const schema::Axis& axis) { return axis.position_unit + "/s"; };
   const auto force = [](const schema::Axis& axis) { return axis.force_unit; };
@@ -85,12 +156,51 @@ nlohmann::ordered_json recording_summary(const schema::Recording& recording) {
   add_axes(summary, recording, "velocity", recording.velocity, velocity);
   add_axes(summary, recording, "force_commanded", recording.force_commanded, force);
   add_axes(summary, recording, "force_measured", recording.force_measured, force);
+  add_latency(summary, "wake_latency", recording.wake_latency);
+  add_latency(summary, "read_time", recording.read_time);
+  add_latency(summary, "compute_time", recording.compute_time);
+  add_latency(summary, "write_time", recording.write_time);
   for (const schema::Channel& channel : recording.channels) {
     Range range;
     for (const double value : channel.values) range.add(value);
     add_channel(summary, channel.name, channel.unit, range);
   }
+  add_header(summary, recording);
+  add_cycles(summary, recording);
   return summary;
+}
+
+std::string summary_table(const nlohmann::ordered_json& summary) {
+  std::string table;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    table += fmt::format("{:<12}{}\n", name, value);
+  };
+  line("status", summary["status"].get<std::string>());
+  line("created", fmt::format("{} by {}", summary["created"].get<std::string>(),
+                              summary["software"].get<std::string>()));
+  line("uuid", summary["uuid"].get<std::string>());
+  for (const char* origin : {"source", "device"}) {
+    if (summary.contains(origin)) line(origin, summary[origin].get<std::string>());
+  }
+  line("samples", fmt::format("{} over {:.3f} s at {:.6g} Hz", summary["samples"].get<std::size_t>(),
+                              summary["duration_s"].get<double>(), summary["rate_hz"].get<double>()));
+  line("gaps", std::to_string(summary["gaps"].get<std::size_t>()));
+  line("events", std::to_string(summary["events"].get<std::size_t>()));
+  if (summary.contains("cycles")) {
+    const auto& cycles = summary["cycles"];
+    line("cycles",
+         fmt::format("{} along {}", cycles["count"].get<std::size_t>(), cycles["axis"].get<std::string>()));
+  }
+  table += fmt::format("\n{:<28}{:>14}{:>14}  {}\n", "channel", "least", "most", "unit");
+  const auto number = [](const nlohmann::ordered_json& value) {
+    return value.is_null() ? std::string("-") : fmt::format("{:.6g}", value.get<double>() + 0.0);
+  };
+  for (const auto& [name, channel] : summary["channels"].items()) {
+    table += fmt::format("{:<28}{:>14}{:>14}  {}\n", name, number(channel["min"]), number(channel["max"]),
+                         channel["unit"].get<std::string>());
+  }
+  table.pop_back();
+  return table;
 }
 
 }  // namespace kerf::bench

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording.h>
@@ -7,7 +9,12 @@
 namespace kerf::bench {
 
 /// What is in a recording, as `kerf info --json` and `kerf import --json` give it: samples, duration_s,
-/// rate_hz, gaps, channels with unit, min and max, and warnings.
+/// rate_hz (of the median period), gaps (jumps of the tick, and periods beyond 2.5 times the median),
+/// channels with unit, min and max, warnings, and what the file says of itself (schema, status, uuid, axes,
+/// cycles, ...).
 [[nodiscard]] nlohmann::ordered_json recording_summary(const schema::Recording& recording);
+
+/// The same as lines for people.
+[[nodiscard]] std::string summary_table(const nlohmann::ordered_json& summary);
 
 }  // namespace kerf::bench

@@ -1,10 +1,10 @@
 #include "files.h"
 
 #include <cerrno>
+#include <stdexcept>
 #include <utility>
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace kerf::schema {
@@ -16,8 +16,8 @@ namespace {
 
 class Descriptor {
  public:
-  explicit Descriptor(const std::filesystem::path& file)
-      : number_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+  explicit Descriptor(const std::filesystem::path& file, int access = O_RDONLY)
+      : number_(::open(file.c_str(), access | O_CLOEXEC)) {
     if (number_ < 0) throw_errno(file, "open");
   }
   Descriptor(const Descriptor&) = delete;
@@ -49,6 +49,13 @@ void TemporaryFile::commit() {
   path_.clear();
 }
 
+void reserve(const std::filesystem::path& file, std::size_t bytes) {
+  const Descriptor descriptor(file, O_WRONLY);
+  const auto end = static_cast<off_t>(std::filesystem::file_size(file));
+  errno = ::posix_fallocate(descriptor.number(), end, static_cast<off_t>(bytes));
+  if (errno != 0) throw_errno(file, "write");
+}
+
 void synchronise(const std::filesystem::path& file) {
   const Descriptor descriptor(file);
   if (::fsync(descriptor.number()) != 0) throw_errno(file, "write to the disk");
@@ -69,13 +76,19 @@ std::system_error write_error(const std::filesystem::path& file, const h5::Error
 }
 
 void require_readable(const std::filesystem::path& file) {
-  const Descriptor descriptor(file);
-  struct stat status {};
-  if (::fstat(descriptor.number(), &status) != 0) throw_errno(file, "read");
-  if (S_ISDIR(status.st_mode)) {
-    errno = EISDIR;
-    throw_errno(file, "read");
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    auto partial = file;
+    partial += ".partial";
+    const bool was_cut_off = std::filesystem::exists(partial, ignored);
+    throw std::invalid_argument(
+        file.string() + ": there is no such file; " +
+        (was_cut_off ? partial.string() + " holds a recording that was not closed" : "expected a recording"));
   }
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw std::invalid_argument(file.string() + ": not a file; expected a recording");
+  }
+  const Descriptor opened(file);
 }
 
 }  // namespace kerf::schema

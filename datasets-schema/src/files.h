@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -25,6 +26,9 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
+/// Makes a file longer by so many bytes that the disk then has room for. @throws std::system_error
+void reserve(const std::filesystem::path& file, std::size_t bytes);
+
 /// Waits until the file's bytes are on the disk. @throws std::system_error
 void synchronise(const std::filesystem::path& file);
 
@@ -34,7 +38,8 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 /// What a user can act on when writing `file` failed.
 [[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 
-/// @throws std::system_error if the file cannot be opened or is a folder.
+/// @throws std::invalid_argument if there is no such file or it is a folder (the caller named it wrongly),
+///         std::system_error if it cannot be opened.
 void require_readable(const std::filesystem::path& file);
 
 }  // namespace kerf::schema

@@ -108,8 +108,8 @@ void Handle::close() {
 WritableFile WritableFile::create(const std::filesystem::path& file, Format format) {
   auto failure = std::make_unique<int>(0);
   const auto access = sturdy_access(*failure);
-  const auto oldest = format == Format::live_readers ? H5F_LIBVER_V110 : H5F_LIBVER_EARLIEST;
-  call(H5Pset_libver_bounds, access.id(), oldest, H5F_LIBVER_V110);
+  const auto version = format == Format::live_readers ? H5F_LIBVER_V110 : H5F_LIBVER_V18;
+  call(H5Pset_libver_bounds, access.id(), version, version);
   return {std::move(failure), Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()))};
 }
 
@@ -135,12 +135,20 @@ Error WritableFile::cause_of(const Error& error) const {
   return error;
 }
 
+bool is_hdf5(const std::filesystem::path& file) {
+  silence();
+  return H5Fis_hdf5(file.c_str()) > 0;
+}
+
 Handle open_file(const std::filesystem::path& file) {
   try {
     return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-  } catch (const Error&) {
-    silence();
-    const hid_t live = H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT);
+  } catch (const Error& error) {
+    if (std::string_view(error.what()).find("already open for") == std::string_view::npos) throw;
+    // Each attempt to read what is just being written waits twice as long as the one before: 34 ms in all.
+    const auto access = property_list(H5P_FILE_ACCESS);
+    call(H5Pset_metadata_read_attempts, access.id(), 25U);
+    const hid_t live = H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());
     if (live < 0) throw;
     return Handle(live);
   }
@@ -396,8 +404,6 @@ void label(hid_t dataset, unsigned dimension, const std::string& name) {
 
 bool is_scale(hid_t dataset) { return call(H5DSis_scale, dataset) > 0; }
 
-bool is_attached(hid_t dataset, hid_t scale, unsigned dimension) {
-  return call(H5DSis_attached, dataset, scale, dimension) > 0;
-}
+bool has_scale(hid_t dataset, unsigned dimension) { return call(H5DSget_num_scales, dataset, dimension) > 0; }
 
 }  // namespace kerf::schema::h5

@@ -90,6 +90,7 @@ class WritableFile {
 /// did.
 [[nodiscard]] Handle sturdy_access(int& failure);
 
+[[nodiscard]] bool is_hdf5(const std::filesystem::path& file);
 /// Opens for reading, also while it is written or after its writer died.
 [[nodiscard]] Handle open_file(const std::filesystem::path& file);
 
@@ -155,6 +156,6 @@ void make_scale(hid_t dataset, const std::string& name);
 void attach_scale(hid_t dataset, hid_t scale, unsigned dimension);
 void label(hid_t dataset, unsigned dimension, const std::string& name);
 [[nodiscard]] bool is_scale(hid_t dataset);
-[[nodiscard]] bool is_attached(hid_t dataset, hid_t scale, unsigned dimension);
+[[nodiscard]] bool has_scale(hid_t dataset, unsigned dimension);
 
 }  // namespace kerf::schema::h5

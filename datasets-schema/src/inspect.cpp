@@ -8,6 +8,7 @@
 
 #include "files.h"
 #include "layout.h"
+#include "text_heaps.h"
 
 namespace kerf::schema {
 namespace {
@@ -270,11 +271,9 @@ class Inspector {
       if (!h5::is_scale(dataset)) add(path, "no dimension scale", "a dimension scale");
       return;
     }
-    if (!h5::is_dataset(file(), scale_path)) return;
-    const auto scale = h5::open(file(), scale_path);
-    const auto dimension = static_cast<unsigned>(in_cycles ? shape.find('G') : 0);
-    if (h5::describe(dataset).extent.size() > dimension && h5::is_scale(scale.id()) &&
-        h5::is_attached(dataset, scale.id(), dimension)) {
+    const std::size_t dimension = in_cycles ? shape.find('G') : 0;
+    if (h5::describe(dataset).extent.size() > dimension &&
+        h5::has_scale(dataset, static_cast<unsigned>(dimension))) {
       return;
     }
     add(path, "no dimension scale on dimension " + std::to_string(dimension), scale_path);
@@ -317,13 +316,17 @@ const Finding* Inspection::first_fatal() const {
 
 Inspection inspect(const std::filesystem::path& file) {
   require_readable(file);
+  if (!h5::is_hdf5(file)) {
+    throw FormatError(file.string() + ": not an HDF5 file; expected a recording of schema '" +
+                      std::string(schema_name) + '\'');
+  }
   Inspection inspection;
   try {
+    if (!are_text_heaps_sound(file)) throw h5::Error("its texts are overwritten or cut off", 0);
     inspection.file = h5::open_file(file);
     Inspector(inspection, std::filesystem::file_size(file)).run();
   } catch (const h5::Error& error) {
-    throw FormatError(file.string() + ": not a sound HDF5 file (" + error.what() +
-                      "); expected a recording of schema '" + std::string(schema_name) + '\'');
+    throw DamageError(file, error);
   }
   return inspection;
 }

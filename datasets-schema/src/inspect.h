@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <kerf/schema/recording.h>
@@ -25,7 +26,17 @@ struct Inspection {
   [[nodiscard]] const Finding* first_fatal() const;
 };
 
-/// @throws FormatError if it is no HDF5 file, std::system_error if it cannot be opened.
+/// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
+struct DamageError : FormatError {
+  DamageError(const std::filesystem::path& file, const h5::Error& cause)
+      : FormatError(file.string() + ": damaged HDF5 file (" + cause.what() +
+                    "); expected a sound recording, take it from a copy"),
+        reason(cause.what()) {}
+  std::string reason;
+};
+
+/// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file,
+///         std::system_error if it cannot be opened.
 [[nodiscard]] Inspection inspect(const std::filesystem::path& file);
 
 /// Reads what was inspected; nothing in it may be fatal.

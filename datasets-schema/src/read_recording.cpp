@@ -187,7 +187,7 @@ Recording read_recording(const std::filesystem::path& file) {
   try {
     return read_inspected(inspection);
   } catch (const h5::Error& error) {
-    throw FormatError(file.string() + ": damaged (" + error.what() + "); expected a sound recording");
+    throw DamageError(file, error);
   } catch (const std::bad_alloc&) {
     throw FormatError(file.string() + ": more rows than fit into the memory");
   }

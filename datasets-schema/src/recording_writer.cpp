@@ -18,6 +18,8 @@ namespace {
 constexpr double missing_double = std::numeric_limits<double>::quiet_NaN();
 constexpr float missing_float = std::numeric_limits<float>::quiet_NaN();
 
+constexpr std::size_t room_for_status = 65536;
+
 struct Column {
   const layout::Dataset* rule;
   h5::Handle dataset;
@@ -162,6 +164,9 @@ struct RecordingWriter::Implementation {
     } catch (const h5::Error& error) {
       failure = std::make_exception_ptr(write_error(path, file.cause_of(error)));
       std::rethrow_exception(failure);
+    } catch (const std::system_error&) {
+      failure = std::current_exception();
+      throw;
     }
   }
 
@@ -200,7 +205,9 @@ struct RecordingWriter::Implementation {
       columns.clear();
       events.close();
       file.close();
-      // A text of variable length cannot be changed while others follow the file.
+      // A text of variable length cannot be changed while others follow the file. Changed in place, the file
+      // would not survive a disk that is full halfway.
+      reserve(path, room_for_status);
       file = h5::WritableFile::open(path);
       const auto root = h5::open(file.id(), "/");
       h5::delete_attribute(root.id(), "status");

@@ -82,26 +82,36 @@ struct Spread {
   double quantile;
 };
 
-/// The larger of two variances: the residuals' own, stretched by their correlation time, and that of the
-/// scores summed over stretches of time, which also sees errors that stay while the tool stands still
-/// (encoder steps).
+/// Standard deviations by the delete-a-group jackknife, one Newton step for each stretch of time that is left
+/// out.
+Eigen::VectorXd jackknife(const Solution& solution) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(solution.normal.rows());
+  for (const Stretch& stretch : solution.stretches) {
+    const Eigen::VectorXd shift = inverse_of(solution.normal - stretch.normal).matrix * stretch.score;
+    squares += shift.cwiseAbs2();
+  }
+  const auto groups = static_cast<double>(stretch_count);
+  return ((groups - 1.0) / groups * squares).cwiseSqrt();
+}
+
+/// The larger of two deviations: that of the residuals, stretched by their correlation time, and the
+/// jackknife's, which also sees errors that stay while the tool stands still (encoder steps).
 std::vector<Spread> spreads(const Solution& solution, double noise_variance, double effective_samples,
                             double confidence) {
   const Inverse inverse = inverse_of(solution.normal);
-  const Eigen::MatrixXd influence = solution.scores * inverse.matrix;
-  const auto batches = static_cast<double>(score_batches);
-  const double by_residuals =
+  const Eigen::VectorXd by_groups = jackknife(solution);
+  const double t_of_samples =
       student_t(confidence, effective_samples - static_cast<double>(solution.normal.rows()));
-  const double by_scores = student_t(confidence, batches - 1.0);
+  const double t_of_groups = student_t(confidence, static_cast<double>(stretch_count) - 1.0);
   std::vector<Spread> all;
   for (Eigen::Index k = 0; k < solution.normal.rows(); ++k) {
     if (inverse.undetermined[static_cast<std::size_t>(k)]) {
-      all.push_back({.deviation = infinite, .quantile = by_residuals});
+      all.push_back({.deviation = infinite, .quantile = t_of_samples});
       continue;
     }
-    const double first = std::sqrt(noise_variance * inverse.matrix(k, k));
-    const double second = std::sqrt(batches / (batches - 1.0)) * influence.col(k).norm();
-    all.push_back(first >= second ? Spread{first, by_residuals} : Spread{second, by_scores});
+    const double by_samples = std::sqrt(noise_variance * inverse.matrix(k, k));
+    all.push_back(by_samples >= by_groups[k] ? Spread{by_samples, t_of_samples}
+                                             : Spread{by_groups[k], t_of_groups});
   }
   return all;
 }

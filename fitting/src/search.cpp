@@ -34,6 +34,16 @@ Eigen::MatrixXd roughness(Eigen::Index points) {
   return matrix;
 }
 
+/// What of a mask lies in one stretch of the samples.
+Mask stretch_of(const Mask& mask, Eigen::Index stretch) {
+  const auto size = static_cast<Eigen::Index>(mask.size());
+  Mask part(mask.size(), false);
+  for (Eigen::Index i = stretch * size / stretch_count; i < (stretch + 1) * size / stretch_count; ++i) {
+    part[static_cast<std::size_t>(i)] = mask[static_cast<std::size_t>(i)];
+  }
+  return part;
+}
+
 /// The tables that interpolate the samples best, by linear least squares: no search is needed. The Jacobian
 /// is given by its triangular factor, which has the same products.
 Solution solve_tables(const Problem& problem, const Samples& samples, const Mask& mask) {
@@ -43,7 +53,9 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Mask
   const Eigen::Index branches = loop ? 2 : 1;
   Solution solution;
   solution.normal.setZero(points * branches, points * branches);
-  solution.scores.setZero(score_batches, points * branches);
+  solution.stretches.assign(stretch_count,
+                            {.normal = Eigen::MatrixXd::Zero(points * branches, points * branches),
+                             .score = Eigen::VectorXd::Zero(points * branches)});
   solution.converged = true;
   solution.iterations = 1;
   solution.message = "linear least squares";
@@ -62,8 +74,12 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Mask
     const Eigen::VectorXd forces = factor.solve(equations.right);
     solution.values.insert(solution.values.end(), forces.begin(), forces.end());
     solution.normal.block(branch * points, branch * points, points, points) = equations.normal;
-    solution.scores.middleCols(branch * points, points) =
-        hat_scores(samples, mask, grid, mine, forces, score_batches);
+    for (Eigen::Index i = 0; i < stretch_count; ++i) {
+      const HatEquations part = hat_equations(samples, stretch_of(mask, i), grid, mine);
+      Stretch& stretch = solution.stretches[static_cast<std::size_t>(i)];
+      stretch.normal.block(branch * points, branch * points, points, points) = part.normal;
+      stretch.score.segment(branch * points, points) = part.normal * forces - part.right;
+    }
   }
   return solution;
 }

@@ -70,19 +70,6 @@ double error_between(const std::vector<std::vector<Sums>>& branches, std::size_t
   return error;
 }
 
-/// Between which knots a penetration lies, and how far: as the laws do it, held before the first knot, and
-/// with the last trend going on past the last one.
-struct HatPlace {
-  Eigen::Index left;
-  double share;
-};
-
-HatPlace place_among(const std::vector<double>& knots, double penetration) {
-  const double x = std::max(penetration, knots.front());
-  const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, x);
-  return {.left = above - knots.begin() - 1, .share = (x - *(above - 1)) / (*above - *(above - 1))};
-}
-
 }  // namespace
 
 std::vector<bool> on_branch(const Samples& samples, const BranchOf& branch) {
@@ -136,27 +123,16 @@ HatEquations hat_equations(const Samples& samples, const Mask& mask, const std::
                          .right = Eigen::VectorXd::Zero(count)};
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!mask[i] || !mine[i]) continue;
-    const HatPlace place = place_among(knots, samples.motion[i].penetration);
-    const Eigen::Vector2d weights(1.0 - place.share, place.share);
-    equations.normal.block<2, 2>(place.left, place.left) += weights * weights.transpose();
-    equations.right.segment<2>(place.left) += weights * samples.force[i];
+    // As the laws do it: held before the first knot, and the last trend goes on past the last one.
+    const double x = std::max(samples.motion[i].penetration, knots.front());
+    const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, x);
+    const Eigen::Index left = above - knots.begin() - 1;
+    const double share = (x - *(above - 1)) / (*above - *(above - 1));
+    const Eigen::Vector2d weights(1.0 - share, share);
+    equations.normal.block<2, 2>(left, left) += weights * weights.transpose();
+    equations.right.segment<2>(left) += weights * samples.force[i];
   }
   return equations;
-}
-
-Eigen::MatrixXd hat_scores(const Samples& samples, const Mask& mask, const std::vector<double>& knots,
-                           const BranchOf& branch, const Eigen::VectorXd& forces, Eigen::Index batches) {
-  const auto mine = on_branch(samples, branch);
-  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(batches, forces.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!mask[i] || !mine[i]) continue;
-    const HatPlace place = place_among(knots, samples.motion[i].penetration);
-    const Eigen::RowVector2d weights(1.0 - place.share, place.share);
-    const double residual = weights.dot(forces.segment<2>(place.left)) - samples.force[i];
-    const auto batch = static_cast<Eigen::Index>(i) * batches / static_cast<Eigen::Index>(samples.size());
-    scores.block<1, 2>(batch, place.left) += weights * residual;
-  }
-  return scores;
 }
 
 std::vector<double> forces_at_knots(const Samples& samples, const Mask& mask,

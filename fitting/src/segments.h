@@ -34,11 +34,6 @@ struct HatEquations {
   Eigen::MatrixXd normal;
   Eigen::VectorXd right;
 };
-/// Sums of J^T r over stretches of samples, for the forces at the knots as parameters.
-[[nodiscard]] Eigen::MatrixXd hat_scores(const Samples& samples, const Mask& mask,
-                                         const std::vector<double>& knots, const BranchOf& branch,
-                                         const Eigen::VectorXd& forces, Eigen::Index batches);
-
 [[nodiscard]] HatEquations hat_equations(const Samples& samples, const Mask& mask,
                                          const std::vector<double>& knots, const BranchOf& branch);
 

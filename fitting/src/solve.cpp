@@ -97,7 +97,7 @@ void silence_log() {
   (void)once;
 }
 
-/// Normal matrix and scores at the solution.
+/// Normal matrix of the solution, and what each stretch contributes.
 void differentiate_at(const ceres::CostFunction& cost, const std::vector<double>& free, Solution& solution) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Index rows = cost.num_residuals();
@@ -107,13 +107,14 @@ void differentiate_at(const ceres::CostFunction& cost, const std::vector<double>
   const double* blocks[] = {free.data()};
   double* jacobians[] = {jacobian.data()};
   if (!cost.Evaluate(blocks, residuals.data(), jacobians)) jacobian.setZero();
-  solution.normal = jacobian.transpose() * jacobian;
-  solution.scores.setZero(score_batches, columns);
-  for (Eigen::Index batch = 0; batch < score_batches; ++batch) {
-    const Eigen::Index begin = batch * rows / score_batches;
-    const Eigen::Index count = (batch + 1) * rows / score_batches - begin;
-    solution.scores.row(batch) =
-        residuals.segment(begin, count).transpose() * jacobian.middleRows(begin, count);
+  solution.normal.setZero(columns, columns);
+  for (Eigen::Index i = 0; i < stretch_count; ++i) {
+    const Eigen::Index begin = i * rows / stretch_count;
+    const Eigen::Index count = (i + 1) * rows / stretch_count - begin;
+    const auto part = jacobian.middleRows(begin, count);
+    solution.stretches.push_back(
+        {.normal = part.transpose() * part, .score = part.transpose() * residuals.segment(begin, count)});
+    solution.normal += solution.stretches.back().normal;
   }
 }
 

@@ -20,14 +20,20 @@ struct Problem {
   [[nodiscard]] std::size_t free_count() const;
 };
 
-/// Into how many stretches of time the scores of a solution are summed up.
-inline constexpr Eigen::Index score_batches = 20;
+/// What a stretch of the samples contributes to a solution: its part of J^T J and of J^T r.
+struct Stretch {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd score;
+};
+
+/// Into how many stretches of equal length the samples are divided.
+inline constexpr Eigen::Index stretch_count = 20;
 
 /// Where a search ended.
 struct Solution {
   std::vector<double> values;  ///< of all parameters, in SI
   Eigen::MatrixXd normal;      ///< J^T J by the free parameters on their own scale (log or linear)
-  Eigen::MatrixXd scores;      ///< sums of J^T r over each of `score_batches` stretches of samples, one a row
+  std::vector<Stretch> stretches;
   double sum_of_squares = 0.0;
   bool converged = false;
   int iterations = 0;

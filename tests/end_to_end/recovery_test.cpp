@@ -30,11 +30,11 @@ std::string scene_of(const std::string& model, const std::string& parameters,
          parameters + "\n" + fidelity;
 }
 
-schema::Recording cut(const Scene& scene, int seed) {
+schema::Recording cut(const Scene& scene, int seed, double seconds) {
   const test::TemporaryFolder folder;
   const std::atomic<bool> never{false};
   (void)run_on_device({.device_uri = "sim:scissors?seed=" + std::to_string(seed),
-                       .seconds = 10.0,
+                       .seconds = seconds,
                        .virtual_time = true,
                        .scene = scene,
                        .record = folder / "cut.h5"},
@@ -45,10 +45,11 @@ schema::Recording cut(const Scene& scene, int seed) {
 /// How often each parameter's interval held the truth, which may depend on the estimate (a knot that is held
 /// at the end of the data has its own true force).
 template <typename Truth>
-std::vector<int> hits(const Scene& scene, const FitRecordingOptions& options, const Truth& truth) {
+std::vector<int> hits(const Scene& scene, const FitRecordingOptions& options, const Truth& truth,
+                      double seconds = 10.0) {
   std::vector<int> counts;
   for (int seed = 1; seed <= seeds; ++seed) {
-    const RecordingFit fit = fit_recording(cut(scene, seed), options);
+    const RecordingFit fit = fit_recording(cut(scene, seed, seconds), options);
     EXPECT_EQ(fit.laws.size(), 1U) << (fit.warnings.empty() ? "" : fit.warnings.front());
     if (fit.laws.empty()) return {};
     const auto& estimates = fit.laws.front().result.parameters;
@@ -78,12 +79,13 @@ TEST(Recovery, OfKelvin) {
 
 TEST(Recovery, OfExponential) {
   const Scene scene = parse_scene(scene_of("exponential",
-                                           "amplitude = { value = 0.05, unit = \"N\" }\n"
-                                           "exponent = { value = 1.2, unit = \"1\" }\n"
+                                           "amplitude = { value = 0.1, unit = \"N\" }\n"
+                                           "exponent = { value = 0.8, unit = \"1\" }\n"
                                            "viscosity = { value = 0.1, unit = \"N·s/rad\" }"),
                                   "scene");
-  const std::vector<double> truth{0.05, 1.2, 0.1};
-  const auto counts = hits(scene, only("exponential"), [&](const auto&, std::size_t i) { return truth[i]; });
+  const std::vector<double> truth{0.1, 0.8, 0.1};
+  const auto counts = hits(
+      scene, only("exponential"), [&](const auto&, std::size_t i) { return truth[i]; }, 20.0);
   for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_GE(counts[i], least_hits) << "parameter " << i;
 }
 

@@ -14,7 +14,9 @@ struct Violation {
 };
 
 /// Checks a file against the schema and lists every violation; none means that it is valid.
-/// @throws FormatError if it is no HDF5 file at all, std::system_error if it cannot be opened.
+/// A `NAME.partial` may have columns of different lengths, as they grow one after the other.
+/// @throws FormatError if it is no HDF5 file at all, std::invalid_argument if there is no such file,
+///         std::system_error if it cannot be opened.
 [[nodiscard]] std::vector<Violation> validate(const std::filesystem::path& file);
 
 /// The schema as Markdown tables, made from the same table that the writer and the validator use.

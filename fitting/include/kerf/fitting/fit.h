@@ -77,11 +77,11 @@ struct FitResult {
 /// interpolation. Laws with two branches are fitted to cycles as loops, and are judged without their
 /// rendering aids.
 ///
-/// Intervals are Student's t on the larger of two covariances: s^2 tau (J^T J)^-1, where tau is the
-/// integrated autocorrelation time of the residuals (Sokal's window), so that n / tau samples count; and the
-/// sandwich (J^T J)^-1 S (J^T J)^-1 with S from the scores J^T r of 20 stretches of time, which also sees
-/// errors that last while the tool stands still. Logarithmic parameters get their interval on the log scale.
-/// Non-convergence is a value of the result.
+/// Intervals are Student's t on the larger of two variances: that of s^2 tau (J^T J)^-1, where tau is the
+/// integrated autocorrelation time of the residuals (Sokal's window), so that n / tau samples count; and that
+/// of the jackknife over 20 stretches of time, which also sees errors that last while the tool stands still,
+/// such as encoder steps. Logarithmic parameters get their interval on the log scale. Non-convergence is a
+/// value of the result.
 /// @throws std::invalid_argument for an unknown law or option, or a series that cannot be fitted at all
 /// (fewer samples
 ///         than parameters, constant position, samples that are not finite), saying which.

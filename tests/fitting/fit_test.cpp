@@ -1,0 +1,138 @@
+#include <cmath>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/fitting/fit.h>
+
+#include "fitting/strokes.h"
+
+namespace kerf::fitting {
+namespace {
+
+using models::Law;
+using test::Strokes;
+
+const Law kelvin = Law::make("kelvin", std::vector{5.0, 8.0, 1.6});
+const Law exponential = Law::make("exponential", std::vector{0.2, 0.5, 0.3});
+const Law loop = Law::make("piecewise", std::vector{0.0, 0.15, 0.4, 0.2, 2.0, 2.5, -0.1, 0.5, 2.0},
+                           {{"segments", 2.0}, {"loop", true}});
+
+void expect_values(const FitResult& result, const std::vector<double>& truth, double relative) {
+  ASSERT_EQ(result.parameters.size(), truth.size());
+  EXPECT_TRUE(result.converged) << result.message;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_NEAR(result.parameters[i].value, truth[i], relative * std::max(std::abs(truth[i]), 0.1))
+        << result.parameters[i].info.name;
+  }
+}
+
+TEST(Fit, RecoversKelvinExactlyWithoutNoise) {
+  const auto result = fit("kelvin", Strokes(4000, 0.0, kelvin).series());
+  expect_values(result, kelvin.values(), 1e-6);
+  EXPECT_NEAR(result.rmse, 0.0, 1e-7);
+  EXPECT_NEAR(result.r2, 1.0, 1e-12);
+}
+
+TEST(Fit, RecoversExponentialExactlyWithoutNoise) {
+  expect_values(fit("exponential", Strokes(4000, 0.0, exponential).series()), exponential.values(), 1e-6);
+}
+
+TEST(Fit, RecoversTheKnotsAndBranchesOfALoop) {
+  const auto result =
+      fit("piecewise", Strokes(8000, 0.0, loop).series(true), {.law_options = {{"segments", 2.0}}});
+  expect_values(result, loop.values(), 1e-3);
+  EXPECT_EQ(result.free_parameters, 7U) << "the ends of the knots are held";
+}
+
+TEST(Fit, RecoversATableExactlyOnItsGrid) {
+  const Law table =
+      Law::make("recording", std::vector{0.1, 1.0, 0.8, 2.0, 1.5}, {{"points", 5.0}, {"last", 0.4}});
+  const auto result = fit("recording", Strokes(4000, 0.0, table).series(),
+                          {.law_options = {{"points", 5.0}, {"first", 0.0}, {"last", 0.4}}});
+  expect_values(result, table.values(), 1e-5);
+}
+
+TEST(Fit, IsTheSameAtAnySamplingRate) {
+  // A relaxation is a ramp and a hold: piecewise linear, so exact at 10 Hz as at 1 kHz.
+  for (const double rate_hz : {10.0, 1000.0}) {
+    std::vector<double> time, x, v, f;
+    Law::State state = kelvin.initial_state();
+    for (int i = 0; i <= static_cast<int>(4.0 * rate_hz); ++i) {
+      time.push_back(i / rate_hz);
+      x.push_back(std::min(0.2 * time.back(), 0.2));
+      v.push_back(time.back() < 1.0 ? 0.2 : 0.0);
+      f.push_back(kelvin.step(state, {x.back(), v.back()}, 1.0 / rate_hz).force);
+    }
+    expect_values(fit("kelvin", {.time_s = time, .penetration = x, .velocity = v, .force = f}),
+                  kelvin.values(), 1e-6);
+  }
+}
+
+TEST(Fit, ReportsTheNoiseItWasGiven) {
+  const auto result = fit("kelvin", Strokes(8000, 0.02, kelvin).series(true));
+  EXPECT_NEAR(result.rmse, 0.02, 1e-3);
+  EXPECT_NEAR(result.cv_rmse, 0.02, 1e-3);
+  EXPECT_LT(result.jnd_fraction, 0.02);
+  EXPECT_LT(result.correlation_time, 1.5);
+  for (const Estimate& estimate : result.parameters) {
+    EXPECT_GT(estimate.std_error, 0.0);
+    EXPECT_LT(estimate.lower, estimate.value);
+    EXPECT_GT(estimate.upper, estimate.value);
+  }
+}
+
+TEST(Fit, AllowsForCorrelatedResiduals) {
+  // First-order noise with a correlation of 0.9 from sample to sample: (1 + 0.9) / (1 - 0.9) = 19 samples.
+  Strokes strokes(20000, 0.0, kelvin);
+  Strokes white(20000, 0.02, kelvin, 3);
+  double noise = 0.0;
+  for (std::size_t i = 0; i < strokes.force.size(); ++i) {
+    noise = 0.9 * noise + (white.force[i] - strokes.force[i]);
+    strokes.force[i] += noise;
+  }
+  EXPECT_NEAR(fit("kelvin", strokes.series()).correlation_time, 19.0, 4.0);
+}
+
+TEST(Fit, SaysWhatTheDataDoNotTell) {
+  // Indentation step by step, read when everything stands still: there is nothing to learn of the viscosity.
+  Strokes strokes(1000, 0.0, exponential);
+  for (std::size_t i = 0; i < 1000; ++i) {
+    strokes.velocity[i] = 0.0;
+    Law::State state = exponential.initial_state();
+    strokes.force[i] = exponential.step(state, {strokes.penetration[i], 0.0}, 1e-3).force;
+  }
+  const auto result = fit("exponential", strokes.series());
+  EXPECT_THAT(result.warnings, testing::Contains("the data do not determine 'viscosity'"));
+  EXPECT_TRUE(std::isinf(result.parameters[2].std_error));
+  EXPECT_NEAR(result.parameters[0].value, 0.2, 1e-6);
+}
+
+TEST(Choice, TakesTheSimplestLawWithinTheJnd) {
+  const Strokes strokes(8000, 0.02, kelvin);
+  std::vector<FitResult> results;
+  for (const auto* model : {"recording", "piecewise", "exponential", "kelvin"}) {
+    results.push_back(fit(model, strokes.series(true)));
+  }
+  EXPECT_EQ(choose_simplest(results, strokes.series(), {}).model, "kelvin");
+  const Choice strict =
+      choose_simplest(results, strokes.series(), {.weber_fraction = 0.0, .threshold_n = 1e-4});
+  EXPECT_EQ(strict.model, "kelvin");
+  EXPECT_THAT(strict.why, testing::HasSubstr("no law stays within the JND"));
+}
+
+TEST(Line, IsTheLeastThatALawHasToBeat) {
+  const Law spring = Law::make("piecewise", std::vector{0.0, 0.4, 0.0, 2.0}, {{"segments", 1.0}});
+  EXPECT_NEAR(line_rmse(Strokes(4000, 0.0, spring).series()), 0.0, 1e-12);
+  EXPECT_GT(line_rmse(Strokes(4000, 0.0, kelvin).series()), 0.1);
+}
+
+TEST(ForceJnd, IsTheLargerOfAFractionAndAThreshold) {
+  EXPECT_DOUBLE_EQ(ForceJnd{}.at(5.0), 0.35);
+  EXPECT_DOUBLE_EQ(ForceJnd{}.at(-5.0), 0.35);
+  EXPECT_DOUBLE_EQ(ForceJnd{}.at(0.1), 0.05);
+}
+
+}  // namespace
+}  // namespace kerf::fitting

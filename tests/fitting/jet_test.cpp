@@ -1,0 +1,64 @@
+#include <cmath>
+#include <vector>
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <kerf/models/law.h>
+
+namespace kerf::models {
+namespace {
+
+constexpr int most = 9;
+using Jet = ceres::Jet<double, most>;
+
+/// The force after some ticks of a stroke, of a law on any scalar.
+template <template <typename> typename L, typename T>
+T force_after(const std::vector<T>& values, const Options& options) {
+  const auto law = L<T>::make(values, options);
+  typename L<T>::State state;
+  T force(0.0);
+  for (int tick = 0; tick <= 300; ++tick) {
+    const double phase = 4e-3 * tick;
+    force = law.step(state, {.penetration = 0.2 * (1.0 - std::cos(phase)), .velocity = 0.8 * std::sin(phase)},
+                     1e-3);
+  }
+  return force;
+}
+
+/// The dual numbers of a fit against central differences of the rendered law.
+template <template <typename> typename L>
+void expect_exact_derivatives(const std::vector<double>& values, const Options& options = {}) {
+  std::vector<Jet> jets;
+  for (std::size_t i = 0; i < values.size(); ++i) jets.emplace_back(values[i], static_cast<int>(i));
+  const Jet force = force_after<L, Jet>(jets, options);
+  EXPECT_NEAR(force.a, (force_after<L, double>(values, options)), 1e-14);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double step = 1e-6 * std::max(std::abs(values[i]), 0.1);
+    auto above = values;
+    auto below = values;
+    above[i] += step;
+    below[i] -= step;
+    const double slope =
+        (force_after<L, double>(above, options) - force_after<L, double>(below, options)) / (2.0 * step);
+    EXPECT_NEAR(force.v[static_cast<int>(i)], slope, 1e-6 * std::max(1.0, std::abs(slope)))
+        << "parameter " << i;
+  }
+}
+
+TEST(Derivatives, OfKelvin) { expect_exact_derivatives<Kelvin>({5.0, 8.0, 1.6}); }
+TEST(Derivatives, OfKelvinByEuler) {
+  expect_exact_derivatives<Kelvin>({5.0, 8.0, 1.6}, {{"integrator", std::string("euler")}});
+}
+TEST(Derivatives, OfExponential) { expect_exact_derivatives<Exponential>({0.2, 0.5, 0.3}); }
+TEST(Derivatives, OfPiecewise) {
+  expect_exact_derivatives<Piecewise>({0.0, 0.15, 0.4, 0.2, 2.0, 2.5, -0.1, 0.5, 2.0},
+                                      {{"segments", 2.0}, {"loop", true}, {"reversal_scale", 2.0}});
+}
+TEST(Derivatives, OfRecording) {
+  expect_exact_derivatives<Recording>({0.2, 2.0, 2.5, -0.1, 0.5, 2.0},
+                                      {{"points", 3.0}, {"last", 0.4}, {"loop", true}});
+}
+
+}  // namespace
+}  // namespace kerf::models
