@@ -100,7 +100,7 @@ TEST_F(RealText, OfAPeelerKeepsItsLabelsAndTorques) {
       imported("peeling/demo4.csv", "time=t_s,position=z_m,force=fz_N,torque=tz_Nm,label=label[1]");
   EXPECT_EQ(result.recording.rows(), 13820U);
   EXPECT_EQ(result.recording.channels.at(0).unit, "N·m");
-  EXPECT_EQ(highest(result.recording.channels.at(1).values), 5.0);
+  EXPECT_EQ(highest(result.recording.channels.at(1).values), 4.0);
   EXPECT_THAT(result.warnings, IsEmpty());
 }
 
