@@ -112,7 +112,7 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]")
       ->check(CLI::PositiveNumber);
   verb.add_option("--velocity-window", arguments->options.velocity_window_s,
-                  "Window of the derived velocity [s] (default: 0.02, and at least five samples)")
+                  "Window of the derived velocity [s] (default: 0.02, within 5 to 401 samples)")
       ->check(CLI::PositiveNumber);
   verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
   verb.add_flag("--force", arguments->force, "Replace an existing recording");

@@ -150,6 +150,12 @@ void take_time(Imported& imported, Rows& rows, const std::string& name, const Im
   for (double& t : time) t = (t - start) * column->unit.factor;
 }
 
+double velocity_window(const ImportOptions& options, double period_s) {
+  constexpr double usual_s = 0.02;
+  if (options.velocity_window_s > 0.0) return options.velocity_window_s;
+  return period_s > 0.0 ? std::clamp(usual_s, 4.0 * period_s, 400.0 * period_s) : usual_s;
+}
+
 void take_channels(Imported& imported, Rows& rows, const ImportOptions& options, double period_s) {
   schema::Recording& recording = imported.recording;
   for (std::size_t i = 0; i < imported.columns.size(); ++i) {
@@ -171,8 +177,7 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
     }
   }
   if (recording.velocity.empty()) {
-    const double window_s =
-        options.velocity_window_s > 0.0 ? options.velocity_window_s : std::max(0.02, 4.0 * period_s);
+    const double window_s = velocity_window(options, period_s);
     recording.velocity = differentiate(recording.time, recording.position, window_s);
     recording.header.velocity_derived =
         fmt::format("slope of a parabola fitted to the positions within {:.4g} s, zero phase", window_s);

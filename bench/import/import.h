@@ -16,7 +16,7 @@ struct ImportOptions {
   std::vector<MapEntry> map;
   double rate_hz = 0.0;            ///< of a file without a time column; 0: there is one
   double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
-  double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, and at least five samples
+  double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, within 5 to 401 samples
   bool strict = false;             ///< refuse a file that has lines which are not data
 };
 

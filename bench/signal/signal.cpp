@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 #include <stdexcept>
+#include <thread>
 
 #include <fmt/core.h>
 
@@ -102,6 +103,22 @@ void fit_slopes(std::span<const double> time_s, std::span<const double> values, 
   }
 }
 
+/// The slopes of all samples, a long series in stretches on all cores: each is the same whoever finds it.
+void fit_slopes_on_all_cores(std::span<const double> time_s, std::span<const double> values, double window_s,
+                             std::vector<double>& slopes) {
+  constexpr std::size_t worth_a_thread = 50'000;
+  const std::size_t count = values.size();
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  const std::size_t parts = std::clamp<std::size_t>(count / worth_a_thread, 1, cores);
+  const auto fit_part = [&](std::size_t part) {
+    fit_slopes(time_s, values, window_s, {.begin = part * count / parts, .end = (part + 1) * count / parts},
+               slopes);
+  };
+  std::vector<std::jthread> threads;
+  for (std::size_t part = 1; part < parts; ++part) threads.emplace_back(fit_part, part);
+  fit_part(0);
+}
+
 /// How many samples a window reaches to each side if the times are uniform; 0 if they are not.
 std::size_t uniform_reach(std::span<const double> time_s, double window_s) {
   if (time_s.size() < 2) return 0;
@@ -164,7 +181,7 @@ std::vector<double> differentiate(std::span<const double> time_s, std::span<cons
   std::vector<double> slopes(values.size(), 0.0);
   const std::size_t reach = uniform_reach(time_s, window_s);
   if (reach == 0) {
-    fit_slopes(time_s, values, window_s, {.begin = 0, .end = values.size()}, slopes);
+    fit_slopes_on_all_cores(time_s, values, window_s, slopes);
   } else {
     fit_slopes(time_s, values, window_s, {.begin = 0, .end = reach}, slopes);
     convolve_slopes(time_s, values, reach, slopes);

@@ -103,6 +103,11 @@ TEST(Import, DoubtsAClockThatMakesItLeaveOutMuchOfTheFile) {
   EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("map no time and give --rate HZ")));
 }
 
+TEST(Import, TakesASingleRow) {
+  const auto recording = imported("0,1,2\n").recording;
+  EXPECT_THAT(recording.velocity, ElementsAre(0.0));
+}
+
 TEST(Import, NeedsATimeThatIsFinite) {
   EXPECT_THROW((void)imported("nan,1,2\nnan,1,2\n"), std::invalid_argument);
 }
