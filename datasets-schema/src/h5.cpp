@@ -119,7 +119,11 @@ WritableFile WritableFile::open(const std::filesystem::path& file) {
   return {std::move(failure), Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()))};
 }
 
-void WritableFile::start_live() { call(H5Fstart_swmr_write, id()); }
+void WritableFile::start_live() {
+  call(H5Fflush, id(), H5F_SCOPE_LOCAL);
+  check();
+  call(H5Fstart_swmr_write, id());
+}
 
 void WritableFile::check() const {
   if (failure_ && *failure_ != 0) throw Error(std::strerror(*failure_), *failure_);

@@ -124,6 +124,8 @@ Handle sturdy_access(int& failure) {
   Handle access(call(H5Pcreate, H5P_FILE_ACCESS));
   const Settings settings{&failure};
   call(H5Pset_driver, access.id(), driver, &settings);
+  // Nobody else writes the file: what cannot be read back at once was dropped, and waiting does not bring it.
+  call(H5Pset_metadata_read_attempts, access.id(), 1U);
   return access;
 }
 

@@ -270,7 +270,7 @@ std::uint64_t record_until_full(const std::filesystem::path& file, rlim_t bytes)
 }
 
 TEST(FullDisk, KeepsWhatWasFlushedOfALiveRecording) {
-  for (rlim_t bytes = 2'000; bytes < 500'000; bytes += 23'456) {
+  for (rlim_t bytes = 1'000; bytes < 500'000; bytes += 13'477) {
     const test::TemporaryFolder folder;
     const auto flushed = record_until_full(folder / "r.h5", bytes);
     if (flushed == 0) continue;
