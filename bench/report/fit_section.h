@@ -16,6 +16,7 @@ namespace kerf::bench {
 /// The laws compared, drawn over the data, their residuals and parameters. `fits` is the JSON of `kerf fit`,
 /// whose law files are in `folder`. @throws std::invalid_argument if the JSON lacks what `kerf fit` writes.
 [[nodiscard]] std::string fit_section(const schema::Recording& recording, std::size_t axis,
-                                      const nlohmann::ordered_json& fits, const std::filesystem::path& folder);
+                                      const nlohmann::ordered_json& fits,
+                                      const std::filesystem::path& folder);
 
 }  // namespace kerf::bench

@@ -106,7 +106,8 @@ TEST(Kelvin, ForwardEulerDivergesPastTwiceTheRelaxationTime) {
       .parallel_stiffness = 8.0, .series_stiffness = 700.0, .damping = 0.3, .euler = true};
   ASSERT_GT(1e-3, 2.0 * fast.relaxation_time());
   // The sign alternates from tick to tick, and a negative force is not felt.
-  EXPECT_GT(std::max(force_at(fast, ramp_and_hold, 3.0, 1e-3), force_at(fast, ramp_and_hold, 3.001, 1e-3)), 1.0);
+  EXPECT_GT(std::max(force_at(fast, ramp_and_hold, 3.0, 1e-3), force_at(fast, ramp_and_hold, 3.001, 1e-3)),
+            1.0);
   EXPECT_NEAR(force_at(fast, ramp_and_hold, 3.0, 1e-5), 8.0 * 5e-3, 1e-6);
 }
 

@@ -1,11 +1,11 @@
 #include "files/whole_file.h"
 
-#include <gtest/gtest.h>
-
 #include <iterator>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+
+#include <gtest/gtest.h>
 
 #include "support/program.h"
 
