@@ -180,8 +180,9 @@ Measured read_parameters(const Place& place, const toml::table& root,
                          const std::string& position_unit) {
   const toml::table& table = place.table(root, "parameters");
   for (const auto& [key, node] : table) {
+    const std::string_view name = key.str();
     if (std::none_of(infos.begin(), infos.end(),
-                     [&](const auto& info) { return group_of(info.name) == key.str(); })) {
+                     [&](const auto& info) { return group_of(info.name) == name; })) {
       std::vector<std::string_view> known;
       for (const auto& info : infos) {
         if (known.empty() || known.back() != group_of(info.name)) known.push_back(group_of(info.name));

@@ -33,7 +33,8 @@ json read_json(const std::filesystem::path& file) {
 
 std::string channel_table(const json& summary) {
   std::vector<std::vector<std::string>> rows{{"channel", "unit", "smallest", "largest"}};
-  for (const auto& [name, channel] : summary.at("channels").items()) {
+  for (const auto& [name, value] : summary.at("channels").items()) {
+    const json& channel = value;
     const auto number = [&](const char* key) {
       return channel.at(key).is_null() ? std::string("-")
                                        : fmt::format("{:.5g}", channel.at(key).get<double>());

@@ -12,6 +12,8 @@ template <typename... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // Clang 14 does not deduce it
 
 template <typename T>
 std::vector<T> gather(std::span<const Axis> axes, T Axis::*member) {
@@ -65,7 +67,8 @@ bool is_in_table(std::string_view object, std::string_view name) {
 void write_origin(hid_t file, const std::string& path, const Properties& properties, const Sources& sources) {
   const auto group = h5::create_group(file, path);
   write_attributes(group.id(), path, sources);
-  for (const auto& [name, value] : properties) {
+  for (const auto& property : properties) {
+    const std::string& name = property.first;
     if (is_in_table(path, name)) {
       throw std::invalid_argument(path + ": the property '" + name +
                                   "' has the name of an attribute of the schema");
@@ -74,7 +77,7 @@ void write_origin(hid_t file, const std::string& path, const Properties& propert
                             h5::write_attribute(group.id(), name, h5::native<double>(), {}, &number);
                           },
                           [&](const std::string& text) { h5::write_attribute(group.id(), name, text); }},
-               value);
+               property.second);
   }
 }
 

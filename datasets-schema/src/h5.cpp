@@ -181,7 +181,7 @@ bool is_dataset(hid_t parent, const std::string& path) { return is_kind(parent, 
 
 Handle create_group(hid_t parent, const std::string& path) {
   const auto creation = property_list(H5P_GROUP_CREATE);
-  call(H5Pset_link_creation_order, creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  call(H5Pset_link_creation_order, creation.id(), 0U | H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   return Handle(
       call(H5Gcreate2, parent, path.c_str(), utf8_names(H5P_LINK_CREATE).id(), creation.id(), H5P_DEFAULT));
 }

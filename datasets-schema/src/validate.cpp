@@ -49,10 +49,10 @@ class ContentCheck {
     for (const auto& [name, text] :
          {std::pair{"created", header.created}, std::pair{"uuid", header.uuid},
           std::pair{"software", header.software}, std::pair{"status", header.status}}) {
-      const bool told = std::ranges::any_of(violations_, [&](const Violation& violation) {
-        return violation.where == "/ attribute '" + std::string(name) + "'";
-      });
-      if (text.empty() && !told) add("/ attribute '" + std::string(name) + "'", "an empty text", "a text");
+      const std::string where = "/ attribute '" + std::string(name) + "'";
+      const bool told = std::ranges::any_of(
+          violations_, [&](const Violation& violation) { return violation.where == where; });
+      if (text.empty() && !told) add(where, "an empty text", "a text");
     }
   }
 
