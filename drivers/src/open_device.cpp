@@ -13,6 +13,11 @@ std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundi
   throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
 }
 
+std::unique_ptr<Device> open_device(std::string_view uri) {
+  Surroundings nothing;
+  return open_device(uri, std::move(nothing));
+}
+
 std::vector<DeviceInfo> list_devices() { return {open_device("sim:scissors")->info()}; }
 
 }  // namespace kerf::drivers

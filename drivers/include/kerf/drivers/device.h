@@ -87,7 +87,8 @@ struct Surroundings {
 
 /// Opens a device by URI, for example "sim:scissors?seed=3&noise=off".
 /// @throws DeviceError with a sentence that says what is missing and how to mend it.
-[[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings = {});
+[[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings);
+[[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri);
 
 /// The devices that can be opened here now, simulated ones first.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
