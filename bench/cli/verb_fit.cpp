@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include "cli/verbs.h"
-#include "files/whole_file.h"
 #include "fits/fit_recording.h"
 #include "recordings/axes.h"
 
@@ -37,7 +36,7 @@ void print_table(const RecordingFit& fit) {
 
 void run_fit(const Arguments& arguments, Context& context) {
   const std::filesystem::path folder = arguments.output;
-  refuse_to_replace(folder / "fit.json", arguments.force);
+  if (!arguments.force) refuse_to_replace_fits(arguments.options, folder);
   const schema::Recording recording = schema::read_recording(arguments.recording);
   FitRecordingOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);

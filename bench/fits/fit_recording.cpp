@@ -17,11 +17,16 @@ constexpr double velocity_corner_rad_s = 10.0;  // 004, section 2.2
 constexpr double ramp_share = 0.05;             // of the 95th percentile of the speed
 constexpr double reversal_share = 0.05;  // of the range of the penetration, until the full force is back
 
+constexpr auto csv_name = "fit.csv";
+constexpr auto json_name = "fit.json";
+
+std::string law_file_name(const std::string& model) { return model + ".law.toml"; }
+
 /// Leaves out the rows that are not finite; returns how many.
 std::size_t keep_finite(AxisSeries& series) {
   const auto is_finite = [&](std::size_t i) {
-    return std::isfinite(series.penetration[i]) && std::isfinite(series.velocity[i]) &&
-           std::isfinite(series.force[i]);
+    return std::isfinite(series.time_s[i]) && std::isfinite(series.penetration[i]) &&
+           std::isfinite(series.velocity[i]) && std::isfinite(series.force[i]);
   };
   std::size_t kept = 0;
   const std::size_t count = series.time_s.size();
@@ -148,13 +153,28 @@ std::string as_csv(const RecordingFit& fit) {
 
 }  // namespace
 
+std::vector<std::string> models_of(const FitRecordingOptions& options) {
+  if (!options.models.empty()) return options.models;
+  std::vector<std::string> all;
+  for (const models::LawInfo& law : models::registry()) all.emplace_back(law.name);
+  return all;
+}
+
+void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder) {
+  for (const std::string& model : models_of(options)) refuse_to_replace(folder / law_file_name(model), false);
+  for (const auto* table : {csv_name, json_name}) refuse_to_replace(folder / table, false);
+}
+
 RecordingFit fit_recording(const schema::Recording& recording, const FitRecordingOptions& options) {
   const models::Contact contact = options.contact.value_or(contact_of(recording, options.axis));
   AxisSeries series = axis_series(recording, options.axis, contact);
-  // What a driver gives as velocity lags behind the position; in hindsight there is a better one.
-  if (recording.header.velocity_derived.empty()) take_zero_phase_velocity(series);
+  // What a driver gives as velocity lags behind the position; in hindsight there is a better one. Derived
+  // after the rows that are not finite are gone, or each would spoil its neighbours.
+  const bool lags = recording.header.velocity_derived.empty();
+  if (lags) series.velocity.assign(series.velocity.size(), 0.0);
   RecordingFit all{.uuid = recording.header.uuid, .samples = recording.rows(), .choice = {}};
   all.left_out = keep_finite(series);
+  if (lags) take_zero_phase_velocity(series);
   if (all.left_out > 0)
     all.warnings.push_back(fmt::format("{} rows are not finite and are left out", all.left_out));
   const fitting::Series view{.time_s = series.time_s,
@@ -162,12 +182,8 @@ RecordingFit fit_recording(const schema::Recording& recording, const FitRecordin
                              .velocity = series.velocity,
                              .force = series.force,
                              .cycle = series.cycle};
-  std::vector<std::string> models = options.models;
-  if (models.empty()) {
-    for (const models::LawInfo& law : models::registry()) models.emplace_back(law.name);
-  }
   std::vector<fitting::FitResult> results;
-  for (const std::string& model : models) {
+  for (const std::string& model : models_of(options)) {
     (void)models::Law::options(model);  // an unknown law is a mistake of the caller, not of the data
     fitting::FitOptions fit_options = options.fit;
     fit_options.law_options = options_for(model, options);
@@ -196,10 +212,10 @@ void write_fits(RecordingFit& fit, const std::filesystem::path& recording,
   const std::string sha256 = sha256_of(recording);
   for (FittedLaw& law : fit.laws) {
     law.file.fit.recording_sha256 = sha256;
-    write_law_file(folder / (law.result.model + ".law.toml"), law.file);
+    write_law_file(folder / law_file_name(law.result.model), law.file);
   }
-  write_whole_file(folder / "fit.csv", as_csv(fit));
-  write_whole_file(folder / "fit.json", fits_as_json(fit).dump(2) + "\n");
+  write_whole_file(folder / csv_name, as_csv(fit));
+  write_whole_file(folder / json_name, fits_as_json(fit).dump(2) + "\n");
 }
 
 nlohmann::ordered_json fits_as_json(const RecordingFit& fit) {

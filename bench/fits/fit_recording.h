@@ -48,6 +48,12 @@ struct RecordingFit {
 [[nodiscard]] RecordingFit fit_recording(const schema::Recording& recording,
                                          const FitRecordingOptions& options);
 
+/// The laws that are asked for: those named, or every one of the registry.
+[[nodiscard]] std::vector<std::string> models_of(const FitRecordingOptions& options);
+
+/// @throws std::invalid_argument if any file that write_fits() would write stands in the folder.
+void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder);
+
 /// Adds the recording's checksum to the law files and writes NAME.law.toml, fit.json and fit.csv into a
 /// folder.
 /// @throws std::system_error

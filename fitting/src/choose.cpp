@@ -36,7 +36,10 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   why << std::setprecision(3);
   if (felt) {
     why << "no law stays within the JND of " << limit << " N (at the root mean square force of " << force_rms
-        << " N) on held-out data; " << chosen->model << " comes closest with " << chosen->cv_rmse << " N";
+        << " N) on held-out data; " << chosen->model << " with " << chosen->cv_rmse
+        << " N has the fewest parameters (" << chosen->free_parameters << ") of those within "
+        << std::lround(100.0 * (as_good_as_best - 1.0)) << " % of the best, " << best->model << " with "
+        << best->cv_rmse << " N";
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
         << ") of the laws whose error on held-out data (" << chosen->cv_rmse << " N) stays within the JND of "

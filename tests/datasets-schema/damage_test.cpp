@@ -1,6 +1,4 @@
 #include <filesystem>
-#include <optional>
-#include <random>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -125,6 +123,5 @@ TEST(DamagedFile, CutShortIsAViolation) {
   EXPECT_THAT(violations[0].found, HasSubstr("truncated file"));
 }
 
-// Some bytes are data, and some are room that nobody uses: those may be read.
 }  // namespace
 }  // namespace kerf::schema

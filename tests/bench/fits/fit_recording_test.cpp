@@ -1,0 +1,59 @@
+#include "fits/fit_recording.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+/// A Kelvin tissue (k1 300 N/m, k2 500 N/m, b 50 N·s/m) under a tool that goes 5 mm in and out at 1 Hz. Its
+/// velocity is one that a driver would give: useless, so that a fit has to derive its own.
+schema::Recording punch() {
+  const std::array values{300.0, 500.0, 50.0};
+  const models::Law law = models::Law::make("kelvin", values, {});
+  models::Law::State state = law.initial_state();
+  schema::Recording recording;
+  recording.header = schema::new_header("kerf test");
+  recording.axes = {{.name = "z", .position_unit = "m", .force_unit = "N"}};
+  for (std::size_t i = 0; i < 4000; ++i) {
+    const double time_s = 1e-3 * static_cast<double>(i);
+    const double phase = 2.0 * 3.14159265358979 * time_s;
+    const models::Motion motion{.penetration = 0.0025 * (1.0 - std::cos(phase)),
+                                .velocity = 0.0025 * 2.0 * 3.14159265358979 * std::sin(phase)};
+    recording.time.push_back(time_s);
+    recording.tick.push_back(i);
+    recording.position.push_back(motion.penetration);
+    recording.velocity.push_back(0.0);
+    recording.force_measured.push_back(law.step(state, motion, 1e-3).force);
+  }
+  return recording;
+}
+
+FitRecordingOptions kelvin_only() {
+  FitRecordingOptions options;
+  options.models = {"kelvin"};
+  options.contact = models::Contact{.position = 0.0, .direction = 1.0};
+  return options;
+}
+
+double rmse(const schema::Recording& recording) {
+  const RecordingFit fit = fit_recording(recording, kelvin_only());
+  EXPECT_EQ(fit.laws.size(), 1U);
+  return fit.laws.empty() ? 1e9 : fit.laws.front().result.rmse;
+}
+
+TEST(FitRecording, LeavesOutOneRowForAPositionThatIsNoNumberAndNotItsNeighbours) {
+  schema::Recording recording = punch();
+  const double whole = rmse(recording);
+  recording.position[1234] = std::numeric_limits<double>::quiet_NaN();
+  recording.time[2345] = std::numeric_limits<double>::quiet_NaN();
+  const RecordingFit fit = fit_recording(recording, kelvin_only());
+  EXPECT_EQ(fit.left_out, 2U);
+  EXPECT_LT(rmse(recording), 2.0 * whole + 1e-3);
+}
+
+}  // namespace
+}  // namespace kerf::bench
