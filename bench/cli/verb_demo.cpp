@@ -64,7 +64,8 @@ void run_demo(const Arguments& arguments, Context& context) {
   const RunResult result =
       run_on_device({.device_uri = fmt::format("sim:scissors?seed={}", context.seed),
                      .seconds = arguments.check_s,
-                     .law = read_law_file(folder / "fits" / (fit.choice.model + ".law.toml"))},
+                     .law = read_law_file(folder / "fits" / (fit.choice.model + ".law.toml")),
+                     .floor_s = 3.0},
                     signals.requested());
   const Verdict verdict = judge(result);
   auto check_json = check_as_json(result, verdict);

@@ -1,18 +1,29 @@
+#include <chrono>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
+#include <thread>
 
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <kerf/schema/live_recording.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/validate.h>
 
 #include "cli/verbs.h"
+#include "loop/run.h"
 #include "recordings/summary.h"
 
 namespace kerf::bench {
 namespace {
 
+constexpr auto refresh = std::chrono::milliseconds(200);
+
 struct Arguments {
   std::string recording;
+  bool follow = false;
   bool schema = false;
 };
 
@@ -26,12 +37,62 @@ void print_schema(Context& context) {
   }
 }
 
+std::string in_one_line(const schema::Tail& tail) {
+  std::string line = fmt::format("{:10.3f} s {:9} samples", tail.rows > 0 ? tail.last.time_s : 0.0, tail.rows);
+  for (std::size_t axis = 0; tail.rows > 0 && axis < tail.axes.size(); ++axis) {
+    const schema::Axis& about = tail.axes[axis];
+    const double force = tail.measures_force ? tail.last.force_measured[axis] : tail.last.force_commanded[axis];
+    line += fmt::format("  {} {:9.5f} {} {:7.3f} {}", about.name, tail.last.position[axis], about.position_unit,
+                        force, about.force_unit);
+  }
+  if (tail.last_event) {
+    line += fmt::format("  {} events, last {} at {:.3f} s", tail.events, tail.last_event->kind,
+                        tail.last_event->time_s);
+  }
+  return line;
+}
+
+/// Shows the end of a recording again and again, until it is closed, its writer is gone or a signal comes.
+void follow(const std::string& name) {
+  const StopOnSignal signals;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  std::uint64_t shown = 0;
+  while (!signals.requested()) {
+    const schema::Place place = schema::find_recording(name);
+    if (!place.partial) break;
+    try {
+      const schema::Tail tail = schema::read_tail(place.file);
+      if (terminal) {
+        fmt::print(stderr, "\r{}\033[K", in_one_line(tail));
+        std::fflush(stderr);
+      } else if (tail.rows != shown) {
+        say(in_one_line(tail));
+      }
+      shown = tail.rows;
+    } catch (const std::exception&) {
+      // Closed between one look and the next; the next one says.
+      if (std::filesystem::exists(place.file) && !place.being_written) throw;
+    }
+    if (!place.being_written) {
+      if (terminal) say("");
+      warn(fmt::format("{}: nobody writes it any more; 'kerf repair' closes it", place.file.string()));
+      return;
+    }
+    std::this_thread::sleep_for(refresh);
+  }
+  if (terminal) say("");
+}
+
 void run_info(const Arguments& arguments, Context& context) {
   if (arguments.schema) return print_schema(context);
   if (arguments.recording.empty()) {
     throw std::invalid_argument("a recording is needed, for example 'kerf info cut.h5'; or --schema");
   }
-  context.result = recording_summary(schema::read_recording(arguments.recording));
+  if (arguments.follow) follow(arguments.recording);
+  const std::filesystem::path file =
+      arguments.follow ? schema::find_recording(arguments.recording).file
+                       : std::filesystem::path(arguments.recording);
+  context.result = recording_summary(schema::read_recording(file));
   say(summary_table(context.result));
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
 }
@@ -42,9 +103,11 @@ void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& verb =
       add_verb(app, context, "info", "Say what is in a recording, also in one that is still written",
-               "kerf info cut.h5\n  kerf info cut.h5.partial --json\n  kerf info --schema",
+               "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf info --schema",
                [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording, "The recording, or the NAME.partial of one not closed");
+  verb.add_flag("--follow", arguments->follow,
+                "Show a recording while it is made, from another terminal, until it is closed");
   verb.add_flag("--schema", arguments->schema, "Print the schema's tables instead, as Markdown");
 }
 

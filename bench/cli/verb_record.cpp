@@ -1,8 +1,10 @@
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/core.h>
 
+#include "cli/loop_arguments.h"
 #include "cli/verbs.h"
 #include "loop/run.h"
 #include "recordings/summary.h"
@@ -11,16 +13,19 @@ namespace kerf::bench {
 namespace {
 
 struct Arguments {
-  RunOptions options;
+  LoopArguments loop;
   std::string scene;
   std::string law;
   std::string output;
 };
 
 void run_record(const Arguments& arguments, Context& context) {
-  RunOptions options = arguments.options;
+  RunOptions options = run_options(arguments.loop);
   options.record = arguments.output;
   if (!arguments.law.empty()) options.law = read_law_file(arguments.law);
+  if (!options.changes.empty() && !options.law) {
+    throw std::invalid_argument("--switch needs a first law: give it with --law");
+  }
   if (!arguments.scene.empty()) {
     options.scene = read_scene(arguments.scene);
   } else if (!options.law && options.device_uri.starts_with("sim:")) {
@@ -32,6 +37,7 @@ void run_record(const Arguments& arguments, Context& context) {
   }
   const StopOnSignal signals;
   const RunResult result = run_on_device(options, signals.requested());
+  if (!result.recording_failure.empty()) throw std::runtime_error(result.recording_failure);
   const schema::Recording recording = schema::read_recording(arguments.output);
   context.result = recording_summary(recording);
   context.result["missed"] = result.report.missed();
@@ -50,19 +56,13 @@ void add_record(CLI::App& app, Context& context) {
       add_verb(app, context, "record", "Record a device's trajectory and forces",
                "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
                "A simulated device meets the tissue of --scene, or a Kelvin tissue. Ctrl-C ends a\n"
-               "recording cleanly.",
+               "recording cleanly. 'kerf info --follow' shows it from another terminal, and after a\n"
+               "crash 'kerf repair' closes it.",
                [arguments, &context] { run_record(*arguments, context); });
-  verb.add_option("--device", arguments->options.device_uri, "Device URI; 'kerf devices' lists them")
-      ->capture_default_str();
-  verb.add_option("--seconds", arguments->options.seconds, "Duration [s]")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
-  verb.add_option("--rate", arguments->options.rate_hz, "Rate of the loop [Hz]")->capture_default_str();
-  verb.add_flag("--virtual", arguments->options.virtual_time, "In virtual time: as fast as the machine can");
+  add_loop_options(verb, arguments->loop);
   verb.add_option("--scene", arguments->scene, "Scene file: the tissue that a simulated device meets");
   verb.add_option("--law", arguments->law, "Law file to render while recording");
   verb.add_option("-o,--output", arguments->output, "Recording to write")->required();
-  verb.add_flag("--force", arguments->options.replace, "Replace an existing recording");
 }
 
 }  // namespace kerf::bench

@@ -12,6 +12,7 @@ void add_fit(CLI::App& app, Context& context);
 void add_import(CLI::App& app, Context& context);
 void add_info(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);
+void add_repair(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_segment(CLI::App& app, Context& context);
 void add_validate(CLI::App& app, Context& context);

@@ -1,5 +1,9 @@
 #include "loop/check.h"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include <fmt/core.h>
 
 namespace kerf::bench {
@@ -19,6 +23,10 @@ nlohmann::ordered_json to_json(const Histogram& histogram) {
           {"max", to_us(histogram.max_ns())}};
 }
 
+std::string_view meaning_of(schema::Flag flag) {
+  return std::ranges::find(schema::flag_table, flag, &schema::FlagInfo::flag)->meaning;
+}
+
 /// The buckets from the first to the last that is not empty: one more edge than counts.
 nlohmann::ordered_json buckets_of(const Histogram& histogram) {
   std::size_t first = 0;
@@ -35,42 +43,106 @@ nlohmann::ordered_json buckets_of(const Histogram& histogram) {
   return {{"edges", edges}, {"counts", counts}};
 }
 
+std::uint64_t missed_by(const LoopReport& report, Stage stage) {
+  return report.missed_by[static_cast<std::size_t>(stage)];
+}
+
+/// The law's own time: of the processor, not of the clock on the wall.
+bool is_slow(const LoopReport& report, double period_ns) {
+  return report.compute_cpu.percentile_ns(0.999) > compute_share * period_ns;
+}
+
+Cause blame_for(const LoopReport& report, double period_ns) {
+  const auto worst = std::ranges::max_element(report.missed_by) - report.missed_by.begin();
+  switch (static_cast<Stage>(worst)) {
+    case Stage::read:
+    case Stage::write:
+      return Cause::device;
+    case Stage::compute:
+      return is_slow(report, period_ns) ? Cause::law : Cause::machine;
+    default:
+      return Cause::machine;
+  }
+}
+
+/// Missed deadlines beside those of an empty loop.
+std::string beside_the_floor(const LoopReport& report, const HostFloor& floor) {
+  const double share = static_cast<double>(floor.missed) / static_cast<double>(floor.ticks);
+  const std::string empty = fmt::format("an empty loop missed {} of {} here", floor.missed, floor.ticks);
+  if (report.missed() == 0) {
+    if (floor.missed == 0) return "";
+    return fmt::format("no deadline was missed in this run, but {}: expect {:.3g} in a minute", empty,
+                       share * floor.rate_hz * 60.0);
+  }
+  const bool above = static_cast<double>(report.missed()) > floor.most_expected(report.ticks());
+  return fmt::format("{}: {}", empty,
+                     above ? "these are more than the machine's own" : "these may all be the machine's own");
+}
+
+std::string in_words(const LoopReport& report) {
+  std::string text = fmt::format("{} of {} deadlines missed:", report.missed(), report.ticks());
+  for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
+    if (report.missed_by[stage] > 0) text += fmt::format(" {} by {}", report.missed_by[stage], stage_names[stage]);
+  }
+  if (missed_by(report, Stage::wake) > 0) text += " (the machine woke the loop late)";
+  return text;
+}
+
 }  // namespace
+
+std::string_view name_of(Cause cause) noexcept {
+  constexpr std::array<std::string_view, 3> names{"law", "device", "machine"};
+  return names[static_cast<std::size_t>(cause)];
+}
 
 Verdict judge(const RunResult& result) {
   const LoopReport& report = result.report;
   Verdict verdict;
-  const auto fail = [&](std::string reason) {
+  const auto fail = [&](Cause cause, std::string reason) {
     verdict.passed = false;
+    verdict.causes.insert(cause);
     verdict.reasons.push_back(std::move(reason));
   };
+  const auto tell = [&](std::string reason) {
+    if (!reason.empty()) verdict.reasons.push_back(std::move(reason));
+  };
   const double period_ns = 1e9 * result.period_s;
-  const double compute_ns = report.stages[static_cast<std::size_t>(Stage::compute)].percentile_ns(0.999);
-  if (compute_ns > compute_share * period_ns) {
-    fail(fmt::format("the law is too slow: 99.9 % of its ticks take up to {:.1f} us of a period of {:.0f} us",
-                     to_us(compute_ns), to_us(period_ns)));
+  const double cpu_ns = report.compute_cpu.percentile_ns(0.999);
+  const double wall_ns = report.stages[static_cast<std::size_t>(Stage::compute)].percentile_ns(0.999);
+  if (is_slow(report, period_ns)) {
+    fail(Cause::law,
+         fmt::format("your law is too slow: 99.9 % of its ticks take up to {:.1f} us of processor time, of {:.0f} "
+                     "us that may be half used",
+                     to_us(cpu_ns), to_us(period_ns)));
+  } else if (wall_ns > compute_share * period_ns) {
+    tell(fmt::format("computations took up to {:.1f} us by the clock, but {:.1f} us of processor time: your "
+                     "machine was late, not your law slow",
+                     to_us(wall_ns), to_us(cpu_ns)));
   }
-  const double ticks = static_cast<double>(report.ticks());
-  const auto by_wake = report.missed_by[static_cast<std::size_t>(Stage::wake)];
-  const double missed = static_cast<double>(report.missed());
-  const std::string lateness =
-      fmt::format("{} of {:.0f} deadlines missed, {} of them because the machine woke the loop late",
-                  report.missed(), ticks, by_wake);
-  if (missed > missed_share * ticks) {
-    fail(lateness);
-  } else if (report.missed() > 0) {
-    verdict.reasons.push_back(lateness);
+  if (report.missed() > 0) {
+    if (static_cast<double>(report.missed()) > missed_share * static_cast<double>(report.ticks())) {
+      fail(blame_for(report, period_ns), in_words(report));
+    } else {
+      tell(in_words(report));
+    }
   }
-  if (report.law_faults > 0) fail(fmt::format("the law gave no finite force in {} ticks", report.law_faults));
-  if (report.device_faults > 0)
-    fail(fmt::format("the device did not answer in {} ticks", report.device_faults));
-  if (report.limited > 0)
-    verdict.reasons.push_back(fmt::format("the force was limited in {} ticks", report.limited));
+  if (result.floor) tell(beside_the_floor(report, *result.floor));
+  for (const auto& [flag, cause] : {std::pair{schema::flag_law_fault, Cause::law},
+                                    std::pair{schema::flag_device_fault, Cause::device},
+                                    std::pair{schema::flag_position_jump, Cause::device}}) {
+    const std::uint64_t ticks = report.ticks_with(flag);
+    if (ticks > 0) fail(cause, fmt::format("in {} ticks {}", ticks, meaning_of(flag)));
+  }
+  for (const schema::Flag flag : {schema::flag_watchdog, schema::flag_force_limited, schema::flag_slew_limited,
+                                  schema::flag_passivity_control}) {
+    const std::uint64_t ticks = report.ticks_with(flag);
+    if (ticks > 0) tell(fmt::format("in {} ticks {}", ticks, meaning_of(flag)));
+  }
   if (report.least_energy_j < -passive_within_j) {
-    verdict.reasons.push_back(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive",
-                                          -report.least_energy_j));
+    tell(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive", -report.least_energy_j));
   }
-  if (report.end == LoopEnd::stopped) verdict.reasons.emplace_back("ended early by a signal");
+  if (report.end == LoopEnd::stopped) tell("ended early by a signal");
+  if (!result.recording_failure.empty()) tell(result.recording_failure);
   return verdict;
 }
 
@@ -88,19 +160,29 @@ nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& ver
     json[std::string(stage_names[stage]) + "_us"] = to_json(report.stages[stage]);
   }
   json["cycle_us"] = to_json(report.cycle);
+  json["compute_cpu_us"] = to_json(report.compute_cpu);
   json["energy_J"] = report.energy_j;
   json["passive"] = report.least_energy_j >= -passive_within_j;
-  json["law_faults"] = report.law_faults;
-  json["device_faults"] = report.device_faults;
-  json["limited"] = report.limited;
+  json["ticks_with"] = nlohmann::ordered_json::object();
+  for (const schema::FlagInfo& flag : schema::flag_table) {
+    json["ticks_with"][std::string(flag.name)] = report.ticks_with(flag.flag);
+  }
   json["rows_lost"] = result.rows_lost;
+  json["page_faults"] = result.usage.page_faults + result.usage.major_page_faults;
+  json["involuntary_switches"] = result.usage.involuntary_switches;
+  json["spin_us"] = to_us(static_cast<double>(result.spin_ns));
+  json["floor"] = result.floor ? to_json(*result.floor) : nlohmann::ordered_json(nullptr);
   json["realtime"] = nlohmann::ordered_json::array();
   for (const RealtimeMeasure& measure : result.realtime) {
     json["realtime"].push_back(
         {{"name", measure.name}, {"obtained", measure.obtained}, {"detail", measure.detail}});
   }
-  json["histograms"] = {{"wake_us", buckets_of(report.stages[0])}, {"cycle_us", buckets_of(report.cycle)}};
+  json["histograms"] = {{"wake_us", buckets_of(report.stages[0])},
+                        {"cycle_us", buckets_of(report.cycle)},
+                        {"compute_cpu_us", buckets_of(report.compute_cpu)}};
   json["verdict"] = verdict.passed ? "pass" : "fail";
+  json["causes"] = nlohmann::ordered_json::array();
+  for (const Cause cause : verdict.causes) json["causes"].push_back(name_of(cause));
   json["reasons"] = verdict.reasons;
   return json;
 }

@@ -8,9 +8,9 @@ void LoopReport::count(const TickTimes& times, std::uint32_t flags) noexcept {
   }
   cycle.add(times.end_ns.back() - times.end_ns.front());
   ++executed;
-  law_faults += (flags & schema::flag_law_fault) != 0 ? 1U : 0U;
-  device_faults += (flags & schema::flag_device_fault) != 0 ? 1U : 0U;
-  limited += (flags & (schema::flag_force_limited | schema::flag_slew_limited)) != 0 ? 1U : 0U;
+  for (std::uint32_t rest = flags; rest != 0; rest &= rest - 1) {
+    ++flagged[static_cast<std::size_t>(std::countr_zero(rest))];
+  }
 }
 
 Stage longest_stage(const TickTimes& times, std::int64_t tick_deadline_ns) noexcept {

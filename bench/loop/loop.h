@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,6 +15,8 @@
 
 #include "loop/command.h"
 #include "loop/histogram.h"
+#include "loop/safety.h"
+#include "loop/watchdog.h"
 
 namespace kerf::bench {
 
@@ -22,15 +25,15 @@ enum class Stage : std::uint8_t { wake, read, compute, write, record };
 inline constexpr std::array<const char*, 5> stage_names{"wake", "read", "compute", "write", "record"};
 
 struct LoopOptions {
-  double period_s = 1e-3;
-  std::uint64_t ticks = 0;     ///< deadlines on the grid: executed and missed ticks together
-  double soft_start_s = 0.25;  ///< linear ramp of the force at the start
+  std::uint64_t ticks = 0;  ///< deadlines on the grid: executed and missed ticks together
+  SafetyOptions safety;     ///< with the period
 };
 
 /// What the loop and the rest of the program tell each other while it runs.
 struct LoopControl {
   const std::atomic<bool>& stop;   ///< set from outside: the tick at work is the last one
   std::atomic<std::size_t>& done;  ///< deadlines behind the loop
+  Heartbeat& heartbeat;            ///< for the watchdog
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
 };
 
@@ -41,6 +44,10 @@ struct TickTimes {
   std::int64_t deadline_ns = 0;  ///< the one that the loop slept for
   std::array<std::int64_t, stage_names.size()> end_ns{};
 
+  /// A stage has ended; returns when.
+  std::int64_t mark(Stage stage, std::int64_t now_ns) noexcept {
+    return end_ns[static_cast<std::size_t>(stage)] = now_ns;
+  }
   [[nodiscard]] std::int64_t duration_ns(Stage stage) const noexcept {
     const auto at = static_cast<std::size_t>(stage);
     return end_ns[at] - (at > 0 ? end_ns[at - 1] : deadline_ns);
@@ -78,9 +85,8 @@ struct LoopReport {
   std::array<std::uint64_t, stage_names.size()> missed_by{};  ///< deadlines, by the stage charged with them
   std::array<Histogram, stage_names.size()> stages;  ///< wake latency and the four stages of executed ticks
   Histogram cycle;                                   ///< read to record
-  std::uint64_t law_faults = 0;
-  std::uint64_t device_faults = 0;
-  std::uint64_t limited = 0;  ///< ticks whose force was limited in size or slew
+  Histogram compute_cpu;  ///< processor time of the computation, in every second tick: see samples_cpu()
+  std::array<std::uint64_t, schema::flag_table.size()> flagged{};  ///< ticks with each flag, by its bit
   double energy_j = 0.0;      ///< taken out of the hand by the rendering
   double least_energy_j = 0.0;
   LoopEnd end = LoopEnd::completed;
@@ -98,6 +104,10 @@ struct LoopReport {
   void charge(Stage stage, std::uint64_t deadlines) noexcept {
     missed_by[static_cast<std::size_t>(stage)] += deadlines;
   }
+  /// Ticks with a flag.
+  [[nodiscard]] std::uint64_t ticks_with(schema::Flag flag) const noexcept {
+    return flagged[static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(flag)))];
+  }
   /// Counts a tick that was executed.
   void count(const TickTimes& times, std::uint32_t flags) noexcept;
 };
@@ -106,87 +116,97 @@ struct LoopReport {
 /// counts, because the deadlines that it slept through are charged to it already.
 [[nodiscard]] Stage longest_stage(const TickTimes& times, std::int64_t tick_deadline_ns) noexcept;
 
-/// Runs device, computation and recorder in a loop on a grid of absolute deadlines.
+/// Whether the processor time of a tick's computation is measured. Asking for it is a system call, so it is
+/// done in every second tick; which one follows the Thue-Morse sequence, in step with no law that works in
+/// turns.
+[[nodiscard]] constexpr bool samples_cpu(std::uint64_t tick) noexcept { return std::popcount(tick) % 2 == 0; }
+
+[[nodiscard]] inline schema::Row row_of(std::uint64_t tick, double time_s, const drivers::Sample& sample,
+                                        const Command& command, const TickTimes& times) noexcept {
+  return {.tick = tick,
+          .time_s = time_s,
+          .position = sample.position,
+          .velocity = sample.velocity,
+          .force_commanded = command.force,
+          .force_measured = sample.force_measured,
+          .wake_latency_s = times.seconds(Stage::wake),
+          .read_time_s = times.seconds(Stage::read),
+          .compute_time_s = times.seconds(Stage::compute),
+          .write_time_s = times.seconds(Stage::write),
+          .flags = command.flags};
+}
+
+/// Runs device, rendering and recorder in a loop on a grid of absolute deadlines.
 ///
 /// A deadline is missed if no tick begins in its period, because the machine woke the loop a period or more
 /// late (charged to `wake`) or because the tick before was still at work (charged to its longest stage, the
 /// wake-up included). Missed deadlines are skipped, never made up in a burst, and no tick inherits the
 /// lateness of the one before: executed and missed ticks together are the deadlines of the grid. The row
-/// after a miss says so in its flags. The device gets zero force before the first tick, on every fault, and
-/// at the end, however the loop ends. Nothing in it allocates, locks, throws or logs.
-template <typename Clock, typename Compute, typename Recorder>
-void run_loop(Clock& clock, drivers::Device& device, Compute& compute, Recorder& recorder,
+/// after a miss says so in its flags. The device gets zero force before the first tick, whenever Safety says
+/// so, after a silence that the watchdog noticed, and at the end, however the loop ends. Nothing in it
+/// allocates, locks, throws or logs.
+template <typename Clock, typename Rendering, typename Recorder>
+void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recorder& recorder,
               const LoopOptions& options, const LoopControl& control, LoopReport& report) noexcept {
-  static_assert(std::is_nothrow_invocable_r_v<Command, Compute&, const drivers::Sample&, double>);
+  static_assert(std::is_nothrow_invocable_r_v<Command, Rendering&, const drivers::Sample&, double>);
   static_assert(noexcept(recorder.push(std::declval<const schema::Row&>())));
+  static_assert(noexcept(clock.sleep_until(0)) && noexcept(clock.now_ns()) && noexcept(clock.cpu_ns()));
   static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
                 std::is_trivially_copyable_v<drivers::Sample>);
-  const std::size_t axes = device.info().axes.size();
-  SafetyLimiter limiter(device.info().axes, options.period_s, options.soft_start_s);
-  PassivityObserver observer(device.info().axes);
+  const double period_s = options.safety.period_s;
+  const auto period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
+  const std::int64_t silence_ns = watchdog_limit_ns(period_s);
+  Safety safety(device.info().axes, options.safety);
   drivers::Sample sample;
-  Command held;
   (void)device.write({});
 
-  const auto period_ns = static_cast<std::int64_t>(options.period_s * 1e9 + 0.5);
   const Grid grid{.start_ns = clock.now_ns() + period_ns, .period_ns = period_ns, .ticks = options.ticks};
+  control.heartbeat.start(grid.start_ns);
   std::uint64_t due = 0;
   std::uint64_t expected = 0;
   while (due < options.ticks && report.end == LoopEnd::completed) {
     TickTimes times{.deadline_ns = grid.deadline_ns(due)};
     clock.sleep_until(times.deadline_ns);
-    times.end_ns[0] = clock.now_ns();
-    const std::uint64_t tick = grid.current(due, times.end_ns[0]);
+    const std::uint64_t tick = grid.current(due, times.mark(Stage::wake, clock.now_ns()));
     report.charge(Stage::wake, tick - due);
-    const double time_s = static_cast<double>(tick) * options.period_s;
+    const double time_s = static_cast<double>(tick) * period_s;
+    const double elapsed_s = static_cast<double>(tick + 1 - expected) * period_s;
 
-    const drivers::Status status = device.read(time_s, sample);
-    const bool answered = status == drivers::Status::ok && is_finite(sample, axes);
-    times.end_ns[1] = clock.now_ns();
+    const drivers::Status read = device.read(time_s, sample);
+    times.mark(Stage::read, clock.now_ns());
 
-    Command command;
-    if (answered) {
-      observer.observe(held.force, sample.position);
-      command = compute(sample, static_cast<double>(tick + 1 - expected) * options.period_s);
-      limiter.apply(time_s, command);
-    }
+    const std::int64_t cpu_ns = samples_cpu(tick) ? clock.cpu_ns() : 0;
+    const std::uint32_t wrong = safety.judge(read, sample, elapsed_s);
+    Command command = wrong == 0 ? rendering(sample, elapsed_s) : Command{.flags = wrong};
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
-    times.end_ns[2] = clock.now_ns();
+    if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
+    safety.apply(time_s, sample, command);
+    if (samples_cpu(tick)) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
+    times.mark(Stage::compute, clock.now_ns());
 
-    const drivers::Status written = answered ? device.write(command.force) : drivers::Status::fault;
+    const drivers::Status written = device.write(command.force);
     if (written != drivers::Status::ok) {
-      command = {.force = {}, .flags = command.flags | schema::flag_device_fault};
-      limiter.reset();
+      command.flags |= schema::flag_device_fault;
+      safety.release(time_s, command);
       (void)device.write({});
     }
-    held = command;
-    times.end_ns[3] = clock.now_ns();
+    times.mark(Stage::write, clock.now_ns());
 
-    recorder.push({.tick = tick,
-                   .time_s = time_s,
-                   .position = sample.position,
-                   .velocity = sample.velocity,
-                   .force_commanded = command.force,
-                   .force_measured = sample.force_measured,
-                   .wake_latency_s = times.seconds(Stage::wake),
-                   .read_time_s = times.seconds(Stage::read),
-                   .compute_time_s = times.seconds(Stage::compute),
-                   .write_time_s = times.seconds(Stage::write),
-                   .flags = command.flags});
-    times.end_ns[4] = clock.now_ns();
+    recorder.push(row_of(tick, time_s, sample, command, times));
+    const std::int64_t end_ns = times.mark(Stage::record, clock.now_ns());
 
     report.count(times, command.flags);
     expected = tick + 1;
-    due = grid.next(tick, times.end_ns[4]);
+    due = grid.next(tick, end_ns);
     if (due != expected) report.charge(longest_stage(times, grid.deadline_ns(tick)), due - expected);
     if (control.stop.load(std::memory_order_relaxed)) report.end = LoopEnd::stopped;
-    if (status == drivers::Status::lost || written == drivers::Status::lost)
-      report.end = LoopEnd::device_lost;
+    if (read == drivers::Status::lost || written == drivers::Status::lost) report.end = LoopEnd::device_lost;
     control.done.store(static_cast<std::size_t>(due), std::memory_order_relaxed);
   }
   (void)device.write({});
-  report.energy_j = observer.energy_j();
-  report.least_energy_j = observer.least_j();
+  control.heartbeat.stop();
+  report.energy_j = safety.observer().energy_j();
+  report.least_energy_j = safety.observer().least_j();
 }
 
 }  // namespace kerf::bench

@@ -16,6 +16,22 @@ namespace {
 
 constexpr int priority = 80;
 
+cpu_set_t allowed_processors() noexcept {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  (void)sched_getaffinity(0, sizeof allowed, &allowed);
+  return allowed;
+}
+
+/// The last one: the first is where most systems handle their interrupts.
+int loop_processor(const cpu_set_t& allowed) noexcept {
+  int last = -1;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed)) last = cpu;
+  }
+  return last;
+}
+
 std::string reason() { return std::strerror(errno); }
 
 }  // namespace
@@ -54,21 +70,46 @@ RealtimeMeasure lock_memory() {
 }
 
 RealtimeMeasure pin_to_processor() {
-  cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  int last = -1;
-  if (sched_getaffinity(0, sizeof allowed, &allowed) == 0) {
-    for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
-      if (CPU_ISSET(cpu, &allowed)) last = cpu;
-    }
-  }
+  const cpu_set_t allowed = allowed_processors();
+  const int processor = loop_processor(allowed);
   cpu_set_t one;
   CPU_ZERO(&one);
-  if (last >= 0) CPU_SET(last, &one);
-  if (last >= 0 && sched_setaffinity(0, sizeof one, &one) == 0) {
-    return {.name = "processor", .obtained = true, .detail = fmt::format("stays on processor {}", last)};
+  if (processor >= 0) CPU_SET(processor, &one);
+  if (processor >= 0 && sched_setaffinity(0, sizeof one, &one) == 0) {
+    return {.name = "processor", .obtained = true, .detail = fmt::format("stays on processor {}", processor)};
   }
   return {.name = "processor", .obtained = false, .detail = fmt::format("not pinned: {}", reason())};
+}
+
+void prepare_watchdog_thread() noexcept {
+  cpu_set_t others = allowed_processors();
+  if (CPU_COUNT(&others) > 1) {
+    CPU_CLR(loop_processor(others), &others);
+    (void)sched_setaffinity(0, sizeof others, &others);
+  }
+  const sched_param parameters{.sched_priority = priority + 1};
+  (void)sched_setscheduler(0, SCHED_FIFO, &parameters);
+}
+
+bool may_use_realtime_scheduling() noexcept {
+  rlimit limit{};
+  return geteuid() == 0 || (getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur >= priority);
+}
+
+ThreadUsage ThreadUsage::now() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return {.page_faults = usage.ru_minflt,
+          .major_page_faults = usage.ru_majflt,
+          .voluntary_switches = usage.ru_nvcsw,
+          .involuntary_switches = usage.ru_nivcsw};
+}
+
+ThreadUsage ThreadUsage::since(const ThreadUsage& before) const noexcept {
+  return {.page_faults = page_faults - before.page_faults,
+          .major_page_faults = major_page_faults - before.major_page_faults,
+          .voluntary_switches = voluntary_switches - before.voluntary_switches,
+          .involuntary_switches = involuntary_switches - before.involuntary_switches};
 }
 
 AwakeProcessors::AwakeProcessors() : measure_{.name = "sleep_states", .obtained = false, .detail = {}} {

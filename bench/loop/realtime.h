@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
-#include <vector>
 
 namespace kerf::bench {
 
@@ -19,6 +19,25 @@ struct RealtimeMeasure {
 [[nodiscard]] RealtimeMeasure lock_memory();
 /// Keeps the calling thread on the last processor that it may use.
 [[nodiscard]] RealtimeMeasure pin_to_processor();
+
+/// Makes the calling thread more urgent than the loop, and keeps it off the loop's processor where there is
+/// another. Does what is permitted and says nothing.
+void prepare_watchdog_thread() noexcept;
+
+/// Whether this user may run threads at SCHED_FIFO.
+[[nodiscard]] bool may_use_realtime_scheduling() noexcept;
+
+/// What the system has counted for a thread.
+struct ThreadUsage {
+  std::int64_t page_faults = 0;           ///< without reading from a disk
+  std::int64_t major_page_faults = 0;     ///< with reading from a disk
+  std::int64_t voluntary_switches = 0;    ///< it slept or waited
+  std::int64_t involuntary_switches = 0;  ///< it was made to wait
+
+  /// Of the calling thread so far.
+  [[nodiscard]] static ThreadUsage now() noexcept;
+  [[nodiscard]] ThreadUsage since(const ThreadUsage& before) const noexcept;
+};
 
 /// Holds the processors out of deep sleep through /dev/cpu_dma_latency while the object lives.
 class AwakeProcessors {

@@ -11,48 +11,70 @@ constexpr std::size_t chunk_rows = 1000;
 constexpr auto flush_every = std::chrono::milliseconds(250);
 constexpr auto pause = std::chrono::milliseconds(5);
 
+/// Touches every page of the ring, so that the tick does not meet them for the first time.
+void fill_and_empty(moodycamel::ReaderWriterQueue<schema::Row>& ring) {
+  schema::Row row;
+  while (ring.try_enqueue(row)) {
+  }
+  while (ring.try_dequeue(row)) {
+  }
+}
+
 }  // namespace
 
 Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
-    : writer_(std::move(writer)), ring_(options.ring_rows), lossless_(options.lossless) {
+    : writer_(std::move(writer)),
+      ring_(options.ring_rows),
+      lossless_(options.lossless),
+      on_failure_(options.on_failure) {
+  fill_and_empty(ring_);
   chunk_.reserve(chunk_rows);
   thread_ = std::jthread([this](const std::stop_token& stop) { write_until_stopped(stop); });
 }
 
 Recorder::~Recorder() = default;
 
-void Recorder::drain() {
-  schema::Row row;
-  bool more = true;
-  while (more) {
-    chunk_.clear();
-    while (chunk_.size() < chunk_rows && (more = ring_.try_dequeue(row))) chunk_.push_back(row);
-    if (failed_ || chunk_.empty()) continue;
-    try {
-      writer_.append(chunk_);
-    } catch (const std::exception&) {
-      failure_ = std::current_exception();
-      failed_ = true;
-    }
+template <typename Action>
+void Recorder::guarded(Action action) {
+  if (failed_) return;
+  try {
+    action();
+  } catch (const std::exception& error) {
+    failure_ = std::current_exception();
+    failed_ = true;
+    if (on_failure_) on_failure_(error.what());
   }
+}
+
+bool Recorder::write_chunk() {
+  schema::Row row;
+  std::vector<schema::Event> found;
+  chunk_.clear();
+  while (chunk_.size() < chunk_rows && ring_.try_dequeue(row)) {
+    finder_.look_at(row, found);
+    chunk_.push_back(row);
+  }
+  if (chunk_.empty()) return false;
+  last_time_s_ = chunk_.back().time_s;
+  guarded([&] {
+    writer_.append(chunk_);
+    for (const schema::Event& event : found) writer_.append_event(event);
+  });
+  return true;
 }
 
 void Recorder::write_until_stopped(const std::stop_token& stop) {
   auto next_flush = std::chrono::steady_clock::now() + flush_every;
   while (!stop.stop_requested()) {
-    drain();
-    if (std::chrono::steady_clock::now() >= next_flush && !failed_) {
-      next_flush += flush_every;
-      try {
-        writer_.flush();
-      } catch (const std::exception&) {
-        failure_ = std::current_exception();
-        failed_ = true;
-      }
+    const bool idle = !write_chunk();
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_flush) {
+      next_flush = now + flush_every;
+      guarded([&] { writer_.flush(); });
     }
-    if (!lossless_) std::this_thread::sleep_for(pause);
+    if (idle && !lossless_) std::this_thread::sleep_for(pause);
   }
-  drain();
+  while (write_chunk()) {
+  }
 }
 
 void Recorder::close(const std::string& status) {
@@ -61,10 +83,9 @@ void Recorder::close(const std::string& status) {
   if (failure_) std::rethrow_exception(failure_);
   if (lost() > 0) {
     writer_.append_event(
-        {.time_s = first_lost_s_,
+        {.time_s = last_time_s_,
          .kind = "gap",
-         .text = fmt::format("{} rows lost from here on: the writer did not keep up and the ring was full",
-                             lost())});
+         .text = fmt::format("{} rows lost in all, because the writer did not keep up", lost())});
   }
   for (const schema::Event& event : events_) writer_.append_event(event);
   writer_.close(status);

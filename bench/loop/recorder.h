@@ -3,13 +3,17 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include <readerwriterqueue/readerwriterqueue.h>
 
 #include <kerf/schema/recording_writer.h>
+
+#include "loop/events.h"
 
 namespace kerf::bench {
 
@@ -20,15 +24,17 @@ struct NoRecorder {
 
 /// Takes rows from the tick without waiting and writes them from a thread of its own.
 ///
-/// push() hands a row to a ring of fixed size; a full ring loses the row, which the file shows as a jump of
-/// `tick` and an event. With `lossless` (for virtual time, which has no deadlines) push() waits for room
-/// instead. The writer appends in chunks and flushes every 0.25 s. When the disk is full the loop goes on and
-/// close() says so.
+/// push() hands a row to a ring of fixed size, all of it touched beforehand. A full ring loses the row: `tick`
+/// then jumps in the file, and the next row that finds room carries the flag rows_lost. With `lossless` (for
+/// virtual time, which has no deadlines) push() waits for room instead. The writer appends in chunks, adds an
+/// event where a row's flags say that something began, and flushes every 0.25 s. When the disk is full it
+/// says so once and the loop goes on; close() says it again.
 class Recorder {
  public:
   struct Options {
     std::size_t ring_rows = 8192;
     bool lossless = false;
+    std::function<void(std::string_view)> on_failure;  ///< called once, from the writer's thread
   };
 
   Recorder(schema::RecordingWriter writer, const Options& options);
@@ -38,11 +44,9 @@ class Recorder {
   ~Recorder();
 
   void push(const schema::Row& row) noexcept {
+    if (lost_here_) return push_after_loss(row);
     while (!ring_.try_enqueue(row)) {
-      if (!lossless_ || failed_.load(std::memory_order_relaxed)) {
-        if (lost_.fetch_add(1, std::memory_order_relaxed) == 0) first_lost_s_ = row.time_s;
-        return;
-      }
+      if (!lossless_ || failed_.load(std::memory_order_relaxed)) return lose();
       std::this_thread::yield();
     }
   }
@@ -54,20 +58,36 @@ class Recorder {
   /// @throws std::system_error if anything could not be written; what could be stays in the partial file.
   void close(const std::string& status);
 
+  /// Rows that never reached the writer.
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:
+  void push_after_loss(schema::Row row) noexcept {
+    row.flags |= schema::flag_rows_lost;
+    lost_here_ = !ring_.try_enqueue(row);
+    if (lost_here_) lose();
+  }
+  void lose() noexcept {
+    lost_here_ = true;
+    lost_.fetch_add(1, std::memory_order_relaxed);
+  }
   void write_until_stopped(const std::stop_token& stop);
-  void drain();
+  /// Returns whether there was anything to write.
+  bool write_chunk();
+  template <typename Action>
+  void guarded(Action action);
 
   schema::RecordingWriter writer_;
   moodycamel::ReaderWriterQueue<schema::Row> ring_;
   bool lossless_;
+  bool lost_here_ = false;  ///< of the tick's thread: rows were lost since the last one that found room
   std::atomic<std::uint64_t> lost_{0};
-  double first_lost_s_ = 0.0;  ///< written by the tick, read by close() after the last one
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
+  std::function<void(std::string_view)> on_failure_;
   std::vector<schema::Row> chunk_;
+  EventFinder finder_;
+  double last_time_s_ = 0.0;
   std::vector<schema::Event> events_;
   std::jthread thread_;
 };

@@ -1,5 +1,6 @@
 #include "loop/run.h"
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <memory>
@@ -10,11 +11,14 @@
 
 #include "cli/progress.h"
 #include "loop/clock.h"
+#include "loop/law_switch.h"
 #include "loop/recorder.h"
 #include "recordings/provenance.h"
 
 namespace kerf::bench {
 namespace {
+
+constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP};
 
 std::atomic<bool> stop_requested{false};
 
@@ -29,80 +33,182 @@ std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
   return axes;
 }
 
-std::unique_ptr<drivers::Device> open(const RunOptions& options) {
-  auto device = drivers::open_device(options.device_uri);
-  if (!options.scene) return device;
-  const drivers::DeviceInfo info = device->info();
-  return drivers::open_device(options.device_uri, surroundings_of(*options.scene, info));
-}
+/// Leaves a device with zero force, however its scope is left.
+class ZeroForceAtExit {
+ public:
+  explicit ZeroForceAtExit(drivers::Device& device) : device_(device) {}
+  ZeroForceAtExit(const ZeroForceAtExit&) = delete;
+  ZeroForceAtExit& operator=(const ZeroForceAtExit&) = delete;
+  ~ZeroForceAtExit() { (void)device_.write({}); }
 
-std::unique_ptr<Recorder> open_recorder(const RunOptions& options, const drivers::DeviceInfo& device) {
-  if (!options.record) return nullptr;
-  schema::Header header = schema::new_header(software());
-  header.device_uri = device.uri;
-  header.device_toml = device.configuration;
-  if (options.scene) header.scene_toml = options.scene->toml;
-  schema::RecordingWriter writer(*options.record, header, axes_of(device),
-                                 {.measures_force = device.measures_force, .replace = options.replace});
-  return std::make_unique<Recorder>(std::move(writer), Recorder::Options{.lossless = options.virtual_time});
-}
+ private:
+  drivers::Device& device_;
+};
 
-/// The loop with the law or without, recorded or not: four instances of one template.
-template <typename Clock, typename Log>
-void run(Clock clock, drivers::Device& device, Log& log, const RunOptions& options, const LoopOptions& loop,
-         const LoopControl& control, LoopReport& report) {
-  if (options.law) {
-    LawRendering rendering(options.law->law, options.law->contact, axis_for(*options.law, device.info()));
-    run_loop(clock, device, rendering, log, loop, control, report);
-  } else {
-    NoForce free;
-    run_loop(clock, device, free, log, loop, control, report);
+/// Everything that one run needs, in the order in which it is set up.
+class Run {
+ public:
+  Run(const RunOptions& options, const std::atomic<bool>& stop)
+      : options_(options), stop_(stop), device_(open()), at_exit_(*device_) {
+    result_.device = device_->info();
+    result_.period_s = 1.0 / options.rate_hz;
+    loop_ = {.ticks = static_cast<std::uint64_t>(std::llround(options.seconds * options.rate_hz)),
+             .safety = {.period_s = result_.period_s,
+                        .soft_start_s = options.ramp_s,
+                        .passivity_control = options.passivity_control}};
+    (void)laws();  // before anything is written or moves
   }
-}
 
-template <typename Log>
-void run_by_clock(drivers::Device& device, Log& log, const RunOptions& options, const LoopOptions& loop,
-                  const LoopControl& control, RunResult& result) {
-  if (options.virtual_time) {
-    run(VirtualClock(), device, log, options, loop, control, result.report);
-    return;
-  }
-  // A thread of its own takes the real-time measures, so that they end with it.
-  std::exception_ptr failure;
-  std::jthread([&] {
-    try {
-      const AwakeProcessors awake;
-      result.realtime = {use_realtime_scheduling(), lock_memory(), pin_to_processor(), awake.measure()};
-      run(WallClock(), device, log, options, loop, control, result.report);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  }).join();
-  if (failure) std::rethrow_exception(failure);
-}
-
-void close(Recorder& recorder, const RunResult& result) {
-  const LoopReport& report = result.report;
-  const auto at = static_cast<double>(report.ticks()) * result.period_s;
-  if (report.missed() > 0) {
-    std::string text = fmt::format("{} deadlines missed, charged to", report.missed());
-    for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
-      if (report.missed_by[stage] > 0) {
-        text += fmt::format(" {} {}", stage_names[stage], report.missed_by[stage]);
+  RunResult run() {
+    const auto recorder = open_recorder();
+    if (!options_.virtual_time) know_the_machine();
+    {
+      Progress progress(recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
+                        static_cast<std::size_t>(loop_.ticks));
+      const LoopControl control{.stop = stop_, .done = progress.done, .heartbeat = heartbeat_};
+      NoRecorder none;
+      if (recorder) {
+        run_by_clock(*recorder, control);
+      } else {
+        run_by_clock(none, control);
       }
     }
-    recorder.note({.time_s = at, .kind = "gap", .text = std::move(text)});
+    if (recorder) close(*recorder);
+    if (result_.report.end == LoopEnd::device_lost) {
+      throw drivers::DeviceError(
+          fmt::format("{}: the device was lost after {} ticks; its force is zero, and what was recorded is kept",
+                      options_.device_uri, result_.report.executed));
+    }
+    return std::move(result_);
   }
-  if (report.end == LoopEnd::stopped) {
-    recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
+
+ private:
+  std::unique_ptr<drivers::Device> open() {
+    if (!options_.scene && !options_.virtual_time) return drivers::open_device(options_.device_uri);
+    drivers::Surroundings surroundings;
+    if (options_.scene) {
+      surroundings = surroundings_of(*options_.scene, drivers::open_device(options_.device_uri)->info());
+    }
+    if (options_.virtual_time) {
+      surroundings.pass_time = [this](double seconds) {
+        virtual_clock_.pass(std::llround(1e9 * seconds));
+        heartbeat_.release_if_silent(*device_, virtual_clock_.now_ns(), watchdog_limit_ns(1.0 / options_.rate_hz));
+      };
+    }
+    return drivers::open_device(options_.device_uri, std::move(surroundings));
   }
-  if (report.end == LoopEnd::device_lost) {
-    recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost"});
-    recorder.close("aborted: the device was lost");
-    return;
+
+  /// The laws in their order, each on its axis.
+  [[nodiscard]] std::vector<SwitchedLaw> laws() const {
+    std::vector<SwitchedLaw> all;
+    const auto add = [&](const LawFile& law, double from_s) {
+      all.push_back({.rendering = {law.law, law.contact, axis_for(law, result_.device)}, .from_s = from_s});
+    };
+    if (options_.law) add(*options_.law, 0.0);
+    for (const LawChange& change : options_.changes) add(change.law, change.at_s);
+    return all;
   }
-  recorder.close("complete");
-}
+
+  void know_the_machine() {
+    if (options_.floor_s > 0.0) result_.floor = host_floor(options_.rate_hz, options_.floor_s);
+    const auto known = result_.floor ? result_.floor : cached_host_floor(options_.rate_hz);
+    if (known) result_.spin_ns = known->spin_ns;
+  }
+
+  std::unique_ptr<Recorder> open_recorder() {
+    if (!options_.record) return nullptr;
+    schema::Header header = schema::new_header(software());
+    header.device_uri = result_.device.uri;
+    header.device_toml = result_.device.configuration;
+    if (options_.scene) header.scene_toml = options_.scene->toml;
+    schema::RecordingWriter writer(
+        *options_.record, header, axes_of(result_.device),
+        {.measures_force = result_.device.measures_force, .replace = options_.replace});
+    return std::make_unique<Recorder>(
+        std::move(writer),
+        Recorder::Options{.lossless = options_.virtual_time, .on_failure = [this](std::string_view why) {
+                            if (!options_.warn) return;
+                            options_.warn(fmt::format("{}; the loop goes on, and nothing more is recorded", why));
+                          }});
+  }
+
+  /// The loop with one law, with several or without, recorded or not: instances of one template.
+  template <typename Clock, typename Log>
+  void run_laws(Clock& clock, Log& log, const LoopControl& control) {
+    if (!options_.law) {
+      NoForce free;
+      run_loop(clock, *device_, free, log, loop_, control, result_.report);
+    } else if (options_.changes.empty()) {
+      LawRendering rendering = laws().front().rendering;
+      run_loop(clock, *device_, rendering, log, loop_, control, result_.report);
+    } else {
+      LawSwitch rendering(laws(), options_.ramp_s);
+      run_loop(clock, *device_, rendering, log, loop_, control, result_.report);
+    }
+  }
+
+  template <typename Log>
+  void run_by_clock(Log& log, const LoopControl& control) {
+    if (options_.virtual_time) return run_laws(virtual_clock_, log, control);
+    const Watchdog watchdog(*device_, heartbeat_, result_.period_s);
+    // A thread of its own takes the real-time measures, so that they end with it.
+    std::exception_ptr failure;
+    std::jthread([&] {
+      try {
+        const AwakeProcessors awake;
+        result_.realtime = {use_realtime_scheduling(), lock_memory(), pin_to_processor(), awake.measure()};
+        if (result_.spin_ns == 0) {
+          result_.spin_ns = learn_spin_ns(static_cast<std::int64_t>(1e9 * result_.period_s));
+        }
+        WallClock clock(result_.spin_ns);
+        const ThreadUsage before = ThreadUsage::now();
+        run_laws(clock, log, control);
+        result_.usage = ThreadUsage::now().since(before);
+      } catch (...) {
+        failure = std::current_exception();
+      }
+    }).join();
+    if (failure) std::rethrow_exception(failure);
+  }
+
+  void close(Recorder& recorder) {
+    const LoopReport& report = result_.report;
+    result_.rows_lost = recorder.lost();
+    const auto at = static_cast<double>(report.ticks()) * result_.period_s;
+    if (report.missed() > 0) {
+      std::string text = fmt::format("{} deadlines missed in all, charged to", report.missed());
+      for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
+        if (report.missed_by[stage] > 0) {
+          text += fmt::format(" {} {}", stage_names[stage], report.missed_by[stage]);
+        }
+      }
+      recorder.note({.time_s = at, .kind = "gap", .text = std::move(text)});
+    }
+    std::string status = "complete";
+    if (report.end == LoopEnd::stopped) {
+      recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
+    } else if (report.end == LoopEnd::device_lost) {
+      recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost"});
+      status = "aborted: the device was lost";
+    }
+    try {
+      recorder.close(status);
+    } catch (const std::system_error& error) {
+      result_.recording_failure =
+          fmt::format("{}; what was recorded until then is in {}.partial, and 'kerf repair' closes it",
+                      error.what(), options_.record->string());
+    }
+  }
+
+  const RunOptions& options_;
+  const std::atomic<bool>& stop_;
+  VirtualClock virtual_clock_;
+  Heartbeat heartbeat_;
+  std::unique_ptr<drivers::Device> device_;
+  ZeroForceAtExit at_exit_;
+  RunResult result_;
+  LoopOptions loop_;
+};
 
 }  // namespace
 
@@ -111,43 +217,19 @@ RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop
     throw std::invalid_argument(
         fmt::format("a rate of {} Hz is not between 100 and 10000 Hz", options.rate_hz));
   }
-  const auto device = open(options);
-  if (options.law) (void)axis_for(*options.law, device->info());
-  RunResult result{.device = device->info(), .period_s = 1.0 / options.rate_hz};
-  const LoopOptions loop{
-      .period_s = result.period_s,
-      .ticks = static_cast<std::uint64_t>(std::llround(options.seconds * options.rate_hz))};
-  const auto recorder = open_recorder(options, result.device);
-  {
-    Progress progress(recorder ? "recording " + options.record->string() : "running " + options.device_uri,
-                      static_cast<std::size_t>(loop.ticks));
-    const LoopControl control{.stop = stop, .done = progress.done};
-    NoRecorder none;
-    if (recorder) {
-      run_by_clock(*device, *recorder, options, loop, control, result);
-    } else {
-      run_by_clock(*device, none, options, loop, control, result);
-    }
-  }
-  if (recorder) {
-    result.rows_lost = recorder->lost();
-    close(*recorder, result);
-  }
-  if (result.report.end == LoopEnd::device_lost) {
-    throw drivers::DeviceError(
-        fmt::format("{}: the device was lost after {} ticks; its force is zero, and what was "
-                    "recorded is kept",
-                    options.device_uri, result.report.executed));
-  }
-  return result;
+  return Run(options, stop).run();
 }
 
 StopOnSignal::StopOnSignal() {
   stop_requested = false;
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_requested = true; });
+  for (const int signal : stop_signals) {
+    const auto before = std::signal(signal, [](int) { stop_requested = true; });
+    // What was started with nohup stays alive without its terminal.
+    if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 }
 StopOnSignal::~StopOnSignal() {
-  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+  for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
 }
 const std::atomic<bool>& StopOnSignal::requested() const noexcept { return stop_requested; }
 

@@ -1,19 +1,29 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <kerf/drivers/device.h>
 
 #include "laws/law_file.h"
+#include "loop/host_floor.h"
 #include "loop/loop.h"
 #include "loop/realtime.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {
+
+/// A law that takes over during a run, softly.
+struct LawChange {
+  LawFile law;
+  double at_s = 0.0;  ///< loop time
+};
 
 /// What to run on a device, for how long, and where to record it.
 struct RunOptions {
@@ -21,10 +31,17 @@ struct RunOptions {
   double seconds = 10.0;
   double rate_hz = 1000.0;
   bool virtual_time = false;
-  std::optional<LawFile> law;                   ///< rendered as force; none: the device moves freely
+  std::optional<LawFile> law;      ///< rendered as force; none: the device moves freely
+  std::vector<LawChange> changes;  ///< laws that come after it
+  double ramp_s = 0.25;            ///< of the soft start, and from law to law
+  bool passivity_control = false;
   std::optional<Scene> scene;                   ///< what a simulated device meets
   std::optional<std::filesystem::path> record;  ///< where to record
   bool replace = false;                         ///< an existing recording may be replaced
+  /// Time to measure what the machine itself does to an empty loop, unless that is known since it was started;
+  /// 0: only how early to wake up is measured. By the wall clock only.
+  double floor_s = 0.0;
+  std::function<void(std::string_view)> warn;  ///< told at once what is wrong with the recording
 };
 
 struct RunResult {
@@ -32,15 +49,19 @@ struct RunResult {
   double period_s = 0.0;
   LoopReport report;
   std::vector<RealtimeMeasure> realtime;  ///< empty in virtual time
+  ThreadUsage usage;                      ///< of the loop's thread while it ran; zero in virtual time
+  std::optional<HostFloor> floor;         ///< if it was asked for
+  std::int64_t spin_ns = 0;               ///< how long before its deadline the loop woke up
   std::uint64_t rows_lost = 0;
+  std::string recording_failure;  ///< why the recording could not be written to its end; empty if it could
 };
 
-/// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly.
-/// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be
-/// written).
+/// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly. However it ends, the
+/// device is left with zero force.
+/// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be begun).
 [[nodiscard]] RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop);
 
-/// A flag that Ctrl-C and SIGTERM set while the object lives.
+/// A flag that Ctrl-C, SIGTERM and the end of the terminal set while the object lives.
 class StopOnSignal {
  public:
   StopOnSignal();

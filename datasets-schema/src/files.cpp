@@ -29,6 +29,13 @@ class Descriptor {
   int number_;
 };
 
+struct flock whole_file_lock() noexcept {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
 }  // namespace
 
 TemporaryFile::TemporaryFile(std::filesystem::path target) : target_(std::move(target)), path_(target_) {
@@ -47,6 +54,31 @@ void TemporaryFile::commit() {
   if (std::filesystem::exists(target_)) synchronise(path_);
   rename_file(path_, target_);
   path_.clear();
+}
+
+WriteMark::WriteMark(const std::filesystem::path& file)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
+  // A lock of the open file description: unlike those of a process it survives HDF5 closing the file.
+  struct flock lock = whole_file_lock();
+  if (descriptor_ >= 0) static_cast<void>(::fcntl(descriptor_, F_OFD_SETLK, &lock));
+}
+
+WriteMark::~WriteMark() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool is_marked(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  struct flock lock = whole_file_lock();
+  const bool marked = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  ::close(descriptor);
+  return marked;
+}
+
+std::filesystem::path partial_name(std::filesystem::path file) {
+  file += ".partial";
+  return file;
 }
 
 void reserve(const std::filesystem::path& file, std::size_t bytes) {
@@ -78,12 +110,14 @@ std::system_error write_error(const std::filesystem::path& file, const h5::Error
 void require_readable(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    auto partial = file;
-    partial += ".partial";
-    const bool was_cut_off = std::filesystem::exists(partial, ignored);
-    throw std::invalid_argument(
-        file.string() + ": there is no such file; " +
-        (was_cut_off ? partial.string() + " holds a recording that was not closed" : "expected a recording"));
+    const auto partial = partial_name(file);
+    if (!std::filesystem::exists(partial, ignored)) {
+      throw std::invalid_argument(file.string() + ": there is no such file; expected a recording");
+    }
+    throw std::invalid_argument(file.string() + ": there is no such file; " + partial.string() +
+                                (is_marked(partial)
+                                     ? " is still written; 'kerf info --follow' shows it"
+                                     : " holds a recording that was not closed; 'kerf repair' closes it"));
   }
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw std::invalid_argument(file.string() + ": not a file; expected a recording");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "h5.h"
 
@@ -25,6 +26,29 @@ class TemporaryFile {
   std::filesystem::path target_;
   std::filesystem::path path_;
 };
+
+/// Says to other processes that this one is writing a file, for as long as it lives; the system takes it back
+/// when the process dies. On file systems without locks it says nothing.
+class WriteMark {
+ public:
+  WriteMark() = default;
+  explicit WriteMark(const std::filesystem::path& file);
+  WriteMark(WriteMark&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+  WriteMark& operator=(WriteMark&& other) noexcept {
+    std::swap(descriptor_, other.descriptor_);
+    return *this;
+  }
+  ~WriteMark();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// Whether a living process has a WriteMark on a file.
+[[nodiscard]] bool is_marked(const std::filesystem::path& file);
+
+/// The name of a recording while it is written: NAME.partial.
+[[nodiscard]] std::filesystem::path partial_name(std::filesystem::path file);
 
 /// Makes a file longer by so many bytes that the disk then has room for. @throws std::system_error
 void reserve(const std::filesystem::path& file, std::size_t bytes);

@@ -308,11 +308,12 @@ void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows,
 
 void flush(hid_t dataset) { call(H5Dflush, dataset); }
 
-void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values) {
+void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values, hsize_t first) {
   const Handle in_file(call(H5Dget_space, dataset));
   Extent extent = extent_of(in_file);
   extent.front() = rows;
-  const Extent start(extent.size(), 0);
+  Extent start(extent.size(), 0);
+  start.front() = first;
   call(H5Sselect_hyperslab, in_file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
   call(H5Dread, dataset, memory_type, dataspace(extent, false).id(), in_file.id(), H5P_DEFAULT, values);
 }

@@ -136,8 +136,8 @@ void write(hid_t dataset, hid_t memory_type, const void* values);
 void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows, const void* values);
 /// Hands it to the operating system.
 void flush(hid_t dataset);
-/// Reads the first `rows` rows.
-void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values);
+/// Reads `rows` rows from row `first` on.
+void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values, hsize_t first = 0);
 
 // Attributes: one value or a list of them.
 void write_attribute(hid_t object, const std::string& name, const std::string& text);

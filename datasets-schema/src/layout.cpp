@@ -8,9 +8,16 @@ namespace kerf::schema::layout {
 namespace {
 
 constexpr std::array<std::uint32_t, 1> version{schema_version};
-constexpr std::array<std::uint32_t, 7> flag_masks{flag_missed_deadline, flag_force_limited, flag_slew_limited,
-                                                  flag_soft_start,      flag_law_fault,     flag_device_fault,
-                                                  flag_resampled};
+constexpr auto flag_masks = [] {
+  std::array<std::uint32_t, flag_table.size()> masks{};
+  std::ranges::transform(flag_table, masks.begin(), &FlagInfo::flag);
+  return masks;
+}();
+const std::string flag_meanings = [] {
+  std::string names;
+  for (const auto& flag : flag_table) names.append(names.empty() ? "" : " ").append(flag.name);
+  return names;
+}();
 constexpr std::array<std::uint8_t, 4> phase_values{1, 2, 3, 4};
 
 constexpr bool required = true;
@@ -49,8 +56,7 @@ const std::array attribute_table{
     Attribute{"/samples/flags", "flag_masks", "uint32", "B", required, "The bits", std::span(flag_masks)},
     Attribute{"/samples/flags", "flag_meanings", "text", "", required,
               "Their meanings in the same order, as in the CF conventions",
-              std::string_view("missed_deadline force_limited slew_limited soft_start law_fault device_fault "
-                               "resampled")},
+              std::string_view(flag_meanings)},
     Attribute{"/device", "uri", "text", "", optional, "The device's URI, `sim:scissors?seed=3`",
               &Header::device_uri},
     Attribute{"/device", "toml", "text", "", optional, "Its configuration", &Header::device_toml},
@@ -99,7 +105,7 @@ const std::array dataset_table{
             "E",
             Units::event,
             required,
-            "What happened during the recording: `start`, `stop`, `gap`, `fault`, ...",
+            "What happened during the recording: `stop`, `gap`, `fault`, or the name of a flag",
             {},
             {}},
     Dataset{"/cycles/phases",

@@ -17,7 +17,7 @@ std::string in_words(std::string_view shape) {
   std::string words;
   for (const char letter : shape) {
     if (!words.empty()) words += " x ";
-    words += letter == 'B' ? "7" : letter == 'F' ? "4" : std::string(1, letter);
+    words += letter == 'B' ? std::to_string(flag_table.size()) : letter == 'F' ? "4" : std::string(1, letter);
   }
   return words.empty() ? "one" : words;
 }
@@ -68,6 +68,11 @@ std::string schema_as_markdown() {
                  std::string(attribute.description) + value_of(attribute)});
   }
   text += row({"every dataset", code("units"), "text", "see above", "yes", "Unit, or units one a column"});
+  text += "\n### Flags\n\n" + row({"bit", "name", "what it says of its row"}) + row({"---", "---", "---"});
+  for (const auto& flag : flag_table) {
+    text += row({std::to_string(static_cast<std::uint32_t>(flag.flag)), code(flag.name),
+                 std::string(flag.meaning)});
+  }
   return text;
 }
 

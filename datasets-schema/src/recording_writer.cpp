@@ -57,11 +57,6 @@ void append_column(const Column& column, std::uint64_t rows_before, std::span<co
       column.rule->row_member);
 }
 
-std::filesystem::path partial_name(std::filesystem::path file) {
-  file += ".partial";
-  return file;
-}
-
 void require_new(const std::filesystem::path& target, const std::filesystem::path& partial, bool replace) {
   if (!replace && std::filesystem::exists(target)) {
     throw std::invalid_argument(target.string() +
@@ -69,7 +64,10 @@ void require_new(const std::filesystem::path& target, const std::filesystem::pat
   }
   if (std::filesystem::exists(partial)) {
     throw std::invalid_argument(
-        partial.string() + ": exists already, from a recording that was not closed; move it or remove it");
+        partial.string() +
+        (is_marked(partial)
+             ? ": is being recorded by another process; give another name, or stop that one"
+             : ": exists already, from a recording that was not closed; 'kerf repair' closes it"));
   }
 }
 
@@ -129,6 +127,7 @@ struct RecordingWriter::Implementation {
       events = make_dataset(file.id(), layout::dataset("/events"), type.id(), sources,
                             {.extent = {0}, .chunk_rows = 64});
       file.start_live();
+      mark = WriteMark(path);
     });
   }
 
@@ -222,6 +221,7 @@ struct RecordingWriter::Implementation {
   std::vector<Axis> axes;
   Options options;
   h5::WritableFile file;
+  WriteMark mark;
   std::vector<Column> columns;  ///< `time` first
   h5::Handle events;
   std::vector<Row> pending;
@@ -276,6 +276,7 @@ void RecordingWriter::close(std::string_view status) {
   synchronise(self.path);
   rename_file(self.path, self.target);
   self.path = self.target;
+  self.mark = {};
   self.closed = true;
 }
 

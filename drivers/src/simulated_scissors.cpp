@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <sstream>
 
@@ -13,6 +14,7 @@ constexpr double handle_inertia_kg_m2 = 2e-5;
 constexpr double carriage_kg = 0.4;
 constexpr double sensor_noise_n = 0.02;
 constexpr double sensor_step_n = 0.002;
+constexpr double never = std::numeric_limits<double>::infinity();
 constexpr double velocity_corner_rad_s = 2.0 * std::numbers::pi * 20.0;
 
 double rounded_to(double value, double step) noexcept {
@@ -28,7 +30,8 @@ std::vector<AxisInfo> scissors_axes() {
            .lower = 0.0,
            .upper = 60.0 * degree,
            .force_limit = 7.58,
-           .slew_limit = 2000.0},
+           .slew_limit = 2000.0,
+           .speed_limit = 50.0},
           {.name = "x_s",
            .position_unit = "m",
            .force_unit = "N",
@@ -37,7 +40,8 @@ std::vector<AxisInfo> scissors_axes() {
            .lower = -0.05,
            .upper = 0.05,
            .force_limit = 159.0,
-           .slew_limit = 20000.0}};
+           .slew_limit = 20000.0,
+           .speed_limit = 5.0}};
 }
 
 std::string as_toml(const SimulatedScissors::Options& options) {
@@ -75,6 +79,7 @@ SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
   hand.pause_s = given.number("pause", {"s", hand.pause_s, 0.0, 100.0});
   hand.variation = given.number("variation", {"1", hand.variation, 0.0, 0.3});
   hand.stiffness_n_per_m = given.number("grip", {"N/m", hand.stiffness_n_per_m, 0.0, 5000.0});
+  given.allow("fault");
   given.refuse_others();
   if (hand.close_rad >= hand.open_rad) {
     throw DeviceError("device 'sim:scissors': option 'close' must be a smaller angle than 'open'");
@@ -86,7 +91,8 @@ SimulatedScissors::SimulatedScissors(std::string_view uri, const Options& option
     : options_(options),
       surroundings_(std::move(surroundings)),
       strokes_(options.hand),
-      noise_(options.seed) {
+      noise_(options.seed),
+      released_at_s_(never) {
   info_ = {.uri = std::string(uri),
            .model = "sim:scissors",
            .about = "haptic scissors of two degrees of freedom with a hand on them, simulated",
@@ -109,6 +115,7 @@ SimulatedScissors::SimulatedScissors(std::string_view uri, const Options& option
 
 void SimulatedScissors::step() noexcept {
   const double time_s = static_cast<double>(++steps_) * sub_step_s;
+  const bool released = time_s > released_at_s_.load(std::memory_order_relaxed);
   const Strokes::Equilibrium wish = options_.with_hand ? strokes_.at(time_s) : Strokes::Equilibrium{};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double lever = info_.axes[axis].lever;
@@ -116,7 +123,7 @@ void SimulatedScissors::step() noexcept {
     axes_[axis].step(state,
                      {.equilibrium_m = axis == 0 ? wish.angle_rad * lever : 0.0,
                       .equilibrium_speed_m_s = axis == 0 ? wish.speed_rad_s * lever : 0.0,
-                      .force_n = command_[axis] + tissue_force_[axis]},
+                      .force_n = (released ? 0.0 : command_[axis]) + tissue_force_[axis]},
                      sub_step_s);
     // After the move, so that the sensor and the encoder speak of the same moment.
     if (const Tissue& tissue = surroundings_.tissue[axis]) {
@@ -161,7 +168,13 @@ Status SimulatedScissors::write(const Axes& force) noexcept {
     const double limit = info_.axes[axis].force_limit;
     command_[axis] = std::clamp(force[axis], -limit, limit);
   }
+  released_at_s_.store(never, std::memory_order_relaxed);
   return Status::ok;
+}
+
+void SimulatedScissors::release(double at_s) noexcept {
+  double expected = never;
+  released_at_s_.compare_exchange_strong(expected, at_s, std::memory_order_relaxed);
 }
 
 }  // namespace kerf::drivers

@@ -1,5 +1,6 @@
 #include "loop/loop.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -154,7 +155,7 @@ TEST(Loop, GivesZeroForceWhileTheDeviceFaults) {
   bench.device.answer = [](std::uint64_t tick, auto&) { return tick == 2 ? Status::fault : Status::ok; };
   const LoopReport report = bench.run(4);
   EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 0.0, 1.0, 0.0));
-  EXPECT_EQ(report.device_faults, 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_device_fault), 1U);
   EXPECT_EQ(bench.recorder.rows[2].flags, schema::flag_device_fault);
   EXPECT_EQ(bench.recorder.rows[2].force_commanded[0], 0.0);
   EXPECT_EQ(report.end, LoopEnd::completed);
@@ -169,7 +170,7 @@ TEST(Loop, TakesANumberThatIsNotFiniteForAFaultOfTheDevice) {
   };
   const LoopReport report = bench.run(4);
   EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 0.0, 1.0, 0.0));
-  EXPECT_EQ(report.device_faults, 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_device_fault), 1U);
   EXPECT_TRUE(std::isfinite(report.energy_j));
 }
 
@@ -181,7 +182,7 @@ TEST(Loop, GivesZeroForceAtOnceWhenTheLawGivesNoNumber) {
   EXPECT_EQ(bench.recorder.rows[4].force_commanded[0], 0.0) << "not let down at the slew limit";
   EXPECT_TRUE(bench.recorder.rows[4].flags & schema::flag_law_fault);
   EXPECT_EQ(bench.recorder.rows[5].force_commanded[0], 2.0) << "and from there at the slew limit";
-  EXPECT_EQ(report.law_faults, 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_law_fault), 1U);
 }
 
 TEST(Loop, EndsWithZeroForceWhenTheDeviceIsLost) {
@@ -221,7 +222,85 @@ TEST(Loop, RecordsTheForceThatItWrote) {
   for (std::size_t i = 0; i < 12; ++i) {
     EXPECT_EQ(bench.recorder.rows[i].force_commanded[0], bench.device.written[i + 1]);
   }
-  EXPECT_EQ(report.limited, 12U) << "every one of them asks for more than 7 N";
+  EXPECT_EQ(report.ticks_with(schema::flag_force_limited), 12U) << "every one of them asks for more than 7 N";
+}
+
+TEST(Loop, LetsTheForceInSoftlyAgainAfterAFault) {
+  Bench bench;
+  bench.force = [](auto) { return 1.0; };
+  bench.device.answer = [](std::uint64_t tick, auto&) { return tick == 400 ? Status::fault : Status::ok; };
+  (void)bench.run(700, 0.25);
+  const auto& rows = bench.recorder.rows;
+  EXPECT_EQ(rows[399].force_commanded[0], 1.0);
+  EXPECT_EQ(rows[400].force_commanded[0], 0.0);
+  EXPECT_DOUBLE_EQ(rows[525].force_commanded[0], 0.5);
+  EXPECT_EQ(rows[650].force_commanded[0], 1.0);
+}
+
+TEST(Loop, GivesZeroForceWhereThePositionIsFartherThanAHandCanMoveIt) {
+  Bench bench;
+  bench.force = [](auto) { return 1.0; };
+  bench.device.speed_limit(50.0);  // 0.05 rad in a tick
+  bench.device.answer = [](std::uint64_t tick, drivers::Sample& sample) {
+    sample.position[0] = (tick >= 3 ? 0.06 : 0.0) + (tick >= 5 ? 0.04 : 0.0);
+    return Status::ok;
+  };
+  const LoopReport report = bench.run(7);
+  EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0));
+  EXPECT_EQ(bench.recorder.rows[3].flags, schema::flag_position_jump);
+  EXPECT_EQ(report.ticks_with(schema::flag_position_jump), 1U);
+  EXPECT_NEAR(report.energy_j, -1.0 * 0.04 * 0.04, 1e-15) << "the jump itself is no work, the motion after it is";
+}
+
+class SilentStage : public testing::TestWithParam<Stage> {};
+
+TEST_P(SilentStage, GetsZeroForceForItsLateTickAndASoftStart) {
+  Bench bench;
+  bench.force = [](auto) { return 1.0; };
+  bench.script.delay(GetParam(), 300, 10.5);  // the watchdog waits 10 ms
+  const LoopReport report = bench.run(700, 0.25);
+  EXPECT_EQ(report.ticks_with(schema::flag_watchdog), 1U);
+  const auto late = std::ranges::find_if(bench.recorder.rows, [](const schema::Row& row) {
+    return (row.flags & schema::flag_watchdog) != 0;
+  });
+  ASSERT_NE(late, bench.recorder.rows.end());
+  EXPECT_EQ(late->force_commanded[0], 0.0);
+  const auto force_after = [&](std::uint64_t ticks) {
+    return std::ranges::find(bench.recorder.rows, late->tick + ticks, &schema::Row::tick)->force_commanded[0];
+  };
+  EXPECT_DOUBLE_EQ(force_after(125), 0.5);
+  EXPECT_EQ(force_after(250), 1.0);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Each, SilentStage, testing::Values(Stage::wake, Stage::read, Stage::compute, Stage::write, Stage::record),
+    [](const auto& tested) { return stage_names[static_cast<std::size_t>(tested.param)]; });
+
+TEST(Loop, IsNotTakenForSilentBeforeTenMilliseconds) {
+  Bench bench;
+  bench.script.delay(Stage::compute, 3, 8.9);
+  EXPECT_EQ(bench.run(30).ticks_with(schema::flag_watchdog), 0U);
+}
+
+TEST(Loop, HeedsAWatchdogThatActedForWhateverReason) {
+  Bench bench;
+  bench.force = [&](std::uint64_t tick) {
+    // What the watchdog's own thread does, seen from a tick that thinks itself in time.
+    if (tick == 2) (void)bench.heartbeat.release_if_silent(bench.device, 1'000'000'000, 10'000'000);
+    return 1.0;
+  };
+  const LoopReport report = bench.run(5);
+  EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0));
+  EXPECT_EQ(report.ticks_with(schema::flag_watchdog), 1U);
+  EXPECT_EQ(bench.device.released_at_s.size(), 1U);
+}
+
+TEST(Loop, MeasuresTheProcessorTimeOfEverySecondTickInStepWithNoTurn) {
+  Bench bench;
+  for (std::uint64_t tick = 0; tick < 64; tick += 2) bench.script.delay(Stage::compute, tick, 0.25);
+  const LoopReport report = bench.run(64);
+  EXPECT_EQ(report.compute_cpu.count(), 32U);
+  EXPECT_EQ(report.compute_cpu.max_ns(), 0.25e6);
+  EXPECT_EQ(report.compute_cpu.mean_ns(), 0.125e6) << "a law that works in every second tick is seen as it is";
 }
 
 }  // namespace

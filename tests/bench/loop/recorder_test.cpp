@@ -37,7 +37,7 @@ TEST(Recorder, WritesEveryRowInOrder) {
   EXPECT_EQ(recording.header.status, "complete");
 }
 
-TEST(Recorder, LosesRowsRatherThanWaitAndTellsFromWhen) {
+TEST(Recorder, LosesRowsRatherThanWaitAndTellsWhere) {
   const test::TemporaryFolder folder;
   Recorder recorder(writer_to(folder / "r.h5"), {.ring_rows = 8});
   for (std::uint64_t tick = 0; tick < 100'000; ++tick) recorder.push(row_of(tick));
@@ -46,12 +46,32 @@ TEST(Recorder, LosesRowsRatherThanWaitAndTellsFromWhen) {
   recorder.close("complete");
   const schema::Recording recording = schema::read_recording(folder / "r.h5");
   EXPECT_EQ(recording.rows() + lost, 100'000U);
+  EXPECT_EQ(recording.events.back().kind, "gap");
+  EXPECT_THAT(recording.events.back().text, HasSubstr(std::to_string(lost) + " rows lost"));
+  std::uint64_t missing = recording.tick.front();
+  for (std::size_t row = 1; row < recording.rows(); ++row) {
+    const std::uint64_t jump = recording.tick[row] - recording.tick[row - 1] - 1;
+    missing += jump;
+    ASSERT_EQ(recording.flags[row], jump > 0 ? schema::flag_rows_lost : 0U) << "row " << row;
+  }
+  missing += 99'999 - recording.tick.back();
+  EXPECT_EQ(missing, lost) << "the file itself tells of every row that is not in it";
+  EXPECT_EQ(recording.events.front().kind, "rows_lost");
+}
+
+TEST(Recorder, MakesAnEventOfWhatAFlagSays) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(writer_to(folder / "r.h5"), {.lossless = true});
+  for (std::uint64_t tick = 0; tick < 3000; ++tick) {
+    schema::Row row = row_of(tick);
+    if (tick == 2500) row.flags = schema::flag_watchdog;
+    recorder.push(row);
+  }
+  recorder.close("complete");
+  const schema::Recording recording = schema::read_recording(folder / "r.h5");
   ASSERT_EQ(recording.events.size(), 1U);
-  EXPECT_EQ(recording.events[0].kind, "gap");
-  EXPECT_THAT(recording.events[0].text, HasSubstr(std::to_string(lost) + " rows lost"));
-  std::size_t first_gap = 0;
-  while (first_gap < recording.rows() && recording.tick[first_gap] == first_gap) ++first_gap;
-  EXPECT_DOUBLE_EQ(recording.events[0].time_s, 1e-3 * static_cast<double>(first_gap));
+  EXPECT_EQ(recording.events[0].kind, "watchdog");
+  EXPECT_DOUBLE_EQ(recording.events[0].time_s, 2.5);
 }
 
 TEST(Recorder, LeavesThePartialFileWhenItIsNotClosed) {

@@ -138,7 +138,9 @@ std::size_t allocations_of_a_run(std::uint64_t ticks, bool lossless) {
   std::atomic<std::size_t> done{0};
   LoopReport report;
   const std::size_t before = test::allocations();
-  run_loop(clock, *scene_device, rendering, recorder, {.ticks = ticks}, {.stop = stop, .done = done}, report);
+  Heartbeat heartbeat;
+  run_loop(clock, *scene_device, rendering, recorder, {.ticks = ticks},
+           {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
   const std::size_t after = test::allocations();
   EXPECT_EQ(report.ticks(), ticks);
   EXPECT_GT(report.executed, 0U);

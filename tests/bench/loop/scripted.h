@@ -36,6 +36,7 @@ struct ScriptedClock {
   Script& script;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return script.now_ns; }
+  [[nodiscard]] std::int64_t cpu_ns() const noexcept { return script.now_ns; }
   void sleep_until(std::int64_t deadline_ns) const noexcept {
     script.now_ns = std::max(script.now_ns, deadline_ns);
     script.pass(Stage::wake, static_cast<std::uint64_t>(deadline_ns / period_ns - 1));
@@ -56,9 +57,12 @@ class ScriptedDevice final : public drivers::Device {
                    .slew_limit = 2000.0}};
   }
 
+  void speed_limit(double per_second) { info_.axes[0].speed_limit = per_second; }
+
   std::function<drivers::Status(std::uint64_t tick, drivers::Sample&)> answer;
   std::map<std::uint64_t, drivers::Status> write_answers;
   std::vector<double> written;
+  std::vector<double> released_at_s;
 
   [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] drivers::Status read(double now_s, drivers::Sample& sample) noexcept override {
@@ -76,6 +80,7 @@ class ScriptedDevice final : public drivers::Device {
     const auto found = write_answers.find(tick_);
     return found != write_answers.end() ? found->second : drivers::Status::ok;
   }
+  void release(double at_s) noexcept override { released_at_s.push_back(at_s); }
   [[nodiscard]] std::uint64_t tick() const noexcept { return tick_; }
 
  private:
@@ -105,6 +110,7 @@ struct Bench {
   std::vector<double> periods_s;  ///< that the computation was given
   std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
+  Heartbeat heartbeat;
 
   LoopReport run(std::uint64_t ticks, double soft_start_s = 0.0) {
     ScriptedClock clock{script};
@@ -115,8 +121,8 @@ struct Bench {
     };
     LoopReport report;
     run_loop(clock, device, compute, recorder,
-             {.period_s = period_s, .ticks = ticks, .soft_start_s = soft_start_s},
-             {.stop = stop, .done = done}, report);
+             {.ticks = ticks, .safety = {.period_s = period_s, .soft_start_s = soft_start_s}},
+             {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
     return report;
   }
   [[nodiscard]] std::vector<std::uint64_t> ticks() const {

@@ -54,7 +54,35 @@ enum Flag : std::uint32_t {
   flag_law_fault = 1U << 4U,
   flag_device_fault = 1U << 5U,
   flag_resampled = 1U << 6U,
+  flag_rows_lost = 1U << 7U,
+  flag_position_jump = 1U << 8U,
+  flag_watchdog = 1U << 9U,
+  flag_soft_switch = 1U << 10U,
+  flag_passivity_control = 1U << 11U,
 };
+
+/// What a flag is called in the file, and what it says of its row.
+struct FlagInfo {
+  Flag flag;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// Every flag, in the order of its bit.
+inline constexpr std::array<FlagInfo, 12> flag_table{{
+    {flag_missed_deadline, "missed_deadline", "deadlines were missed before this tick"},
+    {flag_force_limited, "force_limited", "the force was cut to what the device may exert"},
+    {flag_slew_limited, "slew_limited", "the force changed more slowly than was asked for"},
+    {flag_soft_start, "soft_start", "the force is let in along a ramp"},
+    {flag_law_fault, "law_fault", "the law gave no finite force: zero force"},
+    {flag_device_fault, "device_fault", "the device did not answer with finite numbers: zero force"},
+    {flag_resampled, "resampled", "the row was interpolated"},
+    {flag_rows_lost, "rows_lost", "rows before this one were lost, because the writer did not keep up"},
+    {flag_position_jump, "position_jump", "the position moved farther than the device can: zero force"},
+    {flag_watchdog, "watchdog", "the loop had stalled and the watchdog released the device: zero force"},
+    {flag_soft_switch, "soft_switch", "two laws are blended"},
+    {flag_passivity_control, "passivity_control", "damping was added to keep the rendering passive"},
+}};
 
 /// Further numbers and texts about a device or a scene, by name.
 using Properties = std::map<std::string, std::variant<double, std::string>>;

@@ -28,6 +28,7 @@ struct AxisInfo {
   double upper = 0.0;
   double force_limit = 0.0;  ///< largest force that may be commanded, in the unit of force
   double slew_limit = 0.0;   ///< largest change of force per second
+  double speed_limit = 0.0;  ///< faster than hand and mechanism can be, per second; 0 if not known
 };
 
 struct DeviceInfo {
@@ -74,15 +75,23 @@ class Device {
 
   /// Commands a force per axis, held until the next write. The first read before any write sees zero force.
   [[nodiscard]] virtual Status write(const Axes& force) noexcept = 0;
+
+  /// Makes the force zero from `at_s` seconds of loop time until the next write. The watchdog calls it from a
+  /// thread of its own, at any time, also while read() or write() is at work. A real device ignores the
+  /// argument and acts at once.
+  virtual void release(double at_s) noexcept = 0;
 };
 
 /// What a simulated tool meets: the force that tissue exerts along one axis, positive where it pushes the
 /// position up. Called in sub-steps of the physics with a fixed period; must not allocate or throw.
 using Tissue = std::function<double(double position, double velocity, double period_s)>;
 
-/// What exists around a simulated device, one tissue per axis (empty: none). Real devices refuse it.
+/// What exists around a simulated device. Real devices refuse it.
 struct Surroundings {
-  std::array<Tissue, max_axes> tissue;
+  std::array<Tissue, max_axes> tissue;  ///< one per axis; empty: none
+  /// Lets so many seconds pass where a simulated device is slow; empty: the calling thread sleeps. A loop in
+  /// virtual time moves its clock.
+  std::function<void(double seconds)> pass_time;
 };
 
 /// Opens a device by URI, for example "sim:scissors?seed=3&noise=off".

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <string_view>
 
@@ -36,13 +37,15 @@ class SimulatedScissors final : public Device {
 
   SimulatedScissors(std::string_view uri, const Options& options, Surroundings surroundings);
 
-  /// Reads the options of a URI: seed, hand, noise, encoder, open, close, stroke, pause, variation, grip.
+  /// Reads the options of a URI: seed, hand, noise, encoder, open, close, stroke, pause, variation, grip; it leaves
+  /// `fault` to open_device().
   /// @throws DeviceError for one that is unknown or out of range.
   static Options parse_options(Uri uri);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
   [[nodiscard]] Status write(const Axes& force) noexcept override;
+  void release(double at_s) noexcept override;
 
   static constexpr double sub_step_s = 50e-6;
   static constexpr double lever_m = 0.28 / 7.58;
@@ -60,6 +63,7 @@ class SimulatedScissors final : public Device {
   std::array<SimulatedAxis::State, 2> states_{};
   std::array<double, 2> tissue_force_{};
   Axes command_{};
+  std::atomic<double> released_at_s_;
   std::uint64_t steps_ = 0;
   double last_read_s_ = 0.0;
   bool was_read_ = false;

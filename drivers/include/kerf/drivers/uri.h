@@ -37,6 +37,9 @@ class UriOptions {
   /// "on" or "off".
   [[nodiscard]] bool flag(const std::string& name, bool standard);
 
+  /// Leaves an option to somebody else.
+  void allow(const std::string& name) { known_.push_back(name); }
+
   /// @throws DeviceError for an option that was not taken, listing those that exist.
   void refuse_others() const;
 

@@ -1,0 +1,52 @@
+#include "cli/loop_arguments.h"
+
+#include <charconv>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "cli/app.h"
+
+namespace kerf::bench {
+namespace {
+
+LawChange parse_change(const std::string& text) {
+  const auto at = text.rfind('@');
+  const std::string_view moment = at == std::string::npos ? "" : std::string_view(text).substr(at + 1);
+  double at_s = -1.0;
+  const auto [end, error] = std::from_chars(moment.data(), moment.data() + moment.size(), at_s);
+  if (error != std::errc{} || end != moment.data() + moment.size() || !(at_s >= 0.0)) {
+    throw std::invalid_argument(
+        fmt::format("--switch '{}': expected LAW@SECONDS, for example b.law.toml@5", text));
+  }
+  return {.law = read_law_file(text.substr(0, at)), .at_s = at_s};
+}
+
+}  // namespace
+
+void add_loop_options(CLI::App& verb, LoopArguments& arguments) {
+  RunOptions& options = arguments.options;
+  verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them")
+      ->capture_default_str();
+  verb.add_option("--seconds", options.seconds, "Duration [s]")
+      ->check(CLI::Range(0.01, 1e6))
+      ->capture_default_str();
+  verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]")->capture_default_str();
+  verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");
+  verb.add_option("--switch", arguments.changes, "LAW@SECONDS: go over to another law, softly; may be repeated");
+  verb.add_option("--ramp", options.ramp_s, "Soft start, and softly from law to law, over so long [s]")
+      ->check(CLI::Range(0.0, 60.0))
+      ->capture_default_str();
+  verb.add_flag("--passivity-control", options.passivity_control,
+                "Add damping wherever the rendering has given energy");
+  verb.add_flag("--force", options.replace, "Replace existing files");
+}
+
+RunOptions run_options(const LoopArguments& arguments) {
+  RunOptions options = arguments.options;
+  for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
+  options.warn = warn;
+  return options;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,68 @@
+#include "loop/watchdog.h"
+
+#include <gtest/gtest.h>
+
+#include "loop/clock.h"
+
+namespace kerf::bench {
+namespace {
+
+class ReleasedDevice final : public drivers::Device {
+ public:
+  [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override { return drivers::Status::ok; }
+  [[nodiscard]] drivers::Status write(const drivers::Axes&) noexcept override { return drivers::Status::ok; }
+  void release(double at_s) noexcept override {
+    released_at_s = at_s;
+    ++releases;
+  }
+  std::atomic<double> released_at_s{0.0};
+  std::atomic<int> releases{0};
+
+ private:
+  drivers::DeviceInfo info_;
+};
+
+constexpr std::int64_t ms = 1'000'000;
+
+TEST(WatchdogLimit, IsTenMillisecondsOrThreePeriods) {
+  EXPECT_EQ(watchdog_limit_ns(1e-4), 10 * ms);
+  EXPECT_EQ(watchdog_limit_ns(1e-3), 10 * ms);
+  EXPECT_EQ(watchdog_limit_ns(1e-2), 30 * ms) << "a loop at 100 Hz beats every 10 ms";
+}
+
+TEST(Heartbeat, ReleasesASilentDeviceOnceWhereItsTimeWasUp) {
+  Heartbeat heartbeat;
+  ReleasedDevice device;
+  heartbeat.start(1000 * ms);
+  EXPECT_FALSE(heartbeat.beat(1005 * ms, 10 * ms));
+  EXPECT_FALSE(heartbeat.release_if_silent(device, 1015 * ms, 10 * ms));
+  EXPECT_TRUE(heartbeat.release_if_silent(device, 1016 * ms, 10 * ms));
+  EXPECT_FALSE(heartbeat.release_if_silent(device, 1017 * ms, 10 * ms));
+  EXPECT_EQ(device.releases, 1);
+  EXPECT_NEAR(device.released_at_s, 0.015, 1e-12);
+  EXPECT_TRUE(heartbeat.beat(1018 * ms, 10 * ms)) << "the loop is told once";
+  EXPECT_FALSE(heartbeat.beat(1019 * ms, 10 * ms));
+}
+
+TEST(Heartbeat, OfALoopThatIsNotRunningIsNotMissed) {
+  Heartbeat heartbeat;
+  ReleasedDevice device;
+  EXPECT_FALSE(heartbeat.release_if_silent(device, 1000 * ms, 10 * ms));
+  heartbeat.start(0);
+  heartbeat.stop();
+  EXPECT_FALSE(heartbeat.release_if_silent(device, 1000 * ms, 10 * ms));
+}
+
+TEST(Watchdog, ReleasesADeviceWhoseLoopIsSilent) {
+  Heartbeat heartbeat;
+  ReleasedDevice device;
+  const Watchdog watchdog(device, heartbeat, 1e-3);
+  heartbeat.start(WallClock::now_ns());
+  while (device.releases == 0) std::this_thread::yield();
+  EXPECT_NEAR(device.released_at_s, 0.010, 1e-12);
+  EXPECT_TRUE(heartbeat.beat(WallClock::now_ns(), 10 * ms));
+}
+
+}  // namespace
+}  // namespace kerf::bench
