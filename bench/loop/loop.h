@@ -116,10 +116,12 @@ struct LoopReport {
 /// counts, because the deadlines that it slept through are charged to it already.
 [[nodiscard]] Stage longest_stage(const TickTimes& times, std::int64_t tick_deadline_ns) noexcept;
 
-/// Whether the processor time of a tick's computation is measured. Asking for it is a system call, so it is
-/// done in every second tick; which one follows the Thue-Morse sequence, in step with no law that works in
-/// turns.
-[[nodiscard]] constexpr bool samples_cpu(std::uint64_t tick) noexcept { return std::popcount(tick) % 2 == 0; }
+/// Whether the processor time of the computation is measured in the tick after so many executed ones. Asking
+/// for it is a system call, so it is done in every second tick; which one follows the Thue-Morse sequence, in
+/// step with no law that works in turns.
+[[nodiscard]] constexpr bool samples_cpu(std::uint64_t executed) noexcept {
+  return std::popcount(executed) % 2 == 0;
+}
 
 [[nodiscard]] inline schema::Row row_of(std::uint64_t tick, double time_s, const drivers::Sample& sample,
                                         const Command& command, const TickTimes& times) noexcept {
@@ -175,13 +177,14 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     const drivers::Status read = device.read(time_s, sample);
     times.mark(Stage::read, clock.now_ns());
 
-    const std::int64_t cpu_ns = samples_cpu(tick) ? clock.cpu_ns() : 0;
+    const bool measures_cpu = samples_cpu(report.executed);
+    const std::int64_t cpu_ns = measures_cpu ? clock.cpu_ns() : 0;
     const std::uint32_t wrong = safety.judge(read, sample, elapsed_s);
     Command command = wrong == 0 ? rendering(sample, elapsed_s) : Command{.flags = wrong};
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
     if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
     safety.apply(time_s, sample, command);
-    if (samples_cpu(tick)) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
+    if (measures_cpu) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
     times.mark(Stage::compute, clock.now_ns());
 
     const drivers::Status written = device.write(command.force);

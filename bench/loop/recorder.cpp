@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t chunk_rows = 1000;
 constexpr auto flush_every = std::chrono::milliseconds(250);
+constexpr std::size_t flush_rows = 10'000;  // in virtual time a quarter of a second is many rows
 constexpr auto pause = std::chrono::milliseconds(5);
 
 /// Touches every page of the ring, so that the tick does not meet them for the first time.
@@ -65,10 +66,13 @@ bool Recorder::write_chunk() {
 
 void Recorder::write_until_stopped(const std::stop_token& stop) {
   auto next_flush = std::chrono::steady_clock::now() + flush_every;
+  std::size_t unflushed = 0;
   while (!stop.stop_requested()) {
     const bool idle = !write_chunk();
-    if (const auto now = std::chrono::steady_clock::now(); now >= next_flush) {
+    unflushed += chunk_.size();
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_flush || unflushed >= flush_rows) {
       next_flush = now + flush_every;
+      unflushed = 0;
       guarded([&] { writer_.flush(); });
     }
     if (idle && !lossless_) std::this_thread::sleep_for(pause);
