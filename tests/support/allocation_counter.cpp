@@ -1,18 +1,54 @@
 #include "support/allocation_counter.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 
 namespace {
+
 thread_local std::size_t count = 0;
+thread_local bool forbidden = false;
+
+void allocate() noexcept {
+  ++count;
+  if (!forbidden) return;
+  forbidden = false;
+  std::fputs("memory was allocated where nothing may be\n", stderr);
+  std::abort();
 }
 
-std::size_t kerf::test::allocations() noexcept { return count; }
+}  // namespace
 
+std::size_t kerf::test::allocations() noexcept { return count; }
+kerf::test::NoAllocation::NoAllocation() noexcept { forbidden = true; }
+kerf::test::NoAllocation::~NoAllocation() { forbidden = false; }
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// The sanitizers have a malloc of their own: here only C++ is watched.
 void* operator new(std::size_t size) {
-  ++count;
+  allocate();
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#else
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+
+void* malloc(std::size_t size) {
+  allocate();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  allocate();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  allocate();
+  return __libc_realloc(memory, size);
+}
+}
+#endif

@@ -4,8 +4,18 @@
 
 namespace kerf::test {
 
-/// How often this thread has allocated since it started. Counted in programs that link
-/// allocation_counter.cpp.
+// In programs that link allocation_counter.cpp. By C++ and, but for those with a sanitizer, by malloc.
+
+/// How often this thread has allocated since it started.
 [[nodiscard]] std::size_t allocations() noexcept;
+
+/// While it lives, an allocation by this thread aborts the program. Other threads may allocate.
+class NoAllocation {
+ public:
+  NoAllocation() noexcept;
+  NoAllocation(const NoAllocation&) = delete;
+  NoAllocation& operator=(const NoAllocation&) = delete;
+  ~NoAllocation();
+};
 
 }  // namespace kerf::test

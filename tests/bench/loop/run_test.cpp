@@ -1,11 +1,15 @@
 #include "loop/run.h"
 
+#include <latch>
+#include <memory>
 #include <stdexcept>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "loop/clock.h"
+#include "loop/law_switch.h"
 #include "loop/recorder.h"
 #include "support/allocation_counter.h"
 #include "support/program.h"
@@ -121,45 +125,71 @@ TEST(Run, HasEveryTickOfItsRate) {
   }
 }
 
+/// A recorded run with two laws, over readings that are no numbers, a jump and a stall, in a thread that may not
+/// allocate.
 template <typename Clock>
-std::size_t allocations_of_a_run(std::uint64_t ticks, bool lossless) {
+LoopReport run_without_allocation(Clock& clock, std::uint64_t ticks, drivers::Surroundings surroundings,
+                                  bool lossless) {
   const test::TemporaryFolder folder;
-  const auto device = drivers::open_device("sim:scissors");
-  const auto scene_device =
-      drivers::open_device("sim:scissors", surroundings_of(default_scene(), device->info()));
+  surroundings.tissue = surroundings_of(default_scene(), drivers::open_device("sim:scissors")->info()).tissue;
+  const auto device = drivers::open_device("sim:scissors?fault=nan@0.05,jump@0.08:20mm,stall@0.1:20ms,late@0.15:3ms",
+                                           std::move(surroundings));
   Recorder recorder({folder / "r.h5",
                      schema::new_header("kerf test"),
                      {{.name = "theta"}, {.name = "x_s"}},
                      {.measures_force = true}},
                     {.lossless = lossless});
-  LawRendering rendering(kelvin.law, kelvin.contact, 0);
-  Clock clock;
+  const LawRendering rendering(kelvin.law, kelvin.contact, 0);
+  LawSwitch laws({{.rendering = rendering}, {.rendering = rendering, .from_s = 0.12}}, 0.01);
   const std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
-  LoopReport report;
-  const std::size_t before = test::allocations();
   Heartbeat heartbeat;
-  run_loop(clock, *scene_device, rendering, recorder, {.ticks = ticks},
-           {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
-  const std::size_t after = test::allocations();
-  EXPECT_EQ(report.ticks(), ticks);
-  EXPECT_GT(report.executed, 0U);
+  LoopReport report;
+  {
+    const test::NoAllocation guard;
+    run_loop(clock, *device, laws, recorder, {.ticks = ticks, .safety = {.passivity_control = true}},
+             {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
+  }
   recorder.close("complete");
-  return after - before;
+  EXPECT_EQ(report.ticks(), ticks);
+  return report;
 }
 
-TEST(Run, AllocatesNothingInATickInVirtualTime) {
-  EXPECT_EQ(allocations_of_a_run<VirtualClock>(20'000, true), 0U);
+TEST(Tick, AllocatesNothingInVirtualTime) {
+  VirtualClock clock;
+  const LoopReport report = run_without_allocation(
+      clock, 20'000, {.pass_time = [&](double seconds) { clock.pass(std::llround(1e9 * seconds)); }}, true);
+  EXPECT_EQ(report.ticks_with(schema::flag_device_fault), 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_position_jump), 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_watchdog), 1U);
+  EXPECT_GT(report.ticks_with(schema::flag_soft_switch), 0U);
 }
 
-TEST(Run, AllocatesNothingInATickByTheWallClock) {
-  EXPECT_EQ(allocations_of_a_run<WallClock>(200, false), 0U);
+TEST(Tick, AllocatesNothingByTheWallClock) {
+  WallClock clock;
+  EXPECT_GT(run_without_allocation(clock, 300, {}, false).executed, 0U);
 }
 
-TEST(AllocationCounter, SeesWhatTheLoopMustNotDo) {
-  const std::size_t before = test::allocations();
-  const auto something = std::make_unique<int>(1);
-  EXPECT_EQ(test::allocations(), before + 1);
+TEST(NoAllocation, EndsTheProgramOnWhatTheTickMustNotDo) {
+  EXPECT_DEATH(
+      {
+        const test::NoAllocation guard;
+        ::operator delete(::operator new(1));
+      },
+      "memory was allocated");
+}
+
+TEST(NoAllocation, LetsOtherThreadsAllocate) {
+  std::latch guarded(1);
+  std::latch allocated(1);
+  std::jthread other([&] {
+    const test::NoAllocation guard;
+    guarded.count_down();
+    allocated.wait();
+  });
+  guarded.wait();
+  EXPECT_NE(std::make_unique<int>(1), nullptr);
+  allocated.count_down();
 }
 
 }  // namespace
