@@ -28,7 +28,7 @@ void run_record(const Arguments& arguments, Context& context) {
   }
   if (!arguments.scene.empty()) {
     options.scene = read_scene(arguments.scene);
-  } else if (!options.law && options.device_uri.starts_with("sim:")) {
+  } else if (!options.law && options.device_uri.starts_with("sim:scissors")) {
     options.scene = default_scene();
   }
   if (options.device_uri.starts_with("sim:") && options.device_uri.find("seed=") == std::string::npos) {
@@ -55,7 +55,7 @@ void add_record(CLI::App& app, Context& context) {
   CLI::App& verb =
       add_verb(app, context, "record", "Record a device's trajectory and forces",
                "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
-               "A simulated device meets the tissue of --scene, or a Kelvin tissue. Ctrl-C ends a\n"
+               "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue. Ctrl-C ends a\n"
                "recording cleanly. 'kerf info --follow' shows it from another terminal, and after a\n"
                "crash 'kerf repair' closes it.",
                [arguments, &context] { run_record(*arguments, context); });

@@ -131,6 +131,7 @@ struct LoopReport {
           .velocity = sample.velocity,
           .force_commanded = command.force,
           .force_measured = sample.force_measured,
+          .channels = sample.channels,
           .wake_latency_s = times.seconds(Stage::wake),
           .read_time_s = times.seconds(Stage::read),
           .compute_time_s = times.seconds(Stage::compute),
@@ -153,6 +154,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   static_assert(std::is_nothrow_invocable_r_v<Command, Rendering&, const drivers::Sample&, double>);
   static_assert(noexcept(recorder.push(std::declval<const schema::Row&>())));
   static_assert(noexcept(clock.sleep_until(0)) && noexcept(clock.now_ns()) && noexcept(clock.cpu_ns()));
+  static_assert(schema::max_axes == drivers::max_axes && schema::max_channels == drivers::max_channels);
   static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
                 std::is_trivially_copyable_v<drivers::Sample>);
   const double period_s = options.safety.period_s;

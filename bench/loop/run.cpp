@@ -33,6 +33,14 @@ std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
   return axes;
 }
 
+std::vector<schema::Channel> channels_of(const drivers::DeviceInfo& device) {
+  std::vector<schema::Channel> channels;
+  for (const drivers::ChannelInfo& channel : device.channels) {
+    channels.push_back({.name = channel.name, .unit = channel.unit, .values = {}});
+  }
+  return channels;
+}
+
 /// Leaves a device with zero force, however its scope is left.
 class ZeroForceAtExit {
  public:
@@ -123,7 +131,9 @@ class Run {
     if (options_.scene) header.scene_toml = options_.scene->toml;
     schema::RecordingWriter writer(
         *options_.record, header, axes_of(result_.device),
-        {.measures_force = result_.device.measures_force, .replace = options_.replace});
+        {.measures_force = result_.device.measures_force,
+         .channels = channels_of(result_.device),
+         .replace = options_.replace});
     return std::make_unique<Recorder>(
         std::move(writer),
         Recorder::Options{.lossless = options_.virtual_time, .on_failure = [this](std::string_view why) {

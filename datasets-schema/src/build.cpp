@@ -130,6 +130,17 @@ void attach_time(const h5::Handle& dataset, const h5::Handle& time) {
   if (h5::describe(dataset.id()).extent.size() > 1) h5::label(dataset.id(), 1, "axis");
 }
 
+h5::Handle make_channel(hid_t file, const Channel& channel, const h5::DatasetOptions& options) {
+  if (channel.name.empty() || channel.name == "." || channel.name.find('/') != std::string::npos) {
+    throw std::invalid_argument("recording: a channel cannot be named '" + channel.name +
+                                "'; expected a name without '/'");
+  }
+  const std::string path = std::string(layout::channels) + '/' + channel.name;
+  auto dataset = h5::create_dataset(file, path, h5::native<double>(), options);
+  h5::write_attribute(dataset.id(), "units", channel.unit);
+  return dataset;
+}
+
 h5::Handle event_type(const EventRoom& room) {
   const std::vector<h5::Field> fields{{"time", "float64", sizeof(double), 0},
                                       {"kind", "text", room.kind, sizeof(double)},

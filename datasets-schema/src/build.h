@@ -32,6 +32,10 @@ void write_head(hid_t file, const Sources& sources);
 /// Makes `time` the scale of the rows of a dataset in /samples.
 void attach_time(const h5::Handle& dataset, const h5::Handle& time);
 
+/// A dataset of /samples/channels with its unit; the group must be there.
+/// @throws std::invalid_argument for a name that cannot be one.
+[[nodiscard]] h5::Handle make_channel(hid_t file, const Channel& channel, const h5::DatasetOptions& options);
+
 /// Bytes for the texts of an event. They are of fixed size, as SWMR cannot follow any other.
 struct EventRoom {
   std::size_t kind = 32;

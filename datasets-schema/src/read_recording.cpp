@@ -98,6 +98,12 @@ class Reader {
       if (!rule.shape.starts_with('N') || !h5::is_dataset(file_, path)) continue;
       rows = std::min(rows, h5::describe(h5::open(file_, path).id()).extent.front());
     }
+    const std::string folder(layout::channels);
+    if (h5::is_group(file_, folder)) {
+      for (const auto& name : h5::children(h5::open(file_, folder).id())) {
+        rows = std::min(rows, h5::describe(h5::open(file_, folder + '/' + name).id()).extent.front());
+      }
+    }
     if (!live_) return rows;
     // A row that a crash kept from the disk reads as the fill value.
     const auto time = read_values<double>("/samples/time", rows, 1);

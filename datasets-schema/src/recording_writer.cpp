@@ -71,10 +71,15 @@ void require_new(const std::filesystem::path& target, const std::filesystem::pat
   }
 }
 
-void require_axes(const std::vector<Axis>& axes) {
-  if (!axes.empty() && axes.size() <= max_axes) return;
-  throw std::invalid_argument("recording: found " + std::to_string(axes.size()) + " axes, expected 1 to " +
-                              std::to_string(max_axes));
+void require_axes(const std::vector<Axis>& axes, const std::vector<Channel>& channels) {
+  if (axes.empty() || axes.size() > max_axes) {
+    throw std::invalid_argument("recording: found " + std::to_string(axes.size()) + " axes, expected 1 to " +
+                                std::to_string(max_axes));
+  }
+  if (channels.size() > max_channels) {
+    throw std::invalid_argument("recording: found " + std::to_string(channels.size()) +
+                                " channels, expected at most " + std::to_string(max_channels));
+  }
 }
 
 }  // namespace
@@ -87,7 +92,7 @@ struct RecordingWriter::Implementation {
         header(std::move(recording_header)),
         axes(std::move(recording_axes)),
         options(writer_options) {
-    require_axes(axes);
+    require_axes(axes, options.channels);
     require_new(target, path, options.replace);
     header.status = "recording";
     options.chunk_rows = std::max<std::size_t>(options.chunk_rows, 1);
@@ -122,6 +127,14 @@ struct RecordingWriter::Implementation {
       write_head(file.id(), sources);
       for (const auto& rule : layout::datasets()) {
         if (!std::holds_alternative<std::monostate>(rule.row_member)) create_column(rule, sources);
+      }
+      if (!options.channels.empty()) {
+        static_cast<void>(h5::create_group(file.id(), std::string(layout::channels)));
+      }
+      for (const auto& channel : options.channels) {
+        channels.push_back(make_channel(
+            file.id(), channel, {.extent = {0}, .chunk_rows = options.chunk_rows, .fill = &missing_double}));
+        attach_time(channels.back(), columns.front().dataset);
       }
       const auto type = h5::packed(event_type({}));
       events = make_dataset(file.id(), layout::dataset("/events"), type.id(), sources,
@@ -172,6 +185,12 @@ struct RecordingWriter::Implementation {
   // `time` comes last, so that a reader who sees a row there finds it in every other dataset.
   void write_pending() {
     if (pending.empty()) return;
+    for (std::size_t at = 0; at < channels.size(); ++at) {
+      std::vector<double> values;
+      values.reserve(pending.size());
+      for (const auto& row : pending) values.push_back(row.channels[at]);
+      h5::append(channels[at].id(), h5::native<double>(), rows - pending.size(), values.size(), values.data());
+    }
     for (auto column = columns.rbegin(); column != columns.rend(); ++column) {
       append_column(*column, rows - pending.size(), pending, axes.size());
     }
@@ -182,6 +201,7 @@ struct RecordingWriter::Implementation {
     guarded([&] {
       write_pending();
       h5::flush(events.id());
+      for (const auto& channel : channels) h5::flush(channel.id());
       for (auto column = columns.rbegin(); column != columns.rend(); ++column) {
         h5::flush(column->dataset.id());
       }
@@ -190,6 +210,7 @@ struct RecordingWriter::Implementation {
 
   void release() {
     columns.clear();
+    channels.clear();
     events = {};
     file = {};
   }
@@ -202,6 +223,7 @@ struct RecordingWriter::Implementation {
   void finish(const std::string& status) {
     guarded([&] {
       columns.clear();
+      channels.clear();
       events.close();
       file.close();
       // A text of variable length cannot be changed while others follow the file. Changed in place, the file
@@ -223,6 +245,7 @@ struct RecordingWriter::Implementation {
   h5::WritableFile file;
   WriteMark mark;
   std::vector<Column> columns;  ///< `time` first
+  std::vector<h5::Handle> channels;
   h5::Handle events;
   std::vector<Row> pending;
   std::uint64_t rows = 0;

@@ -146,16 +146,10 @@ class DatasetWriter {
   }
 
   void write(const Channel& channel) {
-    const std::string path = std::string(layout::channels) + '/' + channel.name;
-    if (channel.name.empty() || channel.name == "." || channel.name.find('/') != std::string::npos) {
-      throw std::invalid_argument("recording: a channel cannot be named '" + channel.name +
-                                  "'; expected a name without '/'");
-    }
-    require_length(path, channel.values.size(), recording_.rows());
+    require_length(std::string(layout::channels) + '/' + channel.name, channel.values.size(), recording_.rows());
     const h5::Extent extent{recording_.rows()};
-    const auto dataset = h5::create_dataset(
-        file_, path, h5::native<double>(), {.extent = extent, .chunk_rows = std::min(extent[0], chunk_rows)});
-    h5::write_attribute(dataset.id(), "units", channel.unit);
+    const auto dataset =
+        make_channel(file_, channel, {.extent = extent, .chunk_rows = std::min(extent[0], chunk_rows)});
     if (extent[0] > 0) h5::write(dataset.id(), h5::native<double>(), channel.values.data());
     attach_time(dataset, scale_);
   }

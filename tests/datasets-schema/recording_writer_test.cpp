@@ -102,6 +102,30 @@ TEST(RecordingWriter, StandsUnderAPartialNameUntilItIsClosed) {
   EXPECT_EQ(read_recording(folder / "r.h5").header.status, "aborted: the cable came out");
 }
 
+TEST(RecordingWriter, KeepsFurtherChannels) {
+  const test::TemporaryFolder folder;
+  RecordingWriter writer(folder / "r.h5", header(), axes(),
+                         {.channels = {{.name = "temperature", .unit = "K", .values = {}},
+                                       {.name = "grip", .unit = "N", .values = {}}}});
+  auto rows = rows_of(0, 1500);
+  for (auto& row : rows) row.channels = {293.0 + row.time_s, -row.time_s};
+  writer.append(rows);
+  writer.flush();
+  EXPECT_THAT(validate(folder / "r.h5.partial"), IsEmpty());
+  EXPECT_EQ(read_recording(folder / "r.h5.partial").channels.size(), 2U);
+  writer.close("complete");
+  EXPECT_THAT(validate(folder / "r.h5"), IsEmpty());
+  const Recording recording = read_recording(folder / "r.h5");
+  ASSERT_EQ(recording.channels.size(), 2U);
+  EXPECT_EQ(recording.channels[1].name, "grip");
+  EXPECT_EQ(recording.channels[1].unit, "N");
+  ASSERT_EQ(recording.channels[0].values.size(), 1500U);
+  EXPECT_EQ(recording.channels[0].values[1499], 293.0 + 1.499);
+  EXPECT_THROW(RecordingWriter(folder / "s.h5", header(), axes(),
+                               {.channels = {{.name = "a/b", .unit = "1", .values = {}}}}),
+               std::invalid_argument);
+}
+
 TEST(RecordingWriter, LeavesOutTheForceSensorThatIsNotThere) {
   const test::TemporaryFolder folder;
   RecordingWriter writer(folder / "r.h5", header(), axes(), {.measures_force = false});

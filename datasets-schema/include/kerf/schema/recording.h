@@ -17,6 +17,7 @@ namespace kerf::schema {
 inline constexpr std::string_view schema_name = "kerf.recording";
 inline constexpr std::uint32_t schema_version = 1;
 inline constexpr std::size_t max_axes = 6;
+inline constexpr std::size_t max_channels = 16;  ///< of a live recording; an import has as many as it likes
 
 /// Thrown when a file is not what the schema says, in one line: file, dataset, found, expected, mend.
 struct FormatError : std::runtime_error {
@@ -152,7 +153,7 @@ struct Recording {
   [[nodiscard]] std::size_t dimensions() const noexcept { return axes.size(); }
 };
 
-/// One row as the tick hands it to a recorder: trivially copyable, axes beyond the device's unused.
+/// One row as the tick hands it to a recorder: trivially copyable, axes and channels beyond the device's unused.
 struct Row {
   std::uint64_t tick = 0;
   double time_s = 0.0;
@@ -160,6 +161,7 @@ struct Row {
   std::array<double, max_axes> velocity{};
   std::array<double, max_axes> force_commanded{};
   std::array<double, max_axes> force_measured{};
+  std::array<double, max_channels> channels{};
   float wake_latency_s = 0.0F;
   float read_time_s = 0.0F;
   float compute_time_s = 0.0F;

@@ -22,12 +22,13 @@ class RecordingWriter {
  public:
   struct Options {
     bool measures_force = false;
+    std::vector<Channel> channels;  ///< names and units of Row::channels; their values are not read
     std::size_t chunk_rows = 1000;
     bool replace = false;  ///< an existing target is replaced, but only by close()
   };
 
   /// @throws std::invalid_argument if the target exists and may not be replaced, if a `NAME.partial` exists
-  ///         (an earlier recording that nobody closed: it is never overwritten), or for bad axes.
+  ///         (an earlier recording that nobody closed: it is never overwritten), or for bad axes or channels.
   /// @throws std::system_error if it cannot be created.
   RecordingWriter(std::filesystem::path file, Header header, std::vector<Axis> axes, const Options& options);
   RecordingWriter(RecordingWriter&&) noexcept;

@@ -13,6 +13,7 @@
 namespace kerf::drivers {
 
 inline constexpr std::size_t max_axes = 6;
+inline constexpr std::size_t max_channels = 16;
 
 /// One number per axis of a device, in the units of its AxisInfo; unused axes are zero.
 using Axes = std::array<double, max_axes>;
@@ -31,11 +32,18 @@ struct AxisInfo {
   double speed_limit = 0.0;  ///< faster than hand and mechanism can be, per second; 0 if not known
 };
 
+/// A further quantity that a device measures, beside its axes.
+struct ChannelInfo {
+  std::string name;
+  std::string unit;
+};
+
 struct DeviceInfo {
   std::string uri;
   std::string model;
   std::string about;  ///< one line for `kerf devices`
   std::vector<AxisInfo> axes;
+  std::vector<ChannelInfo> channels;  ///< at most max_channels
   bool measures_force = false;
   bool simulated = false;
   std::string configuration;  ///< the settings that it runs with, as TOML, for the recording
@@ -46,6 +54,7 @@ struct Sample {
   Axes position{};
   Axes velocity{};
   Axes force_measured{};
+  std::array<double, max_channels> channels{};  ///< in the order of DeviceInfo::channels
   std::uint32_t faults = 0;
 };
 

@@ -1,0 +1,104 @@
+#include "kerf/drivers/simulated_mechanism.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace kerf::drivers {
+namespace {
+
+constexpr double sensor_noise_n = 0.02;
+constexpr double sensor_step_n = 0.002;
+constexpr double torque_sensor_m = 0.01;  // a six-axis sensor resolves torques as forces at so long a lever
+constexpr double velocity_corner_rad_s = 2.0 * std::numbers::pi * 20.0;
+
+double rounded_to(double value, double step) noexcept {
+  return step > 0.0 ? step * std::round(value / step) : value;
+}
+
+void add_truth(DeviceInfo& info) {
+  for (const AxisInfo& axis : info.axes) {
+    info.channels.push_back({.name = axis.name + "_true", .unit = axis.position_unit});
+  }
+  for (const AxisInfo& axis : info.axes) {
+    info.channels.push_back({.name = axis.name + "_force_true", .unit = axis.force_unit});
+  }
+}
+
+}  // namespace
+
+SimulatedMechanism::SimulatedMechanism(DeviceInfo info, const Options& options, Surroundings surroundings)
+    : info_(std::move(info)),
+      options_(options),
+      count_(info_.axes.size()),
+      tissue_(std::move(surroundings.tissue)),
+      noise_(options.seed) {
+  for (std::size_t at = 0; at < count_; ++at) {
+    const AxisInfo& about = info_.axes[at];
+    lever_[at] = about.lever;
+    sensor_scale_[at] = about.force_unit == "N" ? 1.0 : torque_sensor_m;
+    axes_[at].lower_m = about.lower * about.lever;
+    axes_[at].upper_m = about.upper * about.lever;
+  }
+  if (options.with_truth) add_truth(info_);
+}
+
+void SimulatedMechanism::step() noexcept {
+  const double time_s = static_cast<double>(steps_) * sub_step_s;
+  const bool released = time_s > released_at_s_.load(std::memory_order_relaxed);
+  for (std::size_t at = 0; at < count_; ++at) {
+    SimulatedAxis::State& state = states_[at];
+    axes_[at].step(state,
+                   {.equilibrium_m = equilibria_[at].travel_m,
+                    .equilibrium_speed_m_s = equilibria_[at].speed_m_s,
+                    .force_n = (released ? 0.0 : command_[at]) + tissue_force_[at]},
+                   sub_step_s);
+    // After the move, so that the sensor and the encoder speak of the same moment.
+    if (const Tissue& tissue = tissue_[at]) {
+      tissue_force_[at] = tissue(state.travel_m / lever_[at], state.speed_m_s / lever_[at], sub_step_s);
+    }
+  }
+}
+
+void SimulatedMechanism::measure(double now_s, Sample& sample) noexcept {
+  const double elapsed_s = now_s - last_read_s_;
+  last_read_s_ = now_s;
+  for (std::size_t at = 0; at < count_; ++at) {
+    const double truth = states_[at].travel_m / lever_[at];
+    const double position = rounded_to(truth, options_.with_encoder ? info_.axes[at].resolution : 0.0);
+    if (was_read_ && elapsed_s > 0.0) {
+      const double difference = (position - last_position_[at]) / elapsed_s;
+      velocity_[at] += -std::expm1(-velocity_corner_rad_s * elapsed_s) * (difference - velocity_[at]);
+    }
+    last_position_[at] = position;
+    sample.position[at] = position;
+    sample.velocity[at] = velocity_[at];
+    sample.force_measured[at] = options_.with_noise
+                                    ? rounded_to(tissue_force_[at] + sensor_scale_[at] * sensor_noise_n * noise_(),
+                                                 sensor_scale_[at] * sensor_step_n)
+                                    : tissue_force_[at];
+    if (!options_.with_truth) continue;
+    sample.channels[at] = truth;
+    sample.channels[count_ + at] = tissue_force_[at];
+  }
+  was_read_ = true;
+}
+
+Status SimulatedMechanism::write(const Axes& force) noexcept {
+  for (std::size_t at = 0; at < count_; ++at) {
+    if (!std::isfinite(force[at])) {
+      command_ = {};
+      return Status::fault;
+    }
+    const double limit = info_.axes[at].force_limit;
+    command_[at] = std::clamp(force[at], -limit, limit);
+  }
+  released_at_s_.store(never, std::memory_order_relaxed);
+  return Status::ok;
+}
+
+void SimulatedMechanism::release(double at_s) noexcept {
+  double expected = never;
+  released_at_s_.compare_exchange_strong(expected, at_s, std::memory_order_relaxed);
+}
+
+}  // namespace kerf::drivers
