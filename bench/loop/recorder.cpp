@@ -1,6 +1,7 @@
 #include "loop/recorder.h"
 
 #include <chrono>
+#include <span>
 
 #include <fmt/core.h>
 
@@ -13,12 +14,10 @@ constexpr std::size_t flush_rows = 10'000;  // in virtual time a quarter of a se
 constexpr auto pause = std::chrono::milliseconds(5);
 
 /// Touches every page of the ring, so that the tick does not meet them for the first time.
-void fill_and_empty(moodycamel::ReaderWriterQueue<schema::Row>& ring) {
-  schema::Row row;
-  while (ring.try_enqueue(row)) {
+void fill_and_empty(boost::lockfree::spsc_queue<schema::Row>& ring) {
+  while (ring.push({})) {
   }
-  while (ring.try_dequeue(row)) {
-  }
+  ring.reset();
 }
 
 }  // namespace
@@ -27,9 +26,9 @@ Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
     : writer_(std::move(writer)),
       ring_(options.ring_rows),
       lossless_(options.lossless),
-      on_failure_(options.on_failure) {
+      on_failure_(options.on_failure),
+      chunk_(chunk_rows) {
   fill_and_empty(ring_);
-  chunk_.reserve(chunk_rows);
   thread_ = std::jthread([this](const std::stop_token& stop) { write_until_stopped(stop); });
 }
 
@@ -47,37 +46,33 @@ void Recorder::guarded(Action action) {
   }
 }
 
-bool Recorder::write_chunk() {
-  schema::Row row;
+std::size_t Recorder::write_chunk() {
+  const std::span<const schema::Row> rows(chunk_.data(), ring_.pop(chunk_.data(), chunk_.size()));
+  if (rows.empty()) return 0;
   std::vector<schema::Event> found;
-  chunk_.clear();
-  while (chunk_.size() < chunk_rows && ring_.try_dequeue(row)) {
-    finder_.look_at(row, found);
-    chunk_.push_back(row);
-  }
-  if (chunk_.empty()) return false;
-  last_time_s_ = chunk_.back().time_s;
+  for (const schema::Row& row : rows) finder_.look_at(row, found);
+  last_time_s_ = rows.back().time_s;
   guarded([&] {
-    writer_.append(chunk_);
+    writer_.append(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
   });
-  return true;
+  return rows.size();
 }
 
 void Recorder::write_until_stopped(const std::stop_token& stop) {
   auto next_flush = std::chrono::steady_clock::now() + flush_every;
   std::size_t unflushed = 0;
   while (!stop.stop_requested()) {
-    const bool idle = !write_chunk();
-    unflushed += chunk_.size();
+    const std::size_t written = write_chunk();
+    unflushed += written;
     if (const auto now = std::chrono::steady_clock::now(); now >= next_flush || unflushed >= flush_rows) {
       next_flush = now + flush_every;
       unflushed = 0;
       guarded([&] { writer_.flush(); });
     }
-    if (idle && !lossless_) std::this_thread::sleep_for(pause);
+    if (written == 0 && !lossless_) std::this_thread::sleep_for(pause);
   }
-  while (write_chunk()) {
+  while (write_chunk() > 0) {
   }
 }
 

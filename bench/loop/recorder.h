@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include <readerwriterqueue/readerwriterqueue.h>
+#include <boost/lockfree/spsc_queue.hpp>
 
 #include <kerf/schema/recording_writer.h>
 
@@ -45,7 +45,7 @@ class Recorder {
 
   void push(const schema::Row& row) noexcept {
     if (lost_here_) return push_after_loss(row);
-    while (!ring_.try_enqueue(row)) {
+    while (!ring_.push(row)) {
       if (!lossless_ || failed_.load(std::memory_order_relaxed)) return lose();
       std::this_thread::yield();
     }
@@ -64,7 +64,7 @@ class Recorder {
  private:
   void push_after_loss(schema::Row row) noexcept {
     row.flags |= schema::flag_rows_lost;
-    lost_here_ = !ring_.try_enqueue(row);
+    lost_here_ = !ring_.push(row);
     if (lost_here_) lose();
   }
   void lose() noexcept {
@@ -72,13 +72,13 @@ class Recorder {
     lost_.fetch_add(1, std::memory_order_relaxed);
   }
   void write_until_stopped(const std::stop_token& stop);
-  /// Returns whether there was anything to write.
-  bool write_chunk();
+  /// Returns how many rows there were to write.
+  std::size_t write_chunk();
   template <typename Action>
   void guarded(Action action);
 
   schema::RecordingWriter writer_;
-  moodycamel::ReaderWriterQueue<schema::Row> ring_;
+  boost::lockfree::spsc_queue<schema::Row> ring_;
   bool lossless_;
   bool lost_here_ = false;  ///< of the tick's thread: rows were lost since the last one that found room
   std::atomic<std::uint64_t> lost_{0};

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/schema/recording.h>
+
 #include "report/html.h"
 #include "report/plot.h"
 
@@ -48,6 +50,10 @@ std::string histogram_figure(const json& check) {
   chart.curves.push_back(
       outline(check.at("histograms").at("cycle_us"), "cycle (read to record)", Colour::vermillion));
   chart.vertical.push_back({.at = period_us, .label = "deadline"});
+  if (const json& floor = check.at("floor"); !floor.is_null()) {
+    chart.vertical.push_back(
+        {.at = std::max(floor.at("wake_us").at("p999").get<double>(), 1e-2), .label = "empty loop, 99.9 %"});
+  }
   chart.x_range = {
       1e-2,
       std::max(2.0 * period_us, 1.2 * std::max(chart.curves[0].x.empty() ? 0.0 : chart.curves[0].x.back(),
@@ -58,7 +64,7 @@ std::string histogram_figure(const json& check) {
 std::string stage_table(const json& check) {
   std::vector<std::vector<std::string>> rows{
       {"stage", "mean [us]", "median", "99 %", "99.9 %", "largest", "missed"}};
-  for (const auto* stage : {"wake", "read", "compute", "write", "record", "cycle"}) {
+  for (const auto* stage : {"wake", "read", "compute", "compute_cpu", "write", "record", "cycle"}) {
     const json& row = check.at(std::string(stage) + "_us");
     const auto number = [&](const char* key) { return fmt::format("{:.2f}", row.at(key).get<double>()); };
     const json& missed = check.at("missed_by");
@@ -66,6 +72,30 @@ std::string stage_table(const json& check) {
                     missed.contains(stage) ? fmt::format("{}", missed.at(stage).get<std::uint64_t>()) : ""});
   }
   return html_table(rows);
+}
+
+std::string floor_paragraph(const json& check) {
+  const json& floor = check.at("floor");
+  std::string html = fmt::format("<p>{} page faults and {} involuntary context switches in the loop.",
+                                 check.at("page_faults").get<std::int64_t>(),
+                                 check.at("involuntary_switches").get<std::int64_t>());
+  if (!floor.is_null()) {
+    html += fmt::format(
+        " An empty loop on this machine missed {} of {} deadlines; at 99.9 % it was woken {:.1f} us late, at worst {:.0f} us.",
+        floor.at("missed").get<std::uint64_t>(), floor.at("ticks").get<std::uint64_t>(),
+        floor.at("wake_us").at("p999").get<double>(), floor.at("wake_us").at("max").get<double>());
+  }
+  return html + "</p>\n";
+}
+
+/// Ticks in which the bench did something about the force, by what it did.
+std::string intervention_table(const json& check) {
+  std::vector<std::vector<std::string>> rows{{"intervention", "ticks", "meaning"}};
+  for (const schema::FlagInfo& flag : schema::flag_table) {
+    const auto ticks = check.at("ticks_with").value(std::string(flag.name), std::uint64_t{0});
+    if (ticks > 0) rows.push_back({std::string(flag.name), fmt::format("{}", ticks), std::string(flag.meaning)});
+  }
+  return rows.size() > 1 ? html_table(rows) : "<p>No intervention.</p>\n";
 }
 
 }  // namespace
@@ -91,7 +121,7 @@ std::string loop_section(const json& check) {
         "<p>{} on <code>{}</code>. The rendering took {:.4g} J out of the hand; it is {}.</p>\n",
         escaped(check.value("law", std::string("the law"))), escaped(check.at("device").get<std::string>()),
         check.at("energy_J").get<double>(), check.at("passive").get<bool>() ? "passive" : "not passive");
-    html += stage_table(check) + histogram_figure(check);
+    html += stage_table(check) + floor_paragraph(check) + histogram_figure(check) + intervention_table(check);
     std::vector<std::vector<std::string>> measures{{"real-time measure", "obtained", "detail"}};
     for (const json& measure : check.at("realtime")) {
       measures.push_back({measure.at("name").get<std::string>(),

@@ -65,6 +65,13 @@ class WritableFile {
   enum class Format { oldest_readers, live_readers };
 
   WritableFile() = default;
+  WritableFile(WritableFile&&) noexcept = default;
+  // Closing the old handle may still write, and then `failure_` has to be there: both go away together.
+  WritableFile& operator=(WritableFile&& other) noexcept {
+    std::swap(failure_, other.failure_);
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
   [[nodiscard]] static WritableFile create(const std::filesystem::path& file, Format format);
   [[nodiscard]] static WritableFile open(const std::filesystem::path& file);
 

@@ -3,18 +3,17 @@
 
 import json
 import pathlib
-import platform
 import random
-import re
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from datetime import date
 
 import h5py
 import numpy
+
+from sections import replace_section
 
 ROWS = 1_000_000
 TURNS = 7
@@ -59,20 +58,6 @@ def section(figures):
               "stamp, derives the velocity, takes the SHA-256 and writes the recording: %.1f times as fast as "
               "`numpy.loadtxt` and h5py writing the five columns." % (parse, whole)]
     return "\n".join(lines)
-
-
-def replace_section(path, subject, title, body):
-    text = path.read_text() if path.exists() else "# Benchmarks\n\nMade by `scripts/benchmark SUBJECT`; each section by its own run. Absolute times drift on shared machines:\nread the ratios.\n"
-    block = "<!-- %s -->\n## %s\n\n%s, %s\n\n%s\n<!-- end -->\n" % (subject, title, machine(), date.today(), body)
-    pattern = re.compile(r"<!-- %s -->.*?<!-- end -->\n" % subject, re.S)
-    text = pattern.sub(lambda _: block, text) if pattern.search(text) else text + "\n" + block
-    path.write_text(text)
-
-
-def machine():
-    model = re.search(r"model name\s*:\s*(.*)", pathlib.Path("/proc/cpuinfo").read_text())
-    cores = len(re.findall(r"^processor", pathlib.Path("/proc/cpuinfo").read_text(), re.M))
-    return "%s, %d cores, Linux %s" % (model.group(1) if model else platform.machine(), cores, platform.release().split("-")[0])
 
 
 def main():

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 
 namespace {
 
@@ -24,14 +23,13 @@ kerf::test::NoAllocation::NoAllocation() noexcept { forbidden = true; }
 kerf::test::NoAllocation::~NoAllocation() { forbidden = false; }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-// The sanitizers have a malloc of their own: here only C++ is watched.
-void* operator new(std::size_t size) {
-  allocate();
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
+// The sanitizers have a malloc of their own, and tell of each call.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
+namespace {
+[[maybe_unused]] const int installed = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { allocate(); }, [](const volatile void*) {});
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 #else
 extern "C" {
 void* __libc_malloc(std::size_t size);

@@ -4,7 +4,7 @@
 
 namespace kerf::test {
 
-// In programs that link allocation_counter.cpp. By C++ and, but for those with a sanitizer, by malloc.
+// In programs that link allocation_counter.cpp.
 
 /// How often this thread has allocated since it started.
 [[nodiscard]] std::size_t allocations() noexcept;
