@@ -81,12 +81,14 @@ RealtimeMeasure pin_to_processor() {
   return {.name = "processor", .obtained = false, .detail = fmt::format("not pinned: {}", reason())};
 }
 
-void prepare_watchdog_thread() noexcept {
+void stay_off_loop_processor() noexcept {
   cpu_set_t others = allowed_processors();
-  if (CPU_COUNT(&others) > 1) {
-    CPU_CLR(loop_processor(others), &others);
-    (void)sched_setaffinity(0, sizeof others, &others);
-  }
+  if (CPU_COUNT(&others) < 2) return;
+  CPU_CLR(loop_processor(others), &others);
+  (void)sched_setaffinity(0, sizeof others, &others);
+}
+
+void be_more_urgent_than_the_loop() noexcept {
   const sched_param parameters{.sched_priority = priority + 1};
   (void)sched_setscheduler(0, SCHED_FIFO, &parameters);
 }

@@ -20,9 +20,11 @@ struct RealtimeMeasure {
 /// Keeps the calling thread on the last processor that it may use.
 [[nodiscard]] RealtimeMeasure pin_to_processor();
 
-/// Makes the calling thread more urgent than the loop, and keeps it off the loop's processor where there is
-/// another. Does what is permitted and says nothing.
-void prepare_watchdog_thread() noexcept;
+/// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel cannot
+/// always be interrupted.
+void stay_off_loop_processor() noexcept;
+/// Makes the calling thread more urgent than the loop, where permitted.
+void be_more_urgent_than_the_loop() noexcept;
 
 /// Whether this user may run threads at SCHED_FIFO.
 [[nodiscard]] bool may_use_realtime_scheduling() noexcept;

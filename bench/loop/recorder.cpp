@@ -5,20 +5,14 @@
 
 #include <fmt/core.h>
 
+#include "loop/realtime.h"
+
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t chunk_rows = 1000;
 constexpr auto flush_every = std::chrono::milliseconds(250);
 constexpr std::size_t flush_rows = 10'000;  // in virtual time a quarter of a second is many rows
 constexpr auto pause = std::chrono::milliseconds(5);
-
-/// Touches every page of the ring, so that the tick does not meet them for the first time.
-void fill_and_empty(boost::lockfree::spsc_queue<schema::Row>& ring) {
-  while (ring.push({})) {
-  }
-  ring.reset();
-}
 
 }  // namespace
 
@@ -27,8 +21,7 @@ Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
       ring_(options.ring_rows),
       lossless_(options.lossless),
       on_failure_(options.on_failure),
-      chunk_(chunk_rows) {
-  fill_and_empty(ring_);
+      chunk_(RowRing::most_popped) {
   thread_ = std::jthread([this](const std::stop_token& stop) { write_until_stopped(stop); });
 }
 
@@ -47,7 +40,7 @@ void Recorder::guarded(Action action) {
 }
 
 std::size_t Recorder::write_chunk() {
-  const std::span<const schema::Row> rows(chunk_.data(), ring_.pop(chunk_.data(), chunk_.size()));
+  const std::span<const schema::Row> rows(chunk_.data(), ring_.pop(chunk_.data()));
   if (rows.empty()) return 0;
   std::vector<schema::Event> found;
   for (const schema::Row& row : rows) finder_.look_at(row, found);
@@ -60,6 +53,7 @@ std::size_t Recorder::write_chunk() {
 }
 
 void Recorder::write_until_stopped(const std::stop_token& stop) {
+  if (!lossless_) stay_off_loop_processor();
   auto next_flush = std::chrono::steady_clock::now() + flush_every;
   std::size_t unflushed = 0;
   while (!stop.stop_requested()) {

@@ -9,11 +9,10 @@
 #include <thread>
 #include <vector>
 
-#include <boost/lockfree/spsc_queue.hpp>
-
 #include <kerf/schema/recording_writer.h>
 
 #include "loop/events.h"
+#include "loop/row_ring.h"
 
 namespace kerf::bench {
 
@@ -78,7 +77,7 @@ class Recorder {
   void guarded(Action action);
 
   schema::RecordingWriter writer_;
-  boost::lockfree::spsc_queue<schema::Row> ring_;
+  RowRing ring_;
   bool lossless_;
   bool lost_here_ = false;  ///< of the tick's thread: rows were lost since the last one that found room
   std::atomic<std::uint64_t> lost_{0};

@@ -7,7 +7,8 @@ namespace kerf::bench {
 
 Watchdog::Watchdog(drivers::Device& device, Heartbeat& heartbeat, double period_s)
     : thread_([&device, &heartbeat, limit_ns = watchdog_limit_ns(period_s)](const std::stop_token& stop) {
-        prepare_watchdog_thread();
+        stay_off_loop_processor();
+        be_more_urgent_than_the_loop();
         constexpr std::int64_t shortest_sleep_ns = 1'000'000;
         while (!stop.stop_requested()) {
           const std::int64_t now_ns = WallClock::now_ns();
