@@ -27,9 +27,9 @@ void print_table(const nlohmann::ordered_json& json) {
   for (const auto* stage : {"wake", "read", "compute", "compute_cpu", "write", "record", "cycle"}) {
     const auto& row = json[std::string(stage) + "_us"];
     const std::string missed = json["missed_by"].contains(stage)
-                                   ? fmt::format("{}", json["missed_by"][stage].get<std::uint64_t>())
+                                   ? fmt::format("{:9}", json["missed_by"][stage].get<std::uint64_t>())
                                    : "";
-    say(fmt::format("  {:11} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}  {:>7}", stage, row["mean"].get<double>(),
+    say(fmt::format("  {:11} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}{}", stage, row["mean"].get<double>(),
                     row["p50"].get<double>(), row["p99"].get<double>(), row["p999"].get<double>(),
                     row["max"].get<double>(), missed));
   }
@@ -97,10 +97,15 @@ void add_check(CLI::App& app, Context& context) {
       ->check(CLI::IsMember({"increasing", "decreasing"}));
   verb.add_option("--record", arguments->record, "Record the closed loop to this file");
   verb.add_option("-o,--output", arguments->output, "Write the JSON to this file");
-  verb.add_option("--floor", arguments->loop.options.floor_s,
-                  "Time to measure an empty loop first, if none was since the machine was started; 0: not [s]")
-      ->check(CLI::Range(0.0, 3600.0))
-      ->capture_default_str();
+  verb.add_option_function<double>(
+          "--floor",
+          [arguments](const double& seconds) {
+            arguments->loop.options.floor_s = seconds;
+            arguments->loop.options.floor_anew = true;
+          },
+          "Measure an empty loop anew over so long first; 0: not at all (default: 3 s, once since the machine was "
+          "started) [s]")
+      ->check(CLI::Range(0.0, 3600.0));
 }
 
 }  // namespace kerf::bench

@@ -74,9 +74,13 @@ std::string beside_the_floor(const LoopReport& report, const HostFloor& floor) {
     return fmt::format("no deadline was missed in this run, but {}: expect {:.3g} in a minute", empty,
                        share * floor.rate_hz * 60.0);
   }
-  const bool above = static_cast<double>(report.missed()) > floor.most_expected(report.ticks());
-  return fmt::format("{}: {}", empty,
-                     above ? "these are more than the machine's own" : "these may all be the machine's own");
+  if (static_cast<double>(report.missed()) <= floor.most_expected(report.ticks())) {
+    return empty + ": these may all be the machine's own";
+  }
+  if (missed_by(report, Stage::wake) == report.missed()) {
+    return empty + " when it was measured: the machine was later in this run; --floor measures it anew";
+  }
+  return empty + ": these are more than the machine's own";
 }
 
 std::string in_words(const LoopReport& report) {

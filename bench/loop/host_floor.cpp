@@ -179,8 +179,8 @@ std::optional<HostFloor> cached_host_floor(double rate_hz) {
   }
 }
 
-HostFloor host_floor(double rate_hz, double seconds) {
-  if (auto cached = cached_host_floor(rate_hz)) return *cached;
+HostFloor host_floor(double rate_hz, double seconds, bool anew) {
+  if (auto cached = cached_host_floor(rate_hz); cached && !anew) return *cached;
   HostFloor floor = measure_host_floor(rate_hz, seconds);
   keep(floor);
   return floor;

@@ -46,8 +46,8 @@ struct HostFloor {
 /// there is none. Kept in $XDG_CACHE_HOME/kerf, or ~/.cache/kerf.
 [[nodiscard]] std::optional<HostFloor> cached_host_floor(double rate_hz);
 
-/// The cached floor, or one measured now over so many seconds and kept. A cache that cannot be written is done
-/// without.
-[[nodiscard]] HostFloor host_floor(double rate_hz, double seconds);
+/// The cached floor, or one measured now over so many seconds and kept, always so if it is wanted anew. A cache
+/// that cannot be written is done without.
+[[nodiscard]] HostFloor host_floor(double rate_hz, double seconds, bool anew = false);
 
 }  // namespace kerf::bench

@@ -118,7 +118,7 @@ class Run {
   }
 
   void know_the_machine() {
-    if (options_.floor_s > 0.0) result_.floor = host_floor(options_.rate_hz, options_.floor_s);
+    if (options_.floor_s > 0.0) result_.floor = host_floor(options_.rate_hz, options_.floor_s, options_.floor_anew);
     const auto known = result_.floor ? result_.floor : cached_host_floor(options_.rate_hz);
     if (known) result_.spin_ns = known->spin_ns;
   }

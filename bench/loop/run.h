@@ -38,9 +38,10 @@ struct RunOptions {
   std::optional<Scene> scene;                   ///< what a simulated device meets
   std::optional<std::filesystem::path> record;  ///< where to record
   bool replace = false;                         ///< an existing recording may be replaced
-  /// Time to measure what the machine itself does to an empty loop, unless that is known since it was started;
-  /// 0: only how early to wake up is measured. By the wall clock only.
+  /// Time to measure what the machine itself does to an empty loop, unless that is known since it was started
+  /// and need not be known anew; 0: only how early to wake up is measured. By the wall clock only.
   double floor_s = 0.0;
+  bool floor_anew = false;
   std::function<void(std::string_view)> warn;  ///< told at once what is wrong with the recording
 };
 

@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include <cerrno>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -97,6 +98,15 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
   std::error_code error;
   std::filesystem::rename(from, to, error);
   if (error) throw std::system_error(error, to.string() + ": cannot give the file its name");
+}
+
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno == EEXIST) return false;
+  if (errno != EINVAL) throw_errno(to, "give the file its name");
+  if (std::filesystem::exists(to)) return false;  // a file system that cannot do both at once
+  rename_file(from, to);
+  return true;
 }
 
 std::system_error write_error(const std::filesystem::path& file, const h5::Error& error) {

@@ -59,6 +59,9 @@ void synchronise(const std::filesystem::path& file);
 /// Renames a file. @throws std::system_error that names the target.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// Renames a file to a name that nobody has. Returns false if somebody has it. @throws std::system_error
+[[nodiscard]] bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// What a user can act on when writing `file` failed.
 [[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 

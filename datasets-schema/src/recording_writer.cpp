@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include <unistd.h>
+
 #include <kerf/schema/recording_writer.h>
 
 #include "build.h"
@@ -57,18 +59,19 @@ void append_column(const Column& column, std::uint64_t rows_before, std::span<co
       column.rule->row_member);
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& partial) {
+  throw std::invalid_argument(
+      partial.string() +
+      (is_marked(partial) ? ": is being recorded by another process; give another name, or stop that one"
+                          : ": exists already, from a recording that was not closed; 'kerf repair' closes it"));
+}
+
 void require_new(const std::filesystem::path& target, const std::filesystem::path& partial, bool replace) {
   if (!replace && std::filesystem::exists(target)) {
     throw std::invalid_argument(target.string() +
                                 ": exists already; give another name, or --force to replace it");
   }
-  if (std::filesystem::exists(partial)) {
-    throw std::invalid_argument(
-        partial.string() +
-        (is_marked(partial)
-             ? ": is being recorded by another process; give another name, or stop that one"
-             : ": exists already, from a recording that was not closed; 'kerf repair' closes it"));
-  }
+  if (std::filesystem::exists(partial)) refuse(partial);
 }
 
 void require_axes(const std::vector<Axis>& axes, const std::vector<Channel>& channels) {
@@ -88,12 +91,13 @@ struct RecordingWriter::Implementation {
   Implementation(std::filesystem::path final_name, Header recording_header, std::vector<Axis> recording_axes,
                  const Options& writer_options)
       : target(std::move(final_name)),
-        path(partial_name(target)),
+        partial(partial_name(target)),
+        path(partial.string() + ".writing-" + std::to_string(::getpid())),
         header(std::move(recording_header)),
         axes(std::move(recording_axes)),
         options(writer_options) {
     require_axes(axes, options.channels);
-    require_new(target, path, options.replace);
+    require_new(target, partial, options.replace);
     header.status = "recording";
     options.chunk_rows = std::max<std::size_t>(options.chunk_rows, 1);
     pending.reserve(options.chunk_rows);
@@ -121,6 +125,8 @@ struct RecordingWriter::Implementation {
   Implementation& operator=(const Implementation&) = delete;
 
   void create() {
+    std::error_code none;
+    std::filesystem::remove(path, none);  // of a process of the same number that was killed here
     guarded([&] {
       file = h5::WritableFile::create(path, h5::WritableFile::Format::live_readers);
       const Sources sources{header, axes};
@@ -142,6 +148,9 @@ struct RecordingWriter::Implementation {
       file.start_live();
       mark = WriteMark(path);
     });
+    // From here on it can be read, whenever its writer is killed. Before, it would be a damaged file.
+    if (!rename_new(path, partial)) refuse(partial);
+    path = partial;
   }
 
   void create_column(const layout::Dataset& rule, const Sources& sources) {
@@ -238,6 +247,7 @@ struct RecordingWriter::Implementation {
   }
 
   std::filesystem::path target;
+  std::filesystem::path partial;
   std::filesystem::path path;
   Header header;
   std::vector<Axis> axes;

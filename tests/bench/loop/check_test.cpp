@@ -94,6 +94,8 @@ TEST(Verdict, SetsMissedDeadlinesBesideThoseOfAnEmptyLoop) {
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("these may all be the machine's own")));
   result.floor->missed = 0;
   result.report.charge(Stage::wake, 5);
+  EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("the machine was later in this run")));
+  result.report.charge(Stage::compute, 1);
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("these are more than the machine's own")));
   result.report.missed_by = {};
   EXPECT_THAT(judge(result).reasons, IsEmpty()) << "a quiet machine and a quiet run";

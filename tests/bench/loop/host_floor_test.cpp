@@ -43,6 +43,7 @@ TEST(HostFloor, IsKeptUntilTheMachineIsStartedAgain) {
   EXPECT_EQ(second.missed, first.missed);
   EXPECT_EQ(second.wake.p999_us, first.wake.p999_us);
   EXPECT_FALSE(cached_host_floor(1000.0)) << "another rate has another floor";
+  EXPECT_FALSE(host_floor(2000.0, 0.05, true).from_cache) << "wanted anew";
 
   const auto file = folder / "kerf/host-floor-2000Hz.json";
   std::string text = test::read_text(file);
