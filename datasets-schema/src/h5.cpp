@@ -110,7 +110,16 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
   const auto access = sturdy_access(*failure);
   const auto version = format == Format::live_readers ? H5F_LIBVER_V110 : H5F_LIBVER_V18;
   call(H5Pset_libver_bounds, access.id(), version, version);
-  return {std::move(failure), Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access.id()))};
+  const auto creation = property_list(H5P_FILE_CREATE);
+  if (format == Format::live_readers) {
+    // A kill can cut a write in two where it crosses a page of memory. No part of the file's own structure
+    // does: each lies within a page, and is there as it was before or as it is after.
+    constexpr hsize_t page = 4096;
+    constexpr hsize_t smallest_hole = 1;
+    call(H5Pset_file_space_strategy, creation.id(), H5F_FSPACE_STRATEGY_PAGE, hbool_t{false}, smallest_hole);
+    call(H5Pset_file_space_page_size, creation.id(), page);
+  }
+  return {std::move(failure), Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, creation.id(), access.id()))};
 }
 
 WritableFile WritableFile::open(const std::filesystem::path& file) {
