@@ -99,9 +99,11 @@ FittedLaw finished(fitting::FitResult result, const AxisSeries& series, const sc
   return {.result = std::move(result), .file = std::move(file), .rmse_rendered = rmse_rendered};
 }
 
-models::Options options_for(const std::string& model, const FitRecordingOptions& options) {
+models::Options options_for(const std::string& model, const FitRecordingOptions& options,
+                            const models::Contact& contact) {
   models::Options all = options.fit.law_options;
   if (model == "piecewise") all.try_emplace("segments", static_cast<double>(options.segments));
+  if (model == "scissors_analytic") all.try_emplace("contact_angle", contact.position);
   return all;
 }
 
@@ -155,9 +157,8 @@ std::string as_csv(const RecordingFit& fit) {
 
 std::vector<std::string> models_of(const FitRecordingOptions& options) {
   if (!options.models.empty()) return options.models;
-  std::vector<std::string> all;
-  for (const models::LawInfo& law : models::registry()) all.emplace_back(law.name);
-  return all;
+  // Those that any recording along an axis can be compared by; the others need to be asked for.
+  return {"kelvin", "exponential", "piecewise", "recording"};
 }
 
 void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder) {
@@ -184,9 +185,9 @@ RecordingFit fit_recording(const schema::Recording& recording, const FitRecordin
                              .cycle = series.cycle};
   std::vector<fitting::FitResult> results;
   for (const std::string& model : models_of(options)) {
-    (void)models::Law::options(model);  // an unknown law is a mistake of the caller, not of the data
+    fitting::check_model(model);  // a mistake of the caller, not of the data
     fitting::FitOptions fit_options = options.fit;
-    fit_options.law_options = options_for(model, options);
+    fit_options.law_options = options_for(model, options, contact);
     try {
       results.push_back(fitting::fit(model, view, fit_options));
       if (results.back().parameters.empty()) {

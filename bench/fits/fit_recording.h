@@ -16,7 +16,7 @@
 namespace kerf::bench {
 
 struct FitRecordingOptions {
-  std::vector<std::string> models;  ///< empty: every law of the registry
+  std::vector<std::string> models;  ///< empty: the four that fit any axis
   std::size_t axis = 0;
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   std::size_t segments = 5;                ///< of the piecewise law

@@ -238,6 +238,16 @@ std::string value_text(const std::vector<double>& all, std::size_t begin, std::s
                                        all.begin() + static_cast<std::ptrdiff_t>(end), ", "));
 }
 
+/// Where a scalar law goes; a spatial one brings its axes with it.
+std::string contact_text(const LawFile& file) {
+  std::string text;
+  if (!file.axis.empty()) text += fmt::format("axis = {}\n", quoted(file.axis));
+  text += fmt::format("position_unit = \"{}\"\nforce_unit = \"{}\"\n", file.position_unit, file.force_unit);
+  return text + fmt::format("\n[contact]\nposition = {{ value = {}, unit = \"{}\" }}\ndirection = \"{}\"\n",
+                            file.contact.position, file.position_unit,
+                            file.contact.direction > 0.0 ? "increasing" : "decreasing");
+}
+
 std::string parameters_text(const LawFile& file) {
   const auto infos = file.law.parameters();
   const auto& values = file.law.values();
@@ -287,6 +297,13 @@ LawFile law_from_table(const toml::table& root, const std::string& name) {
     }
   };
   const auto infos = in_file([&] { return models::Law::parameters(model, options); });
+  if (!in_file([&] { return models::Law::axes(model); }).empty()) {
+    for (const auto* key : {"axis", "position_unit", "force_unit", "contact"}) {
+      const toml::node* node = root.get(key);
+      if (node == nullptr) continue;
+      place.refuse(*node, "law '{}' brings axes and units of its own; leave '{}' out", model, key);
+    }
+  }
   Measured parameters = read_parameters(place, root, infos, force_unit, position_unit);
   return {.law = in_file([&] { return models::Law::make(model, parameters.values, options); }),
           .contact = read_contact(place, root, position_unit),
@@ -307,11 +324,7 @@ LawFile read_law_file(const std::filesystem::path& file) {
 
 std::string to_toml(const LawFile& file) {
   std::string text = fmt::format("model = \"{}\"\n", file.law.model());
-  if (!file.axis.empty()) text += fmt::format("axis = {}\n", quoted(file.axis));
-  text += fmt::format("position_unit = \"{}\"\nforce_unit = \"{}\"\n", file.position_unit, file.force_unit);
-  text += fmt::format("\n[contact]\nposition = {{ value = {}, unit = \"{}\" }}\ndirection = \"{}\"\n",
-                      file.contact.position, file.position_unit,
-                      file.contact.direction > 0.0 ? "increasing" : "decreasing");
+  if (!file.law.is_spatial()) text += contact_text(file);
   text += parameters_text(file);
   if (!file.law.options().empty()) {
     text += "\n[fidelity]\n";

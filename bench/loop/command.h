@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <kerf/drivers/device.h>
 #include <kerf/models/law.h>
@@ -22,26 +24,49 @@ struct NoForce {
   [[nodiscard]] Command operator()(const drivers::Sample&, double) const noexcept { return {}; }
 };
 
-/// Renders a law on one axis of a device.
+/// Renders a law on the axes of a device: a scalar law on one of them, through its contact, a spatial law on
+/// all that it has.
 class LawRendering {
  public:
-  LawRendering(models::Law law, const models::Contact& contact, std::size_t axis)
-      : law_(std::move(law)), state_(law_.initial_state()), contact_(contact), axis_(axis) {}
+  /// `axes`: the device's axis for each axis of the law, or the one axis of a scalar law.
+  LawRendering(models::Law law, const models::Contact& contact, const std::vector<std::size_t>& axes)
+      : law_(std::move(law)), state_(law_.initial_state()), contact_(contact), spatial_(law_.is_spatial()) {
+    for (const std::size_t axis : axes) axis_.at(count_++) = axis;
+  }
 
   [[nodiscard]] Command operator()(const drivers::Sample& sample, double period_s) noexcept {
-    const models::Motion motion = contact_.motion(sample.position[axis_], sample.velocity[axis_]);
+    return spatial_ ? in_space(sample, period_s) : along_axis(sample, period_s);
+  }
+
+ private:
+  [[nodiscard]] Command along_axis(const drivers::Sample& sample, double period_s) noexcept {
+    const std::size_t axis = axis_[0];
+    const models::Motion motion = contact_.motion(sample.position[axis], sample.velocity[axis]);
     const models::Response response = law_.step(state_, motion, period_s);
     Command command;
-    command.force[axis_] = -contact_.direction * response.force;
+    command.force[axis] = -contact_.direction * response.force;
+    if (response.fault) command.flags |= schema::flag_law_fault;
+    return command;
+  }
+  [[nodiscard]] Command in_space(const drivers::Sample& sample, double period_s) noexcept {
+    models::SpatialMotion motion;
+    for (std::size_t i = 0; i < count_; ++i) {
+      motion.position[i] = sample.position[axis_[i]];
+      motion.velocity[i] = sample.velocity[axis_[i]];
+    }
+    const models::SpatialResponse response = law_.step(state_, motion, period_s);
+    Command command;
+    for (std::size_t i = 0; i < count_; ++i) command.force[axis_[i]] = response.force[i];
     if (response.fault) command.flags |= schema::flag_law_fault;
     return command;
   }
 
- private:
   models::Law law_;
   models::Law::State state_;
   models::Contact contact_;
-  std::size_t axis_;
+  bool spatial_;
+  std::array<std::size_t, models::max_law_axes> axis_{};
+  std::size_t count_ = 0;
 };
 
 }  // namespace kerf::bench

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "cli/progress.h"
+#include "laws/placement.h"
 #include "loop/clock.h"
 #include "loop/law_switch.h"
 #include "loop/recorder.h"
@@ -71,8 +72,9 @@ class Run {
     const auto recorder = open_recorder();
     if (!options_.virtual_time) know_the_machine();
     {
-      Progress progress(recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
-                        static_cast<std::size_t>(loop_.ticks));
+      Progress progress(
+          recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
+          static_cast<std::size_t>(loop_.ticks));
       const LoopControl control{.stop = stop_, .done = progress.done, .heartbeat = heartbeat_};
       NoRecorder none;
       if (recorder) {
@@ -83,9 +85,9 @@ class Run {
     }
     if (recorder) close(*recorder);
     if (result_.report.end == LoopEnd::device_lost) {
-      throw drivers::DeviceError(
-          fmt::format("{}: the device was lost after {} ticks; its force is zero, and what was recorded is kept",
-                      options_.device_uri, result_.report.executed));
+      throw drivers::DeviceError(fmt::format(
+          "{}: the device was lost after {} ticks; its force is zero, and what was recorded is kept",
+          options_.device_uri, result_.report.executed));
     }
     return std::move(result_);
   }
@@ -100,17 +102,18 @@ class Run {
     if (options_.virtual_time) {
       surroundings.pass_time = [this](double seconds) {
         virtual_clock_.pass(std::llround(1e9 * seconds));
-        heartbeat_.release_if_silent(*device_, virtual_clock_.now_ns(), watchdog_limit_ns(1.0 / options_.rate_hz));
+        heartbeat_.release_if_silent(*device_, virtual_clock_.now_ns(),
+                                     watchdog_limit_ns(1.0 / options_.rate_hz));
       };
     }
     return drivers::open_device(options_.device_uri, std::move(surroundings));
   }
 
-  /// The laws in their order, each on its axis.
+  /// The laws in their order, each on its axes.
   [[nodiscard]] std::vector<SwitchedLaw> laws() const {
     std::vector<SwitchedLaw> all;
     const auto add = [&](const LawFile& law, double from_s) {
-      all.push_back({.rendering = {law.law, law.contact, axis_for(law, result_.device)}, .from_s = from_s});
+      all.push_back({.rendering = {law.law, law.contact, axes_for(law, result_.device)}, .from_s = from_s});
     };
     if (options_.law) add(*options_.law, 0.0);
     for (const LawChange& change : options_.changes) add(change.law, change.at_s);
@@ -118,7 +121,8 @@ class Run {
   }
 
   void know_the_machine() {
-    if (options_.floor_s > 0.0) result_.floor = host_floor(options_.rate_hz, options_.floor_s, options_.floor_anew);
+    if (options_.floor_s > 0.0)
+      result_.floor = host_floor(options_.rate_hz, options_.floor_s, options_.floor_anew);
     const auto known = result_.floor ? result_.floor : cached_host_floor(options_.rate_hz);
     if (known) result_.spin_ns = known->spin_ns;
   }
@@ -129,16 +133,16 @@ class Run {
     header.device_uri = result_.device.uri;
     header.device_toml = result_.device.configuration;
     if (options_.scene) header.scene_toml = options_.scene->toml;
-    schema::RecordingWriter writer(
-        *options_.record, header, axes_of(result_.device),
-        {.measures_force = result_.device.measures_force,
-         .channels = channels_of(result_.device),
-         .replace = options_.replace});
+    schema::RecordingWriter writer(*options_.record, header, axes_of(result_.device),
+                                   {.measures_force = result_.device.measures_force,
+                                    .channels = channels_of(result_.device),
+                                    .replace = options_.replace});
     return std::make_unique<Recorder>(
         std::move(writer),
         Recorder::Options{.lossless = options_.virtual_time, .on_failure = [this](std::string_view why) {
                             if (!options_.warn) return;
-                            options_.warn(fmt::format("{}; the loop goes on, and nothing more is recorded", why));
+                            options_.warn(
+                                fmt::format("{}; the loop goes on, and nothing more is recorded", why));
                           }});
   }
 

@@ -6,6 +6,7 @@
 
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
+#include "laws/placement.h"
 
 namespace kerf::bench {
 namespace {
@@ -50,25 +51,11 @@ Scene read_scene(const std::filesystem::path& file) {
 
 Scene default_scene() { return parse_scene(default_scene_toml, "the default scene"); }
 
-std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device) {
-  const auto fits = [&](const drivers::AxisInfo& axis) {
-    return axis.position_unit == law.position_unit && axis.force_unit == law.force_unit;
-  };
-  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
-    if (device.axes[axis].name != law.axis) continue;
-    if (fits(device.axes[axis])) return axis;
-    throw std::invalid_argument(fmt::format("the law gives {} over {}, but axis '{}' of {} has {} over {}",
-                                            law.force_unit, law.position_unit, law.axis, device.model,
-                                            device.axes[axis].force_unit, device.axes[axis].position_unit));
-  }
-  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
-    if (fits(device.axes[axis])) return axis;
-  }
-  throw std::invalid_argument(fmt::format("the law gives {} over {}, and no axis of {} has these units",
-                                          law.force_unit, law.position_unit, device.model));
-}
-
 drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device) {
+  if (scene.tissue.law.is_spatial()) {
+    throw std::invalid_argument(fmt::format(
+        "the tissue of a scene acts along one axis, and law '{}' on several", scene.tissue.law.model()));
+  }
   drivers::Surroundings surroundings;
   surroundings.tissue[axis_for(scene.tissue, device)] =
       [law = scene.tissue.law, state = scene.tissue.law.initial_state(), contact = scene.tissue.contact](

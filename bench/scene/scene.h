@@ -33,8 +33,4 @@ struct Scene {
 /// or one of other units.
 [[nodiscard]] drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device);
 
-/// The axis of a device on which a law is rendered: the one it names, else the first with its units.
-/// @throws std::invalid_argument if there is none, naming both units.
-[[nodiscard]] std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device);
-
 }  // namespace kerf::bench

@@ -4,9 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -45,6 +47,9 @@ constexpr std::array symbols{
     Symbol{"kgf", standard_gravity, "N"},
     Symbol{"Nm", 1.0, "N·m"},
     Symbol{"mNm", 1e-3, "N·m"},
+    Symbol{"J", 1.0, "J"},
+    Symbol{"mJ", 1e-3, "J"},
+    Symbol{"kJ", 1e3, "J"},
     Symbol{"V", 1.0, "V"},
     Symbol{"mV", 1e-3, "V"},
     Symbol{"A", 1.0, "A"},
@@ -82,10 +87,23 @@ double take_factor(std::string_view& text) {
   return factor;
 }
 
+constexpr std::array<const char*, 4> power_texts{"", "", "²", "³"};
+
+/// Takes "²", "³", "^2" or "^3" off the end of a symbol.
+int take_power(std::string_view& text) {
+  for (const auto& [ending, power] :
+       std::initializer_list<std::pair<std::string_view, int>>{{"²", 2}, {"³", 3}, {"^2", 2}, {"^3", 3}}) {
+    if (!text.ends_with(ending)) continue;
+    text.remove_suffix(ending.size());
+    return power;
+  }
+  return 1;
+}
+
 /// Joins factors of a product in the order written, "1" left out.
-std::string joined(const std::vector<std::string_view>& parts) {
+std::string joined(const std::vector<std::string>& parts) {
   std::string text;
-  for (const auto part : parts) {
+  for (const std::string& part : parts) {
     if (part != "1") text += fmt::format("{}{}", text.empty() ? "" : "·", part);
   }
   return text;
@@ -102,15 +120,20 @@ Unit parse_unit(std::string_view given) {
         fmt::format("the factor in unit '{}' must be a finite number other than zero", given));
   }
 
-  std::vector<std::string_view> above;
-  std::vector<std::string_view> below;
+  std::vector<std::string> above;
+  std::vector<std::string> below;
   bool divides = false;
   while (!text.empty()) {
     const auto end = std::min({text.find("·"), text.find('*'), text.find('/'), text.size()});
     const bool begins_with_divisor = above.empty() && text.starts_with('/');
-    const Symbol& symbol = find_symbol(begins_with_divisor ? "1" : trimmed(text.substr(0, end)), given);
-    unit.factor = divides ? unit.factor / symbol.factor : unit.factor * symbol.factor;
-    (divides ? below : above).push_back(symbol.si);
+    std::string_view name = begins_with_divisor ? "1" : trimmed(text.substr(0, end));
+    const int power = take_power(name);
+    const Symbol& symbol = find_symbol(name, given);
+    const double factor = std::pow(symbol.factor, power);
+    unit.factor = divides ? unit.factor / factor : unit.factor * factor;
+    (divides ? below : above)
+        .push_back(std::string(symbol.si) +
+                   (symbol.si == "1" ? "" : power_texts[static_cast<std::size_t>(power)]));
     if (end == text.size()) break;
     divides = divides || text[end] == '/';
     text.remove_prefix(end + (text.substr(end).starts_with("·") ? std::string_view("·").size() : 1));

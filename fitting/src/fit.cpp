@@ -174,6 +174,23 @@ models::Law FitResult::law() const {
   return models::Law::make(model, values, law_options);
 }
 
+const std::vector<std::string_view>& fitted_laws() {
+  static const std::vector<std::string_view> laws{"kelvin",    "exponential",       "piecewise",
+                                                  "recording", "scissors_analytic", "precontact"};
+  return laws;
+}
+
+void check_model(std::string_view model) {
+  (void)models::Law::options(model);  // an unknown law is told as such
+  if (std::find(fitted_laws().begin(), fitted_laws().end(), model) != fitted_laws().end()) return;
+  std::string message =
+      "law '" + std::string(model) + "' cannot be fitted to a recording; those that can are";
+  for (const std::string_view law : fitted_laws()) {
+    message += (law == fitted_laws().front() ? " " : ", ") + std::string(law);
+  }
+  throw std::invalid_argument(message);
+}
+
 FitResult fit(std::string_view model, const Series& series, const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Samples samples = check_series(series, options.folds);

@@ -104,6 +104,7 @@ Solution best_of(const Problem& problem, const Samples& samples, const Mask& mas
 }  // namespace
 
 Problem make_problem(std::string_view model, const models::Options& given, const Samples& samples) {
+  check_model(model);
   Problem problem{.model = model, .law_options = given, .parameters = {}, .free = {}};
   models::Options& options = problem.law_options;
   if (model == "piecewise" || model == "recording") options.try_emplace("loop", samples.has_cycles);

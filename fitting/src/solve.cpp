@@ -85,6 +85,10 @@ std::unique_ptr<ceres::CostFunction> cost_function_of(const Problem& problem, co
   if (problem.model == "kelvin") return cost_function<models::Kelvin>(problem, samples, mask, held);
   if (problem.model == "exponential") return cost_function<models::Exponential>(problem, samples, mask, held);
   if (problem.model == "piecewise") return cost_function<models::Piecewise>(problem, samples, mask, held);
+  if (problem.model == "precontact") return cost_function<models::Precontact>(problem, samples, mask, held);
+  if (problem.model == "scissors_analytic") {
+    return cost_function<models::ScissorsAnalytic>(problem, samples, mask, held);
+  }
   throw std::invalid_argument("law '" + std::string(problem.model) + "' has no nonlinear fit");
 }
 

@@ -66,6 +66,37 @@ Start exponential_start(const Problem& problem, const Samples& samples, const Ma
   return start;
 }
 
+Start precontact_start(const Problem& problem, const Samples& samples, const Mask& mask, double share) {
+  Start start{.values = {1.0, std::max(share * samples.most, problem.parameters[1].lower)},
+              .sum_of_squares = 0.0};
+  const auto elastic = rendered(models::Law::make("precontact", start.values, problem.law_options), samples);
+  const std::vector<double> nothing(elastic.size(), 0.0);
+  start.values[0] = std::max(combine(elastic, nothing, samples, mask, start.sum_of_squares)[0],
+                             problem.parameters[0].lower);
+  return start;
+}
+
+/// A law that is linear in all its parameters: its response to each of them, combined at best.
+Start linear_start(const Problem& problem, const Samples& samples, const Mask& mask) {
+  const auto count = static_cast<Eigen::Index>(problem.parameters.size());
+  Eigen::MatrixXd response(static_cast<Eigen::Index>(samples.size()), count);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(response.rows());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    std::vector<double> unit(problem.parameters.size(), 0.0);
+    unit[static_cast<std::size_t>(k)] = 1.0;
+    const auto column =
+        rendered(models::Law::make(std::string(problem.model), unit, problem.law_options), samples);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      response(static_cast<Eigen::Index>(i), k) = mask[i] ? column[i] : 0.0;
+    }
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (mask[i]) force[static_cast<Eigen::Index>(i)] = samples.force[i];
+  }
+  const Eigen::VectorXd best = response.colPivHouseholderQr().solve(force);
+  return {.values = {best.data(), best.data() + best.size()}, .sum_of_squares = 0.0};
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> scan_starts(const Problem& problem, const Samples& samples,
@@ -78,6 +109,12 @@ std::vector<std::vector<double>> scan_starts(const Problem& problem, const Sampl
     for (int i = 0; i <= steps; ++i) {
       starts.push_back(kelvin_start(samples, mask,
                                     shortest * std::pow(longest / shortest, static_cast<double>(i) / steps)));
+    }
+  } else if (problem.model == "scissors_analytic") {
+    starts.push_back(linear_start(problem, samples, mask));
+  } else if (problem.model == "precontact") {
+    for (const double share : {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0}) {
+      starts.push_back(precontact_start(problem, samples, mask, share));
     }
   } else {
     for (const double growth : {0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 20.0}) {

@@ -1,6 +1,7 @@
 #include "kerf/models/parameter.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -22,6 +23,36 @@ std::string unit_of(Quantity quantity, std::string_view force_unit, std::string_
       return force + "·s/" + position;
     case Quantity::ratio:
       return "1";
+    case Quantity::length:
+      return "m";
+    case Quantity::mass:
+      return "kg";
+    case Quantity::time:
+      return "s";
+    case Quantity::angular_frequency:
+      return "1/s";
+    case Quantity::torque:
+      return "N·m";
+    case Quantity::energy:
+      return "J";
+    case Quantity::toughness:
+      return "J/m²";
+    case Quantity::load:
+      return "N";
+    case Quantity::spring:
+      return "N/m";
+    case Quantity::dashpot:
+      return "N·s/m";
+    case Quantity::joint_damping:
+      return "N·m·s/rad";
+    case Quantity::edge_damping:
+      return "N·s/m²";
+    case Quantity::surface_damping:
+      return "N·s/m³";
+    case Quantity::edge_stiffness:
+      return "N/m²";
+    case Quantity::surface_stiffness:
+      return "N/m³";
   }
   return "1";
 }
@@ -74,6 +105,32 @@ std::string OptionReader::text(std::string_view name) const {
     throw std::invalid_argument("option '" + std::string(name) + "' of law '" + model_ + "' must be a text");
   }
   return *text;
+}
+
+std::string OptionReader::choice(std::string_view name,
+                                 std::initializer_list<std::string_view> allowed) const {
+  std::string given = text(name);
+  if (std::find(allowed.begin(), allowed.end(), given) != allowed.end()) return given;
+  std::ostringstream message;
+  message << "option '" << name << "' of law '" << model_ << "' must be ";
+  for (const auto* word = allowed.begin(); word != allowed.end(); ++word) {
+    message << (word == allowed.begin()     ? ""
+                : word + 1 == allowed.end() ? " or "
+                                            : ", ")
+            << '"' << *word << '"';
+  }
+  message << ", not \"" << given << '"';
+  throw std::invalid_argument(message.str());
+}
+
+std::size_t OptionReader::count(std::string_view name, std::size_t lower, std::size_t upper) const {
+  const double given = number(name, static_cast<double>(lower), static_cast<double>(upper));
+  if (given != std::floor(given)) {
+    std::ostringstream message;
+    message << "option '" << name << "' of law '" << model_ << "' must be a whole number, not " << given;
+    throw std::invalid_argument(message.str());
+  }
+  return static_cast<std::size_t>(given);
 }
 
 }  // namespace kerf::models

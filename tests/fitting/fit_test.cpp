@@ -54,6 +54,18 @@ TEST(Fit, RecoversATableExactlyOnItsGrid) {
   expect_values(result, table.values(), 1e-5);
 }
 
+TEST(Fit, RecoversTheScissorsByLinearLeastSquares) {
+  const Law scissors = Law::make("scissors_analytic", std::vector{0.003, 0.4, 6.0}, {{"contact_angle", 0.5}});
+  expect_values(fit("scissors_analytic", Strokes(4000, 0.0, scissors).series(),
+                    {.law_options = {{"contact_angle", 0.5}}}),
+                scissors.values(), 1e-6);
+}
+
+TEST(Fit, RecoversTheWidthBeforeContact) {
+  const Law precontact = Law::make("precontact", std::vector{300.0, 0.05});
+  expect_values(fit("precontact", Strokes(4000, 0.0, precontact).series()), precontact.values(), 1e-6);
+}
+
 TEST(Fit, IsTheSameAtAnySamplingRate) {
   // A relaxation is a ramp and a hold: piecewise linear, so exact at 10 Hz as at 1 kHz.
   for (const double rate_hz : {10.0, 1000.0}) {
@@ -63,7 +75,7 @@ TEST(Fit, IsTheSameAtAnySamplingRate) {
       time.push_back(i / rate_hz);
       x.push_back(std::min(0.2 * time.back(), 0.2));
       v.push_back(time.back() < 1.0 ? 0.2 : 0.0);
-      f.push_back(kelvin.step(state, {x.back(), v.back()}, 1.0 / rate_hz).force);
+      f.push_back(kelvin.step(state, models::Motion{x.back(), v.back()}, 1.0 / rate_hz).force);
     }
     expect_values(fit("kelvin", {.time_s = time, .penetration = x, .velocity = v, .force = f}),
                   kelvin.values(), 1e-6);
@@ -101,7 +113,7 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
   for (std::size_t i = 0; i < 1000; ++i) {
     strokes.velocity[i] = 0.0;
     Law::State state = exponential.initial_state();
-    strokes.force[i] = exponential.step(state, {strokes.penetration[i], 0.0}, 1e-3).force;
+    strokes.force[i] = exponential.step(state, models::Motion{strokes.penetration[i], 0.0}, 1e-3).force;
   }
   const auto result = fit("exponential", strokes.series());
   EXPECT_THAT(result.warnings, testing::Contains("the data do not determine 'viscosity'"));

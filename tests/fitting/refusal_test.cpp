@@ -34,6 +34,12 @@ TEST(Refusal, OfAConstantPosition) {
   EXPECT_THAT(refusal(strokes), HasSubstr("the position is constant"));
 }
 
+TEST(Refusal, OfALawThatHasNoFit) {
+  EXPECT_THAT(refusal(Strokes(2000, 0.0, kelvin), "fracture"),
+              HasSubstr("law 'fracture' cannot be fitted to a recording; those that can are kelvin, exponential"));
+  EXPECT_THAT(refusal(Strokes(2000, 0.0, kelvin), "blade"), HasSubstr("cannot be fitted"));
+}
+
 TEST(Refusal, OfTooFewSamples) {
   EXPECT_THAT(refusal(Strokes(2, 0.0, kelvin)), HasSubstr("only 2 samples"));
   EXPECT_THAT(refusal(Strokes(50, 0.0, kelvin), "recording"), HasSubstr("101 parameters"));

@@ -27,7 +27,7 @@ struct Strokes {
       penetration.push_back(0.2 * (1.0 - std::cos(phase)));
       velocity.push_back(0.2 * frequency * std::sin(phase));
       cycle.push_back(1 + static_cast<std::uint32_t>(phase / 6.283185307179586));
-      force.push_back(law.step(state, {penetration.back(), velocity.back()}, period_s).force +
+      force.push_back(law.step(state, models::Motion{penetration.back(), velocity.back()}, period_s).force +
                       noise_n * normal(random));
     }
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +14,7 @@
 #include <kerf/models/law.h>
 
 #include "support/allocation_counter.h"
+#include "support/example_laws.h"
 
 namespace kerf::models {
 namespace {
@@ -19,20 +22,7 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// A plausible law of every kind in the registry; a law that is not listed here fails the suite.
-Law example(std::string_view model) {
-  if (model == "kelvin") return Law::make(model, std::vector{8.0, 7.0, 130.0});
-  if (model == "exponential") return Law::make(model, std::vector{0.02, 3.0, 0.4}, {{"thickness", 0.3}});
-  if (model == "piecewise") {
-    return Law::make(model, std::vector{0.0, 0.1, 0.4, 0.1, 2.0, 1.5, -0.1, -1.0, -0.7},
-                     {{"segments", 2.0}, {"loop", true}, {"ramp_band", 0.01}, {"reversal_scale", 40.0}});
-  }
-  if (model == "recording") {
-    return Law::make(model, std::vector{0.1, 2.0, 1.5, -0.1, -1.0, -0.7},
-                     {{"points", 3.0}, {"last", 0.4}, {"loop", true}, {"velocity_corner", 10.0}});
-  }
-  throw std::logic_error("no example of law " + std::string(model));
-}
+using test::example;
 
 class EveryLaw : public testing::TestWithParam<std::string_view> {
  protected:
@@ -50,13 +40,34 @@ Motion stroke(int tick) {
   const double phase = 2e-3 * tick;
   return {.penetration = 0.2 * (1.0 - std::cos(phase)), .velocity = 0.4 * std::sin(phase)};
 }
+SpatialMotion sweep(int tick) {
+  SpatialMotion motion;
+  for (std::size_t axis = 0; axis < max_law_axes; ++axis) {
+    const double phase = 2e-3 * tick * (1.0 + 0.1 * static_cast<double>(axis));
+    motion.position[axis] = 0.1 * std::cos(phase);
+    motion.velocity[axis] = -0.2 * (1.0 + 0.1 * static_cast<double>(axis)) * std::sin(phase);
+  }
+  return motion;
+}
+
+/// One tick of a law of either kind: force on each axis, the first one alone for a scalar law.
+SpatialResponse tick_of(const Law& law, Law::State& state, const Motion& along, const SpatialMotion& free,
+                        double period_s = 1e-3) {
+  if (law.is_spatial()) return law.step(state, free, period_s);
+  const Response response = law.step(state, along, period_s);
+  return {.force = {response.force}, .fault = response.fault};
+}
+SpatialResponse tick_of(const Law& law, Law::State& state, int tick, double period_s = 1e-3) {
+  return tick_of(law, state, stroke(tick), sweep(tick), period_s);
+}
 
 TEST_P(EveryLaw, ReplaysBitForBit) {
-  std::vector<std::uint64_t> first;
+  std::vector<std::array<std::uint64_t, max_law_axes>> first;
   for (const bool again : {false, true}) {
     auto state = law.initial_state();
     for (int tick = 0; tick < 5000; ++tick) {
-      const auto bits = std::bit_cast<std::uint64_t>(law.step(state, stroke(tick), 1e-3).force);
+      const auto bits =
+          std::bit_cast<std::array<std::uint64_t, max_law_axes>>(tick_of(law, state, tick).force);
       if (!again) {
         first.push_back(bits);
       } else {
@@ -66,44 +77,73 @@ TEST_P(EveryLaw, ReplaysBitForBit) {
   }
 }
 
+TEST_P(EveryLaw, IsFeltSomewhereAlongTheStroke) {
+  auto state = law.initial_state();
+  double most = 0.0;
+  for (int tick = 0; tick < 5000; ++tick) {
+    for (const double force : tick_of(law, state, tick).force) most = std::max(most, std::abs(force));
+  }
+  EXPECT_GT(most, 1e-4);
+}
+
 TEST_P(EveryLaw, AllocatesNothingInAStep) {
   auto state = law.initial_state();
   const std::size_t before = test::allocations();
   for (int tick = 0; tick < 1000; ++tick) (void)law.step(state, stroke(tick), 1e-3);
+  for (int tick = 0; tick < 1000; ++tick) (void)law.step(state, sweep(tick), 1e-3);
   EXPECT_EQ(test::allocations(), before);
 }
 
 TEST_P(EveryLaw, AnswersNonFiniteInputWithZeroForceAndAFault) {
   auto state = law.initial_state();
-  for (int tick = 0; tick < 500; ++tick) (void)law.step(state, stroke(tick), 1e-3);
+  for (int tick = 0; tick < 500; ++tick) (void)tick_of(law, state, tick);
   auto untouched = state;
+  const auto expect_refused = [&](const SpatialResponse& response) {
+    EXPECT_EQ(response.force, AxisValues{});
+    EXPECT_TRUE(response.fault);
+  };
   for (const double bad : {not_a_number, infinite, -infinite}) {
-    for (const Motion& motion : {Motion{bad, 0.0}, Motion{0.1, bad}}) {
-      const Response response = law.step(state, motion, 1e-3);
-      EXPECT_EQ(response.force, 0.0);
-      EXPECT_TRUE(response.fault);
+    for (std::size_t axis = 0; axis < max_law_axes; ++axis) {
+      SpatialMotion free = sweep(500);
+      free.position[axis] = bad;
+      expect_refused(tick_of(law, state, {bad, 0.0}, free));
+      free = sweep(500);
+      free.velocity[axis] = bad;
+      expect_refused(tick_of(law, state, {0.1, bad}, free));
     }
   }
-  for (const double period_s : {0.0, -1e-3, not_a_number})
-    EXPECT_TRUE(law.step(state, stroke(500), period_s).fault);
-  const Response after = law.step(state, stroke(500), 1e-3);
-  EXPECT_EQ(after.force, law.step(untouched, stroke(500), 1e-3).force) << "a bad sample leaves no trace";
+  for (const double period_s : {0.0, -1e-3, not_a_number, infinite}) {
+    expect_refused(tick_of(law, state, 500, period_s));
+  }
+  EXPECT_EQ(tick_of(law, state, 500).force, tick_of(law, untouched, 500).force)
+      << "a bad sample leaves no trace";
 }
 
 TEST_P(EveryLaw, AnswersAnOverflowWithAFault) {
   auto state = law.initial_state();
-  (void)law.step(state, {.penetration = 1e-3, .velocity = 1.0}, 1e-3);
-  const Response response = law.step(state, {.penetration = 1e308, .velocity = 1e308}, 1e-3);
-  EXPECT_TRUE(response.fault || std::isfinite(response.force));
-  EXPECT_TRUE(!response.fault || response.force == 0.0);
+  (void)tick_of(law, state, 1);
+  SpatialMotion free;
+  free.position.fill(-1e308);
+  free.velocity.fill(-1e308);
+  const SpatialResponse response = tick_of(law, state, {.penetration = 1e308, .velocity = 1e308}, free);
+  for (const double force : response.force) {
+    EXPECT_TRUE(std::isfinite(force));
+    EXPECT_TRUE(!response.fault || force == 0.0);
+  }
 }
 
 TEST_P(EveryLaw, FaultsOnTheStateOfAnotherLaw) {
   for (const LawInfo& other : registry()) {
     if (other.name == GetParam()) continue;
     auto state = example(other.name).initial_state();
-    EXPECT_TRUE(law.step(state, stroke(1), 1e-3).fault) << other.name;
+    EXPECT_TRUE(tick_of(law, state, 1).fault) << other.name;
   }
+}
+
+TEST_P(EveryLaw, FaultsOnTheMotionOfTheOtherKind) {
+  auto state = law.initial_state();
+  EXPECT_EQ(law.step(state, stroke(1), 1e-3).fault, law.is_spatial());
+  EXPECT_EQ(law.step(state, sweep(1), 1e-3).fault, !law.is_spatial());
 }
 
 TEST_P(EveryLaw, IsMadeAgainFromItsOwnDescription) {
@@ -141,8 +181,10 @@ TEST(Law, AnUnknownNameIsAnsweredWithThoseThatExist) {
     (void)Law::make("maxwell", std::vector{1.0});
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(),
-                 "unknown law 'maxwell'; the laws are kelvin, exponential, piecewise, recording");
+    EXPECT_STREQ(
+        error.what(),
+        "unknown law 'maxwell'; the laws are kelvin, exponential, piecewise, recording, scissors_analytic, "
+        "precontact, fracture, fuzzy_rupture, fuzzy_kelvin, fuzzy_kelvin_3d, blade");
   }
 }
 
@@ -150,6 +192,7 @@ TEST(Units, OfParametersFollowTheAxis) {
   EXPECT_EQ(unit_of(Quantity::stiffness, "N", "m"), "N/m");
   EXPECT_EQ(unit_of(Quantity::damping, "N", "rad"), "N·s/rad");
   EXPECT_EQ(unit_of(Quantity::position, "N", "rad"), "rad");
+  EXPECT_EQ(unit_of(Quantity::surface_damping, "N·m", "rad"), "N·s/m³") << "whatever the axis is";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/example_laws.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -50,6 +51,25 @@ TEST(LawFile, IsReadIntoSi) {
   EXPECT_DOUBLE_EQ(file.contact.position, 30.0 * std::numbers::pi / 180.0);
   EXPECT_EQ(file.contact.direction, -1.0);
   EXPECT_EQ(file.axis, "theta");
+}
+
+TEST(LawFile, RoundTripsEveryLawOfTheRegistry) {
+  for (const models::LawInfo& info : models::registry()) {
+    const LawFile file{.law = test::example(info.name), .contact = {}, .axis = {}, .fit = {}};
+    const std::string text = to_toml(file);
+    const LawFile again = parse_law_file(text, "again.law.toml");
+    EXPECT_EQ(again.law.model(), info.name);
+    EXPECT_EQ(again.law.values(), file.law.values()) << text;
+    EXPECT_EQ(again.law.options(), file.law.options()) << text;
+    EXPECT_EQ(to_toml(again), text);
+  }
+}
+
+TEST(LawFile, OfASpatialLawHasNoContact) {
+  const LawFile file{.law = test::example("blade"), .contact = {}, .axis = {}, .fit = {}};
+  const std::string text = to_toml(file);
+  EXPECT_THAT(text, testing::Not(HasSubstr("[contact]")));
+  EXPECT_THAT(refusal("axis = \"x\"\n" + text), HasSubstr("leave 'axis' out"));
 }
 
 TEST(LawFile, RoundTripsEveryKindOfParameterAndOption) {

@@ -11,7 +11,7 @@ namespace {
 /// A spring of so many N/rad, at a penetration of 0.1 rad.
 LawRendering spring(double stiffness) {
   const std::array values{stiffness, 1e-9, 1e-9};
-  return {models::Law::make("kelvin", values), {.position = 0.0, .direction = -1.0}, 0};
+  return {models::Law::make("kelvin", values), {.position = 0.0, .direction = -1.0}, {0}};
 }
 
 double next_force(LawSwitch& laws, std::uint32_t* flags = nullptr) {

@@ -20,7 +20,7 @@ namespace {
 
 LawRendering spring(double stiffness) {
   const std::array values{stiffness, 1.0, 1.0};
-  return {models::Law::make("kelvin", values), {.position = 1.0, .direction = -1.0}, 0};
+  return {models::Law::make("kelvin", values), {.position = 1.0, .direction = -1.0}, {0}};
 }
 
 TEST(Race, IsNoneBetweenLoopWriterWatchdogAndWhoChangesLaws) {

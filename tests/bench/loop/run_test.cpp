@@ -139,7 +139,7 @@ LoopReport run_without_allocation(Clock& clock, std::uint64_t ticks, drivers::Su
                      {{.name = "theta"}, {.name = "x_s"}},
                      {.measures_force = true}},
                     {.lossless = lossless});
-  const LawRendering rendering(kelvin.law, kelvin.contact, 0);
+  const LawRendering rendering(kelvin.law, kelvin.contact, {0});
   LawSwitch laws({{.rendering = rendering}, {.rendering = rendering, .from_s = 0.12}}, 0.01);
   const std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};

@@ -77,15 +77,5 @@ TEST(Scene, IsRefusedOnADeviceOfOtherUnits) {
   EXPECT_THROW((void)surroundings_of(scene, scissors), std::invalid_argument);
 }
 
-TEST(AxisForALaw, IsTheOneItNamesOrTheFirstOfItsUnits) {
-  LawFile law = parse_scene(spring, "liver.toml").tissue;
-  EXPECT_EQ(axis_for(law, scissors), 0U);
-  law.axis = "";
-  law.position_unit = "m";
-  EXPECT_EQ(axis_for(law, scissors), 1U);
-  law.force_unit = "N·m";
-  EXPECT_THROW((void)axis_for(law, scissors), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace kerf::bench

@@ -36,6 +36,8 @@ TEST(Units, TakeAFactorForRawCounts) {
 
 TEST(Units, MultiplyAndDivide) {
   EXPECT_EQ(parse_unit("N·s/mm"), (Unit{1e3, "N·s/m"}));
+  EXPECT_EQ(parse_unit("mN·s/mm³"), (Unit{1e6, "N·s/m³"}));
+  EXPECT_EQ(parse_unit("kJ/m^2"), (Unit{1e3, "J/m²"}));
   EXPECT_EQ(parse_unit("N*s/m"), (Unit{1.0, "N·s/m"}));
   EXPECT_EQ(parse_unit("N / deg"), (Unit{1.0 / degree, "N/rad"}));
   EXPECT_EQ(parse_unit("1/mm"), (Unit{1.0 / 1e-3, "1/m"}));

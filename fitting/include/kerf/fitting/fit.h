@@ -69,6 +69,11 @@ struct FitResult {
   [[nodiscard]] models::Law law() const;
 };
 
+/// The laws that can be fitted to a series.
+[[nodiscard]] const std::vector<std::string_view>& fitted_laws();
+/// @throws std::invalid_argument for an unknown law, or one that is not among fitted_laws().
+void check_model(std::string_view model);
+
 /// Fits one law of the registry by least squares on the law's own step.
 ///
 /// Kelvin and exponential: a scan over the one nonlinear parameter gives three starts, and the best of the

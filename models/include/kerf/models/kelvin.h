@@ -3,7 +3,6 @@
 #include <cmath>
 #include <complex>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,12 +53,8 @@ struct Kelvin {
     return {{"integrator", std::string("exact"), "exact (first-order hold) or euler (forward Euler)"}};
   }
   static Kelvin make(std::span<const T> values, const Options& given) {
-    const OptionReader reader(name, options(), given);
-    const std::string integrator = reader.text("integrator");
-    if (integrator != "exact" && integrator != "euler") {
-      throw std::invalid_argument(
-          "option 'integrator' of law 'kelvin' must be \"exact\" or \"euler\", not \"" + integrator + "\"");
-    }
+    const std::string integrator =
+        OptionReader(name, options(), given).choice("integrator", {"exact", "euler"});
     return {values[0], values[1], values[2], integrator == "euler"};
   }
 
@@ -78,9 +73,15 @@ struct Kelvin {
            0.5 * state.arm_force * state.arm_force / series_stiffness;
   }
 
+  /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
+    const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
+    return force < T(0.0) ? T(0.0) : force;
+  }
+
+  /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
+  T bilateral_step(State& state, double x, double period_s) const noexcept {
     using std::expm1;
-    const double x = motion.penetration > 0.0 ? motion.penetration : 0.0;
     if (!state.started) {
       state.started = true;
       state.penetration = x;
@@ -94,8 +95,7 @@ struct Kelvin {
     const T gain = euler ? series_stiffness : T(damping / period_s * (1.0 - state.decay));
     state.arm_force = state.decay * state.arm_force + gain * travel;
     state.penetration = x;
-    const T force = parallel_stiffness * x + state.arm_force;
-    return force < T(0.0) ? T(0.0) : force;
+    return parallel_stiffness * x + state.arm_force;
   }
 };
 

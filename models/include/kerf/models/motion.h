@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cmath>
+#include <array>
+#include <cstddef>
 
 namespace kerf::models {
 
@@ -12,6 +13,17 @@ namespace kerf::models {
 struct Motion {
   double penetration = 0.0;  ///< x [m or rad]; negative before contact
   double velocity = 0.0;     ///< v = dx/dt [m/s or rad/s]
+};
+
+inline constexpr std::size_t max_law_axes = 6;
+
+/// One number per axis of a spatial law, in the order of its axes; unused ones are zero.
+using AxisValues = std::array<double, max_law_axes>;
+
+/// What a spatial law sees in one tick: the axes of the device themselves, in their own frame.
+struct SpatialMotion {
+  AxisValues position{};  ///< [m or rad]
+  AxisValues velocity{};  ///< its derivative [m/s or rad/s]
 };
 
 /// Where along a device's axis the tissue begins, and which way leads into it.

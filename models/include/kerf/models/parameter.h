@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <string_view>
@@ -9,8 +10,31 @@
 
 namespace kerf::models {
 
-/// What a parameter measures, so that one law serves forces over depth [m] and over an angle [rad].
-enum class Quantity { force, position, velocity, stiffness, damping, ratio };
+/// What a parameter measures. The first ones follow the axis, so that one law serves forces over depth [m]
+/// and over an angle [rad]; the others have the same unit everywhere.
+enum class Quantity {
+  force,
+  position,
+  velocity,
+  stiffness,
+  damping,
+  ratio,
+  length,             ///< m
+  mass,               ///< kg
+  time,               ///< s
+  angular_frequency,  ///< 1/s
+  torque,             ///< N·m
+  energy,             ///< J
+  toughness,          ///< J/m²
+  load,               ///< N, whatever the axis measures
+  spring,             ///< N/m
+  dashpot,            ///< N·s/m
+  joint_damping,      ///< N·m·s/rad
+  edge_damping,       ///< N·s/m², viscous force per length of an edge and speed
+  surface_damping,    ///< N·s/m³, per area and speed
+  edge_stiffness,     ///< N/m²
+  surface_stiffness,  ///< N/m³
+};
 
 /// The unit of a quantity on an axis: `unit_of(Quantity::stiffness, "N", "rad")` is "N/rad".
 [[nodiscard]] std::string unit_of(Quantity quantity, std::string_view force_unit,
@@ -51,6 +75,11 @@ class OptionReader {
   [[nodiscard]] double number(std::string_view name, double lower, double upper) const;
   [[nodiscard]] bool flag(std::string_view name) const;
   [[nodiscard]] std::string text(std::string_view name) const;
+  /// A text that is one of those allowed.
+  [[nodiscard]] std::string choice(std::string_view name,
+                                   std::initializer_list<std::string_view> allowed) const;
+  /// A whole number.
+  [[nodiscard]] std::size_t count(std::string_view name, std::size_t lower, std::size_t upper) const;
 
  private:
   const OptionValue& value(std::string_view name) const;

@@ -94,7 +94,7 @@ struct Piecewise {
 
  private:
   static std::size_t segments(const OptionReader& reader) {
-    return static_cast<std::size_t>(reader.number("segments", 1.0, static_cast<double>(max_segments)));
+    return reader.count("segments", 1, max_segments);
   }
 };
 

@@ -91,9 +91,7 @@ struct Recording {
   }
 
  private:
-  static std::size_t points(const OptionReader& reader) {
-    return static_cast<std::size_t>(reader.number("points", 2.0, static_cast<double>(max_points)));
-  }
+  static std::size_t points(const OptionReader& reader) { return reader.count("points", 2, max_points); }
 };
 
 }  // namespace kerf::models

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 
+#include <kerf/models/parameter.h>
+
 namespace kerf::models {
 
 /// Where the blades of a pair of scissors cut, from the angle between them.
@@ -16,6 +18,9 @@ namespace kerf::models {
 /// wide end.
 ///
 /// Source: 004, eqs. 1-2, fig. 3; the limits follow from its section 3.3.
+///
+/// Written with kappa = (t_max - t_min) / l_t, the cutting point needs one sine and divides by nothing that
+/// can vanish for an angle in (0, pi): x_c = t_max / (sin(theta/2) + kappa cos(theta/2)).
 struct ScissorsGeometry {
   double pivot_half_width_m = 4e-3;  ///< t_max, > tip_half_width_m
   double tip_half_width_m = 1e-3;    ///< t_min, > 0
@@ -38,6 +43,46 @@ struct ScissorsGeometry {
     if (!(theta_rad >= closing_angle() && theta_rad <= widest_angle_rad)) return std::nullopt;
     return half_width(theta_rad) / std::sin(0.5 * theta_rad);
   }
+
+  /// Reads the options pivot_half_width, tip_half_width, blade_length and widest_angle of a law.
+  /// @throws std::invalid_argument if one is out of range, or the tip is not the narrower end.
+  static ScissorsGeometry make(const OptionReader& reader);
+};
+
+/// The cutting point of one geometry, ready for a tick:
+///
+///     x_c(theta) = t_max / (sqrt(1 + kappa^2) sin(theta/2 + atan kappa))
+class CuttingPoint {
+ public:
+  CuttingPoint() : CuttingPoint(ScissorsGeometry{}) {}
+  explicit CuttingPoint(const ScissorsGeometry& scissors)
+      : taper_rad_(
+            std::atan((scissors.pivot_half_width_m - scissors.tip_half_width_m) / scissors.blade_length_m)),
+        scale_m_(scissors.pivot_half_width_m * std::cos(taper_rad_)),
+        closing_rad_(scissors.closing_angle()),
+        widest_rad_(scissors.widest_angle_rad) {}
+
+  /// Whether the blades cut at this angle.
+  [[nodiscard]] bool cuts_at(double theta_rad) const noexcept {
+    return theta_rad >= closing_rad_ && theta_rad <= widest_rad_;
+  }
+  /// Distance from the pivot [m]; theta within the cutting angles.
+  [[nodiscard]] double operator()(double theta_rad) const noexcept {
+    return scale_m_ / std::sin(0.5 * theta_rad + taper_rad_);
+  }
+  /// Half the gap between the cutting edges at a distance from the pivot [m]; negative behind the cutting
+  /// point.
+  [[nodiscard]] double half_gap(double theta_rad, double distance_m) const noexcept {
+    return (distance_m - (*this)(theta_rad)) * std::tan(0.5 * theta_rad + taper_rad_);
+  }
+  [[nodiscard]] double closing_angle() const noexcept { return closing_rad_; }
+  [[nodiscard]] double widest_angle() const noexcept { return widest_rad_; }
+
+ private:
+  double taper_rad_;  ///< atan kappa
+  double scale_m_;    ///< t_max / sqrt(1 + kappa^2)
+  double closing_rad_;
+  double widest_rad_;
 };
 
 }  // namespace kerf::models

@@ -1,0 +1,49 @@
+#include "laws/placement.h"
+
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+
+std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device) {
+  const auto fits = [&](const drivers::AxisInfo& axis) {
+    return axis.position_unit == law.position_unit && axis.force_unit == law.force_unit;
+  };
+  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
+    if (device.axes[axis].name != law.axis) continue;
+    if (fits(device.axes[axis])) return axis;
+    throw std::invalid_argument(fmt::format("the law gives {} over {}, but axis '{}' of {} has {} over {}",
+                                            law.force_unit, law.position_unit, law.axis, device.model,
+                                            device.axes[axis].force_unit, device.axes[axis].position_unit));
+  }
+  for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
+    if (fits(device.axes[axis])) return axis;
+  }
+  throw std::invalid_argument(fmt::format("the law gives {} over {}, and no axis of {} has these units",
+                                          law.force_unit, law.position_unit, device.model));
+}
+
+std::vector<std::size_t> axes_for(const LawFile& law, const drivers::DeviceInfo& device) {
+  if (!law.law.is_spatial()) return {axis_for(law, device)};
+  std::vector<std::size_t> axes;
+  for (const models::LawAxis& wanted : law.law.axes()) {
+    std::size_t axis = 0;
+    while (axis < device.axes.size() && device.axes[axis].name != wanted.name) ++axis;
+    if (axis == device.axes.size()) {
+      throw std::invalid_argument(fmt::format("law '{}' acts on axis '{}', and {} has none of that name",
+                                              law.law.model(), wanted.name, device.model));
+    }
+    const drivers::AxisInfo& found = device.axes[axis];
+    if (found.position_unit != wanted.position_unit || found.force_unit != wanted.force_unit) {
+      throw std::invalid_argument(
+          fmt::format("law '{}' gives {} over {} on axis '{}', but {} has {} over {} there", law.law.model(),
+                      wanted.force_unit, wanted.position_unit, wanted.name, device.model, found.force_unit,
+                      found.position_unit));
+    }
+    axes.push_back(axis);
+  }
+  return axes;
+}
+
+}  // namespace kerf::bench

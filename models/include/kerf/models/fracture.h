@@ -1,0 +1,129 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Cutting by fracture: the energy that deforms the tissue is paid back as a crack.
+///
+///     deformation:  F = alpha exp(beta d / L0),       dWe = dU
+///     fracture:     one tick with F = 0 once U >= Uy, da = U / (Jc w)
+///     cutting:      F = Jc w while v > 0,             dWe = dWs
+///     free:         F = 0 until the tool meets the surface again
+///
+/// d is the depth under the surface, U = alpha L0 / beta (exp(beta d / L0) - 1) the elastic energy, Uy the
+/// yield energy, Jc the fracture toughness, w the width of the blade, a the length of the crack. The fracture
+/// turns all of U into crack. The crack then begins at the tool: its tip, the new surface, lies at the tool
+/// or, if the crack ran further than that, ahead of it by what it ran further; the tissue closes up to the
+/// tool, which in the paper stands much deeper than the crack is long. While cutting, the tip moves with the
+/// tool; on v <= 0 the tip stays and is the surface that is met next.
+///
+/// The books are kept from the path itself, so that external work = stored + spent on crack at any tick.
+///
+/// Source: 001, section 4.3 and fig. 7, after Mahvash and Hayward; differs from the paper in where the tip
+/// stands after the fracture, which the paper does not say.
+template <typename T>
+struct Fracture {
+  static constexpr std::string_view name = "fracture";
+  static constexpr std::string_view equation =
+      "F = alpha exp(beta d / L0) up to the energy Uy, one tick of fracture, then Jc w";
+
+  T amplitude{};           ///< alpha [N], > 0
+  T exponent{};            ///< beta [1], > 0
+  T yield_energy{};        ///< Uy [J], > 0
+  T toughness{};           ///< Jc [J/m²], > 0
+  T width{};               ///< w [m], > 0
+  double thickness = 0.1;  ///< L0 [m], > 0
+
+  enum class Mode : std::uint8_t { free, deformation, fracture, cutting };
+
+  struct State {
+    Mode mode = Mode::free;
+    double surface = 0.0;  ///< penetration at which tissue is met [m]
+    T stored{0.0};         ///< U [J]
+    T work{0.0};           ///< sum of dWe, done by the tool [J]
+    T crack_energy{0.0};   ///< sum of dWs, spent on the crack [J]
+    T crack_length{0.0};   ///< a [m]
+  };
+
+  static std::vector<ParameterInfo> parameters(const Options&) {
+    return {{"amplitude", Quantity::force, 1e-15, 1e6, Scale::logarithmic, "alpha, force at contact"},
+            {"exponent", Quantity::ratio, 1e-6, 1e3, Scale::logarithmic,
+             "beta, stiffening over the thickness L0"},
+            {"yield_energy", Quantity::energy, 1e-12, 1e6, Scale::logarithmic, "Uy, stored at the fracture"},
+            {"toughness", Quantity::toughness, 1e-6, 1e9, Scale::logarithmic, "Jc, energy per area of crack"},
+            {"width", Quantity::length, 1e-9, 1e3, Scale::logarithmic, "w, of the blade"}};
+  }
+  static std::vector<OptionInfo> options() { return {{"thickness", 0.1, "L0, thickness of the sample [m]"}}; }
+  static Fracture make(std::span<const T> values, const Options& given) {
+    return {values[0], values[1], values[2],
+            values[3], values[4], OptionReader(name, options(), given).number("thickness", 1e-9, 1e9)};
+  }
+
+  /// Force while the crack grows, Jc w [N].
+  [[nodiscard]] T cutting_force() const { return toughness * width; }
+  /// Depth at which the stored energy reaches Uy [m].
+  [[nodiscard]] T yield_depth() const {
+    using std::log1p;
+    return thickness / exponent * log1p(yield_energy * exponent / (amplitude * thickness));
+  }
+
+  T step(State& state, const Motion& motion, double) const noexcept {
+    const double x = motion.penetration;
+    if (state.mode == Mode::fracture) state.mode = x < state.surface ? Mode::free : Mode::cutting;
+    if (state.mode == Mode::cutting && motion.velocity > 0.0) {
+      if (x < state.surface) return T(0.0);  // behind the tip
+      grow(state, cutting_force() * (x - state.surface));
+      state.surface = x;
+      return cutting_force();
+    }
+    if (state.mode == Mode::cutting) state.mode = Mode::free;
+    return deform(state, x);
+  }
+
+ private:
+  T deform(State& state, double x) const noexcept {
+    using std::expm1;
+    const double depth = x - state.surface;
+    if (depth <= 0.0) {
+      state.work = state.work - state.stored;
+      state.stored = T(0.0);
+      state.mode = Mode::free;
+      return T(0.0);
+    }
+    const T growth = expm1(exponent * (depth / thickness));
+    const T energy = amplitude * thickness / exponent * growth;
+    state.work = state.work + energy - state.stored;
+    state.stored = energy;
+    state.mode = Mode::deformation;
+    if (energy < yield_energy) return amplitude * (growth + 1.0);
+    state.work = state.work - energy;  // grow() enters it again, as crack
+    state.stored = T(0.0);
+    grow(state, energy);
+    state.surface = std::max(x, state.surface + value_of(energy / cutting_force()));
+    state.mode = Mode::fracture;
+    return T(0.0);
+  }
+  void grow(State& state, T energy) const noexcept {
+    state.work = state.work + energy;
+    state.crack_energy = state.crack_energy + energy;
+    state.crack_length = state.crack_length + energy / cutting_force();
+  }
+  static double value_of(const T& number) noexcept {
+    if constexpr (requires { number.a; }) {
+      return number.a;  // a dual number: where the tip stands has no derivative across the fracture
+    } else {
+      return number;
+    }
+  }
+};
+
+}  // namespace kerf::models

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/fuzzy.h>
+#include <kerf/models/kelvin.h>
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Cutting as a row of ruptures: a Kelvin element stretched ahead of the blade until it breaks.
+///
+///     F = k1 (x - x_r) + f      Kelvin force since the last rupture, at x_r
+///     F >= F_rupture(d, |v|):   the tissue ruptures: F = 0, f = 0, x_r = x
+///
+/// x is the travel in the direction of the cut, d the depth of the blade (an option: it is constant along the
+/// cut), F_rupture a FuzzySurface. What was cut stays cut: behind x_r there is no force.
+///
+/// Source: 002, section 2.3, figs. 4-6; differs from the paper, where the force drops to "nearly" zero, in
+/// that it drops to zero for the tick of the rupture.
+template <typename T>
+struct FuzzyKelvin {
+  static constexpr std::string_view name = "fuzzy_kelvin";
+  static constexpr std::string_view equation = "kelvin since the last rupture, up to F_rupture(d, |v|)";
+
+  Kelvin<T> element;
+  FuzzySurface<T> surface;
+  double depth = 0.005;  ///< d [m]
+
+  struct State {
+    typename Kelvin<T>::State element;
+    double reference = 0.0;  ///< x_r [m]
+    std::uint32_t ruptures = 0;
+    T rupture_force{0.0};  ///< Kelvin force at the last rupture [N]
+  };
+
+  static std::vector<OptionInfo> options() {
+    auto all = FuzzySurface<T>::options();
+    all.insert(all.begin(), {{"depth", 0.005, "d, depth of the blade [m]"}});
+    return all;
+  }
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    auto all = Kelvin<T>::parameters({});
+    const auto surface = FuzzySurface<T>::parameters(OptionReader(name, options(), given));
+    all.insert(all.end(), surface.begin(), surface.end());
+    return all;
+  }
+  static FuzzyKelvin make(std::span<const T> values, const Options& given) {
+    const OptionReader reader(name, options(), given);
+    return {Kelvin<T>::make(values.first(3), {}), FuzzySurface<T>::make(values.subspan(3), reader),
+            reader.number("depth", 0.0, 1e3)};
+  }
+
+  T step(State& state, const Motion& motion, double period_s) const noexcept {
+    const T force =
+        element.step(state.element, {motion.penetration - state.reference, motion.velocity}, period_s);
+    if (!(force > T(0.0)) || force < surface(depth, std::abs(motion.velocity))) return force;
+    ++state.ruptures;
+    state.rupture_force = force;
+    state.reference = motion.penetration;
+    state.element.arm_force = T(0.0);
+    state.element.penetration = 0.0;
+    return T(0.0);
+  }
+};
+
+}  // namespace kerf::models

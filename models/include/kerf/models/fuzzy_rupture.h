@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/fuzzy.h>
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// The rupture threshold of a FuzzySurface as a force of its own: what tissue would bear at this depth and
+/// speed.
+///
+///     F = F_rupture(x, |v|)   for x > 0, else 0
+///
+/// Source: 002, section 2.2.
+template <typename T>
+struct FuzzyRupture {
+  static constexpr std::string_view name = "fuzzy_rupture";
+  static constexpr std::string_view equation = "F = sum w_i (p_i x + q_i |v| + r_i) / sum w_i";
+
+  FuzzySurface<T> surface;
+
+  struct State {};
+
+  static std::vector<OptionInfo> options() { return FuzzySurface<T>::options(); }
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    return FuzzySurface<T>::parameters(OptionReader(name, options(), given));
+  }
+  static FuzzyRupture make(std::span<const T> values, const Options& given) {
+    return {FuzzySurface<T>::make(values, OptionReader(name, options(), given))};
+  }
+
+  T step(State&, const Motion& motion, double) const noexcept {
+    if (!(motion.penetration > 0.0)) return T(0.0);
+    return surface(motion.penetration, std::abs(motion.velocity));
+  }
+};
+
+}  // namespace kerf::models

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <kerf/models/fracture.h>
+
+namespace kerf::models {
+namespace {
+
+using Mode = Fracture<double>::Mode;
+
+/// In vivo intestine of 001: 2 N at the yield energy, and 2 N while cutting.
+const Fracture<double> intestine{4.3e-7, 13.0, 0.0153846120769, 2000.0, 1e-3, 0.1};
+
+TEST(Fracture, YieldsWhereTheStoredEnergyReachesTheCheckValue) {
+  EXPECT_NEAR(intestine.yield_depth() / 0.118097136991, 1.0, 1e-10);
+  EXPECT_NEAR(intestine.cutting_force(), 2.0, 1e-15);
+}
+
+TEST(Fracture, FollowsFigureSeven) {
+  Fracture<double>::State state;
+  std::vector<Mode> modes;
+  std::vector<double> forces;
+  for (int tick = 0; tick <= 1000; ++tick) {  // 150 mm in at 0.3 m/s, then back out
+    const double x = tick <= 500 ? 0.3e-3 * tick : 0.15 - 0.3e-3 * (tick - 500);
+    forces.push_back(intestine.step(state, {x, tick <= 500 ? 0.3 : -0.3}, 1e-3));
+    modes.push_back(state.mode);
+  }
+  const auto count = [&](Mode mode) { return std::count(modes.begin(), modes.end(), mode); };
+  EXPECT_EQ(count(Mode::fracture), 1) << "one sample of 1 ms";
+  const auto fracture =
+      static_cast<std::size_t>(std::find(modes.begin(), modes.end(), Mode::fracture) - modes.begin());
+  EXPECT_NEAR(forces[fracture - 1], 2.0, 0.1) << "deformation up to the yield point";
+  EXPECT_EQ(forces[fracture], 0.0);
+  for (std::size_t tick = fracture + 1; tick <= 500; ++tick) {
+    ASSERT_EQ(modes[tick], Mode::cutting);
+    ASSERT_DOUBLE_EQ(forces[tick], 2.0);
+  }
+  for (std::size_t tick = 501; tick <= 1000; ++tick) ASSERT_EQ(forces[tick], 0.0) << "free on the way back";
+}
+
+TEST(Fracture, TheSurfaceStaysAtTheTipOfTheCrack) {
+  Fracture<double>::State state;
+  double x = 0.0;
+  for (; x < 0.14; x += 1e-4) (void)intestine.step(state, {x, 0.1}, 1e-3);
+  const double tip = state.surface;
+  for (double back = tip; back > 0.0; back -= 1e-4) EXPECT_EQ(intestine.step(state, {back, -0.1}, 1e-3), 0.0);
+  EXPECT_EQ(state.surface, tip);
+  EXPECT_EQ(intestine.step(state, {tip - 1e-6, 0.1}, 1e-3), 0.0);
+  EXPECT_GT(intestine.step(state, {tip + 1e-6, 0.1}, 1e-3), 0.0);
+}
+
+TEST(Fracture, ACrackThatRunsAheadLeavesTheToolFreeUntilItsTip) {
+  const Fracture<double> brittle{1.0, 1.0, 1e-3, 1.0, 1e-3, 0.1};  // da = 1 m at Uy = 1 mJ
+  Fracture<double>::State state;
+  double x = 0.0;
+  while (state.mode != Mode::fracture) (void)brittle.step(state, {x += 1e-5, 0.01}, 1e-3);
+  EXPECT_NEAR(state.crack_length, 1.0, 0.02);
+  EXPECT_EQ(brittle.step(state, {x + 1e-5, 0.01}, 1e-3), 0.0);
+  EXPECT_EQ(state.mode, Mode::free);
+  EXPECT_GT(brittle.step(state, {state.surface + 1e-5, 0.01}, 1e-3), 0.0);
+}
+
+TEST(Fracture, TheBooksCloseOverRandomStrokes) {
+  const Fracture<double> tissue{4.3e-3, 4.0, 2e-3, 2000.0, 1e-3, 0.1};
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> push(0.0, 1.0);
+    Fracture<double>::State state;
+    double x = 0.0;
+    double v = 0.0;
+    double turnover = 0.0;
+    double before = 0.0;
+    for (int tick = 0; tick < 5000; ++tick) {
+      v = 0.99 * v + 0.05 * push(random);
+      x += 1e-3 * v;
+      (void)tissue.step(state, {x, v}, 1e-3);
+      turnover += std::abs(state.work - before);
+      before = state.work;
+      ASSERT_NEAR(state.work, state.stored + state.crack_energy, 1e-9 + 1e-6 * turnover) << seed;
+      ASSERT_GE(state.work, -1e-15) << "it never gives what it did not take";
+    }
+    ASSERT_NEAR(state.crack_energy, tissue.cutting_force() * state.crack_length, 1e-9 + 1e-6 * turnover);
+  }
+}
+
+TEST(Fracture, TheBooksAreThoseOfTheRenderedForce) {
+  // Simpson would do better; at steps of 2 um the trapezoid is within the force of one step.
+  Fracture<double>::State state;
+  double work = 0.0;
+  double before = 0.0;
+  const double step = 2e-6;
+  for (double x = step; x < 0.14; x += step) {
+    const double force = intestine.step(state, {x, 0.1}, 1e-3);
+    work += 0.5 * (before + force) * step;
+    before = force;
+  }
+  EXPECT_NEAR(state.work / work, 1.0, 1e-3);
+}
+
+TEST(Fracture, OneSampleOfFractureAtAnyRate) {
+  for (const double period_s : {1e-2, 1e-3, 1e-4}) {
+    Fracture<double>::State state;
+    int fractures = 0;
+    for (double x = 0.0; x < 0.14; x += 0.3 * period_s) {
+      (void)intestine.step(state, {x, 0.3}, period_s);
+      fractures += state.mode == Mode::fracture;
+    }
+    EXPECT_EQ(fractures, 1);
+  }
+}
+
+}  // namespace
+}  // namespace kerf::models
