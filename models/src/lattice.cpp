@@ -62,6 +62,8 @@ double coupling_limit_unchecked(const LatticeOptions& options, double dt, double
 /// Numbers below the normal range count as zero while this lives.
 class FlushDenormals {
  public:
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
 #ifdef __SSE2__
   FlushDenormals() noexcept : before_(_mm_getcsr()) {
     constexpr unsigned flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
@@ -74,11 +76,7 @@ class FlushDenormals {
 #else
   FlushDenormals() noexcept {}
   ~FlushDenormals() {}
-
- public:
 #endif
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
 };
 
 // The two loops over whole rows. Each array is a parameter of its own, as only there `__restrict` lets GCC
@@ -188,9 +186,9 @@ void Lattice<Real>::reset() noexcept {
 
 template <typename Real>
 bool Lattice<Real>::admits(const Coupling& coupling, double dt) const noexcept {
-  return dt > 0.0 && coupling.damping_n_s_per_m >= 0.0 && coupling.stiffness_n_per_m >= 0.0 &&
-         coupling.stiffness_n_per_m <= coupling_limit_unchecked(options_, dt, coupling.damping_n_s_per_m) &&
-         coupling_limit_unchecked(options_, dt, coupling.damping_n_s_per_m) > 0.0;
+  if (!(dt > 0.0 && coupling.damping_n_s_per_m >= 0.0 && coupling.stiffness_n_per_m >= 0.0)) return false;
+  const double limit = coupling_limit_unchecked(options_, dt, coupling.damping_n_s_per_m);
+  return limit > 0.0 && coupling.stiffness_n_per_m <= limit;
 }
 
 template <typename Real>
@@ -390,11 +388,11 @@ void Lattice<Real>::update(int row, const Coefficients& by) noexcept {
 }
 
 template <typename Real>
-auto Lattice<Real>::irregular(const Stencil& stencil, const Coefficients& by) const noexcept -> Motion {
+auto Lattice<Real>::irregular(const Stencil& stencil, const Coefficients& by) const noexcept -> Moved {
   const Real *ux = ux_.data(), *uy = uy_.data(), *vx = vx_.data(), *vy = vy_.data();
   const Real tau = by.spring_time;
   const int own = stencil.node;
-  Motion motion{ux[own], uy[own], Real(0), Real(0)};
+  Moved motion{ux[own], uy[own], Real(0), Real(0)};
   if (stencil.share == Real(0)) return motion;
   const auto x = [&](int node) { return ux[node] + tau * vx[node]; };
   const auto y = [&](int node) { return uy[node] + tau * vy[node]; };
@@ -482,7 +480,7 @@ void Lattice<Real>::step(double dt, int substeps, std::span<Coupling> couplings)
     }
   }
   for (Coupling& coupling : couplings) {
-    for (double& force : coupling.force_n) force /= substeps;
+    for (double& force : coupling.force_n) force /= std::max(substeps, 1);
   }
 }
 
@@ -496,9 +494,9 @@ double Lattice<Real>::mass(int node) const noexcept {
 template <typename Real>
 auto Lattice<Real>::position(int node) const noexcept -> Vector {
   const int point = node % points_;
+  const int column = point % options_.columns, row = point / options_.columns;
   const Vector u = displacement(node);
-  return {point % options_.columns * options_.spacing_m + u[0],
-          point / options_.columns * options_.spacing_m + u[1]};
+  return {column * options_.spacing_m + u[0], row * options_.spacing_m + u[1]};
 }
 
 template <typename Real>
@@ -531,7 +529,7 @@ auto Lattice<Real>::force(int node) const noexcept -> Vector {
   Stencil stencil = stencil_of(node);
   if (!alive(node)) return {};
   stencil.share = Real(4) / static_cast<Real>(corners_[index(node)]);
-  const Motion after = irregular(stencil, coefficients(1.0));
+  const Moved after = irregular(stencil, coefficients(1.0));
   return {mass(node) * static_cast<double>(after.vx - vx_[index(node)]),
           mass(node) * static_cast<double>(after.vy - vy_[index(node)])};
 }
