@@ -1,6 +1,7 @@
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/faulty_device.h"
 #include "kerf/drivers/simulated_pose6.h"
+#include "kerf/drivers/simulated_premium.h"
 #include "kerf/drivers/simulated_scissors.h"
 #include "kerf/drivers/uri.h"
 
@@ -16,6 +17,10 @@ std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroun
   if (parsed.name == "sim:pose6") {
     return std::make_unique<SimulatedPose6>(uri, SimulatedPose6::parse_options(std::move(parsed)),
                                             std::move(surroundings));
+  }
+  if (parsed.name == "sim:premium") {
+    return std::make_unique<SimulatedPremium>(uri, SimulatedPremium::parse_options(std::move(parsed)),
+                                              std::move(surroundings));
   }
   throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
 }
@@ -39,6 +44,8 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
   return open_device(uri, std::move(nothing));
 }
 
-std::vector<DeviceInfo> list_devices() { return {open_device("sim:scissors")->info(), open_device("sim:pose6")->info()}; }
+std::vector<DeviceInfo> list_devices() {
+  return {open_device("sim:scissors")->info(), open_device("sim:pose6")->info(), open_device("sim:premium")->info()};
+}
 
 }  // namespace kerf::drivers

@@ -30,6 +30,7 @@ SimulatedMechanism::SimulatedMechanism(DeviceInfo info, const Options& options, 
     : info_(std::move(info)),
       options_(options),
       count_(info_.axes.size()),
+      first_truth_(info_.channels.size()),
       tissue_(std::move(surroundings.tissue)),
       noise_(options.seed) {
   for (std::size_t at = 0; at < count_; ++at) {
@@ -42,17 +43,26 @@ SimulatedMechanism::SimulatedMechanism(DeviceInfo info, const Options& options, 
   if (options.with_truth) add_truth(info_);
 }
 
-void SimulatedMechanism::step() noexcept {
-  const double time_s = static_cast<double>(steps_) * sub_step_s;
+Axes SimulatedMechanism::force_at(double time_s) const noexcept {
   const bool released = time_s > released_at_s_.load(std::memory_order_relaxed);
+  Axes force{};
+  for (std::size_t at = 0; at < count_; ++at) force[at] = (released ? 0.0 : command_[at]) + tissue_force_[at];
+  return force;
+}
+
+void SimulatedMechanism::step(States& states, const Axes& force) noexcept {
   for (std::size_t at = 0; at < count_; ++at) {
-    SimulatedAxis::State& state = states_[at];
-    axes_[at].step(state,
+    axes_[at].step(states[at],
                    {.equilibrium_m = equilibria_[at].travel_m,
                     .equilibrium_speed_m_s = equilibria_[at].speed_m_s,
-                    .force_n = (released ? 0.0 : command_[at]) + tissue_force_[at]},
+                    .force_n = force[at]},
                    sub_step_s);
-    // After the move, so that the sensor and the encoder speak of the same moment.
+  }
+}
+
+void SimulatedMechanism::touch_tissue() noexcept {
+  for (std::size_t at = 0; at < count_; ++at) {
+    const SimulatedAxis::State& state = states_[at];
     if (const Tissue& tissue = tissue_[at]) {
       tissue_force_[at] = tissue(state.travel_m / lever_[at], state.speed_m_s / lever_[at], sub_step_s);
     }
@@ -77,8 +87,8 @@ void SimulatedMechanism::measure(double now_s, Sample& sample) noexcept {
                                                  sensor_scale_[at] * sensor_step_n)
                                     : tissue_force_[at];
     if (!options_.with_truth) continue;
-    sample.channels[at] = truth;
-    sample.channels[count_ + at] = tissue_force_[at];
+    sample.channels[first_truth_ + at] = truth;
+    sample.channels[first_truth_ + count_ + at] = tissue_force_[at];
   }
   was_read_ = true;
 }

@@ -73,6 +73,13 @@ bool UriOptions::flag(const std::string& name, bool standard) {
   return place->second == "on";
 }
 
+std::optional<std::string> UriOptions::text(const std::string& name) {
+  known_.push_back(name);
+  const auto place = uri_.options.find(name);
+  if (place == uri_.options.end()) return std::nullopt;
+  return place->second;
+}
+
 void UriOptions::refuse_others() const {
   for (const auto& [name, value] : uri_.options) {
     if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;

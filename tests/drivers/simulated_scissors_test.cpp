@@ -44,7 +44,7 @@ TEST(Scissors, AreTheHapticScissorsOfThePapers) {
   EXPECT_EQ(axes[1].name, "x_s");
   EXPECT_EQ(axes[1].resolution, 0.0152e-3);
   EXPECT_EQ(axes[1].force_limit, 159.0);
-  ASSERT_EQ(list_devices().size(), 2U);
+  ASSERT_EQ(list_devices().size(), 3U);
   EXPECT_EQ(list_devices()[0].uri, "sim:scissors");
 }
 

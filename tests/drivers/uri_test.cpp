@@ -31,6 +31,13 @@ TEST(Uri, IsANameAndOptions) {
   EXPECT_TRUE(parse_uri("falcon:0").options.empty());
 }
 
+TEST(Uri, TakesTextsAsTheyStand) {
+  UriOptions options(parse_uri("x?path=0:0:0mm,1:2:3mm&empty="));
+  EXPECT_EQ(options.text("path"), "0:0:0mm,1:2:3mm");
+  EXPECT_EQ(options.text("empty"), "");
+  EXPECT_EQ(options.text("other"), std::nullopt);
+}
+
 TEST(Uri, TakesNumbersWithTheirUnit) {
   UriOptions options(parse_uri("x?open=40deg&stroke=1.2s&grip=500"));
   EXPECT_NEAR(options.number("open", {"deg", 0.0, 0.0, 1.0}), 40.0 * std::numbers::pi / 180.0, 1e-15);

@@ -33,6 +33,7 @@ class SimulatedMechanism {
     double speed_m_s = 0.0;
   };
   using Equilibria = std::array<Equilibrium, max_axes>;
+  using States = std::array<SimulatedAxis::State, max_axes>;
 
   static constexpr double sub_step_s = 50e-6;
 
@@ -47,10 +48,21 @@ class SimulatedMechanism {
   /// which stay as they were where it does not change them.
   template <typename Hand>
   void run_until(double now_s, Hand hand) noexcept {
+    run_coupled_until(now_s, [&](double time_s, States& states, const Axes& force) {
+      hand(time_s, equilibria_);
+      step(states, force);
+    });
+  }
+  /// The same for axes that act on each other: `move(time_s, states, force)` takes all of them one step on under
+  /// the force of command and tissue.
+  template <typename Move>
+  void run_coupled_until(double now_s, Move move) noexcept {
     const auto target = static_cast<std::uint64_t>(std::llround(std::max(0.0, now_s) / sub_step_s));
     while (steps_ < target) {
-      hand(static_cast<double>(++steps_) * sub_step_s, equilibria_);
-      step();
+      const double time_s = static_cast<double>(++steps_) * sub_step_s;
+      move(time_s, states_, force_at(time_s));
+      // After the move, so that the sensor and the encoder speak of the same moment.
+      touch_tissue();
     }
   }
   /// What encoders and sensor say at `now_s`.
@@ -59,17 +71,21 @@ class SimulatedMechanism {
   void release(double at_s) noexcept;
 
  private:
-  void step() noexcept;
+  /// What command and tissue exert.
+  [[nodiscard]] Axes force_at(double time_s) const noexcept;
+  void step(States& states, const Axes& force) noexcept;
+  void touch_tissue() noexcept;
 
   static constexpr double never = std::numeric_limits<double>::infinity();
 
   DeviceInfo info_;
   Options options_;
   std::size_t count_;
+  std::size_t first_truth_;  ///< channel; before it stand those of the device itself
   std::array<Tissue, max_axes> tissue_;
   Gaussian noise_;
   std::array<SimulatedAxis, max_axes> axes_;
-  std::array<SimulatedAxis::State, max_axes> states_{};
+  States states_{};
   Equilibria equilibria_{};
   Axes lever_{};
   Axes sensor_scale_{};

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,7 @@ class UriOptions {
   explicit UriOptions(Uri uri) : uri_(std::move(uri)) {}
 
   /// A number with its unit behind it ("40deg", "1.2s"), in SI; `standard` if it is not given.
-  /// `unit` is one of "deg", "s", "N", "N/m", "1".
+  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/m", "1".
   /// @throws DeviceError if it is not such a number or not in [lower, upper], both in SI.
   struct Quantity {
     std::string_view unit;
@@ -36,6 +37,9 @@ class UriOptions {
   [[nodiscard]] std::uint64_t count(const std::string& name, std::uint64_t standard);
   /// "on" or "off".
   [[nodiscard]] bool flag(const std::string& name, bool standard);
+
+  /// As it stands; nothing if it is not given.
+  [[nodiscard]] std::optional<std::string> text(const std::string& name);
 
   /// Leaves an option to somebody else.
   void allow(const std::string& name) { known_.push_back(name); }
