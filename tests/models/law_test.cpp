@@ -184,7 +184,8 @@ TEST(Law, AnUnknownNameIsAnsweredWithThoseThatExist) {
     EXPECT_STREQ(
         error.what(),
         "unknown law 'maxwell'; the laws are kelvin, exponential, piecewise, recording, scissors_analytic, "
-        "precontact, fracture, fuzzy_rupture, fuzzy_kelvin, fuzzy_kelvin_3d, blade");
+        "precontact, fracture, fuzzy_rupture, fuzzy_kelvin, fuzzy_kelvin_3d, blade, scissors, "
+        "scissors_mesh, orthogonal");
   }
 }
 

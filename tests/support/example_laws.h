@@ -51,6 +51,15 @@ inline models::Law example(std::string_view model) {
   }
   if (model == "blade")
     return models::Law::make(model, std::vector{5.0, 2e4, 4e3, 100.0, 1e6, 3e5, 0.02, 0.1});
+  if (model == "scissors") return models::Law::make(model, std::vector{0.003, 0.4, 6.0, 1000.0, 2.0});
+  if (model == "scissors_mesh") {
+    return models::Law::make(model, std::vector{10.0, 5.0, 5e-5, 1e-5, 1e-3, 50.0, 0.01, 5000.0, 1e-3, 3e-4},
+                             {{"columns", 12.0}, {"rows", 10.0}, {"edge", 0.02}});
+  }
+  if (model == "orthogonal") {
+    return models::Law::make(model, std::vector{0.1, 5.0, 2.0, 0.06},
+                             {{"surface", std::string("sphere")}, {"point", std::string("0 -0.02 0")}});
+  }
   throw std::logic_error("no example of law " + std::string(model));
 }
 

@@ -15,11 +15,14 @@
 #include <kerf/models/fuzzy_rupture.h>
 #include <kerf/models/kelvin.h>
 #include <kerf/models/motion.h>
+#include <kerf/models/orthogonal.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/piecewise.h>
 #include <kerf/models/precontact.h>
 #include <kerf/models/recording.h>
 #include <kerf/models/scissors_analytic.h>
+#include <kerf/models/scissors_free.h>
+#include <kerf/models/scissors_mesh.h>
 #include <kerf/models/spatial.h>
 
 namespace kerf::models {
@@ -28,9 +31,10 @@ namespace kerf::models {
 ///
 /// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
 /// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
-using AnyLaw = std::variant<Kelvin<double>, Exponential<double>, Piecewise<double>, Recording<double>,
-                            ScissorsAnalytic<double>, Precontact<double>, Fracture<double>,
-                            FuzzyRupture<double>, FuzzyKelvin<double>, FuzzyKelvin3d, Blade>;
+using AnyLaw =
+    std::variant<Kelvin<double>, Exponential<double>, Piecewise<double>, Recording<double>,
+                 ScissorsAnalytic<double>, Precontact<double>, Fracture<double>, FuzzyRupture<double>,
+                 FuzzyKelvin<double>, FuzzyKelvin3d, Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
 
 /// What the registry knows of a law without building one.
 struct LawInfo {

@@ -77,6 +77,8 @@ class CuttingPoint {
   }
   [[nodiscard]] double closing_angle() const noexcept { return closing_rad_; }
   [[nodiscard]] double widest_angle() const noexcept { return widest_rad_; }
+  /// atan kappa, by which an edge leans towards the other at zero opening [rad].
+  [[nodiscard]] double taper_angle() const noexcept { return taper_rad_; }
 
  private:
   double taper_rad_;  ///< atan kappa

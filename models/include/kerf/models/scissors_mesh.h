@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/lattice.h>
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+#include <kerf/models/scissors.h>
+#include <kerf/models/spatial.h>
+
+namespace kerf::models {
+
+/// Scissors in a slab of tissue, by two lattices.
+///
+/// The slab lies in the plane of x (the way of the cut) and y, its near border at x_m, its other three
+/// borders held. Its front node is the one on the middle line where the slab is still whole. Where the
+/// cutting point x_s + x_c(theta) pushes against it, a virtual coupling (spring kc, damper bc) moves the node
+/// and gives the force on x_s; it never pulls the scissors forward.
+///
+/// The strip is one element thick (h) and lies in the plane of the scissors, x and z. It is made at the front
+/// node when the blades begin to close on it, and destroyed at the end of the cut. Both blades press its
+/// nodes to half the gap z(theta, x) between them; an element breaks once its front nodes are squeezed by
+/// more than the break deflection, and the cut advances by one node. By virtual work its forces f on one
+/// blade are felt as
+///
+///     f_h = 1/l_h sum 2 f dz/dtheta,   f_t = sum 2 f dz/dx_s,   z = x tan psi - t'/cos psi,
+///     2 dz/dtheta = (x - t' sin psi) / cos^2 psi   (= x for closed blades),   dz/dx_s = -tan psi
+///
+/// psi = theta/2 + atan kappa, t' the distance of a cutting edge from the pivot, x the distance of a node
+/// from it. A cut ends when the scissors are closed, begin to open or reach the end of the slab or strip; the
+/// slab is then split from where the cut began to its front.
+///
+/// Both lattices take semi-implicit Euler steps, as many a tick as their stiffest spring and their couplings
+/// need (coupled_step()).
+///
+/// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: 003, section 2; differs from the paper
+/// in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
+struct ScissorsMesh {
+  static constexpr std::string_view name = "scissors_mesh";
+  static constexpr std::string_view equation = "slab and strip of springs, cut node by node";
+
+  LatticeOptions slab;
+  LatticeOptions strip;
+  double coupling_stiffness = 0.0;  ///< kc [N/m]
+  double coupling_damping = 0.0;    ///< bc [N·s/m]
+  double contact_stiffness = 0.0;   ///< of the blades against the strip [N/m]
+  double contact_damping = 0.0;     ///< and its damping [N·s/m]
+  double break_deflection_m = 0.0;
+  double edge_m = 0.0;  ///< x_m
+  double lever_m = 0.28 / 7.58;
+  double opening_speed = 0.0;  ///< faster than this ends a cut [rad/s]
+  int fixed_substeps = 0;      ///< 0: as many as needed
+  CuttingPoint point;
+
+  /// Where the blades are. Within a tick they move linearly from the last one's place.
+  struct Blades {
+    double theta = 0.0;
+    double x_s = 0.0;
+    double x_c = 0.0;  ///< distance of the cutting point from the pivot
+    bool cut = false;  ///< they have a cutting point at this angle
+  };
+
+  struct State {
+    Lattice<float> slab;
+    Lattice<float> strip;
+    double period_s = 0.0;  ///< that the sub-steps are for
+    int slab_substeps = 1;
+    int strip_substeps = 1;
+    Blades before;  ///< of the last tick
+    bool cutting = false;
+    int begun = 0;           ///< column of the slab at which the cut began
+    int front = 0;           ///< column up to which it is cut
+    int strip_front = 0;     ///< column of the strip
+    std::uint32_t cuts = 0;  ///< sides split so far
+  };
+
+  static std::vector<LawAxis> axes() { return {{"theta", "rad", "N"}, {"x_s", "m", "N"}}; }
+  static std::vector<OptionInfo> options();
+  static std::vector<ParameterInfo> parameters(const Options& given);
+  static ScissorsMesh make(std::span<const double> values, const Options& given);
+
+  /// Takes all memory.
+  [[nodiscard]] State initial_state() const;
+  AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;
+
+  /// Sub-steps of the slab in a tick.
+  [[nodiscard]] int substeps(double period_s) const;
+
+ private:
+  [[nodiscard]] int middle_row() const noexcept { return (slab.rows - 1) / 2; }
+  [[nodiscard]] int front_node(const State& state) const noexcept;
+  [[nodiscard]] double front_position(const State& state) const noexcept;
+  void choose_substeps(State& state, double period_s) const noexcept;
+  double push_slab(State& state, const Blades& blades, double period_s) const noexcept;
+  void begin_cut(State& state) const noexcept;
+  AxisValues squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept;
+  void break_elements(State& state) const noexcept;
+  void end_cut(State& state) const noexcept;
+};
+
+/// Largest stable step of a lattice with a coupling at each node in turn [s]: coupling_limit() solved for dt.
+[[nodiscard]] double coupled_step(const LatticeOptions& options, double stiffness_n_per_m,
+                                  double damping_n_s_per_m);
+
+}  // namespace kerf::models

@@ -1,0 +1,259 @@
+#include "kerf/models/scissors_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace kerf::models {
+namespace {
+
+constexpr double safety = 0.9;         // of the largest stable step
+constexpr int most_substeps = 1000;    // a tick; more than that no machine does in 1 ms
+constexpr int most_columns = 8;        // of the strip that the blades press at once
+constexpr double slack_columns = 2.0;  // beyond the blades' length that the strip reaches
+
+int substeps_for(double largest_step_s, double period_s) {
+  const double needed = std::ceil(period_s / (safety * largest_step_s));
+  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most_substeps)));
+}
+
+}  // namespace
+
+double coupled_step(const LatticeOptions& options, double stiffness_n_per_m, double damping_n_s_per_m) {
+  const double springs =
+      4.0 * (options.stiffness_n_per_m + 2.0 * options.diagonal_stiffness_n_per_m) / options.node_mass_kg;
+  const double bedding = options.bedding_n_per_m / options.node_mass_kg;
+  // The lightest node that cuts can leave has a quarter of the mass.
+  const double square = springs + bedding + 4.0 * stiffness_n_per_m / options.node_mass_kg;
+  const double linear = springs * options.damping_time_s + bedding * options.bedding_time_s +
+                        4.0 * damping_n_s_per_m / options.node_mass_kg;
+  // dt^2 square + 2 dt linear = 4, without the difference of two near numbers.
+  return 4.0 / (linear + std::sqrt(linear * linear + 4.0 * square));
+}
+
+std::vector<OptionInfo> ScissorsMesh::options() {
+  const ScissorsGeometry scissors;
+  return {{"columns", 100.0, "nodes of the slab along the cut, 4 to 1000"},
+          {"rows", 100.0, "nodes of the slab across it, 4 to 1000"},
+          {"spacing", 1e-3, "h, between nodes [m]"},
+          {"edge", 0.03, "x_m, near border of the slab, from the pivot at x_s = 0 [m]"},
+          {"substeps", 0.0, "of the slab in a tick; 0: as many as its stiffest spring needs"},
+          {"opening_speed", 0.02, "opening faster than this ends a cut [rad/s]"},
+          {"lever", 0.28 / 7.58, "l_h, of the handle [m]"},
+          {"pivot_half_width", scissors.pivot_half_width_m, "t_max, half a blade's width at the pivot [m]"},
+          {"tip_half_width", scissors.tip_half_width_m, "t_min, half a blade's width at the tip [m]"},
+          {"blade_length", scissors.blade_length_m, "l_t [m]"},
+          {"widest_angle", scissors.widest_angle_rad, "angle at which the blades lose contact [rad]"}};
+}
+
+std::vector<ParameterInfo> ScissorsMesh::parameters(const Options& given) {
+  const OptionReader refuses_unknown(name, options(), given);
+  constexpr auto logarithmic = Scale::logarithmic;
+  return {
+      {"stiffness", Quantity::spring, 1e-3, 1e7, logarithmic, "k, of a side of the slab"},
+      {"diagonal_stiffness", Quantity::spring, 0.0, 1e7, Scale::linear, "kd, of a diagonal of the slab"},
+      {"damping_time", Quantity::time, 0.0, 1.0, Scale::linear,
+       "tau_d, damping over stiffness of any spring"},
+      {"node_mass", Quantity::mass, 1e-9, 1.0, logarithmic, "m, of a whole node of the slab"},
+      {"node_damping", Quantity::dashpot, 0.0, 1e5, Scale::linear,
+       "of a whole node of the slab against the ground"},
+      {"coupling_stiffness", Quantity::spring, 1e-3, 1e7, logarithmic, "kc, between scissors and slab"},
+      {"coupling_damping", Quantity::dashpot, 0.0, 1e5, Scale::linear, "bc, of that coupling"},
+      {"cutting_stiffness", Quantity::spring, 1e-3, 1e7, logarithmic, "of a side of the strip"},
+      {"cutting_mass", Quantity::mass, 1e-9, 1.0, logarithmic, "of a whole node of the strip"},
+      {"break_deflection", Quantity::length, 1e-9, 1.0, logarithmic, "squeeze at which an element breaks"}};
+}
+
+ScissorsMesh ScissorsMesh::make(std::span<const double> values, const Options& given) {
+  const OptionReader reader(name, options(), given);
+  const ScissorsGeometry scissors = ScissorsGeometry::make(reader);
+  ScissorsMesh law;
+  law.slab = {.columns = static_cast<int>(reader.count("columns", 4, 1000)),
+              .rows = static_cast<int>(reader.count("rows", 4, 1000)),
+              .spacing_m = reader.number("spacing", 1e-6, 1.0),
+              .stiffness_n_per_m = values[0],
+              .diagonal_stiffness_n_per_m = values[1],
+              .node_mass_kg = values[3],
+              .damping_time_s = values[2]};
+  if (values[4] > 0.0) {
+    // The lattice knows damping to the ground as that of a bedding; this one is too soft to be felt.
+    law.slab.bedding_n_per_m = 1e-6 * values[0];
+    law.slab.bedding_time_s = values[4] / law.slab.bedding_n_per_m;
+  }
+  const double reach = scissors.blade_length_m / law.slab.spacing_m + slack_columns;
+  law.strip = {.columns = static_cast<int>(std::clamp(reach, 4.0, static_cast<double>(law.slab.columns))),
+               .rows = 2,
+               .spacing_m = law.slab.spacing_m,
+               .stiffness_n_per_m = values[7],
+               .diagonal_stiffness_n_per_m = 0.5 * values[7],
+               .node_mass_kg = values[8],
+               .damping_time_s = values[2]};
+  law.coupling_stiffness = values[5];
+  law.coupling_damping = values[6];
+  law.contact_stiffness = 4.0 * values[7];
+  law.contact_damping = std::sqrt(law.contact_stiffness * law.strip.node_mass_kg);
+  law.break_deflection_m = values[9];
+  if (!(law.break_deflection_m < 0.5 * law.slab.spacing_m)) {
+    throw std::invalid_argument(
+        "law 'scissors_mesh': break_deflection must be smaller than half the option 'spacing', the half "
+        "thickness "
+        "of the strip");
+  }
+  law.edge_m = reader.number("edge", -10.0, 10.0);
+  law.lever_m = reader.number("lever", 1e-6, 10.0);
+  law.opening_speed = reader.number("opening_speed", 0.0, 100.0);
+  law.fixed_substeps = static_cast<int>(reader.count("substeps", 0, most_substeps));
+  law.point = CuttingPoint(scissors);
+  return law;
+}
+
+ScissorsMesh::State ScissorsMesh::initial_state() const {
+  State state{.slab = Lattice<float>(slab), .strip = Lattice<float>(strip)};
+  for (int row = 0; row < slab.rows; ++row) state.slab.pin(slab.columns - 1, row);
+  for (int column = 0; column < slab.columns; ++column) {
+    state.slab.pin(column, 0);
+    state.slab.pin(column, slab.rows - 1);
+  }
+  for (const int row : {0, 1}) state.strip.pin(strip.columns - 1, row);
+  return state;
+}
+
+int ScissorsMesh::substeps(double period_s) const {
+  if (fixed_substeps > 0) return fixed_substeps;
+  return substeps_for(coupled_step(slab, coupling_stiffness, coupling_damping), period_s);
+}
+
+void ScissorsMesh::choose_substeps(State& state, double period_s) const noexcept {
+  if (period_s == state.period_s) return;
+  state.period_s = period_s;
+  state.slab_substeps = substeps(period_s);
+  state.strip_substeps = substeps_for(coupled_step(strip, contact_stiffness, contact_damping), period_s);
+}
+
+int ScissorsMesh::front_node(const State& state) const noexcept {
+  // The cells above the middle line; where the slab is still whole those below share the node.
+  const int column = std::min(state.front, slab.columns - 2);
+  return state.slab.node(state.slab.cell(column, middle_row()), state.front == column ? 0 : 1);
+}
+
+double ScissorsMesh::front_position(const State& state) const noexcept {
+  return edge_m + state.slab.position(front_node(state))[0];
+}
+
+double ScissorsMesh::push_slab(State& state, const Blades& blades, double period_s) const noexcept {
+  const int node = front_node(state);
+  const double now = blades.x_s + blades.x_c;
+  const double before = state.before.cut ? state.before.x_s + state.before.x_c : now;
+  const double at_rest = edge_m + slab.spacing_m * state.front;
+  const double touching = edge_m + state.slab.position(node)[0];
+  Coupling coupling{.node = node,
+                    .stiffness_n_per_m = coupling_stiffness,
+                    .damping_n_s_per_m = coupling_damping,
+                    .target_m = {before - at_rest, 0.0},
+                    .velocity_m_per_s = {(now - before) / period_s, 0.0},
+                    .along = {true, false}};
+  const bool contact = std::max(now, before) > touching;
+  const auto dt = period_s / state.slab_substeps;
+  state.slab.step(dt, state.slab_substeps, contact ? std::span(&coupling, 1) : std::span<Coupling>());
+  return contact ? std::min(0.0, coupling.force_n[0]) : 0.0;
+}
+
+void ScissorsMesh::begin_cut(State& state) const noexcept {
+  state.cutting = true;
+  state.begun = state.front;
+  state.strip_front = 0;
+  state.strip.reset();
+}
+
+AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept {
+  const double half = 0.5 * strip.spacing_m;
+  // The strip's origin goes with the node of the slab at which the cut began.
+  const double origin = front_position(state) - strip.spacing_m * state.strip_front;
+  const auto distance = [&](int column) { return origin + strip.spacing_m * column - blades.x_s; };
+  const Blades& before = state.before.cut ? state.before : blades;
+  std::array<Coupling, 2 * most_columns> couplings;
+  std::size_t count = 0;
+  for (int column = state.strip_front; column + 1 < strip.columns && count < couplings.size(); ++column) {
+    const double gap = std::max(0.0, point.half_gap(blades.theta, distance(column)));
+    const double gap_before =
+        std::max(0.0, point.half_gap(before.theta, distance(column) + blades.x_s - before.x_s));
+    const int cell = state.strip.cell(column, 0);
+    const int lower = state.strip.node(cell, 0);
+    const int upper = state.strip.node(cell, 3);
+    if (gap >= half + std::max(state.strip.displacement(upper)[1], -state.strip.displacement(lower)[1]))
+      break;
+    for (const auto& [node, side] : {std::pair{lower, -1.0}, std::pair{upper, 1.0}}) {
+      couplings[count++] = {.node = node,
+                            .stiffness_n_per_m = contact_stiffness,
+                            .damping_n_s_per_m = contact_damping,
+                            .target_m = {0.0, side * (gap_before - half)},
+                            .velocity_m_per_s = {0.0, side * (gap - gap_before) / period_s},
+                            .along = {false, true}};
+    }
+  }
+  const std::span pressed(couplings.data(), count);
+  state.strip.step(period_s / state.strip_substeps, state.strip_substeps, pressed);
+  const double psi = 0.5 * blades.theta + point.taper_angle();
+  const double edge_distance = blades.x_c * std::sin(psi);
+  AxisValues force{};
+  for (std::size_t i = 0; i < count; i += 2) {
+    // Mean force on one blade; it only pushes.
+    const double f = std::max(0.0, 0.5 * (couplings[i + 1].force_n[1] - couplings[i].force_n[1]));
+    const double x = distance(state.strip_front + static_cast<int>(i / 2));
+    force[0] += f * (x - edge_distance * std::sin(psi)) / (std::cos(psi) * std::cos(psi)) / lever_m;
+    force[1] -= 2.0 * f * std::tan(psi);
+  }
+  return force;
+}
+
+void ScissorsMesh::break_elements(State& state) const noexcept {
+  const int last = std::min(strip.columns - 2, state.strip_front + slab.columns - 1 - state.front);
+  while (state.strip_front < last) {
+    const int cell = state.strip.cell(state.strip_front, 0);
+    const double squeezed = 0.5 * (state.strip.displacement(state.strip.node(cell, 0))[1] -
+                                   state.strip.displacement(state.strip.node(cell, 3))[1]);
+    if (squeezed < break_deflection_m) return;
+    state.strip.remove_cell(cell);
+    ++state.strip_front;
+    ++state.front;
+  }
+}
+
+void ScissorsMesh::end_cut(State& state) const noexcept {
+  for (int column = state.begun; column < state.front; ++column) {
+    const int above = state.slab.cell(column, middle_row());
+    state.cuts += state.slab.cut_side(above, above - (slab.columns - 1)) ? 1U : 0U;
+  }
+  state.begun = state.front;
+  state.cutting = false;
+}
+
+AxisValues ScissorsMesh::step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
+  choose_substeps(state, period_s);
+  const double theta = motion.position[0];
+  const bool cut = point.cuts_at(theta);
+  const Blades blades{.theta = theta, .x_s = motion.position[1], .x_c = cut ? point(theta) : 0.0, .cut = cut};
+  const bool opening = motion.velocity[0] > opening_speed;
+  const bool at_the_end = state.front >= slab.columns - 1 || state.strip_front >= strip.columns - 2;
+  if (state.cutting && (!cut || opening || at_the_end)) end_cut(state);
+  AxisValues force{};
+  if (!cut) {
+    state.slab.step(period_s / state.slab_substeps, state.slab_substeps);
+  } else {
+    const double front = front_position(state);
+    const bool closing = motion.velocity[0] < 0.0;
+    const bool within_reach =
+        point.half_gap(theta, front - blades.x_s) < 0.5 * strip.spacing_m && front > blades.x_s;
+    if (!state.cutting && closing && within_reach && state.front < slab.columns - 1) begin_cut(state);
+    if (state.cutting) {
+      force = squeeze_strip(state, blades, period_s);
+      break_elements(state);
+    }
+    force[1] += push_slab(state, blades, period_s);
+  }
+  state.before = blades;
+  return force;
+}
+
+}  // namespace kerf::models
