@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <kerf/models/branch.h>
@@ -84,6 +85,18 @@ struct Piecewise {
     std::size_t i = 0;
     while (i + 2 < knots && knot[i + 1] < penetration) ++i;
     return force[i] + (force[i + 1] - force[i]) * ((penetration - knot[i]) / (knot[i + 1] - knot[i]));
+  }
+
+  /// This law with an opening branch made from the closing of empty scissors, by default -1/2 of it: opening
+  /// meets friction alone, and less of it (004, section 3.2).
+  [[nodiscard]] Piecewise with_opening_from(
+      const Piecewise& empty, double factor = -0.5) const noexcept requires std::is_floating_point_v<T> {
+    Piecewise both = *this;
+    both.loop = true;
+    for (std::size_t i = 0; i < knots; ++i) {
+      both.opening[i] = factor * empty.branch_force(true, knot[i]);
+    }
+    return both;
   }
 
   T step(State& state, const Motion& motion, double period_s) const noexcept {

@@ -1,0 +1,55 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "reproduce/reproduce.h"
+
+namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string paper;
+  std::string output;
+  bool force = false;
+};
+
+void run_reproduce(const Arguments& arguments, Context& context) {
+  const std::filesystem::path folder = arguments.output;
+  for (const auto* name : {"claims.json", "claims.md"}) refuse_to_replace(folder / name, arguments.force);
+  const Reproduction result = reproduce(arguments.paper, context.seed);
+  std::filesystem::create_directories(folder);
+  for (const Figure& figure : result.figures)
+    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart));
+  context.result = to_json(result);
+  write_whole_file(folder / "claims.md", as_markdown(result));
+  write_whole_file(folder / "claims.json", context.result.dump(2) + "\n");
+  say(fmt::format("{}: {}", result.paper, result.title));
+  for (const Claim& claim : result.claims) {
+    say(fmt::format("  {:13}  {} ({})", name_of(claim.verdict), claim.claim, claim.where));
+    say(fmt::format("                 {}", claim.measured));
+  }
+  say(fmt::format("{} figures, claims.md and claims.json are in {}", result.figures.size(), folder.string()));
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App& verb = add_verb(
+      app, context, "reproduce", "Run the experiments of a paper, draw its figures and judge its claims",
+      "kerf reproduce 004 -o scissors\n\n"
+      "The papers: 000 blade and tissue, 001 orthogonal decomposition, 002 fuzzy-Kelvin hybrid, 003 two-\n"
+      "mesh scissors, 004 haptic scissors. Experiments run in virtual time on simulated devices and on\n"
+      "tissues made for this bench. A claim holds, does not hold, or answers what a paper left open.",
+      [arguments, &context] { run_reproduce(*arguments, context); });
+  verb.add_option("PAPER", arguments->paper, "000, 001, 002, 003 or 004")->required();
+  verb.add_option("-o,--output", arguments->output, "Folder for the figures, claims.md and claims.json")
+      ->required();
+  verb.add_flag("--force", arguments->force, "Replace earlier results there");
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,101 @@
+#include "reproduce/reproduce.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+
+std::map<std::string, Verdict> verdicts(const Reproduction& paper) {
+  std::map<std::string, Verdict> all;
+  for (const Claim& claim : paper.claims) all[claim.claim] = claim.verdict;
+  return all;
+}
+
+/// Every figure has curves of points with labelled axes.
+void expect_drawable(const Reproduction& paper) {
+  for (const Figure& figure : paper.figures) {
+    EXPECT_THAT(figure.chart.x_label,
+                HasSubstr(figure.name == "segments_error" || figure.name == "update_rate" ||
+                                  figure.name == "approximation_error"
+                              ? ""
+                              : "["))
+        << figure.name;
+    EXPECT_FALSE(figure.chart.y_label.empty()) << figure.name;
+    EXPECT_FALSE(figure.chart.curves.empty()) << figure.name;
+    for (const Curve& curve : figure.chart.curves) {
+      EXPECT_EQ(curve.x.size(), curve.y.size()) << figure.name;
+      EXPECT_GT(curve.x.size(), 1U) << figure.name;
+    }
+  }
+}
+
+TEST(Reproduce, BladeAndTissue) {
+  const Reproduction paper = reproduce_000(1);
+  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, Verdict::fails) << claim.claim;
+  EXPECT_EQ(paper.figures.size(), 6U);
+  expect_drawable(paper);
+}
+
+TEST(Reproduce, OrthogonalDecomposition) {
+  const Reproduction paper = reproduce_001(1);
+  for (const auto& [claim, verdict] : verdicts(paper)) {
+    EXPECT_EQ(verdict,
+              claim.find("`paper` projection") != std::string::npos ? Verdict::fails : Verdict::holds)
+        << claim;
+  }
+  expect_drawable(paper);
+}
+
+TEST(Reproduce, FuzzyKelvin) {
+  const Reproduction paper = reproduce_002(1);
+  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, Verdict::fails) << claim.claim;
+  expect_drawable(paper);
+}
+
+TEST(Reproduce, TwoMeshScissors) {
+  const Reproduction paper = reproduce_003(1);
+  // The others measure this machine.
+  EXPECT_EQ(paper.claims.at(0).verdict, Verdict::holds) << paper.claims.at(0).measured;
+  EXPECT_EQ(paper.claims.at(1).verdict, Verdict::holds) << paper.claims.at(1).measured;
+  expect_drawable(paper);
+}
+
+TEST(Reproduce, HapticScissors) {
+  const Reproduction paper = reproduce_004(1);
+  for (const Claim& claim : paper.claims) EXPECT_EQ(claim.verdict, Verdict::holds) << claim.claim;
+  expect_drawable(paper);
+}
+
+TEST(Reproduce, IsTheSameForOneSeed) {
+  for (const auto& run : {reproduce_000, reproduce_001})
+    EXPECT_EQ(to_json(run(7)).dump(), to_json(run(7)).dump());
+}
+
+TEST(Reproduce, WritesFiguresAndClaimsAndReplacesNoneUnasked) {
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "blade").string();
+  const auto first = test::run({KERF_PROGRAM, "reproduce", "000", "-o", out});
+  ASSERT_EQ(first.exit_status, 0) << first.errors;
+  for (const char* name : {"t1_force.svg", "t2_torque.svg", "approximation_error.svg", "claims.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / ("blade/" + std::string(name)))) << name;
+  }
+  EXPECT_THAT(test::read_text(folder / "blade/claims.md"), HasSubstr("| holds |"));
+  EXPECT_EQ(test::run({KERF_PROGRAM, "reproduce", "000", "-o", out}).exit_status, 2);
+  const auto unknown = test::run({KERF_PROGRAM, "reproduce", "007", "-o", out, "--force"});
+  EXPECT_EQ(unknown.exit_status, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("no paper '007'; the papers are 000, 001, 002, 003 and 004"));
+}
+
+}  // namespace
+}  // namespace kerf::bench
