@@ -1,4 +1,5 @@
 # peers: rt-tests stress-ng
+# targets: kerf kerf_push_benchmark
 """The loop at 1 kHz, recording 43 channels, against cyclictest (a thread that only sleeps), by turns.
 
 Idle and with the other cores loaded. Rounds of so many seconds: scripts/benchmark rt [ROUNDS [SECONDS]]

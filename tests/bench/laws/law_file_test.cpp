@@ -65,6 +65,16 @@ TEST(LawFile, RoundTripsEveryLawOfTheRegistry) {
   }
 }
 
+TEST(LawFile, EveryLawHasAnExampleInTheRepository) {
+  for (const models::LawInfo& info : models::registry()) {
+    const std::string file = std::string(KERF_SOURCE_DIR) + "/examples/" + std::string(info.name) + ".law.toml";
+    const LawFile read = read_law_file(file);
+    EXPECT_EQ(read.law.model(), info.name);
+    EXPECT_EQ(read.law.values(), test::example(info.name).values()) << file;
+    EXPECT_EQ(read.law.options(), test::example(info.name).options()) << file;
+  }
+}
+
 TEST(LawFile, OfASpatialLawHasNoContact) {
   const LawFile file{.law = test::example("blade"), .contact = {}, .axis = {}, .fit = {}};
   const std::string text = to_toml(file);
