@@ -33,7 +33,8 @@ void add_loop_options(CLI::App& verb, LoopArguments& arguments) {
       ->capture_default_str();
   verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]")->capture_default_str();
   verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");
-  verb.add_option("--switch", arguments.changes, "LAW@SECONDS: go over to another law, softly; may be repeated");
+  verb.add_option("--switch", arguments.changes,
+                  "LAW@SECONDS: go over to another law, softly; may be repeated");
   verb.add_option("--ramp", options.ramp_s, "Soft start, and softly from law to law, over so long [s]")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();

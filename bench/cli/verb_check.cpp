@@ -57,15 +57,17 @@ void run_check(const Arguments& arguments, Context& context) {
   }
   print_table(context.result);
   if (result.floor) {
-    say(fmt::format("  an empty loop here: woken {:.1f} us late at the median, {:.1f} us at 99.9 %, {:.0f} us at "
-                    "worst; {} of {} deadlines missed (measured {})",
-                    result.floor->wake.p50_us, result.floor->wake.p999_us, result.floor->wake.max_us,
-                    result.floor->missed, result.floor->ticks, result.floor->measured));
+    say(fmt::format(
+        "  an empty loop here: woken {:.1f} us late at the median, {:.1f} us at 99.9 %, {:.0f} us at "
+        "worst; {} of {} deadlines missed (measured {})",
+        result.floor->wake.p50_us, result.floor->wake.p999_us, result.floor->wake.max_us,
+        result.floor->missed, result.floor->ticks, result.floor->measured));
   }
   if (!options.virtual_time) {
-    say(fmt::format("  {} page faults and {} involuntary context switches in the loop; it spins for {:.0f} us",
-                    context.result["page_faults"].get<std::int64_t>(), result.usage.involuntary_switches,
-                    1e-3 * static_cast<double>(result.spin_ns)));
+    say(fmt::format(
+        "  {} page faults and {} involuntary context switches in the loop; it spins for {:.0f} us",
+        context.result["page_faults"].get<std::int64_t>(), result.usage.involuntary_switches,
+        1e-3 * static_cast<double>(result.spin_ns)));
   }
   for (const std::string& reason : verdict.reasons) say("  " + reason);
   say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", verdict.passed ? "pass" : "FAIL",
@@ -103,7 +105,8 @@ void add_check(CLI::App& app, Context& context) {
             arguments->loop.options.floor_s = seconds;
             arguments->loop.options.floor_anew = true;
           },
-          "Measure an empty loop anew over so long first; 0: not at all (default: 3 s, once since the machine was "
+          "Measure an empty loop anew over so long first; 0: not at all (default: 3 s, once since the "
+          "machine was "
           "started) [s]")
       ->check(CLI::Range(0.0, 3600.0));
 }

@@ -75,7 +75,9 @@ void add_fit(CLI::App& app, Context& context) {
                "out errors are by cycle. Exit status 1 if no law converged.",
                [arguments, &context] { run_fit(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording")->required();
-  verb.add_option("--models", options.models, "Laws, separated by commas (default: kelvin, exponential, piecewise, recording)")->delimiter(',');
+  verb.add_option("--models", options.models,
+                  "Laws, separated by commas (default: kelvin, exponential, piecewise, recording)")
+      ->delimiter(',');
   verb.add_option("--axis", arguments->axis, "Axis to fit (default: the first)");
   verb.add_option("--segments", options.segments, "Segments of the piecewise law")
       ->check(CLI::Range(1, 12))

@@ -38,12 +38,14 @@ void print_schema(Context& context) {
 }
 
 std::string in_one_line(const schema::Tail& tail) {
-  std::string line = fmt::format("{:10.3f} s {:9} samples", tail.rows > 0 ? tail.last.time_s : 0.0, tail.rows);
+  std::string line =
+      fmt::format("{:10.3f} s {:9} samples", tail.rows > 0 ? tail.last.time_s : 0.0, tail.rows);
   for (std::size_t axis = 0; tail.rows > 0 && axis < tail.axes.size(); ++axis) {
     const schema::Axis& about = tail.axes[axis];
-    const double force = tail.measures_force ? tail.last.force_measured[axis] : tail.last.force_commanded[axis];
-    line += fmt::format("  {} {:9.5f} {} {:7.3f} {}", about.name, tail.last.position[axis], about.position_unit,
-                        force, about.force_unit);
+    const double force =
+        tail.measures_force ? tail.last.force_measured[axis] : tail.last.force_commanded[axis];
+    line += fmt::format("  {} {:9.5f} {} {:7.3f} {}", about.name, tail.last.position[axis],
+                        about.position_unit, force, about.force_unit);
   }
   if (tail.last_event) {
     line += fmt::format("  {} events, last {} at {:.3f} s", tail.events, tail.last_event->kind,
@@ -89,9 +91,8 @@ void run_info(const Arguments& arguments, Context& context) {
     throw std::invalid_argument("a recording is needed, for example 'kerf info cut.h5'; or --schema");
   }
   if (arguments.follow) follow(arguments.recording);
-  const std::filesystem::path file =
-      arguments.follow ? schema::find_recording(arguments.recording).file
-                       : std::filesystem::path(arguments.recording);
+  const std::filesystem::path file = arguments.follow ? schema::find_recording(arguments.recording).file
+                                                      : std::filesystem::path(arguments.recording);
   context.result = recording_summary(schema::read_recording(file));
   say(summary_table(context.result));
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
@@ -103,7 +104,8 @@ void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App& verb =
       add_verb(app, context, "info", "Say what is in a recording, also in one that is still written",
-               "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf info --schema",
+               "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
+               "info --schema",
                [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording, "The recording, or the NAME.partial of one not closed");
   verb.add_flag("--follow", arguments->follow,

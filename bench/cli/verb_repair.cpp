@@ -19,9 +19,8 @@ struct Arguments {
 void run_repair(const Arguments& arguments, Context& context) {
   const schema::Repaired repaired =
       schema::repair(arguments.recording, {.output = arguments.output, .replace = arguments.force});
-  context.result = {{"recording", repaired.file.string()},
-                    {"samples", repaired.rows},
-                    {"duration_s", repaired.duration_s}};
+  context.result = {
+      {"recording", repaired.file.string()}, {"samples", repaired.rows}, {"duration_s", repaired.duration_s}};
   say(fmt::format("{}: closed with {} samples over {:.3f} s", repaired.file.string(), repaired.rows,
                   repaired.duration_s));
 }
@@ -30,11 +29,12 @@ void run_repair(const Arguments& arguments, Context& context) {
 
 void add_repair(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(app, context, "repair", "Close a recording that a crash left open",
-                            "kerf repair cut.h5\n\n"
-                            "Takes NAME or NAME.partial. Every row that reached the file is written to NAME; only\n"
-                            "then is NAME.partial removed.",
-                            [arguments, &context] { run_repair(*arguments, context); });
+  CLI::App& verb =
+      add_verb(app, context, "repair", "Close a recording that a crash left open",
+               "kerf repair cut.h5\n\n"
+               "Takes NAME or NAME.partial. Every row that reached the file is written to NAME; only\n"
+               "then is NAME.partial removed.",
+               [arguments, &context] { run_repair(*arguments, context); });
   verb.add_option("recording", arguments->recording, "The recording, or its NAME.partial")->required();
   verb.add_option("-o,--output", arguments->output,
                   "Write it here instead, and keep the partial file (on a full disk, say)");

@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,6 +12,8 @@
 namespace kerf::bench {
 namespace {
 
+constexpr std::size_t most_points = 1600;  // of a curve: more than a page shows
+
 struct Arguments {
   std::string paper;
   std::string output;
@@ -22,8 +25,11 @@ void run_reproduce(const Arguments& arguments, Context& context) {
   for (const auto* name : {"claims.json", "claims.md"}) refuse_to_replace(folder / name, arguments.force);
   const Reproduction result = reproduce(arguments.paper, context.seed);
   std::filesystem::create_directories(folder);
-  for (const Figure& figure : result.figures)
-    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart));
+  for (const Figure& figure : result.figures) {
+    Chart chart = figure.chart;
+    for (Curve& curve : chart.curves) curve = decimated(curve, most_points);
+    write_whole_file(folder / (figure.name + ".svg"), draw(chart));
+  }
   context.result = to_json(result);
   write_whole_file(folder / "claims.md", as_markdown(result));
   write_whole_file(folder / "claims.json", context.result.dump(2) + "\n");

@@ -121,13 +121,14 @@ void cut_and_push(Reproduction& paper) {
       across = std::max(across, std::abs(felt[i].force.x()));
     }
   }
-  paper.add(
-      "While cutting along y the most important effort is along y, against the velocity", "5.1, fig. 13",
-      fmt::format("|F| up to {:.0f}, {:.0f}, {:.0f} mN along x, y, z; force times velocity never above zero",
-                  1e3 * cutting.x(), 1e3 * cutting.y(), 1e3 * cutting.z()),
-      opposes && cutting.y() > cutting.x() && cutting.y() > cutting.z());
+  paper.add("While cutting along y the most important effort is along y, against the velocity",
+            "5.1, fig. 13",
+            fmt::format(
+                "force up to {:.0f}, {:.0f}, {:.0f} mN along x, y, z; force times velocity never above zero",
+                1e3 * cutting.x(), 1e3 * cutting.y(), 1e3 * cutting.z()),
+            opposes && cutting.y() > cutting.x() && cutting.y() > cutting.z());
   paper.add("A torque around x is applied to the tool", "5.1, fig. 13",
-            fmt::format("|M| up to {:.1f}, {:.1f}, {:.1f} mN·m about x, y, z", 1e3 * turning.x(),
+            fmt::format("torque up to {:.1f}, {:.1f}, {:.1f} mN·m about x, y, z", 1e3 * turning.x(),
                         1e3 * turning.y(), 1e3 * turning.z()),
             turning.x() > turning.y() && turning.x() > turning.z());
   paper.add("The abnormal movement across the blade is harder at an equal speed", "5.1, fig. 13",
@@ -216,7 +217,7 @@ Errors errors_of(const std::vector<Draw>& draws, BladeFidelity fidelity) {
   return {spread_of(force), spread_of(moment)};
 }
 std::string as_text(const Errors& errors) {
-  return fmt::format("force off by {:.2g} % (median), {:.2g} % (95th percentile); torque {:.2g} %, {:.2g} %",
+  return fmt::format("force off by {:.3g} % (median), {:.3g} % (95th percentile); torque {:.3g} %, {:.3g} %",
                      100.0 * errors.force.median, 100.0 * errors.force.high, 100.0 * errors.moment.median,
                      100.0 * errors.moment.high);
 }
