@@ -115,6 +115,7 @@ ScissorsMesh::State ScissorsMesh::initial_state() const {
     state.slab.pin(column, 0);
     state.slab.pin(column, slab.rows - 1);
   }
+  state.strip_half_m.assign(static_cast<std::size_t>(strip.columns), 0.5 * strip.spacing_m);
   for (const int row : {0, 1}) state.strip.pin(strip.columns - 1, row);
   return state;
 }
@@ -159,18 +160,22 @@ double ScissorsMesh::push_slab(State& state, const Blades& blades, double period
   return contact ? std::min(0.0, coupling.force_n[0]) : 0.0;
 }
 
-void ScissorsMesh::begin_cut(State& state) const noexcept {
+void ScissorsMesh::begin_cut(State& state, const Blades& blades) const noexcept {
   state.cutting = true;
   state.begun = state.front;
   state.strip_front = 0;
+  state.strip_origin_m = front_position(state);
   state.strip.reset();
+  for (std::size_t column = 0; column < state.strip_half_m.size(); ++column) {
+    const double x = state.strip_origin_m + strip.spacing_m * static_cast<double>(column) - blades.x_s;
+    state.strip_half_m[column] = std::clamp(point.half_gap(blades.theta, x), 0.0, 0.5 * strip.spacing_m);
+  }
 }
 
 AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept {
-  const double half = 0.5 * strip.spacing_m;
-  // The strip's origin goes with the node of the slab at which the cut began.
-  const double origin = front_position(state) - strip.spacing_m * state.strip_front;
-  const auto distance = [&](int column) { return origin + strip.spacing_m * column - blades.x_s; };
+  const auto distance = [&](int column) {
+    return state.strip_origin_m + strip.spacing_m * column - blades.x_s;
+  };
   const Blades& before = state.before.cut ? state.before : blades;
   std::array<Coupling, 2 * most_columns> couplings;
   std::size_t count = 0;
@@ -178,6 +183,7 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, doubl
     const double gap = std::max(0.0, point.half_gap(blades.theta, distance(column)));
     const double gap_before =
         std::max(0.0, point.half_gap(before.theta, distance(column) + blades.x_s - before.x_s));
+    const double half = state.strip_half_m[static_cast<std::size_t>(column)];
     const int cell = state.strip.cell(column, 0);
     const int lower = state.strip.node(cell, 0);
     const int upper = state.strip.node(cell, 3);
@@ -207,13 +213,14 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, doubl
   return force;
 }
 
-void ScissorsMesh::break_elements(State& state) const noexcept {
+void ScissorsMesh::break_elements(State& state, const Blades& blades) const noexcept {
   const int last = std::min(strip.columns - 2, state.strip_front + slab.columns - 1 - state.front);
   while (state.strip_front < last) {
     const int cell = state.strip.cell(state.strip_front, 0);
     const double squeezed = 0.5 * (state.strip.displacement(state.strip.node(cell, 0))[1] -
                                    state.strip.displacement(state.strip.node(cell, 3))[1]);
-    if (squeezed < break_deflection_m) return;
+    const double x = state.strip_origin_m + strip.spacing_m * state.strip_front - blades.x_s;
+    if (squeezed < break_deflection_m && point.half_gap(blades.theta, x) > 0.0) return;
     state.strip.remove_cell(cell);
     ++state.strip_front;
     ++state.front;
@@ -245,10 +252,10 @@ AxisValues ScissorsMesh::step(State& state, const SpatialMotion& motion, double 
     const bool closing = motion.velocity[0] < 0.0;
     const bool within_reach =
         point.half_gap(theta, front - blades.x_s) < 0.5 * strip.spacing_m && front > blades.x_s;
-    if (!state.cutting && closing && within_reach && state.front < slab.columns - 1) begin_cut(state);
+    if (!state.cutting && closing && within_reach && state.front < slab.columns - 1) begin_cut(state, blades);
     if (state.cutting) {
       force = squeeze_strip(state, blades, period_s);
-      break_elements(state);
+      break_elements(state, blades);
     }
     force[1] += push_slab(state, blades, period_s);
   }

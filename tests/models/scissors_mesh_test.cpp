@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <numbers>
 #include <random>
 #include <string>
@@ -157,6 +158,60 @@ TEST(ScissorsMesh, DoesNotDependMuchOnThePeriod) {
   }
   EXPECT_NEAR(work[0] / work[1], 1.0, 0.15);
   EXPECT_NEAR(work[2] / work[1], 1.0, 0.15);
+}
+
+/// Energy that the mesh takes in from the tool over a random walk of x_s and theta, and the lowest that it fell. `held`:
+/// the force of a tick acts during the next one, as a loop holds it; else during its own.
+struct Energy {
+  double least = 0.0;
+  double turnover = 0.0;
+};
+Energy random_walk(unsigned seed, bool held, bool closing) {
+  const ScissorsMesh law = mesh({{"columns", 12.0}, {"rows", 10.0}, {"edge", 0.02}});
+  auto state = law.initial_state();
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Energy energy;
+  double sum = 0.0;
+  double x = 0.0;
+  double v = 0.0;
+  double theta = 15.0 * degree;
+  double rate = 0.0;
+  AxisValues before{};
+  for (int tick = 0; tick < 2000; ++tick) {
+    v = 0.98 * v + 4e-3 * normal(random);
+    v -= 2.0 * period_s * x / 0.01;  // back towards the start
+    if (closing) rate = 0.98 * rate + 0.1 * normal(random);
+    const double next_x = x + period_s * v;
+    const double next_theta = std::clamp(theta + period_s * rate, 5.0 * degree, 30.0 * degree);
+    const AxisValues force = law.step(state, {{next_theta, next_x}, {rate, v}}, period_s);
+    const AxisValues& acting = held ? before : force;
+    const double part = -acting[1] * (next_x - x) - acting[0] * law.lever_m * (next_theta - theta);
+    sum += part;
+    energy.turnover += std::abs(part);
+    energy.least = std::min(energy.least, sum);
+    before = force;
+    x = next_x;
+    theta = next_theta;
+  }
+  return energy;
+}
+
+TEST(ScissorsMesh, GivesOutWhatItTookUnlessALoopHoldsItsForce) {
+  for (const bool closing : {false, true}) {
+    double own = 0.0;
+    double held = 0.0;
+    for (unsigned seed = 0; seed < 50; ++seed) {
+      const Energy by_itself = random_walk(seed, false, closing);
+      const Energy in_a_loop = random_walk(seed, true, closing);
+      own = std::max(own, -by_itself.least / (by_itself.turnover + 1e-9));
+      held = std::max(held, -in_a_loop.least / (in_a_loop.turnover + 1e-9));
+    }
+    std::cout << (closing ? "closing and pushing" : "pushing") << ": the mesh gives out up to " << 100.0 * own
+              << " % of its turnover by itself, " << 100.0 * held << " % held at 1 kHz\n";
+    EXPECT_LE(own, 1e-3);
+    EXPECT_GT(held, own);
+  }
 }
 
 TEST(ScissorsMesh, TakesAsManySubstepsAsItsStiffestSpringNeeds) {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -73,10 +72,12 @@ struct ScissorsMesh {
     int strip_substeps = 1;
     Blades before;  ///< of the last tick
     bool cutting = false;
-    int begun = 0;           ///< column of the slab at which the cut began
-    int front = 0;           ///< column up to which it is cut
-    int strip_front = 0;     ///< column of the strip
-    std::uint32_t cuts = 0;  ///< sides split so far
+    int begun = 0;                     ///< column of the slab at which the cut began
+    int front = 0;                     ///< column up to which it is cut
+    int strip_front = 0;               ///< column of the strip
+    double strip_origin_m = 0.0;       ///< where its first column stands, from the pivot at x_s = 0
+    std::vector<double> strip_half_m;  ///< half the gap at which each of its columns meets the blades
+    std::uint32_t cuts = 0;            ///< sides split so far
   };
 
   static std::vector<LawAxis> axes() { return {{"theta", "rad", "N"}, {"x_s", "m", "N"}}; }
@@ -97,9 +98,9 @@ struct ScissorsMesh {
   [[nodiscard]] double front_position(const State& state) const noexcept;
   void choose_substeps(State& state, double period_s) const noexcept;
   double push_slab(State& state, const Blades& blades, double period_s) const noexcept;
-  void begin_cut(State& state) const noexcept;
+  void begin_cut(State& state, const Blades& blades) const noexcept;
   AxisValues squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept;
-  void break_elements(State& state) const noexcept;
+  void break_elements(State& state, const Blades& blades) const noexcept;
   void end_cut(State& state) const noexcept;
 };
 
