@@ -99,6 +99,18 @@ FittedLaw finished(fitting::FitResult result, const AxisSeries& series, const sc
   return {.result = std::move(result), .file = std::move(file), .rmse_rendered = rmse_rendered};
 }
 
+/// A law whose equation is in metres says nothing of an angle. @throws std::invalid_argument.
+void check_units(const std::string& model, const schema::Axis& axis) {
+  const models::LawInfo info = models::law_info(model);
+  if (info.position_unit.empty() ||
+      (info.position_unit == axis.position_unit && info.force_unit == axis.force_unit)) {
+    return;
+  }
+  throw std::invalid_argument(fmt::format("its force is in {} over {}, and axis '{}' has {} over {}",
+                                          info.force_unit, info.position_unit, axis.name, axis.force_unit,
+                                          axis.position_unit));
+}
+
 models::Options options_for(const std::string& model, const FitRecordingOptions& options,
                             const models::Contact& contact) {
   models::Options all = options.fit.law_options;
@@ -189,6 +201,7 @@ RecordingFit fit_recording(const schema::Recording& recording, const FitRecordin
     fitting::FitOptions fit_options = options.fit;
     fit_options.law_options = options_for(model, options, contact);
     try {
+      check_units(model, recording.axes[options.axis]);
       results.push_back(fitting::fit(model, view, fit_options));
       if (results.back().parameters.empty()) {
         all.warnings.push_back(fmt::format("{}: {}", model, results.back().message));

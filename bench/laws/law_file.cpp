@@ -159,17 +159,25 @@ FitProvenance read_provenance(const Place& place, const toml::table& root) {
   fit.recording_sha256 = place.text(table, "sha256", "");
   fit.date = place.text(table, "date", "");
   fit.software = place.text(table, "software", "");
-  if (const toml::node* rmse = table.get("rmse"))
-    fit.rmse_n = measured(place, *rmse, "rmse", "N").values.at(0);
+  if (const toml::node* rmse = table.get("rmse")) {
+    const auto values = measured(place, *rmse, "rmse", "N").values;
+    if (values.size() != 1) place.refuse(*rmse, "'rmse' must be one number");
+    fit.rmse_n = values[0];
+  }
   return fit;
 }
 
+/// A unit of the axis; `only` is the one that the law makes sense in, or empty.
 std::string unit_choice(const Place& place, const toml::table& root, std::string_view key,
-                        std::string_view standard, std::initializer_list<std::string_view> allowed) {
-  std::string unit = place.text(root, key, standard);
+                        std::string_view only, std::initializer_list<std::string_view> allowed,
+                        std::string_view model) {
+  std::string unit = place.text(root, key, only.empty() ? *allowed.begin() : only);
   if (std::find(allowed.begin(), allowed.end(), unit) == allowed.end()) {
     place.refuse(*root.get(key), "'{}' is \"{}\", expected {}; parameters may be in other units", key, unit,
                  fmt::join(allowed, " or "));
+  }
+  if (!only.empty() && unit != only) {
+    place.refuse(*root.get(key), "'{}' is \"{}\", but law '{}' is one of {}", key, unit, model, only);
   }
   return unit;
 }
@@ -286,9 +294,6 @@ LawFile law_from_table(const toml::table& root, const std::string& name) {
       "a law");
   const std::string model = place.text(root, "model", "");
   if (model.empty()) place.refuse(root, "no 'model'; expected for example model = \"kelvin\"");
-  const std::string position_unit = unit_choice(place, root, "position_unit", "m", {"m", "rad"});
-  const std::string force_unit = unit_choice(place, root, "force_unit", "N", {"N", "N·m"});
-  const models::Options options = read_options(place, root);
   const auto in_file = [&](const auto& action) {
     try {
       return action();
@@ -296,6 +301,11 @@ LawFile law_from_table(const toml::table& root, const std::string& name) {
       throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
     }
   };
+  const models::LawInfo info = in_file([&] { return models::law_info(model); });
+  const std::string position_unit =
+      unit_choice(place, root, "position_unit", info.position_unit, {"m", "rad"}, model);
+  const std::string force_unit = unit_choice(place, root, "force_unit", info.force_unit, {"N", "N·m"}, model);
+  const models::Options options = read_options(place, root);
   const auto infos = in_file([&] { return models::Law::parameters(model, options); });
   if (!in_file([&] { return models::Law::axes(model); }).empty()) {
     for (const auto* key : {"axis", "position_unit", "force_unit", "contact"}) {

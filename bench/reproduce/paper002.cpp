@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <fmt/core.h>
@@ -45,6 +46,7 @@ Cut cut(const models::Law& threshold, double depth_m, double speed, double secon
 
 /// Largest deviation from the mean, as a share of it.
 double deviation(const std::vector<double>& values) {
+  if (values.empty()) return std::numeric_limits<double>::infinity();
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   double most = 0.0;
   for (const double value : values) most = std::max(most, std::abs(value - mean));
@@ -78,6 +80,7 @@ void surface(Reproduction& paper, const fitting::RuptureSamples& samples, const 
 
 void one_cut(Reproduction& paper, const models::Law& threshold) {
   const Cut at = cut(threshold, 5e-3, 2e-3, 12.0);
+  if (at.peak_n.empty()) return paper.add("Ruptures follow each other", "fig. 4", "none in 12 s", false);
   Chart chart{
       .title = "Force over time at 2 mm/s and 5 mm (fig. 4)", .x_label = "time [s]", .y_label = "force [mN]"};
   Curve curve{.x = at.time_s, .colour = Colour::blue};
@@ -107,6 +110,10 @@ void sweep(Reproduction& paper, const models::Law& threshold, const char* figure
     Curve curve{.label = fmt::format("{:g} {}", 1e3 * values[i], unit), .x = at.time_s, .colour = colours[i]};
     for (const double force : at.force_n) curve.y.push_back(1e3 * force);
     chart.curves.push_back(std::move(curve));
+    if (at.peak_n.empty()) {
+      paper.add(claim, where, fmt::format("no rupture in 8 s at {:g} {}", 1e3 * values[i], unit), false);
+      return;
+    }
     rising = rising && at.peak_n.front() > last_force;
     follows = follows && (i == 0 || (at.interval_s.front() > last_interval) == longer);
     last_force = at.peak_n.front();

@@ -238,7 +238,7 @@ Learned by_projection(Rules& rules, const VectorXd& force, std::size_t iteration
   const double* const blocks[] = {premises};
   (void)cost.Evaluate(blocks, residuals.data(), nullptr);
   learned.consequents = cost.consequents();
-  learned.iterations = summary.iterations.size();
+  learned.iterations = summary.iterations.size() - 1;  // the first is the start
   learned.converged = summary.termination_type == ceres::CONVERGENCE;
   learned.message = summary.message;
   return learned;

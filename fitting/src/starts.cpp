@@ -93,7 +93,11 @@ Start linear_start(const Problem& problem, const Samples& samples, const Mask& m
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (mask[i]) force[static_cast<Eigen::Index>(i)] = samples.force[i];
   }
-  const Eigen::VectorXd best = response.colPivHouseholderQr().solve(force);
+  Eigen::VectorXd best = response.colPivHouseholderQr().solve(force);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto& info = problem.parameters[static_cast<std::size_t>(k)];
+    best[k] = std::clamp(best[k], info.lower, info.upper);
+  }
   return {.values = {best.data(), best.data() + best.size()}, .sum_of_squares = 0.0};
 }
 

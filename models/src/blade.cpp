@@ -177,20 +177,21 @@ std::vector<OptionInfo> Blade::options() {
 
 std::vector<ParameterInfo> Blade::parameters(const Options& given) {
   const OptionReader reader(name, options(), given);
-  const auto positive = [](const char* what, Quantity quantity, const char* meaning) {
+  const auto at_least_zero = [](const char* what, Quantity quantity, const char* meaning) {
     return ParameterInfo{what, quantity, 0.0, 1e9, Scale::linear, meaning};
   };
   std::vector<ParameterInfo> all{
-      positive("edge_damping", Quantity::edge_damping, "Kv, along the edge"),
-      positive("normal_damping", Quantity::surface_damping, "Kn, of a surface moved along its normal"),
-      positive("tangential_damping", Quantity::surface_damping, "Kt, of a surface moved in its plane")};
+      at_least_zero("edge_damping", Quantity::edge_damping, "Kv, along the edge"),
+      at_least_zero("normal_damping", Quantity::surface_damping, "Kn, of a surface moved along its normal"),
+      at_least_zero("tangential_damping", Quantity::surface_damping, "Kt, of a surface moved in its plane")};
   if (reader.flag("thresholds")) {
-    all.insert(all.end(),
-               {positive("edge_stiffness", Quantity::edge_stiffness, "of the tissue at the edge"),
-                positive("normal_stiffness", Quantity::surface_stiffness, "at a surface, along its normal"),
-                positive("tangential_stiffness", Quantity::surface_stiffness, "at a surface, in its plane"),
-                positive("release_force", Quantity::load, "F0, the tissue holds again below it"),
-                positive("rupture_force", Quantity::load, "F1, it gives way above it")});
+    all.insert(
+        all.end(),
+        {at_least_zero("edge_stiffness", Quantity::edge_stiffness, "of the tissue at the edge"),
+         at_least_zero("normal_stiffness", Quantity::surface_stiffness, "at a surface, along its normal"),
+         at_least_zero("tangential_stiffness", Quantity::surface_stiffness, "at a surface, in its plane"),
+         at_least_zero("release_force", Quantity::load, "F0, the tissue holds again below it"),
+         at_least_zero("rupture_force", Quantity::load, "F1, it gives way above it")});
   }
   return all;
 }

@@ -64,10 +64,13 @@ BladeShape::Polygon polygon_of(const std::vector<Vector3d>& points, std::size_t 
   polygon.normal = twice_area.normalized();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vector3d side = points[(i + 1) % points.size()] - points[i];
-    const Vector3d next = points[(i + 2) % points.size()] - points[(i + 1) % points.size()];
     if (std::abs(polygon.normal.dot(points[i] - points[0])) > 1e-6 * size)
       refuse_polygon(number, "is not planar");
-    if (side.cross(next).dot(polygon.normal) < -1e-9 * size * size) refuse_polygon(number, "is not convex");
+    for (const Vector3d& point : points) {
+      if (side.cross(point - points[i]).dot(polygon.normal) < -1e-9 * size * size) {
+        refuse_polygon(number, "is not convex");
+      }
+    }
   }
   const Vector3d first_side = points[1] - points[0];
   if (!(first_side.norm() > 1e-9 * size)) refuse_polygon(number, "begins with the same corner twice");

@@ -86,14 +86,27 @@ constexpr auto steps = []<std::size_t... I>(std::index_sequence<I...>) {
 }
 (std::make_index_sequence<law_count>{});
 
+template <typename L>
+LawInfo info_of() {
+  LawInfo info{.name = L::name, .equation = L::equation, .position_unit = {}, .force_unit = {}};
+  if constexpr (requires { L::position_unit; }) {
+    info.position_unit = L::position_unit;
+    info.force_unit = L::force_unit;
+  }
+  return info;
+}
+
 }  // namespace
 
 std::vector<LawInfo> registry() {
   return []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::vector<LawInfo>{
-        {std::variant_alternative_t<I, AnyLaw>::name, std::variant_alternative_t<I, AnyLaw>::equation}...};
+    return std::vector<LawInfo>{info_of<std::variant_alternative_t<I, AnyLaw>>()...};
   }
   (std::make_index_sequence<law_count>{});
+}
+
+LawInfo law_info(std::string_view model) {
+  return dispatch(model, []<typename L>() { return info_of<L>(); });
 }
 
 std::vector<ParameterInfo> Law::parameters(std::string_view model, const Options& options) {

@@ -111,10 +111,10 @@ Orthogonal Orthogonal::make(std::span<const double> values, const Options& given
   if (reader.choice("surface", {"plane", "sphere"}) == "sphere") {
     law.surface = Sphere{.centre = point, .radius_m = reader.number("radius", 1e-6, 1e3)};
   } else {
-    if (!(normal.norm() > 0.0)) {
+    if (!(normal.stableNorm() > 0.0)) {
       throw std::invalid_argument("law 'orthogonal', option 'normal': has no length");
     }
-    law.surface = Plane{.point = point, .normal = normal.normalized()};
+    law.surface = Plane{.point = point, .normal = normal.stableNormalized()};
   }
   return law;
 }
@@ -127,15 +127,17 @@ AxisValues Orthogonal::step(State& state, const SpatialMotion& motion, double pe
       std::visit([&](const auto& one) { return contact_with(one, at, q, qd); }, surface);
   const Motion normal{.penetration = -contact.phi, .velocity = -contact.phi_rate};
   Exponential<double>::State none;
-  state.normal_force =
+  const double resisting =
       cutting ? fracture.step(state.fracture, normal, period_s) : deformation.step(none, normal, period_s);
   const Vector3d weight = at.coriolis_torque + at.gravity;
   Vector3d torque = weight;
   // A cut object holds the tool where its law does; in the opened crack there is nothing.
-  const bool held = cutting ? state.normal_force > 0.0 : contact.phi < 0.0;
+  const bool held = cutting ? resisting > 0.0 : contact.phi < 0.0;
+  // A crack that grows takes a constant force: the viscosity is that of the deformed tissue.
+  const bool deforms = !cutting || state.fracture.mode == Fracture<double>::Mode::deformation;
+  state.normal_force = held ? resisting - (deforms ? viscosity * contact.phi_rate : 0.0) : 0.0;
   if (held) {
-    torque = orthogonal_torque(contact, at, qd, projection, viscosity * contact.phi_rate - state.normal_force,
-                               tangential_damping);
+    torque = orthogonal_torque(contact, at, qd, projection, -state.normal_force, tangential_damping);
   }
   if (!compensate) torque -= weight;
   return {torque.x(), torque.y(), torque.z()};

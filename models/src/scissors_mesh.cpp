@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
 namespace kerf::models {
 namespace {
 
-constexpr double safety = 0.9;         // of the largest stable step
-constexpr int most_substeps = 1000;    // a tick; more than that no machine does in 1 ms
+constexpr double safety = 0.9;       // of the largest stable step
+constexpr int most_substeps = 1000;  // a tick; more than that no machine does in 1 ms
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_columns = 8;        // of the strip that the blades press at once
 constexpr double slack_columns = 2.0;  // beyond the blades' length that the strip reaches
 
@@ -105,6 +107,15 @@ ScissorsMesh ScissorsMesh::make(std::span<const double> values, const Options& g
   law.opening_speed = reader.number("opening_speed", 0.0, 100.0);
   law.fixed_substeps = static_cast<int>(reader.count("substeps", 0, most_substeps));
   law.point = CuttingPoint(scissors);
+  constexpr double tick_s = 1e-3;
+  for (const auto& [what, step_s] :
+       {std::pair{"slab", coupled_step(law.slab, law.coupling_stiffness, law.coupling_damping)},
+        std::pair{"strip", coupled_step(law.strip, law.contact_stiffness, law.contact_damping)}}) {
+    if (tick_s <= safety * step_s * most_substeps) continue;
+    throw std::invalid_argument("law 'scissors_mesh': the " + std::string(what) +
+                                " is stable only in steps of " + std::to_string(1e9 * step_s) +
+                                " ns; make it softer, heavier or less damped, or no machine follows it");
+  }
   return law;
 }
 
@@ -157,6 +168,9 @@ double ScissorsMesh::push_slab(State& state, const Blades& blades, double period
   const bool contact = std::max(now, before) > touching;
   const auto dt = period_s / state.slab_substeps;
   state.slab.step(dt, state.slab_substeps, contact ? std::span(&coupling, 1) : std::span<Coupling>());
+  // A lattice that has diverged (too few sub-steps by hand) is a fault and no silence.
+  if (!std::isfinite(coupling.force_n[0]) || !std::isfinite(state.slab.position(node)[0]))
+    return not_a_number;
   return contact ? std::min(0.0, coupling.force_n[0]) : 0.0;
 }
 
@@ -205,7 +219,8 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, doubl
   AxisValues force{};
   for (std::size_t i = 0; i < count; i += 2) {
     // Mean force on one blade; it only pushes.
-    const double f = std::max(0.0, 0.5 * (couplings[i + 1].force_n[1] - couplings[i].force_n[1]));
+    const double mean = 0.5 * (couplings[i + 1].force_n[1] - couplings[i].force_n[1]);
+    const double f = mean < 0.0 ? 0.0 : mean;
     const double x = distance(state.strip_front + static_cast<int>(i / 2));
     force[0] += f * (x - edge_distance * std::sin(psi)) / (std::cos(psi) * std::cos(psi)) / lever_m;
     force[1] -= 2.0 * f * std::tan(psi);
@@ -220,7 +235,8 @@ void ScissorsMesh::break_elements(State& state, const Blades& blades) const noex
     const double squeezed = 0.5 * (state.strip.displacement(state.strip.node(cell, 0))[1] -
                                    state.strip.displacement(state.strip.node(cell, 3))[1]);
     const double x = state.strip_origin_m + strip.spacing_m * state.strip_front - blades.x_s;
-    if (squeezed < break_deflection_m && point.half_gap(blades.theta, x) > 0.0) return;
+    const bool breaks = squeezed >= break_deflection_m || point.half_gap(blades.theta, x) <= 0.0;
+    if (!breaks) return;
     state.strip.remove_cell(cell);
     ++state.strip_front;
     ++state.front;

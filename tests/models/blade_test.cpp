@@ -287,6 +287,20 @@ TEST(Blade, HoldsElasticallyUntilF1AndCutsUntilF0) {
   EXPECT_EQ(state.mode.transitions, 2U);
 }
 
+TEST(Blade, HoldsAgainFromWhereItCameToRest) {
+  const Blade blade = with_thresholds(0.01, 0.05);
+  Blade::State state;
+  const auto at = [&](double y, double speed) {
+    return blade.step(state, {.hand = {0.0, y, 0.10}}, {.linear = {0.0, speed, 0.0}}).force.y();
+  };
+  double y = 0.0;
+  while (!state.mode.cutting) at(y += 1e-5, 0.02);
+  at(y += 0.01, 0.02);
+  at(y, 0.0);
+  ASSERT_FALSE(state.mode.cutting);
+  EXPECT_NEAR(at(y + 1e-5, 1e-3), -(1e6 * 0.01 * 0.012 + 500.0 * 0.012) * 1e-5, 1e-12);
+}
+
 TEST(TwoThresholds, NoiseBelowTheGapNeverMakesThemChatter) {
   const TwoThresholds machine{.release_n = 0.4, .rupture_n = 0.6};
   for (unsigned seed = 0; seed < 1000; ++seed) {
@@ -344,8 +358,10 @@ TEST(Rotation, TheLeftJacobianTurnsRatesIntoAngularVelocity) {
 }
 
 TEST(BladeShape, RefusesWhatIsNoConvexPlanarPolygon) {
-  for (const char* bad : {"0 0 0, 1 0 0", "0 0 0, 1 0 0, 1 1 0.1, 0 1 0", "0 0 0, 1 0 0, 0.2 0.2 0, 0 1 0",
-                          "0 0 0, 1 0 0, 2 0 0", "0 0 0, 1 0, 1 1 0", "0 0 0, 1 0 0, 1 1 zero"}) {
+  for (const char* bad :
+       {"0 0 0, 1 0 0", "0 0 0, 1 0 0, 1 1 0.1, 0 1 0", "0 0 0, 1 0 0, 0.2 0.2 0, 0 1 0",
+        "0 0 0, 1 0 0, 2 0 0", "1 0 0, -0.809 0.588 0, 0.309 -0.951 0, 0.309 0.951 0, -0.809 -0.588 0",
+        "0 0 0, 1 0, 1 1 0", "0 0 0, 1 0 0, 1 1 zero"}) {
     EXPECT_THROW((void)BladeShape::parse(bad, ""), std::invalid_argument) << bad;
   }
   EXPECT_THROW((void)BladeShape::parse("", ""), std::invalid_argument);

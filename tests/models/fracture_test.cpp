@@ -101,6 +101,27 @@ TEST(Fracture, TheBooksAreThoseOfTheRenderedForce) {
   EXPECT_NEAR(state.work / work, 1.0, 1e-3);
 }
 
+TEST(Fracture, WhatItSpendsDoesNotDependOnThePeriod) {
+  // Uy at the fracture, then Fc along the rest of the way from the yield point.
+  for (const double step : {1e-6, 1e-4, 5e-3, 0.2}) {
+    Fracture<double>::State state;
+    double x = 0.0;
+    while (x < 0.2 - 1e-9) (void)intestine.step(state, {x = std::min(x + step, 0.2), 0.1}, 1e-3);
+    const double cut = 2.0 * (0.2 - intestine.yield_depth());
+    EXPECT_NEAR(state.crack_energy, 0.0153846120769 + cut, 1e-12) << step;
+    EXPECT_NEAR(state.surface, 0.2, 1e-12);
+    EXPECT_NEAR(state.work, state.crack_energy, 1e-12);
+  }
+}
+
+TEST(Fracture, BegunDeepInTheTissueItIsCutThereAndStaysFinite) {
+  Fracture<double>::State state;
+  EXPECT_EQ(intestine.step(state, {10.0, 0.1}, 1e-3), 0.0);
+  EXPECT_EQ(state.surface, 10.0);
+  EXPECT_TRUE(std::isfinite(state.work));
+  EXPECT_NEAR(intestine.step(state, {10.001, 0.1}, 1e-3), 2.0, 1e-12);
+}
+
 TEST(Fracture, OneSampleOfFractureAtAnyRate) {
   for (const double period_s : {1e-2, 1e-3, 1e-4}) {
     Fracture<double>::State state;

@@ -124,6 +124,25 @@ TEST(FuzzyKelvin3d, AlongTheCutItIsTheFuzzyKelvinOfOneAxis) {
   EXPECT_GT(in_space.ruptures, 3U);
 }
 
+TEST(FuzzyKelvin3d, StiffensWithDepthAndPushesOutAtAnyPeriod) {
+  auto values = std::vector{8.0, 8.0, 20.0, 7.0, 7.0, 15.0, 130.0, 130.0, 50.0};
+  const auto threshold = plane(0.0, 0.0, 100.0);
+  values.insert(values.end(), threshold.begin(), threshold.end());
+  for (const double stiffening : {0.0, 30.0}) {
+    const auto law = FuzzyKelvin3d::make(values, {{"stiffening", stiffening}});
+    for (const double period_s : {1e-4, 1e-3, 1e-2}) {
+      FuzzyKelvin3d::State state;
+      double force = 0.0;
+      for (int tick = 0; tick * period_s < 0.0500001; ++tick) {  // 0.2 m/s, to 10 mm
+        force = law.step(state, {{0.0, 0.0, -0.2 * tick * period_s, 0, 0, 0}, {0.0, 0.0, -0.2}}, period_s)[2];
+      }
+      const double tau = 50.0 / 15.0;
+      const double elastic = 20.0 * 0.01 + 50.0 * 0.2 * (1.0 - std::exp(-0.05 / tau));
+      EXPECT_NEAR(force / ((1.0 + stiffening * 0.01) * elastic), 1.0, 1e-9) << period_s;
+    }
+  }
+}
+
 TEST(FuzzyKelvin3d, IsFreeAboveTheSurface) {
   const auto threshold = plane(8.0, 2.0, 0.01);
   std::vector values{8.0, 8.0, 8.0, 7.0, 7.0, 7.0, 130.0, 130.0, 130.0};

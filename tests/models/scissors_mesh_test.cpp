@@ -160,8 +160,8 @@ TEST(ScissorsMesh, DoesNotDependMuchOnThePeriod) {
   EXPECT_NEAR(work[2] / work[1], 1.0, 0.15);
 }
 
-/// Energy that the mesh takes in from the tool over a random walk of x_s and theta, and the lowest that it fell. `held`:
-/// the force of a tick acts during the next one, as a loop holds it; else during its own.
+/// Energy that the mesh takes in from the tool over a random walk of x_s and theta, and the lowest that it
+/// fell. `held`: the force of a tick acts during the next one, as a loop holds it; else during its own.
 struct Energy {
   double least = 0.0;
   double turnover = 0.0;
@@ -258,6 +258,28 @@ TEST(ScissorsMesh, ACutAllocatesNothing) {
   }
   EXPECT_EQ(test::allocations(), before);
   EXPECT_GT(state.cuts, 0U);
+}
+
+TEST(ScissorsMesh, RefusesWhatNoMachineCouldStep) {
+  for (const auto& [place, value] : {std::pair{std::size_t{3}, 1e-9}, std::pair{std::size_t{8}, 1e-9}}) {
+    auto values = tissue;
+    values[0] = 1e6;
+    values[7] = 1e7;
+    values[place] = value;
+    EXPECT_THROW((void)ScissorsMesh::make(values, {}), std::invalid_argument);
+  }
+}
+
+TEST(ScissorsMesh, TooFewSubstepsByHandAreAFaultAndNoSilence) {
+  const Law law = Law::make("scissors_mesh", tissue,
+                            {{"columns", 12.0}, {"rows", 10.0}, {"edge", 0.02}, {"substeps", 1.0}});
+  auto state = law.initial_state();
+  bool fault = false;
+  for (int tick = 0; tick < 2000; ++tick) {
+    const SpatialMotion push{{20.0 * degree, 0.005 + 1e-5 * tick}, {0.0, 0.01}};
+    fault = law.step(state, push, period_s).fault;
+  }
+  EXPECT_TRUE(fault) << "to the end, once it has diverged";
 }
 
 TEST(ScissorsMesh, RefusesAnElementThatWouldNeverBreak) {

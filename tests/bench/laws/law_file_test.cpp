@@ -55,7 +55,8 @@ TEST(LawFile, IsReadIntoSi) {
 
 TEST(LawFile, RoundTripsEveryLawOfTheRegistry) {
   for (const models::LawInfo& info : models::registry()) {
-    const LawFile file{.law = test::example(info.name), .contact = {}, .axis = {}, .fit = {}};
+    LawFile file{.law = test::example(info.name), .contact = {}, .axis = {}, .fit = {}};
+    if (!info.position_unit.empty()) file.position_unit = info.position_unit;
     const std::string text = to_toml(file);
     const LawFile again = parse_law_file(text, "again.law.toml");
     EXPECT_EQ(again.law.model(), info.name);
@@ -67,12 +68,27 @@ TEST(LawFile, RoundTripsEveryLawOfTheRegistry) {
 
 TEST(LawFile, EveryLawHasAnExampleInTheRepository) {
   for (const models::LawInfo& info : models::registry()) {
-    const std::string file = std::string(KERF_SOURCE_DIR) + "/examples/" + std::string(info.name) + ".law.toml";
+    const std::string file =
+        std::string(KERF_SOURCE_DIR) + "/examples/" + std::string(info.name) + ".law.toml";
     const LawFile read = read_law_file(file);
     EXPECT_EQ(read.law.model(), info.name);
     EXPECT_EQ(read.law.values(), test::example(info.name).values()) << file;
     EXPECT_EQ(read.law.options(), test::example(info.name).options()) << file;
   }
+}
+
+TEST(LawFile, OfALawWithUnitsOfItsOwnTakesNoOthers) {
+  LawFile file{.law = test::example("scissors_analytic"), .contact = {}, .axis = {}, .fit = {}};
+  file.position_unit = "m";
+  EXPECT_THAT(refusal(to_toml(file)),
+              HasSubstr("'position_unit' is \"m\", but law 'scissors_analytic' is one of rad"));
+  file.position_unit = "rad";
+  EXPECT_EQ(refusal(to_toml(file)), "accepted");
+}
+
+TEST(LawFile, AnErrorThatIsNoNumberIsRefusedInItsPlace) {
+  EXPECT_THAT(refusal(liver + "[fit]\nrmse = { value = [], unit = \"N\" }\n"),
+              HasSubstr("'rmse' must be one number"));
 }
 
 TEST(LawFile, OfASpatialLawHasNoContact) {

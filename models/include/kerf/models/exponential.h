@@ -62,6 +62,13 @@ struct Exponential {
     using std::exp;
     return amplitude * exponent / thickness * exp(exponent * (penetration / thickness));
   }
+  /// Penetration at which the tissue is as stiff as this, >= 0 [m]. A sampled loop on a device of damping b
+  /// renders springs passively up to 2 b / T (Colgate and Schenkel 1994): so deep this law may go there.
+  [[nodiscard]] T depth_at_stiffness(double stiffness_n_per_m) const {
+    using std::log;
+    const T depth = thickness / exponent * log(stiffness_n_per_m * thickness / (amplitude * exponent));
+    return depth > T(0.0) ? depth : T(0.0);
+  }
   /// Elastic energy since contact [J].
   [[nodiscard]] T stored_energy(double penetration) const {
     using std::expm1;

@@ -20,11 +20,12 @@ namespace kerf::models {
 ///     free:         F = 0 until the tool meets the surface again
 ///
 /// d is the depth under the surface, U = alpha L0 / beta (exp(beta d / L0) - 1) the elastic energy, Uy the
-/// yield energy, Jc the fracture toughness, w the width of the blade, a the length of the crack. The fracture
-/// turns all of U into crack. The crack then begins at the tool: its tip, the new surface, lies at the tool
-/// or, if the crack ran further than that, ahead of it by what it ran further; the tissue closes up to the
-/// tool, which in the paper stands much deeper than the crack is long. While cutting, the tip moves with the
-/// tool; on v <= 0 the tip stays and is the surface that is met next.
+/// yield energy, Jc the fracture toughness, w the width of the blade, a the length of the crack. The tissue
+/// yields where U reaches Uy, within a tick if need be, and all of Uy becomes crack. The crack then begins at
+/// the tool: its tip, the new surface, lies where the tissue yielded or, if the crack ran further than that,
+/// ahead of it by what it ran further; in the paper the tool stands much deeper than the crack is long. What
+/// was left of the tick's travel is cut. While cutting, the tip moves with the tool; on v <= 0 the tip stays
+/// and is the surface that is met next.
 ///
 /// The books are kept from the path itself, so that external work = stored + spent on crack at any tick.
 ///
@@ -35,6 +36,8 @@ struct Fracture {
   static constexpr std::string_view name = "fracture";
   static constexpr std::string_view equation =
       "F = alpha exp(beta d / L0) up to the energy Uy, one tick of fracture, then Jc w";
+  static constexpr std::string_view position_unit = "m";
+  static constexpr std::string_view force_unit = "N";
 
   T amplitude{};           ///< alpha [N], > 0
   T exponent{};            ///< beta [1], > 0
@@ -101,14 +104,22 @@ struct Fracture {
     }
     const T growth = expm1(exponent * (depth / thickness));
     const T energy = amplitude * thickness / exponent * growth;
-    state.work = state.work + energy - state.stored;
-    state.stored = energy;
-    state.mode = Mode::deformation;
-    if (energy < yield_energy) return amplitude * (growth + 1.0);
-    state.work = state.work - energy;  // grow() enters it again, as crack
+    if (energy < yield_energy) {
+      state.work = state.work + energy - state.stored;
+      state.stored = energy;
+      state.mode = Mode::deformation;
+      return amplitude * (growth + 1.0);
+    }
+    // The tissue yielded at Uy, within the tick; what was left of the travel was cut.
+    state.work = state.work - state.stored;  // grow() enters all of Uy, as crack
     state.stored = T(0.0);
-    grow(state, energy);
-    state.surface = std::max(x, state.surface + value_of(energy / cutting_force()));
+    grow(state, yield_energy);
+    const double yielded = state.surface + value_of(yield_depth());
+    state.surface = std::max(yielded, state.surface + value_of(yield_energy / cutting_force()));
+    if (x > state.surface) {
+      grow(state, cutting_force() * (x - state.surface));
+      state.surface = x;
+    }
     state.mode = Mode::fracture;
     return T(0.0);
   }

@@ -27,6 +27,8 @@ template <typename T>
 struct FuzzyKelvin {
   static constexpr std::string_view name = "fuzzy_kelvin";
   static constexpr std::string_view equation = "kelvin since the last rupture, up to F_rupture(d, |v|)";
+  static constexpr std::string_view position_unit = "m";
+  static constexpr std::string_view force_unit = "N";
 
   Kelvin<T> element;
   FuzzySurface<T> surface;

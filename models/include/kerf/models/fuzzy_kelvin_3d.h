@@ -77,6 +77,7 @@ struct FuzzyKelvin3d {
     if (!(depth > 0.0)) state.in_tissue = false;
     if (depth > 0.0 && !state.in_tissue) {
       state.element = {};
+      state.element[2].started = true;  // it was touched at the surface, wherever the first tick finds it
       state.reference = {p[0], p[1], 0.0};
       state.in_tissue = true;
     }

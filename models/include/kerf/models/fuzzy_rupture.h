@@ -21,6 +21,8 @@ template <typename T>
 struct FuzzyRupture {
   static constexpr std::string_view name = "fuzzy_rupture";
   static constexpr std::string_view equation = "F = sum w_i (p_i x + q_i |v| + r_i) / sum w_i";
+  static constexpr std::string_view position_unit = "m";
+  static constexpr std::string_view force_unit = "N";
 
   FuzzySurface<T> surface;
 

@@ -40,8 +40,12 @@ using AnyLaw =
 struct LawInfo {
   std::string_view name;
   std::string_view equation;
+  std::string_view position_unit;  ///< the only one that its equation makes sense in; empty: "m" or "rad"
+  std::string_view force_unit;     ///< likewise
 };
 [[nodiscard]] std::vector<LawInfo> registry();
+/// @throws std::invalid_argument for an unknown law.
+[[nodiscard]] LawInfo law_info(std::string_view model);
 
 /// The answer of a scalar law in one tick.
 struct Response {

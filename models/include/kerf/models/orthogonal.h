@@ -59,7 +59,7 @@ template <ImplicitSurface S>
 ///
 /// Source: 001, eqs. 4-10, with the dot on J that eq. 5 omits; `consistent` is the inertia-weighted projector
 /// of Khatib (1987).
-/// @param normal_torque lambda_d, positive into the object [N]
+/// @param lambda_d force of the normal loop; -lambda_d pushes out of the object [N]
 /// @param tangential_damping b1 [N·m·s/rad]
 [[nodiscard]] Eigen::Vector3d orthogonal_torque(const SurfaceContact& contact,
                                                 const mechanisms::Premium::Dynamics& device,
@@ -69,7 +69,8 @@ template <ImplicitSurface S>
 /// Orthogonal decomposition on a 3-DOF Phantom Premium 1.5: an object whose normal force is a law of its own
 /// and whose tangent is viscous, with the device's own weight and inertia forces taken off.
 ///
-///     lambda_d = B0 phi' - F(-phi)      normal, F the exponential or the fracture law
+///     lambda_d = B0 phi' - F(-phi)      normal, F the exponential or the fracture law; no B0
+///                                       while a crack grows
 ///     zeta_d   = b1 times the tangential velocity of the joints
 ///
 /// Outside the object (phi >= 0) only weight and inertia forces are compensated; without `compensate` they
@@ -94,7 +95,7 @@ struct Orthogonal {
 
   struct State {
     Fracture<double>::State fracture;
-    double normal_force = 0.0;  ///< F [N] of the last tick
+    double normal_force = 0.0;  ///< -lambda_d of the last tick, what the surface exerts along its normal [N]
   };
 
   static std::vector<LawAxis> axes() {

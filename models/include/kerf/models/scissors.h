@@ -18,9 +18,6 @@ namespace kerf::models {
 /// wide end.
 ///
 /// Source: 004, eqs. 1-2, fig. 3; the limits follow from its section 3.3.
-///
-/// Written with kappa = (t_max - t_min) / l_t, the cutting point needs one sine and divides by nothing that
-/// can vanish for an angle in (0, pi): x_c = t_max / (sin(theta/2) + kappa cos(theta/2)).
 struct ScissorsGeometry {
   double pivot_half_width_m = 4e-3;  ///< t_max, > tip_half_width_m
   double tip_half_width_m = 1e-3;    ///< t_min, > 0
@@ -51,7 +48,9 @@ struct ScissorsGeometry {
 
 /// The cutting point of one geometry, ready for a tick:
 ///
-///     x_c(theta) = t_max / (sqrt(1 + kappa^2) sin(theta/2 + atan kappa))
+///     x_c(theta) = t_max / (sqrt(1 + kappa^2) sin(theta/2 + atan kappa)),   kappa = (t_max - t_min) / l_t
+///
+/// which needs one sine and divides by nothing that vanishes for an angle in (0, pi).
 class CuttingPoint {
  public:
   CuttingPoint() : CuttingPoint(ScissorsGeometry{}) {}

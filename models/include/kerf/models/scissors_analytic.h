@@ -28,6 +28,8 @@ template <typename T>
 struct ScissorsAnalytic {
   static constexpr std::string_view name = "scissors_analytic";
   static constexpr std::string_view equation = "F = s (tau_pf + f_bf x_c) / l_h + f_cf x_c / l_h";
+  static constexpr std::string_view position_unit = "rad";
+  static constexpr std::string_view force_unit = "N";
 
   T pivot_torque{};    ///< tau_pf [N·m]
   T blade_friction{};  ///< f_bf [N]
@@ -40,9 +42,9 @@ struct ScissorsAnalytic {
   using State = BranchSelector::State;
 
   static std::vector<ParameterInfo> parameters(const Options&) {
-    return {{"pivot_torque", Quantity::torque, -1e3, 1e3, Scale::linear, "tau_pf, friction at the pivot"},
-            {"blade_friction", Quantity::load, -1e6, 1e6, Scale::linear, "f_bf, friction between the blades"},
-            {"cutting_force", Quantity::load, -1e6, 1e6, Scale::linear, "f_cf, at the cutting point"}};
+    return {{"pivot_torque", Quantity::torque, 0.0, 1e3, Scale::linear, "tau_pf, friction at the pivot"},
+            {"blade_friction", Quantity::load, 0.0, 1e6, Scale::linear, "f_bf, friction between the blades"},
+            {"cutting_force", Quantity::load, 0.0, 1e6, Scale::linear, "f_cf, at the cutting point"}};
   }
   static std::vector<OptionInfo> options() {
     auto all = BranchSelector::options();

@@ -24,8 +24,10 @@ namespace kerf::models {
 /// The strip is one element thick (h) and lies in the plane of the scissors, x and z. It is made at the front
 /// node when the blades begin to close on it, and destroyed at the end of the cut. Both blades press its
 /// nodes to half the gap z(theta, x) between them; an element breaks once its front nodes are squeezed by
-/// more than the break deflection, and the cut advances by one node. By virtual work its forces f on one
-/// blade are felt as
+/// more than the break deflection or the blades have met there, and the cut advances by one node. Where the
+/// blades are already closer than h when it is made, a column meets them at their gap of then: a strip begins
+/// without energy. It stands still, and its forces do not load the slab, which feels the cutting point alone.
+/// By virtual work its forces f on one blade are felt as
 ///
 ///     f_h = 1/l_h sum 2 f dz/dtheta,   f_t = sum 2 f dz/dx_s,   z = x tan psi - t'/cos psi,
 ///     2 dz/dtheta = (x - t' sin psi) / cos^2 psi   (= x for closed blades),   dz/dx_s = -tan psi
