@@ -1,4 +1,5 @@
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/core.h>
@@ -39,6 +40,11 @@ void run_check(const Arguments& arguments, Context& context) {
   if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.loop.options.replace);
   RunOptions options = run_options(arguments.loop);
   options.law = read_law_file(arguments.law);
+  if (options.law->law.is_spatial() && (arguments.has_contact || !arguments.direction.empty())) {
+    throw std::invalid_argument(fmt::format(
+        "law '{}' acts on axes of its own; --contact and --direction are for a law along one axis",
+        options.law->law.model()));
+  }
   if (!arguments.record.empty()) options.record = arguments.record;
   if (arguments.has_contact) options.law->contact.position = arguments.contact;
   if (!arguments.direction.empty())

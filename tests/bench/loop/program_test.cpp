@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -172,6 +173,29 @@ TEST_P(Interrupted, EndsARecordingCleanly) {
 }
 INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGTERM, SIGINT),
                          [](const auto& tested) { return tested.param == SIGTERM ? "SIGTERM" : "SIGINT"; });
+
+const std::string examples = std::string(KERF_SOURCE_DIR) + "/examples/";
+
+TEST(KerfCheck, RendersLawsThatActOnSeveralAxes) {
+  for (const auto& [law, device] :
+       {std::pair{"blade", "sim:pose6"}, std::pair{"fuzzy_kelvin_3d", "sim:pose6"},
+        std::pair{"scissors", "sim:scissors"}, std::pair{"scissors_mesh", "sim:scissors"},
+        std::pair{"orthogonal", "sim:premium"}}) {
+    const Outcome outcome =
+        run_kerf({"check", examples + law + ".law.toml", "--device", device, "--virtual", "--seconds", "2"});
+    EXPECT_EQ(outcome.exit_status, 0) << law << ": " << outcome.errors;
+  }
+}
+
+TEST(KerfCheck, GivesSuchALawNoContactAndNoOtherDevice) {
+  const Outcome contact = run_kerf({"check", examples + "blade.law.toml", "--device", "sim:pose6",
+                                    "--virtual", "--seconds", "1", "--contact", "0.1"});
+  EXPECT_EQ(contact.exit_status, 2);
+  EXPECT_THAT(contact.errors, HasSubstr("law 'blade' acts on axes of its own"));
+  const Outcome device = run_kerf({"check", examples + "orthogonal.law.toml", "--virtual", "--seconds", "1"});
+  EXPECT_EQ(device.exit_status, 2);
+  EXPECT_THAT(device.errors, HasSubstr("acts on axis 'q1', and sim:scissors has none of that name"));
+}
 
 }  // namespace
 }  // namespace kerf
