@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+/// WoodenHaptics and Polhem on the wire: HID reports of little-endian 16-bit numbers. Pure functions.
+///
+/// Three generations, told apart by the length of a report: V1 8 bytes (three encoders and a counter), V2 14
+/// bytes (six encoders and a word of information), V3 64 bytes whose first 14 are those of V2 and whose rest
+/// is noise.
+///
+/// Source: facts of woody-experimental and haptikfabrikenapi.
+namespace kerf::drivers::woodenhaptics {
+
+enum class Generation : std::uint8_t { v1, v2, v3 };
+
+inline constexpr std::size_t most_report_size = 64;
+inline constexpr int most_current_ma = 5999;  ///< the makers' host never asks for more
+
+[[nodiscard]] constexpr std::size_t report_size(Generation generation) noexcept {
+  return generation == Generation::v1 ? 8 : generation == Generation::v2 ? 14 : 64;
+}
+/// Nothing for a length that no generation has.
+[[nodiscard]] std::optional<Generation> generation_of(std::size_t report_size) noexcept;
+
+struct Report {
+  std::array<int, 6> encoder{};  ///< counts, wrapping at 16 bits; d to f only from V2 on
+  bool button = false;           ///< calibration button, latched by the device (V2, V3)
+  int counter = 0;               ///< grows by one a report (V1)
+
+  friend bool operator==(const Report&, const Report&) = default;
+};
+
+/// Nothing if the bytes are fewer than the generation's.
+[[nodiscard]] std::optional<Report> parse_report(std::span<const std::uint8_t> bytes,
+                                                 Generation generation) noexcept;
+
+/// A report to the device with hidapi's leading number 0, and how many of its bytes to write.
+struct Output {
+  std::array<std::uint8_t, most_report_size + 1> bytes{};
+  std::size_t size = 0;
+};
+/// Currents of the three motors [mA], cut to +-5999.
+[[nodiscard]] Output set_currents(const std::array<int, 3>& current_ma, Generation generation) noexcept;
+/// Presets the six counters; motors get zero for that cycle (V2 and V3 only, else nothing).
+[[nodiscard]] std::optional<Output> preset_counters(const std::array<int, 6>& counts,
+                                                    Generation generation) noexcept;
+
+/// The difference of two counters that wrap at 16 bits.
+[[nodiscard]] constexpr int wrapped_difference(int now, int before) noexcept {
+  return static_cast<std::int16_t>(static_cast<std::uint16_t>(now - before));
+}
+
+}  // namespace kerf::drivers::woodenhaptics
