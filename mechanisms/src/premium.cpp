@@ -116,15 +116,14 @@ Matrix Premium::jacobian_rate(const Directions& at, const Vector& qd) noexcept {
   const double c1_rate = -at.s1 * qd[0];
   return (Matrix() << radius_rate * at.c1 + radius * c1_rate, radius_2_rate * at.s1 + radius_2 * s1_rate,
           radius_3_rate * at.s1 + radius_3 * s1_rate,  //
-          0.0, -l1 * at.s2 * qd[1], l2 * at.c3 * qd[2],
-          -radius_rate * at.s1 - radius * s1_rate, radius_2_rate * at.c1 + radius_2 * c1_rate,
-          radius_3_rate * at.c1 + radius_3 * c1_rate)
+          0.0, -l1 * at.s2 * qd[1], l2 * at.c3 * qd[2], -radius_rate * at.s1 - radius * s1_rate,
+          radius_2_rate * at.c1 + radius_2 * c1_rate, radius_3_rate * at.c1 + radius_3 * c1_rate)
       .finished();
 }
 
 Matrix Premium::inertia(const Directions& at) const noexcept {
-  const double vertical = base_ + upper_y_ * at.c2 * at.c2 + upper_z_ * at.s2 * at.s2 + fore_y_ * at.c3 * at.c3 +
-                          fore_z_ * at.s3 * at.s3 + 2.0 * coupling_ * at.c2 * at.s3;
+  const double vertical = base_ + upper_y_ * at.c2 * at.c2 + upper_z_ * at.s2 * at.s2 +
+                          fore_y_ * at.c3 * at.c3 + fore_z_ * at.s3 * at.s3 + 2.0 * coupling_ * at.c2 * at.s3;
   const double between = coupling_ * at.fold_sine();
   return (Matrix() << vertical, 0.0, 0.0, 0.0, upper_pitch_, between, 0.0, between, fore_pitch_).finished();
 }
@@ -167,14 +166,18 @@ std::optional<Vector> Premium::joint_angles(const Vector& tip) noexcept {
 }
 
 bool Premium::within_limits(const Vector& q) noexcept {
-  const auto inside = [](double value, const Range& range) { return value >= range.lower && value <= range.upper; };
-  return inside(q[0], joint_range_rad[0]) && inside(q[1], joint_range_rad[1]) && inside(q[2], joint_range_rad[2]) &&
-         inside(q[2] - q[1], fold_range_rad);
+  const auto inside = [](double value, const Range& range) {
+    return value >= range.lower && value <= range.upper;
+  };
+  return inside(q[0], joint_range_rad[0]) && inside(q[1], joint_range_rad[1]) &&
+         inside(q[2], joint_range_rad[2]) && inside(q[2] - q[1], fold_range_rad);
 }
 
 Matrix Premium::inertia(const Vector& q) const noexcept { return inertia(Directions(q)); }
 
-Matrix Premium::coriolis(const Vector& q, const Vector& qd) const noexcept { return coriolis(Directions(q), qd); }
+Matrix Premium::coriolis(const Vector& q, const Vector& qd) const noexcept {
+  return coriolis(Directions(q), qd);
+}
 
 Vector Premium::gravity(const Vector& q) const noexcept { return gravity(Directions(q)); }
 

@@ -9,19 +9,19 @@ namespace kerf::mechanisms {
 
 /// The Phantom Premium 1.5 of SensAble as rigid bodies: three joints, a tip that translates.
 ///
-/// Frame: x to the right, y up, z towards the user, right-handed; the origin is where the tip stands at q = 0.
-/// q1 turns the arm about the vertical. A parallelogram drives the arm within its plane, so that q2 is the pitch
-/// of the upper arm (up from the horizontal) and q3 that of the forearm (outwards from hanging), both against
-/// the ground and not against each other. With the radius r of the tip from the vertical axis
+/// Frame: x to the right, y up, z towards the user, right-handed; the origin is where the tip stands at q =
+/// 0. q1 turns the arm about the vertical. A parallelogram drives the arm within its plane, so that q2 is the
+/// pitch of the upper arm (up from the horizontal) and q3 that of the forearm (outwards from hanging), both
+/// against the ground and not against each other. With the radius r of the tip from the vertical axis
 ///
 ///     r   = l1 cos q2 + l2 sin q3
 ///     tip = (r sin q1, l1 sin q2 - l2 cos q3 + l2, r cos q1 - l1)
 ///
-/// Motion: H(q) q'' + C(q, q') q' + g(q) = tau. The kinetic energy is the sum over the bodies, each in the plane
-/// that q1 turns. A body whose mass centre lies `a` along the upper arm and `b` along the forearm moves as
-/// 1/2 m [(a cos q2 + b sin q3)^2 q1'^2 + a^2 q2'^2 + b^2 q3'^2 + 2 a b sin(q3 - q2) q2' q3'] and turns with one of
-/// the two arms, of which Ixx is the moment about the axis of pitch; in the frame of that arm the vertical is
-/// cos q in y and sin q in z. The sum has the shape
+/// Motion: H(q) q'' + C(q, q') q' + g(q) = tau. The kinetic energy is the sum over the bodies, each in the
+/// plane that q1 turns. A body whose mass centre lies `a` along the upper arm and `b` along the forearm moves
+/// as 1/2 m [(a cos q2 + b sin q3)^2 q1'^2 + a^2 q2'^2 + b^2 q3'^2 + 2 a b sin(q3 - q2) q2' q3'] and turns
+/// with one of the two arms, of which Ixx is the moment about the axis of pitch; in the frame of that arm the
+/// vertical is cos q in y and sin q in z. The sum has the shape
 ///
 ///     H11 = base + Uy cos^2 q2 + Uz sin^2 q2 + Fy cos^2 q3 + Fz sin^2 q3 + 2 k cos q2 sin q3
 ///     H22, H33 constant,  H23 = k sin(q3 - q2),  H12 = H13 = 0
@@ -30,14 +30,14 @@ namespace kerf::mechanisms {
 ///
 /// Source: Cavusoglu, Feygin, Tendick, "A critical study of the mechanical and electrical properties of the
 /// PHANToM haptic interface and improvements for high-performance control", Presence 11(6), 2002. Values as
-/// published; recalled from the paper's table, not re-checked. Bodies: a the forearm, c the rod that drives it
-/// beside the upper arm, be and df what turns with upper arm and forearm about the shoulder, motors included, g
-/// the base. Moments of a and c are about the mass centres, those of be and df about the shoulder. The moments
-/// printed for be and df miss the triangle inequality (xx <= yy + zz) by 4 %; they are taken as they are.
-/// An independent public model of the same arm, made from drawings, has masses 5 to 30 % larger, lengths and the mass
-/// centres of be and df within 5 %, and the same gear ratios and rotors. Not in the table, and added: the rotors,
-/// 1.08e-6 kg·m^2 each by the square of the gear ratio, 13.3, 11.2, 11.2; and a payload (gimbal, tool), a point at
-/// the tip. The joints' ranges are assumed.
+/// published; recalled from the paper's table, not re-checked. Bodies: a the forearm, c the rod that drives
+/// it beside the upper arm, be and df what turns with upper arm and forearm about the shoulder, motors
+/// included, g the base. Moments of a and c are about the mass centres, those of be and df about the
+/// shoulder. The moments printed for be and df miss the triangle inequality (xx <= yy + zz) by 4 %; they are
+/// taken as they are. An independent public model of the same arm, made from drawings, has masses 5 to 30 %
+/// larger, lengths and the mass centres of be and df within 5 %, and the same gear ratios and rotors. Not in
+/// the table, and added: the rotors, 1.08e-6 kg·m^2 each by the square of the gear ratio, 13.3, 11.2, 11.2;
+/// and a payload (gimbal, tool), a point at the tip. The joints' ranges are assumed.
 class Premium {
  public:
   using Vector = Eigen::Vector3d;

@@ -1,0 +1,85 @@
+#include "kerf/mechanisms/woodenhaptics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::mechanisms {
+namespace {
+
+using Eigen::Vector3d;
+
+const WoodenHaptics woody(*WoodenHaptics::find("woody-2016"));
+
+TEST(WoodenHaptics, StandsAtItsMakersPlaceAtZeroCounts) {
+  EXPECT_LE((woody.tip(woody.angles({0, 0, 0})) - Vector3d(0.025, 0.0, 0.205)).norm(), 1e-15);
+}
+
+TEST(WoodenHaptics, NeedsTheCurrentsOfTheDocumentedCheckForOneNewton) {
+  const Vector3d zero = woody.angles({0, 0, 0});
+  const auto expect = [&](const Vector3d& force, const Vector3d& ampere) {
+    const auto currents = woody.currents(force, zero).ampere;
+    EXPECT_LE((Vector3d(currents[0], currents[1], currents[2]) - ampere).norm(), 6e-4) << force.transpose();
+  };
+  expect(Vector3d::UnitX(), {0.0, -0.660, 0.0});
+  expect(Vector3d::UnitY(), {0.591, 0.0, 0.0});
+  expect(Vector3d::UnitZ(), {0.0, 0.0, -0.788});
+}
+
+TEST(WoodenHaptics, MovesByTheDocumentedStepPerCount) {
+  const Vector3d zero = woody.tip(woody.angles({0, 0, 0}));
+  const auto step = [&](std::array<int, 3> counts) {
+    return (woody.tip(woody.angles(counts)) - zero).norm();
+  };
+  EXPECT_NEAR(step({1, 0, 0}), 0.048e-3, 5e-7);
+  EXPECT_NEAR(step({0, 1, 0}), 0.054e-3, 5e-7);
+  EXPECT_NEAR(step({0, 0, 1}), 0.064e-3, 5e-7);
+}
+
+TEST(WoodenHaptics, TheJacobianIsThatOfTheTipForEveryModel) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const auto& configuration : WoodenHaptics::configurations()) {
+    const WoodenHaptics device(configuration);
+    for (int i = 0; i < 100; ++i) {
+      const double a = uniform(random);
+      const double b = uniform(random);
+      const Vector3d angles(a, b, 1.5 + 0.5 * uniform(random));
+      const double h = 1e-6;
+      Eigen::Matrix3d difference;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Vector3d step = h * Vector3d::Unit(k);
+        difference.col(k) = (device.tip(angles + step) - device.tip(angles - step)) / (2.0 * h);
+      }
+      EXPECT_LE((device.jacobian(angles) - difference).norm(), 1e-9) << configuration.name;
+    }
+  }
+}
+
+TEST(WoodenHaptics, CutsAForceWithoutTurningIt) {
+  const Vector3d zero = woody.angles({100, -200, 300});
+  const auto small = woody.currents(Vector3d(0.1, 0.2, -0.3), zero);
+  const auto large = woody.currents(Vector3d(10.0, 20.0, -30.0), zero);
+  EXPECT_FALSE(small.limited);
+  EXPECT_TRUE(large.limited);
+  double most = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    most = std::max(most, std::abs(large.ampere[i]));
+    EXPECT_NEAR(large.ampere[i] * small.ampere[0], small.ampere[i] * large.ampere[0], 1e-12);
+  }
+  EXPECT_DOUBLE_EQ(most, 3.0);
+  EXPECT_THAT(woody.currents(Vector3d(std::nan(""), 0.0, 0.0), zero).ampere,
+              testing::ElementsAre(0.0, 0.0, 0.0));
+}
+
+TEST(WoodenHaptics, KnowsItsModelsByName) {
+  EXPECT_EQ(WoodenHaptics::configurations().size(), 4U);
+  EXPECT_NE(WoodenHaptics::find("polhem-v3"), nullptr);
+  EXPECT_EQ(WoodenHaptics::find("omega"), nullptr);
+}
+
+}  // namespace
+}  // namespace kerf::mechanisms
