@@ -6,19 +6,22 @@
 
 #include <fmt/core.h>
 
+#include <kerf/drivers/hand.h>
 #include <kerf/models/blade.h>
 #include <kerf/models/precontact.h>
 
 #include "reproduce/reproduce.h"
-#include "reproduce/strokes.h"
 
 namespace kerf::bench {
 namespace {
 
+using drivers::MinimumJerk;
 using Eigen::Vector3d;
 using models::BladeFidelity;
 
 constexpr double period_s = 1e-3;
+constexpr double stroke_s = 0.8;
+constexpr double travel_m = 0.04;
 
 /// A scalpel's blade in the plane of y and z, 10 mm wide, 30 mm long, its tip 12 mm under the surface, edge
 /// ahead on -y. Friction is five times as large across the blade as along it; 000 gives no numbers.
@@ -38,11 +41,12 @@ struct Path {
 Path path_t1() {
   Path path;
   for (double t = 0.0; t < 1.8; t += period_s) {
-    const Stroke cut = minimum_jerk(t, 0.8, -0.04);
-    const Stroke across = minimum_jerk(t - 1.0, 0.8, 0.04);
+    const MinimumJerk cut = MinimumJerk::at(t / stroke_s);
+    const MinimumJerk across = MinimumJerk::at((t - 1.0) / stroke_s);
     path.time_s.push_back(t);
-    path.pose.push_back({.hand = {across.position, cut.position, hand_height_m}});
-    path.twist.push_back({.linear = {across.velocity, cut.velocity, 0.0}});
+    path.pose.push_back({.hand = {travel_m * across.place, -travel_m * cut.place, hand_height_m}});
+    path.twist.push_back(
+        {.linear = {travel_m / stroke_s * across.speed, -travel_m / stroke_s * cut.speed, 0.0}});
   }
   return path;
 }
@@ -51,12 +55,12 @@ Path path_t2() {
   Path path;
   for (double t = 0.0; t < 2.2; t += period_s) {
     const double turn = std::numbers::pi / 3.0;
-    const Stroke there = minimum_jerk(t, 1.0, turn);
-    const Stroke back = minimum_jerk(t - 1.2, 1.0, -turn);
+    const MinimumJerk there = MinimumJerk::at(t);
+    const MinimumJerk back = MinimumJerk::at(t - 1.2);
     path.time_s.push_back(t);
     path.pose.push_back({.hand = {0.0, 0.0, hand_height_m},
-                         .rotation = models::rotation_of({0.0, 0.0, there.position + back.position})});
-    path.twist.push_back({.angular = {0.0, 0.0, there.velocity + back.velocity}});
+                         .rotation = models::rotation_of({0.0, 0.0, turn * (there.place - back.place)})});
+    path.twist.push_back({.angular = {0.0, 0.0, turn * (there.speed - back.speed)}});
   }
   return path;
 }

@@ -7,10 +7,10 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/hand.h>
 #include <kerf/models/orthogonal.h>
 
 #include "reproduce/reproduce.h"
-#include "reproduce/strokes.h"
 
 namespace kerf::bench {
 namespace {
@@ -73,10 +73,10 @@ class Script {
   drivers::Sample at(double now_s) {
     const auto leg = std::min(static_cast<std::size_t>(now_s / leg_s), path_.size() - 2);
     const Vector3d way = path_[leg + 1] - path_[leg];
-    const Stroke stroke = minimum_jerk(now_s - leg_s * static_cast<double>(leg), stroke_s, 1.0);
-    const auto q = mechanisms::Premium::joint_angles(path_[leg] + stroke.position * way);
+    const auto stroke = drivers::MinimumJerk::at((now_s - leg_s * static_cast<double>(leg)) / stroke_s);
+    const auto q = mechanisms::Premium::joint_angles(path_[leg] + stroke.place * way);
     if (!q) throw std::runtime_error("a waypoint is out of the arm's reach");
-    const Vector3d qd = mechanisms::Premium::jacobian(*q).inverse() * (stroke.velocity * way);
+    const Vector3d qd = mechanisms::Premium::jacobian(*q).inverse() * (stroke.speed / stroke_s * way);
     drivers::Sample sample;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       sample.position[static_cast<std::size_t>(axis)] = (*q)[axis];

@@ -45,7 +45,8 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
 }
 
 std::vector<DeviceInfo> list_devices() {
-  return {open_device("sim:scissors")->info(), open_device("sim:pose6")->info(), open_device("sim:premium")->info()};
+  return {open_device("sim:scissors")->info(), open_device("sim:pose6")->info(),
+          open_device("sim:premium")->info()};
 }
 
 }  // namespace kerf::drivers

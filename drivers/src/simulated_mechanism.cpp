@@ -26,6 +26,13 @@ void add_truth(DeviceInfo& info) {
 
 }  // namespace
 
+SimulatedMechanism::Options SimulatedMechanism::Options::from(UriOptions& given) {
+  return {.with_noise = given.flag("noise", true),
+          .with_encoder = given.flag("encoder", true),
+          .with_truth = given.flag("truth", false),
+          .seed = given.count("seed", 1)};
+}
+
 SimulatedMechanism::SimulatedMechanism(DeviceInfo info, const Options& options, Surroundings surroundings)
     : info_(std::move(info)),
       options_(options),
@@ -82,10 +89,10 @@ void SimulatedMechanism::measure(double now_s, Sample& sample) noexcept {
     last_position_[at] = position;
     sample.position[at] = position;
     sample.velocity[at] = velocity_[at];
-    sample.force_measured[at] = options_.with_noise
-                                    ? rounded_to(tissue_force_[at] + sensor_scale_[at] * sensor_noise_n * noise_(),
-                                                 sensor_scale_[at] * sensor_step_n)
-                                    : tissue_force_[at];
+    sample.force_measured[at] =
+        options_.with_noise ? rounded_to(tissue_force_[at] + sensor_scale_[at] * sensor_noise_n * noise_(),
+                                         sensor_scale_[at] * sensor_step_n)
+                            : tissue_force_[at];
     if (!options_.with_truth) continue;
     sample.channels[first_truth_ + at] = truth;
     sample.channels[first_truth_ + count_ + at] = tissue_force_[at];

@@ -61,11 +61,8 @@ std::string as_toml(const SimulatedPose6::Options& options) {
 SimulatedPose6::Options SimulatedPose6::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
   Options options;
-  options.mechanism.seed = given.count("seed", 1);
+  options.mechanism = SimulatedMechanism::Options::from(given);
   options.with_hand = given.flag("hand", true);
-  options.mechanism.with_noise = given.flag("noise", true);
-  options.mechanism.with_encoder = given.flag("encoder", true);
-  options.mechanism.with_truth = given.flag("truth", false);
   options.reach_m = given.number("reach", {"m", options.reach_m, 0.0, 0.15});
   options.swing_rad = given.number("swing", {"deg", options.swing_rad, 0.0, 90.0 * degree});
   given.allow("fault");
@@ -78,8 +75,8 @@ SimulatedPose6::SimulatedPose6(std::string_view uri, const Options& options, Sur
       mechanism_({.uri = std::string(uri),
                   .model = "sim:pose6",
                   .about = "a tool of six degrees of freedom in a hand, simulated",
-                  .axes = {translation("x"), translation("y"), translation("z"), rotation("rx"), rotation("ry"),
-                           rotation("rz")},
+                  .axes = {translation("x"), translation("y"), translation("z"), rotation("rx"),
+                           rotation("ry"), rotation("rz")},
                   .measures_force = true,
                   .simulated = true,
                   .configuration = as_toml(options)},

@@ -53,10 +53,11 @@ void rub(const Matrix& mobility, Vector& speed) noexcept {
 /// Takes the speed that would carry an angle, or the fold between the arms, beyond its stop.
 void stop(const Matrix& mobility, const Vector& q, Vector& speed) noexcept {
   const auto& range = Premium::joint_range_rad;
-  const std::array<std::pair<Vector, Premium::Range>, 4> stops{{{Vector::UnitX(), range[0]},
-                                                                {Vector::UnitY(), range[1]},
-                                                                {Vector::UnitZ(), range[2]},
-                                                                {Vector(0.0, -1.0, 1.0), Premium::fold_range_rad}}};
+  const std::array<std::pair<Vector, Premium::Range>, 4> stops{
+      {{Vector::UnitX(), range[0]},
+       {Vector::UnitY(), range[1]},
+       {Vector::UnitZ(), range[2]},
+       {Vector(0.0, -1.0, 1.0), Premium::fold_range_rad}}};
   for (const auto& [direction, limits] : stops) {
     const double at = direction.dot(q);
     const double towards = direction.dot(speed);
@@ -70,15 +71,17 @@ void stop(const Matrix& mobility, const Vector& q, Vector& speed) noexcept {
 std::string as_toml(const SimulatedPremium::Options& options) {
   const auto word = [](bool value) { return value ? "true" : "false"; };
   std::ostringstream text;
-  text << "model = \"sim:premium\"\nseed = " << options.mechanism.seed << "\nhand = " << word(options.with_hand)
-       << "\nnoise = " << word(options.mechanism.with_noise) << "\nencoder = " << word(options.mechanism.with_encoder)
+  text << "model = \"sim:premium\"\nseed = " << options.mechanism.seed
+       << "\nhand = " << word(options.with_hand) << "\nnoise = " << word(options.mechanism.with_noise)
+       << "\nencoder = " << word(options.mechanism.with_encoder)
        << "\nfriction = " << word(options.with_friction) << "\ngravity = " << word(options.arm.with_gravity)
        << "\npayload = { value = " << options.arm.payload_kg
        << ", unit = \"kg\" }\n\n[hand_motion]\nstroke = { value = " << options.path.stroke_s
        << ", unit = \"s\" }\npause = { value = " << options.path.pause_s
        << ", unit = \"s\" }\nmass = { value = " << options.hand_mass_kg
        << ", unit = \"kg\" }\ndamping = { value = " << options.hand_damping_n_s_per_m
-       << ", unit = \"N·s/m\" }\nstiffness = { value = " << options.hand_stiffness_n_per_m << ", unit = \"N/m\" }\n";
+       << ", unit = \"N·s/m\" }\nstiffness = { value = " << options.hand_stiffness_n_per_m
+       << ", unit = \"N/m\" }\n";
   if (options.path.waypoints_m.empty()) {
     text << "reach = { value = " << options.reach_m << ", unit = \"m\" }\n";
     return text.str();
@@ -115,11 +118,8 @@ TipPath::Options with_waypoints(const SimulatedPremium::Options& options) {
 SimulatedPremium::Options SimulatedPremium::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
   Options options;
-  options.mechanism.seed = given.count("seed", 1);
+  options.mechanism = SimulatedMechanism::Options::from(given);
   options.with_hand = given.flag("hand", true);
-  options.mechanism.with_noise = given.flag("noise", true);
-  options.mechanism.with_encoder = given.flag("encoder", true);
-  options.mechanism.with_truth = given.flag("truth", false);
   options.with_friction = given.flag("friction", true);
   options.arm.with_gravity = given.flag("gravity", true);
   options.arm.payload_kg = given.number("payload", {"kg", 0.0, 0.0, 1.0});
@@ -150,7 +150,8 @@ SimulatedPremium::SimulatedPremium(std::string_view uri, const Options& options,
   for (std::size_t at = 0; at < 3; ++at) mechanism_.place(at, begin[static_cast<int>(at)]);
 }
 
-void SimulatedPremium::move(double time_s, SimulatedMechanism::States& states, const Axes& force) const noexcept {
+void SimulatedPremium::move(double time_s, SimulatedMechanism::States& states,
+                            const Axes& force) const noexcept {
   const Vector q(states[0].travel_m, states[1].travel_m, states[2].travel_m);
   const Vector before(states[0].speed_m_s, states[1].speed_m_s, states[2].speed_m_s);
   const Premium::Dynamics now = arm_.dynamics(q, before);
@@ -179,9 +180,8 @@ void SimulatedPremium::move(double time_s, SimulatedMechanism::States& states, c
 }
 
 Status SimulatedPremium::read(double now_s, Sample& sample) noexcept {
-  mechanism_.run_coupled_until(now_s, [this](double time_s, SimulatedMechanism::States& states, const Axes& force) {
-    move(time_s, states, force);
-  });
+  mechanism_.run_coupled_until(now_s, [this](double time_s, SimulatedMechanism::States& states,
+                                             const Axes& force) { move(time_s, states, force); });
   mechanism_.measure(now_s, sample);
   const Vector tip = Premium::tip({sample.position[0], sample.position[1], sample.position[2]});
   std::copy_n(tip.data(), 3, sample.channels.begin());

@@ -56,11 +56,8 @@ std::string as_toml(const SimulatedScissors::Options& options) {
 SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
   Options options;
-  options.mechanism.seed = given.count("seed", 1);
+  options.mechanism = SimulatedMechanism::Options::from(given);
   options.with_hand = given.flag("hand", true);
-  options.mechanism.with_noise = given.flag("noise", true);
-  options.mechanism.with_encoder = given.flag("encoder", true);
-  options.mechanism.with_truth = given.flag("truth", false);
   HandOptions& hand = options.hand;
   hand.seed = options.mechanism.seed;
   hand.open_rad = given.number("open", {"deg", hand.open_rad, 1.0 * degree, 60.0 * degree});

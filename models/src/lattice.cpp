@@ -119,18 +119,22 @@ void update_points(int columns, const Coefficients k, const Real* __restrict x,
 
 }  // namespace
 
-double stable_step(const LatticeOptions& options) {
+double stable_step(const LatticeOptions& options, double coupling_stiffness_n_per_m,
+                   double coupling_damping_n_s_per_m) {
   check(options);
-  const Mode mode = stiffest_mode(options);
+  Mode mode = stiffest_mode(options);
+  // At the lightest node that cuts can leave, which has a quarter of the mass.
+  mode.stiffness += 4.0 * coupling_stiffness_n_per_m / options.node_mass_kg;
+  mode.damping += 4.0 * coupling_damping_n_s_per_m / options.node_mass_kg;
   return 4.0 / (mode.damping + std::sqrt(mode.damping * mode.damping + 4.0 * mode.stiffness));
 }
 
 int substeps(const LatticeOptions& options, double period_s) {
-  const double number = std::ceil(period_s / (0.9 * stable_step(options)));
+  const double number = std::ceil(period_s / (step_safety * stable_step(options)));
   if (number >= 1.0 && number <= most_substeps) return static_cast<int>(number);
   std::ostringstream message;
   message << "period_s is " << period_s << ", expected a time above 0 of at most " << most_substeps
-          << " sub-steps of " << 0.9 * stable_step(options) << " s";
+          << " sub-steps of " << step_safety * stable_step(options) << " s";
   throw std::invalid_argument(message.str());
 }
 

@@ -4,6 +4,14 @@
 
 namespace kerf::models {
 
+std::vector<OptionInfo> ScissorsGeometry::options() {
+  const ScissorsGeometry standard;
+  return {{"pivot_half_width", standard.pivot_half_width_m, "t_max, half a blade's width at the pivot [m]"},
+          {"tip_half_width", standard.tip_half_width_m, "t_min, half a blade's width at the tip [m]"},
+          {"blade_length", standard.blade_length_m, "l_t [m]"},
+          {"widest_angle", standard.widest_angle_rad, "angle at which the blades lose contact [rad]"}};
+}
+
 ScissorsGeometry ScissorsGeometry::make(const OptionReader& reader) {
   const ScissorsGeometry scissors{.pivot_half_width_m = reader.number("pivot_half_width", 1e-6, 10.0),
                                   .tip_half_width_m = reader.number("tip_half_width", 1e-6, 10.0),

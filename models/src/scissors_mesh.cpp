@@ -9,44 +9,30 @@
 namespace kerf::models {
 namespace {
 
-constexpr double safety = 0.9;       // of the largest stable step
 constexpr int most_substeps = 1000;  // a tick; more than that no machine does in 1 ms
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int most_columns = 8;        // of the strip that the blades press at once
 constexpr double slack_columns = 2.0;  // beyond the blades' length that the strip reaches
 
 int substeps_for(double largest_step_s, double period_s) {
-  const double needed = std::ceil(period_s / (safety * largest_step_s));
+  const double needed = std::ceil(period_s / (step_safety * largest_step_s));
   return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most_substeps)));
 }
 
 }  // namespace
 
-double coupled_step(const LatticeOptions& options, double stiffness_n_per_m, double damping_n_s_per_m) {
-  const double springs =
-      4.0 * (options.stiffness_n_per_m + 2.0 * options.diagonal_stiffness_n_per_m) / options.node_mass_kg;
-  const double bedding = options.bedding_n_per_m / options.node_mass_kg;
-  // The lightest node that cuts can leave has a quarter of the mass.
-  const double square = springs + bedding + 4.0 * stiffness_n_per_m / options.node_mass_kg;
-  const double linear = springs * options.damping_time_s + bedding * options.bedding_time_s +
-                        4.0 * damping_n_s_per_m / options.node_mass_kg;
-  // dt^2 square + 2 dt linear = 4, without the difference of two near numbers.
-  return 4.0 / (linear + std::sqrt(linear * linear + 4.0 * square));
-}
-
 std::vector<OptionInfo> ScissorsMesh::options() {
-  const ScissorsGeometry scissors;
-  return {{"columns", 100.0, "nodes of the slab along the cut, 4 to 1000"},
-          {"rows", 100.0, "nodes of the slab across it, 4 to 1000"},
-          {"spacing", 1e-3, "h, between nodes [m]"},
-          {"edge", 0.03, "x_m, near border of the slab, from the pivot at x_s = 0 [m]"},
-          {"substeps", 0.0, "of the slab in a tick; 0: as many as its stiffest spring needs"},
-          {"opening_speed", 0.02, "opening faster than this ends a cut [rad/s]"},
-          {"lever", 0.28 / 7.58, "l_h, of the handle [m]"},
-          {"pivot_half_width", scissors.pivot_half_width_m, "t_max, half a blade's width at the pivot [m]"},
-          {"tip_half_width", scissors.tip_half_width_m, "t_min, half a blade's width at the tip [m]"},
-          {"blade_length", scissors.blade_length_m, "l_t [m]"},
-          {"widest_angle", scissors.widest_angle_rad, "angle at which the blades lose contact [rad]"}};
+  std::vector<OptionInfo> all{
+      {"columns", 100.0, "nodes of the slab along the cut, 4 to 1000"},
+      {"rows", 100.0, "nodes of the slab across it, 4 to 1000"},
+      {"spacing", 1e-3, "h, between nodes [m]"},
+      {"edge", 0.03, "x_m, near border of the slab, from the pivot at x_s = 0 [m]"},
+      {"substeps", 0.0, "of the slab in a tick; 0: as many as its stiffest spring needs"},
+      {"opening_speed", 0.02, "opening faster than this ends a cut [rad/s]"},
+      {"lever", 0.28 / 7.58, "l_h, of the handle [m]"}};
+  const auto scissors = ScissorsGeometry::options();
+  all.insert(all.end(), scissors.begin(), scissors.end());
+  return all;
 }
 
 std::vector<ParameterInfo> ScissorsMesh::parameters(const Options& given) {
@@ -109,9 +95,9 @@ ScissorsMesh ScissorsMesh::make(std::span<const double> values, const Options& g
   law.point = CuttingPoint(scissors);
   constexpr double tick_s = 1e-3;
   for (const auto& [what, step_s] :
-       {std::pair{"slab", coupled_step(law.slab, law.coupling_stiffness, law.coupling_damping)},
-        std::pair{"strip", coupled_step(law.strip, law.contact_stiffness, law.contact_damping)}}) {
-    if (tick_s <= safety * step_s * most_substeps) continue;
+       {std::pair{"slab", stable_step(law.slab, law.coupling_stiffness, law.coupling_damping)},
+        std::pair{"strip", stable_step(law.strip, law.contact_stiffness, law.contact_damping)}}) {
+    if (tick_s <= step_safety * step_s * most_substeps) continue;
     throw std::invalid_argument("law 'scissors_mesh': the " + std::string(what) +
                                 " is stable only in steps of " + std::to_string(1e9 * step_s) +
                                 " ns; make it softer, heavier or less damped, or no machine follows it");
@@ -133,14 +119,14 @@ ScissorsMesh::State ScissorsMesh::initial_state() const {
 
 int ScissorsMesh::substeps(double period_s) const {
   if (fixed_substeps > 0) return fixed_substeps;
-  return substeps_for(coupled_step(slab, coupling_stiffness, coupling_damping), period_s);
+  return substeps_for(stable_step(slab, coupling_stiffness, coupling_damping), period_s);
 }
 
 void ScissorsMesh::choose_substeps(State& state, double period_s) const noexcept {
   if (period_s == state.period_s) return;
   state.period_s = period_s;
   state.slab_substeps = substeps(period_s);
-  state.strip_substeps = substeps_for(coupled_step(strip, contact_stiffness, contact_damping), period_s);
+  state.strip_substeps = substeps_for(stable_step(strip, contact_stiffness, contact_damping), period_s);
 }
 
 int ScissorsMesh::front_node(const State& state) const noexcept {

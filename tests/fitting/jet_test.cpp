@@ -9,7 +9,7 @@
 namespace kerf::models {
 namespace {
 
-constexpr int most = 9;
+constexpr int most = 10;
 using Jet = ceres::Jet<double, most>;
 
 /// The force after some ticks of a stroke, of a law on any scalar.
@@ -58,6 +58,17 @@ TEST(Derivatives, OfPiecewise) {
 TEST(Derivatives, OfRecording) {
   expect_exact_derivatives<Recording>({0.2, 2.0, 2.5, -0.1, 0.5, 2.0},
                                       {{"points", 3.0}, {"last", 0.4}, {"loop", true}});
+}
+
+TEST(Derivatives, OfPrecontact) { expect_exact_derivatives<Precontact>({30.0, 0.05}); }
+TEST(Derivatives, OfAnalyticalScissors) { expect_exact_derivatives<ScissorsAnalytic>({0.003, 0.4, 6.0}); }
+TEST(Derivatives, OfFractureWhileItDeforms) {
+  expect_exact_derivatives<Fracture>({0.02, 0.5, 10.0, 2000.0, 0.001});
+}
+TEST(Derivatives, OfFuzzyRuptureAndWhatItBreaks) {
+  const Options one{{"memberships", 1.0}, {"most_depth", 1.0}, {"most_speed", 1.0}};
+  expect_exact_derivatives<FuzzyRupture>({0.1, 0.5, 0.2, 0.5, 8.0, 2.0, 0.1}, one);
+  expect_exact_derivatives<FuzzyKelvin>({5.0, 8.0, 1.6, 0.1, 0.5, 0.2, 0.5, 8.0, 2.0, 50.0}, one);
 }
 
 }  // namespace

@@ -52,21 +52,5 @@ TEST(ScissorsAnalytic, RefusesATipThatIsTheWiderEnd) {
                std::invalid_argument);
 }
 
-TEST(CuttingPoint, IsThatOfTheGeometryWithoutItsQuotients) {
-  const ScissorsGeometry scissors;
-  const CuttingPoint point(scissors);
-  for (double theta = scissors.closing_angle(); theta < 0.7; theta += 1e-3) {
-    EXPECT_NEAR(point(theta) / *scissors.cutting_point(theta), 1.0, 1e-13);
-  }
-}
-
-TEST(CuttingPoint, TheGapVanishesThereAndIsTheBladesWidthLessAtThePivot) {
-  const CuttingPoint point{ScissorsGeometry{}};
-  const double theta = 20.0 * degree;
-  EXPECT_NEAR(point.half_gap(theta, point(theta)), 0.0, 1e-18);
-  EXPECT_GT(point.half_gap(theta, point(theta) + 1e-3), 0.0);
-  EXPECT_LT(point.half_gap(theta, point(theta) - 1e-3), 0.0);
-}
-
 }  // namespace
 }  // namespace kerf::models

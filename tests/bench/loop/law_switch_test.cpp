@@ -54,7 +54,8 @@ TEST(LawSwitch, GoesOverWhenAskedAndBackAgain) {
 }
 
 TEST(LawSwitch, FinishesOneSwitchBeforeTheNext) {
-  LawSwitch laws({{.rendering = spring(10.0)}, {.rendering = spring(30.0)}, {.rendering = spring(50.0)}}, 0.01);
+  LawSwitch laws({{.rendering = spring(10.0)}, {.rendering = spring(30.0)}, {.rendering = spring(50.0)}},
+                 0.01);
   double last = next_force(laws);
   laws.select(1);
   for (int i = 0; i < 30; ++i) {

@@ -18,12 +18,11 @@ using testing::HasSubstr;
 /// Every figure has curves of points with labelled axes.
 void expect_drawable(const Reproduction& paper) {
   for (const Figure& figure : paper.figures) {
-    EXPECT_THAT(figure.chart.x_label,
-                HasSubstr(figure.name == "segments_error" || figure.name == "update_rate" ||
-                                  figure.name == "approximation_error"
-                              ? ""
-                              : "["))
-        << figure.name;
+    // What is counted has no unit.
+    const bool counted = figure.name == "segments_error" || figure.name == "update_rate" ||
+                         figure.name == "approximation_error";
+    EXPECT_EQ(figure.chart.x_label.find('[') == std::string::npos, counted) << figure.name;
+    EXPECT_FALSE(figure.chart.x_label.empty()) << figure.name;
     EXPECT_FALSE(figure.chart.y_label.empty()) << figure.name;
     EXPECT_FALSE(figure.chart.curves.empty()) << figure.name;
     for (const Curve& curve : figure.chart.curves) {

@@ -9,16 +9,18 @@
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/gaussian.h>
 #include <kerf/drivers/simulated_axis.h>
+#include <kerf/drivers/uri.h>
 
 namespace kerf::drivers {
 
-/// What every simulated device has in common: axes with a hand on them, stepped every 50 us under the command,
-/// the tissue and the hand; encoders, a force sensor, limits, and the release that a watchdog asks for.
+/// What every simulated device has in common: axes with a hand on them, stepped every 50 us under the
+/// command, the tissue and the hand; encoders, a force sensor, limits, and the release that a watchdog asks
+/// for.
 ///
 /// The velocity is what a driver would give: the difference of the encoder's position, low-passed at first
-/// order with a corner of 20 Hz. The force sensor reads what the tissue exerts, with white noise of 20 mN and a
-/// step of 2 mN (0.2 mN·m and 0.02 mN·m for a torque). With `truth`, the position before the encoder and the tissue's force before the
-/// sensor are further channels.
+/// order with a corner of 20 Hz. The force sensor reads what the tissue exerts, with white noise of 20 mN and
+/// a step of 2 mN (0.2 mN·m and 0.02 mN·m for a torque). With `truth`, the position before the encoder and
+/// the tissue's force before the sensor are further channels.
 class SimulatedMechanism {
  public:
   struct Options {
@@ -26,6 +28,9 @@ class SimulatedMechanism {
     bool with_encoder = true;  ///< steps of the encoders
     bool with_truth = false;
     std::uint64_t seed = 1;
+
+    /// Takes seed, noise, encoder and truth out of a URI. @throws DeviceError for a bad value.
+    static Options from(UriOptions& given);
   };
   /// Where the hand wants an axis to be, in the axis' own travel.
   struct Equilibrium {
@@ -53,8 +58,8 @@ class SimulatedMechanism {
       step(states, force);
     });
   }
-  /// The same for axes that act on each other: `move(time_s, states, force)` takes all of them one step on under
-  /// the force of command and tissue.
+  /// The same for axes that act on each other: `move(time_s, states, force)` takes all of them one step on
+  /// under the force of command and tissue.
   template <typename Move>
   void run_coupled_until(double now_s, Move move) noexcept {
     const auto target = static_cast<std::uint64_t>(std::llround(std::max(0.0, now_s) / sub_step_s));

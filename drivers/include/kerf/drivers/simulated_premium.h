@@ -19,9 +19,9 @@ namespace kerf::drivers {
 ///
 ///     H q'' + C q' + g = tau + J^T [K (x_d - x) + D (x_d' - J q')] - b q' - f_c sign(q')
 ///
-/// where the hand's mass is a payload whose weight the hand carries itself. Stepped every 50 us for the speed at
-/// its end, with C, the hand and viscous friction implicit; Coulomb friction takes at most the speed there is, so
-/// that a joint can stick, and a stop takes the speed towards it. None of them makes energy.
+/// where the hand's mass is a payload whose weight the hand carries itself. Stepped every 50 us for the speed
+/// at its end, with C, the hand and viscous friction implicit; Coulomb friction takes at most the speed there
+/// is, so that a joint can stick, and a stop takes the speed towards it. None of them makes energy.
 class SimulatedPremium final : public Device {
  public:
   struct Options {
@@ -39,8 +39,8 @@ class SimulatedPremium final : public Device {
   /// @throws DeviceError for a waypoint that the tip cannot reach.
   SimulatedPremium(std::string_view uri, const Options& options, Surroundings surroundings);
 
-  /// Reads the options of a URI: seed, hand, noise, encoder, truth, friction, gravity, payload, path, reach, stroke,
-  /// pause, grip; it leaves `fault` to open_device().
+  /// Reads the options of a URI: seed, hand, noise, encoder, truth, friction, gravity, payload, path, reach,
+  /// stroke, pause, grip; it leaves `fault` to open_device().
   /// @throws DeviceError for one that is unknown or out of range.
   static Options parse_options(Uri uri);
 

@@ -8,8 +8,8 @@
 
 namespace kerf::drivers {
 
-/// The way of a hand from waypoint to waypoint: it rests at each for a pause and goes straight to the next along a
-/// stroke of minimum jerk, after the last one back to the first. A function of time alone.
+/// The way of a hand from waypoint to waypoint: it rests at each for a pause and goes straight to the next
+/// along a stroke of minimum jerk, after the last one back to the first. A function of time alone.
 class TipPath {
  public:
   struct Options {

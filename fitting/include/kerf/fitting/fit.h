@@ -76,11 +76,11 @@ void check_model(std::string_view model);
 
 /// Fits one law of the registry by least squares on the law's own step.
 ///
-/// Kelvin, exponential and precontact: a scan over the one nonlinear parameter gives three starts, and the best
-/// of the three solutions is kept. Analytical scissors: linear in all parameters, which gives the start. Piecewise: dynamic programming over a grid gives the breakpoints, which are then
-/// polished together with the forces under continuity. Recording: linear least squares on the table's own
-/// interpolation. Laws with two branches are fitted to cycles as loops, and are judged without their
-/// rendering aids.
+/// Kelvin, exponential and precontact: a scan over the one nonlinear parameter gives three starts, and the
+/// best of the three solutions is kept. Analytical scissors: linear in all parameters, which gives the start.
+/// Piecewise: dynamic programming over a grid gives the breakpoints, which are then polished together with
+/// the forces under continuity. Recording: linear least squares on the table's own interpolation. Laws with
+/// two branches are fitted to cycles as loops, and are judged without their rendering aids.
 ///
 /// Intervals are Student's t on the larger of two variances: that of s^2 tau (J^T J)^-1, where tau is the
 /// integrated autocorrelation time of the residuals (Sokal's window), so that n / tau samples count; and that

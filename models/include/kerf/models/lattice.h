@@ -27,9 +27,14 @@ struct LatticeOptions {
 /// 0), and bounds every assembly of cells: u'Ku / u'Mu = sum of the cells' u'Kc u over sum of their u'Mc u is
 /// a mediant of Rayleigh quotients <= s, and pinning only narrows the u to choose from. Bedding adds kb/m to
 /// every mode, as each corner has the same share of bedding as of mass. A lattice cut into single cells
-/// reaches the limit; a whole one with k = kd is stable up to 1.19 times it without damping. Throws
-/// std::invalid_argument where an option is out of range.
-[[nodiscard]] double stable_step(const LatticeOptions& options);
+/// reaches the limit; a whole one with k = kd is stable up to 1.19 times it without damping. With a
+/// coupling it is coupling_limit() solved for dt. Throws std::invalid_argument where an option is out of
+/// range.
+[[nodiscard]] double stable_step(const LatticeOptions& options, double coupling_stiffness_n_per_m = 0.0,
+                                 double coupling_damping_n_s_per_m = 0.0);
+
+/// Share of the stable step that sub-steps are made of.
+inline constexpr double step_safety = 0.9;
 
 /// Sub-steps into which a period [s] is split, so that each is at most 0.9 of the stable step.
 [[nodiscard]] int substeps(const LatticeOptions& options, double period_s);

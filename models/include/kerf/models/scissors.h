@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cmath>
-#include <optional>
+#include <vector>
 
 #include <kerf/models/parameter.h>
 
@@ -29,19 +29,9 @@ struct ScissorsGeometry {
     return 2.0 * std::atan(tip_half_width_m / blade_length_m);
   }
 
-  /// Half width of a blade at the cutting point, t(theta) [m], for an angle in (0, pi).
-  [[nodiscard]] double half_width(double theta_rad) const noexcept {
-    const double slope = std::tan(0.5 * theta_rad);
-    return pivot_half_width_m * slope / (slope + (pivot_half_width_m - tip_half_width_m) / blade_length_m);
-  }
-
-  /// Distance of the cutting point from the pivot, x_c [m]; none where the blades do not cut.
-  [[nodiscard]] std::optional<double> cutting_point(double theta_rad) const noexcept {
-    if (!(theta_rad >= closing_angle() && theta_rad <= widest_angle_rad)) return std::nullopt;
-    return half_width(theta_rad) / std::sin(0.5 * theta_rad);
-  }
-
-  /// Reads the options pivot_half_width, tip_half_width, blade_length and widest_angle of a law.
+  /// The options pivot_half_width, tip_half_width, blade_length and widest_angle of a law.
+  static std::vector<OptionInfo> options();
+  /// Reads them.
   /// @throws std::invalid_argument if one is out of range, or the tip is not the narrower end.
   static ScissorsGeometry make(const OptionReader& reader);
 };
@@ -68,6 +58,10 @@ class CuttingPoint {
   /// Distance from the pivot [m]; theta within the cutting angles.
   [[nodiscard]] double operator()(double theta_rad) const noexcept {
     return scale_m_ / std::sin(0.5 * theta_rad + taper_rad_);
+  }
+  /// Half width of a blade there, t(theta) [m].
+  [[nodiscard]] double half_width(double theta_rad) const noexcept {
+    return (*this)(theta_rad)*std::sin(0.5 * theta_rad);
   }
   /// Half the gap between the cutting edges at a distance from the pivot [m]; negative behind the cutting
   /// point.

@@ -47,16 +47,12 @@ struct ScissorsAnalytic {
             {"cutting_force", Quantity::load, 0.0, 1e6, Scale::linear, "f_cf, at the cutting point"}};
   }
   static std::vector<OptionInfo> options() {
-    auto all = BranchSelector::options();
-    const ScissorsGeometry standard;
-    all.insert(
-        all.begin(),
-        {{"contact_angle", 0.5, "angle between the blades where they meet the material, x = 0 [rad]"},
-         {"lever", 0.28 / 7.58, "l_h, of the handle [m]"},
-         {"pivot_half_width", standard.pivot_half_width_m, "t_max, half a blade's width at the pivot [m]"},
-         {"tip_half_width", standard.tip_half_width_m, "t_min, half a blade's width at the tip [m]"},
-         {"blade_length", standard.blade_length_m, "l_t [m]"},
-         {"widest_angle", standard.widest_angle_rad, "angle at which the blades lose contact [rad]"}});
+    std::vector<OptionInfo> all{
+        {"contact_angle", 0.5, "angle between the blades where they meet the material, x = 0 [rad]"},
+        {"lever", 0.28 / 7.58, "l_h, of the handle [m]"}};
+    for (const auto& more : {ScissorsGeometry::options(), BranchSelector::options()}) {
+      all.insert(all.end(), more.begin(), more.end());
+    }
     return all;
   }
   static ScissorsAnalytic make(std::span<const T> values, const Options& given) {

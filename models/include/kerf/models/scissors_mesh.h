@@ -37,7 +37,7 @@ namespace kerf::models {
 /// slab is then split from where the cut began to its front.
 ///
 /// Both lattices take semi-implicit Euler steps, as many a tick as their stiffest spring and their couplings
-/// need (coupled_step()).
+/// need (stable_step()).
 ///
 /// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: 003, section 2; differs from the paper
 /// in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
@@ -105,9 +105,5 @@ struct ScissorsMesh {
   void break_elements(State& state, const Blades& blades) const noexcept;
   void end_cut(State& state) const noexcept;
 };
-
-/// Largest stable step of a lattice with a coupling at each node in turn [s]: coupling_limit() solved for dt.
-[[nodiscard]] double coupled_step(const LatticeOptions& options, double stiffness_n_per_m,
-                                  double damping_n_s_per_m);
 
 }  // namespace kerf::models
