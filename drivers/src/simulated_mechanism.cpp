@@ -9,7 +9,6 @@ namespace {
 constexpr double sensor_noise_n = 0.02;
 constexpr double sensor_step_n = 0.002;
 constexpr double torque_sensor_m = 0.01;  // a six-axis sensor resolves torques as forces at so long a lever
-constexpr double velocity_corner_rad_s = 2.0 * std::numbers::pi * 20.0;
 
 double rounded_to(double value, double step) noexcept {
   return step > 0.0 ? step * std::round(value / step) : value;
@@ -77,18 +76,11 @@ void SimulatedMechanism::touch_tissue() noexcept {
 }
 
 void SimulatedMechanism::measure(double now_s, Sample& sample) noexcept {
-  const double elapsed_s = now_s - last_read_s_;
-  last_read_s_ = now_s;
   for (std::size_t at = 0; at < count_; ++at) {
     const double truth = states_[at].travel_m / lever_[at];
     const double position = rounded_to(truth, options_.with_encoder ? info_.axes[at].resolution : 0.0);
-    if (was_read_ && elapsed_s > 0.0) {
-      const double difference = (position - last_position_[at]) / elapsed_s;
-      velocity_[at] += -std::expm1(-velocity_corner_rad_s * elapsed_s) * (difference - velocity_[at]);
-    }
-    last_position_[at] = position;
     sample.position[at] = position;
-    sample.velocity[at] = velocity_[at];
+    sample.velocity[at] = velocity_.update(at, position, now_s);
     sample.force_measured[at] =
         options_.with_noise ? rounded_to(tissue_force_[at] + sensor_scale_[at] * sensor_noise_n * noise_(),
                                          sensor_scale_[at] * sensor_step_n)
@@ -97,7 +89,7 @@ void SimulatedMechanism::measure(double now_s, Sample& sample) noexcept {
     sample.channels[first_truth_ + at] = truth;
     sample.channels[first_truth_ + count_ + at] = tissue_force_[at];
   }
-  was_read_ = true;
+  velocity_.advance(now_s);
 }
 
 Status SimulatedMechanism::write(const Axes& force) noexcept {

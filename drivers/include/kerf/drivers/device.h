@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -49,6 +50,13 @@ struct DeviceInfo {
   std::string configuration;  ///< the settings that it runs with, as TOML, for the recording
 };
 
+/// Something that a device counted while it ran.
+struct Figure {
+  std::string name;  ///< "report_rate", "clock_drift", ...
+  double value = 0.0;
+  std::string unit;  ///< "Hz", "ppm"; "1" for a count
+};
+
 /// What a device says in one tick.
 struct Sample {
   Axes position{};
@@ -89,6 +97,9 @@ class Device {
   /// thread of its own, at any time, also while read() or write() is at work. A real device ignores the
   /// argument and acts at once.
   virtual void release(double at_s) noexcept = 0;
+
+  /// What it counted so far: rates, losses, drift. Not for the tick.
+  [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
 };
 
 /// What a simulated tool meets: the force that tissue exerts along one axis, positive where it pushes the
@@ -101,6 +112,9 @@ struct Surroundings {
   /// Lets so many seconds pass where a simulated device is slow; empty: the calling thread sleeps. A loop in
   /// virtual time moves its clock.
   std::function<void(double seconds)> pass_time;
+  /// Set when nobody waits for the device any more: opening one that waits for a person (homing) then fails.
+  /// Real devices take this one thing.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 /// Opens a device by URI, for example "sim:scissors?seed=3&noise=off".
@@ -108,7 +122,18 @@ struct Surroundings {
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings);
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri);
 
-/// The devices that can be opened here now, simulated ones first.
+/// The simulated devices, with what their URIs need to say at least.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// A device on the USB of this machine that Kerf knows how to speak to.
+struct AttachedDevice {
+  std::string uri;
+  std::string about;
+  std::string node;      ///< what must be readable and writable
+  bool emulated = false;  ///< it hangs on a virtual bus
+  std::string problem;   ///< why it cannot be opened, and how to mend that; empty if it can
+};
+/// Those that are there now. Opens none of them.
+[[nodiscard]] std::vector<AttachedDevice> list_attached();
 
 }  // namespace kerf::drivers

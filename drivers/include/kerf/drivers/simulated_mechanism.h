@@ -10,6 +10,7 @@
 #include <kerf/drivers/gaussian.h>
 #include <kerf/drivers/simulated_axis.h>
 #include <kerf/drivers/uri.h>
+#include <kerf/drivers/velocity_filter.h>
 
 namespace kerf::drivers {
 
@@ -17,8 +18,7 @@ namespace kerf::drivers {
 /// command, the tissue and the hand; encoders, a force sensor, limits, and the release that a watchdog asks
 /// for.
 ///
-/// The velocity is what a driver would give: the difference of the encoder's position, low-passed at first
-/// order with a corner of 20 Hz. The force sensor reads what the tissue exerts, with white noise of 20 mN and
+/// The velocity is what a driver would give, by VelocityFilter. The force sensor reads what the tissue exerts, with white noise of 20 mN and
 /// a step of 2 mN (0.2 mN·m and 0.02 mN·m for a torque). With `truth`, the position before the encoder and
 /// the tissue's force before the sensor are further channels.
 class SimulatedMechanism {
@@ -98,10 +98,7 @@ class SimulatedMechanism {
   Axes command_{};
   std::atomic<double> released_at_s_{never};
   std::uint64_t steps_ = 0;
-  double last_read_s_ = 0.0;
-  bool was_read_ = false;
-  Axes last_position_{};
-  Axes velocity_{};
+  VelocityFilter velocity_;
 };
 
 }  // namespace kerf::drivers

@@ -1,0 +1,122 @@
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <kerf/drivers/device.h>
+
+#include "attach.h"
+#include "faults.h"
+#include "make_device.h"
+#include "session.h"
+
+namespace {
+
+using namespace kerf::emulators;
+
+constexpr int device_error = 3;
+std::atomic<bool> stop{false};
+
+struct Arguments {
+  std::string device;
+  std::string faults;
+  bool attach = false;
+  std::uint16_t port = usbip::default_port;
+  double seconds = 0.0;
+  unsigned times = 1;
+  double pause_s = 0.5;
+};
+
+/// As prompt as the permissions allow: an emulated device that answers late is a late device.
+void be_prompt() {
+  constexpr sched_param parameters{.sched_priority = 82};  // above the threads that wait for it
+  sched_setscheduler(0, SCHED_FIFO, &parameters);
+  prctl(PR_SET_TIMERSLACK, 1UL);
+}
+
+Descriptor plug_in(const Arguments& arguments, const Descriptor& listening, const Description& description) {
+  if (arguments.attach) return attach_here(description);
+  while (!stop.load()) {
+    Descriptor client = accept_import(listening, description, 200);
+    if (client.number() >= 0) return client;
+  }
+  return Descriptor();
+}
+
+const char* in_words(Session::End end) {
+  switch (end) {
+    case Session::End::host_left:
+      return "detached by the host";
+    case Session::End::unplugged:
+      return "unplugged, as asked for";
+    case Session::End::time_over:
+      return "its time is over";
+    default:
+      return "stopped";
+  }
+}
+
+int run(const Arguments& arguments) {
+  const FaultPlan plan(parse_faults(arguments.faults));
+  Descriptor listening;
+  if (!arguments.attach) {
+    listening = listen_on(arguments.port);
+    std::fprintf(stderr, "kerf-emulate: %s waits on 127.0.0.1:%u; attach it with 'usbip attach -r 127.0.0.1 -b %s'\n",
+                 arguments.device.c_str(), arguments.port, usbip::bus_id);
+  }
+  for (unsigned plugged = 0; !stop.load() && (arguments.times == 0 || plugged < arguments.times); ++plugged) {
+    if (plugged > 0) {
+      const auto pause = static_cast<std::int64_t>(1e9 * arguments.pause_s);
+      const timespec wait{.tv_sec = pause / 1'000'000'000, .tv_nsec = pause % 1'000'000'000};
+      nanosleep(&wait, nullptr);
+    }
+    const auto device = make_device(arguments.device);
+    const Descriptor host = plug_in(arguments, listening, device->description());
+    if (host.number() < 0) break;
+    std::fprintf(stderr, "kerf-emulate: %s is plugged in\n", arguments.device.c_str());
+    const auto end = Session(host.number(), *device, plan).run(stop, arguments.seconds);
+    std::fprintf(stderr, "kerf-emulate: %s: %s; %s\n", arguments.device.c_str(), in_words(end), device->tell().c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** texts) {
+  Arguments arguments;
+  CLI::App app(
+      "kerf-emulate plays a device on the USB of this machine or of another, over USB/IP: its descriptors, its wire\n"
+      "protocol, and behind them a mechanism in a hand that the motor commands really move.\n\n"
+      "Devices: falcon, woody, u6, spacemouse; options stand behind a question mark, as in docs/devices.md.\n"
+      "Example, as root: modprobe vhci-hcd && kerf-emulate falcon --attach");
+  app.add_option("device", arguments.device, "Device, with its options: 'woody?generation=v1'")->required();
+  app.add_flag("--attach", arguments.attach, "Plug it into this machine's own kernel (root, vhci-hcd)");
+  app.add_option("--port", arguments.port, "Else wait for 'usbip attach' on this port of loopback")
+      ->capture_default_str();
+  app.add_option("--fault", arguments.faults,
+                 "What goes wrong: KIND@SECONDS[:COUNT],..., from when it was plugged in; KIND is drop, split, corrupt, "
+                 "stall or unplug");
+  app.add_option("--seconds", arguments.seconds, "Unplug it after so long; 0: never")->check(CLI::Range(0.0, 1e9));
+  app.add_option("--times", arguments.times, "Plug it in so many times; 0: for ever")->capture_default_str();
+  app.add_option("--pause", arguments.pause_s, "Between unplugging and plugging in again [s]")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  CLI11_PARSE(app, count, texts);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
+  try {
+    be_prompt();
+    return run(arguments);
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "kerf-emulate: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "kerf-emulate: %s\n", error.what());
+    return device_error;
+  }
+}

@@ -1,0 +1,18 @@
+#include "make_device.h"
+
+#include <kerf/drivers/device.h>
+#include <kerf/drivers/uri.h>
+
+#include "spacemouse.h"
+
+namespace kerf::emulators {
+
+std::unique_ptr<EmulatedDevice> make_device(std::string_view text) {
+  drivers::Uri uri = drivers::parse_uri(text);
+  if (uri.name == "spacemouse") {
+    return std::make_unique<EmulatedSpaceMouse>(EmulatedSpaceMouse::parse_options(std::move(uri)));
+  }
+  throw drivers::DeviceError("no emulator of '" + uri.name + "'; there are falcon, woody, u6 and spacemouse");
+}
+
+}  // namespace kerf::emulators

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+
+#include "emulated_device.h"
+#include "faults.h"
+#include "usbip.h"
+
+namespace kerf::emulators {
+
+/// One attachment of an emulated device to a host, over a socket that speaks USB/IP: from plugging in to unplugging.
+class Session {
+ public:
+  enum class End : std::uint8_t { host_left, unplugged, stopped, time_over };
+
+  /// `socket` stays the caller's, who closes it afterwards: that is what unplugs the device.
+  Session(int socket, EmulatedDevice& device, FaultPlan faults);
+
+  /// Serves until `stop`, the host's leave, an `unplug` that is due, or `seconds` are over (0: never).
+  /// @throws std::runtime_error if the host says what no host says.
+  End run(const std::atomic<bool>& stop, double seconds);
+
+ private:
+  /// A transfer of the host that waits for data.
+  struct Waiting {
+    std::uint32_t sequence;
+    std::uint32_t length;
+    std::int64_t since_ns;
+  };
+  struct Endpoint {
+    std::deque<Waiting> waiting;
+    std::int64_t last_end_ns = 0;
+  };
+
+  bool read_messages(std::int64_t now_ns);
+  void take(const usbip::Request& request, std::span<const std::uint8_t> data, std::int64_t now_ns);
+  void take_control(const usbip::Request& request, std::span<const std::uint8_t> data, std::int64_t now_ns);
+  [[nodiscard]] std::optional<Bytes> answer(const Setup& setup, std::span<const std::uint8_t> data,
+                                            std::int64_t now_ns);
+  [[nodiscard]] std::optional<Bytes> descriptor(const Setup& setup) const;
+  void unlink(const usbip::Request& request);
+  void serve_waiting(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t wait_until_ns(std::int64_t now_ns, double seconds) const;
+  void reply(std::uint32_t sequence, std::int32_t status, std::span<const std::uint8_t> data, std::size_t actual);
+  void reply_in(std::uint32_t sequence, std::span<const std::uint8_t> data) { reply(sequence, 0, data, data.size()); }
+  void write_all(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] double seconds_at(std::int64_t now_ns) const {
+    return 1e-9 * static_cast<double>(now_ns - start_ns_);
+  }
+
+  int socket_;
+  EmulatedDevice& device_;
+  FaultPlan faults_;
+  std::int64_t start_ns_;
+  std::array<Endpoint, 16> endpoints_;
+  Bytes received_;
+  Bytes answer_;
+  bool open_ = true;
+};
+
+}  // namespace kerf::emulators

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+struct libusb_context;
+struct libusb_device_handle;
+struct libusb_transfer;
+
+namespace kerf::drivers::usb {
+
+/// What a device calls itself on the bus.
+struct Identity {
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+  std::string_view what;  ///< "Novint Falcon"
+};
+
+/// A device of some identity that is attached now.
+struct Attached {
+  std::string node;  ///< /dev/bus/usb/001/004 or /dev/hidraw0
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;
+  std::string name;           ///< product string, if it has one
+  bool may_open = false;      ///< this user may read and write the node
+  bool emulated = false;      ///< it hangs on a virtual bus (USB/IP)
+};
+
+/// How to obtain the permission to open a node, in half a sentence.
+[[nodiscard]] std::string permission_mend();
+/// Whether a device, by its folder in /sys, hangs on a virtual bus.
+[[nodiscard]] bool is_emulated(const std::string& sys_folder);
+
+/// Devices of one vendor and product, in the order of the bus. Empty where there is no USB at all.
+[[nodiscard]] std::vector<Attached> find_usb(std::uint16_t vendor, std::uint16_t product);
+
+/// An open USB device with its interface 0 claimed, by libusb.
+///
+/// The functions that wait are for set-up: they allocate, and throw DeviceError. While it runs, a device is spoken to by
+/// Transfers and one thread that calls handle_events().
+class UsbDevice {
+ public:
+  /// Opens the `index`-th device of an identity.
+  /// @throws DeviceError if it is not there, may not be opened or is in use, each with its mend.
+  UsbDevice(const Identity& identity, std::size_t index);
+  UsbDevice(const UsbDevice&) = delete;
+  UsbDevice& operator=(const UsbDevice&) = delete;
+  ~UsbDevice();
+
+  /// A control transfer without data, "vendor, to the device". @throws DeviceError
+  void control_out(std::uint8_t request, std::uint16_t value, std::uint16_t index = 0);
+  /// Sends all bytes. @throws DeviceError
+  void bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms = 1000);
+  /// Receives up to buffer.size() bytes; 0 if none came in time. @throws DeviceError
+  std::size_t bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms = 1000);
+
+  /// Waits until a transfer has ended, `wake_descriptor` (if not -1) is readable or the time is over, and calls the
+  /// handlers of what has ended. From one thread.
+  void handle_events(std::int64_t most_ns, int wake_descriptor = -1) noexcept;
+
+  [[nodiscard]] libusb_device_handle* handle() const noexcept { return handle_; }
+  [[nodiscard]] const std::string& node() const noexcept { return node_; }
+
+ private:
+  [[noreturn]] void fail(std::string_view doing, int error) const;
+
+  std::string what_;
+  std::string node_;
+  libusb_context* context_ = nullptr;
+  libusb_device_handle* handle_ = nullptr;
+  struct Waited {
+    int descriptor;
+    short events;
+  };
+  std::vector<Waited> waited_;  ///< what libusb waits for
+};
+
+/// A transfer that is allocated once and submitted again and again.
+class Transfer {
+ public:
+  enum class End : std::uint8_t { completed, stalled, cancelled, failed, gone };
+  /// Called from handle_events(): how it ended, and what was received. It may submit again.
+  using Handler = std::function<void(End, std::span<const std::uint8_t>)>;
+
+  /// `endpoint` with bit 7 set receives.
+  Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, Handler handler);
+  Transfer(const Transfer&) = delete;
+  Transfer& operator=(const Transfer&) = delete;
+  /// Cancels it and handles events until it has ended.
+  ~Transfer();
+
+  /// Room for what is to be sent.
+  [[nodiscard]] std::span<std::uint8_t> buffer() noexcept { return {buffer_.data(), buffer_.size()}; }
+  /// Submits it with so many bytes; false if the device is gone. Only while it is not pending.
+  bool submit(std::size_t size) noexcept;
+  bool submit() noexcept { return submit(buffer_.size()); }
+  void cancel() noexcept;
+  [[nodiscard]] bool pending() const noexcept { return pending_; }
+
+ private:
+  UsbDevice& device_;
+  std::vector<std::uint8_t> buffer_;
+  Handler handler_;
+  libusb_transfer* transfer_;
+  bool pending_ = false;
+};
+
+}  // namespace kerf::drivers::usb

@@ -1,0 +1,229 @@
+#include "kerf/drivers/usb/usb_device.h"
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+
+#include <libusb.h>
+#include <poll.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
+
+#include "kerf/drivers/device.h"
+
+namespace kerf::drivers::usb {
+namespace {
+
+constexpr int control_timeout_ms = 1000;
+constexpr std::uint8_t vendor_out = 0x40;
+
+std::string node_of(libusb_device* device) {
+  return fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device),
+                     libusb_get_device_address(device));
+}
+
+/// The folder of a device in /sys, by bus number and port chain: "1-2.3".
+std::string sys_folder_of(libusb_device* device) {
+  std::array<std::uint8_t, 8> ports{};
+  const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
+  std::string name = fmt::format("/sys/bus/usb/devices/{}", libusb_get_bus_number(device));
+  for (int i = 0; i < count; ++i) {
+    name += fmt::format("{}{}", i == 0 ? '-' : '.', ports[static_cast<std::size_t>(i)]);
+  }
+  return name;
+}
+
+std::string first_line_of(const std::string& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+/// Calls `take(device)` for each attached device of an identity until it returns false.
+template <typename F>
+void for_each(libusb_context* context, std::uint16_t vendor, std::uint16_t product, F take) {
+  libusb_device** list = nullptr;
+  const ssize_t count = libusb_get_device_list(context, &list);
+  for (ssize_t i = 0; i < count; ++i) {
+    libusb_device_descriptor descriptor{};
+    if (libusb_get_device_descriptor(list[i], &descriptor) != LIBUSB_SUCCESS) continue;
+    if (descriptor.idVendor != vendor || descriptor.idProduct != product) continue;
+    if (!take(list[i])) break;
+  }
+  if (count >= 0) libusb_free_device_list(list, 1);
+}
+
+}  // namespace
+
+std::string permission_mend() {
+  return "copy drivers/udev/70-kerf.rules to /etc/udev/rules.d, run 'udevadm control --reload', and plug it in "
+         "again";
+}
+
+bool is_emulated(const std::string& sys_folder) {
+  std::error_code error;
+  const auto real = std::filesystem::canonical(sys_folder, error);
+  return !error && (real.string().find("/vhci_hcd") != std::string::npos ||
+                    real.string().find("/dummy_hcd") != std::string::npos);
+}
+
+std::vector<Attached> find_usb(std::uint16_t vendor, std::uint16_t product) {
+  libusb_context* context = nullptr;
+  if (libusb_init(&context) != LIBUSB_SUCCESS) return {};
+  std::vector<Attached> found;
+  for_each(context, vendor, product, [&](libusb_device* device) {
+    const std::string node = node_of(device);
+    const std::string folder = sys_folder_of(device);
+    found.push_back({.node = node,
+                     .vendor = vendor,
+                     .product = product,
+                     .name = first_line_of(folder + "/product"),
+                     .may_open = access(node.c_str(), R_OK | W_OK) == 0,
+                     .emulated = is_emulated(folder)});
+    return true;
+  });
+  libusb_exit(context);
+  return found;
+}
+
+UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identity.what) {
+  if (const int error = libusb_init(&context_); error != LIBUSB_SUCCESS) {
+    throw DeviceError(fmt::format("{}: no USB here ({}); is /dev/bus/usb there?", what_, libusb_error_name(error)));
+  }
+  std::size_t count = 0;
+  int error = LIBUSB_ERROR_NOT_FOUND;
+  for_each(context_, identity.vendor, identity.product, [&](libusb_device* device) {
+    if (count++ < index) return true;
+    node_ = node_of(device);
+    error = libusb_open(device, &handle_);
+    return false;
+  });
+  try {
+    if (error == LIBUSB_ERROR_NOT_FOUND && node_.empty()) {
+      throw DeviceError(fmt::format(
+          "{}: number {} is not attached ({} of {:04x}:{:04x} found); plug it in, or start its emulator: kerf-emulate",
+          what_, index, count, identity.vendor, identity.product));
+    }
+    if (error != LIBUSB_SUCCESS) fail("opening it", error);
+    libusb_set_auto_detach_kernel_driver(handle_, 1);
+    if (error = libusb_claim_interface(handle_, 0); error != LIBUSB_SUCCESS) fail("claiming its interface", error);
+  } catch (...) {
+    if (handle_ != nullptr) libusb_close(handle_);
+    libusb_exit(context_);
+    throw;
+  }
+  const libusb_pollfd** all = libusb_get_pollfds(context_);
+  for (const libusb_pollfd** one = all; one != nullptr && *one != nullptr; ++one) {
+    waited_.push_back({.descriptor = (*one)->fd, .events = (*one)->events});
+  }
+  libusb_free_pollfds(all);
+}
+
+UsbDevice::~UsbDevice() {
+  libusb_release_interface(handle_, 0);
+  libusb_close(handle_);
+  libusb_exit(context_);
+}
+
+void UsbDevice::fail(std::string_view doing, int error) const {
+  switch (error) {
+    case LIBUSB_ERROR_ACCESS:
+      throw DeviceError(fmt::format("{}: no permission for {}; {}", what_, node_, permission_mend()));
+    case LIBUSB_ERROR_BUSY:
+      throw DeviceError(fmt::format("{}: {} is in use by another program; close that program", what_, node_));
+    case LIBUSB_ERROR_NO_DEVICE:
+      throw DeviceError(fmt::format("{}: {} was unplugged; plug it in again", what_, node_));
+    default:
+      throw DeviceError(fmt::format("{}: {}: {} failed ({}); unplug it and plug it in again", what_, node_, doing,
+                                    libusb_error_name(error)));
+  }
+}
+
+void UsbDevice::control_out(std::uint8_t request, std::uint16_t value, std::uint16_t index) {
+  const int error =
+      libusb_control_transfer(handle_, vendor_out, request, value, index, nullptr, 0, control_timeout_ms);
+  if (error < 0) fail(fmt::format("control request {}", request), error);
+}
+
+void UsbDevice::bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms) {
+  std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());  // libusb's pointer is not const
+  int sent = 0;
+  const int error = libusb_bulk_transfer(handle_, endpoint, copy.data(), static_cast<int>(copy.size()), &sent,
+                                         static_cast<unsigned>(timeout_ms));
+  if (error != LIBUSB_SUCCESS) fail("sending", error);
+  if (sent != static_cast<int>(copy.size())) fail("sending", LIBUSB_ERROR_IO);
+}
+
+std::size_t UsbDevice::bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms) {
+  int received = 0;
+  const int error = libusb_bulk_transfer(handle_, endpoint, buffer.data(), static_cast<int>(buffer.size()),
+                                         &received, static_cast<unsigned>(timeout_ms));
+  if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_TIMEOUT) fail("receiving", error);
+  return static_cast<std::size_t>(received);
+}
+
+void UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcept {
+  std::array<pollfd, 8> waited{};
+  std::size_t count = 0;
+  for (const Waited& one : waited_) {
+    if (count + 1 < waited.size()) waited[count++] = {.fd = one.descriptor, .events = one.events, .revents = 0};
+  }
+  if (wake_descriptor >= 0) waited[count++] = {.fd = wake_descriptor, .events = POLLIN, .revents = 0};
+  const timespec most{.tv_sec = most_ns / 1'000'000'000, .tv_nsec = most_ns % 1'000'000'000};
+  ppoll(waited.data(), count, &most, nullptr);
+  timeval at_once{};
+  libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
+}
+
+Transfer::Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, Handler handler)
+    : device_(device), buffer_(size), handler_(std::move(handler)), transfer_(libusb_alloc_transfer(0)) {
+  if (transfer_ == nullptr) throw std::bad_alloc();
+  constexpr auto ended = [](libusb_transfer* transfer) {
+    auto& self = *static_cast<Transfer*>(transfer->user_data);
+    self.pending_ = false;
+    End end = End::failed;
+    switch (transfer->status) {
+      case LIBUSB_TRANSFER_COMPLETED:
+        end = End::completed;
+        break;
+      case LIBUSB_TRANSFER_STALL:
+        end = End::stalled;
+        break;
+      case LIBUSB_TRANSFER_CANCELLED:
+        end = End::cancelled;
+        break;
+      case LIBUSB_TRANSFER_NO_DEVICE:
+        end = End::gone;
+        break;
+      default:
+        break;
+    }
+    self.handler_(end, {transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
+  };
+  libusb_fill_bulk_transfer(transfer_, device.handle(), endpoint, buffer_.data(), static_cast<int>(size), ended, this,
+                            0);
+}
+
+Transfer::~Transfer() {
+  cancel();
+  // A device that is gone ends its transfers too; a second is far more than any takes.
+  for (int waited = 0; pending_ && waited < 100; ++waited) device_.handle_events(10'000'000);
+  // Freeing one that never ended would let libusb write into freed memory.
+  if (!pending_) libusb_free_transfer(transfer_);
+}
+
+bool Transfer::submit(std::size_t size) noexcept {
+  transfer_->length = static_cast<int>(size);
+  pending_ = libusb_submit_transfer(transfer_) == LIBUSB_SUCCESS;
+  return pending_;
+}
+
+void Transfer::cancel() noexcept {
+  if (pending_) libusb_cancel_transfer(transfer_);
+}
+
+}  // namespace kerf::drivers::usb

@@ -1,0 +1,119 @@
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/drivers/device.h>
+
+#include "emulator.h"
+
+namespace kerf::tests {
+namespace {
+
+using drivers::Status;
+
+double figure(const drivers::Device& device, std::string_view name) {
+  for (const auto& one : device.figures()) {
+    if (one.name == name) return one.value;
+  }
+  return -1.0;
+}
+
+/// Reads a device so many times at 1 kHz.
+template <typename F>
+void loop(drivers::Device& device, int ticks, F each) {
+  for (int tick = 0; tick < ticks; ++tick) {
+    drivers::Sample sample;
+    const Status status = device.read(1e-3 * tick, sample);
+    each(tick, status, sample);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(SpaceMouse, FollowsTheCapAtItsOwnPace) {
+  const Emulator emulator("spacemouse?amplitude=350");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  const auto device = drivers::open_device("spacemouse:0?reach=0.1m");
+  EXPECT_EQ(device->info().model, "SpaceNavigator");
+  EXPECT_EQ(device->info().axes.size(), 6U);
+  double farthest = 0.0;
+  double oldest = 0.0;
+  bool pressed = false;
+  loop(*device, 4000, [&](int tick, Status status, const drivers::Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    farthest = std::max(farthest, std::abs(sample.position[0]));
+    if (tick > 100) oldest = std::max(oldest, sample.channels[0]);
+    pressed |= sample.channels[1] == 1.0;
+  });
+  // Within 4 s of its 7.7 s period the cap has been at its full deflection, 350, which is 0.1 m.
+  EXPECT_NEAR(farthest, 0.1, 0.1 / 350.0);
+  EXPECT_TRUE(pressed);
+  // One report each 8 ms: translation and rotation by turns.
+  EXPECT_NEAR(figure(*device, "report_rate"), 125.0, 10.0);
+  EXPECT_LT(oldest, 0.03);
+}
+
+TEST(SpaceMouse, IsLostWhenItIsUnpluggedAndComesBack) {
+  Emulator emulator("spacemouse");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  {
+    const auto device = drivers::open_device("spacemouse:0");
+    Status last = Status::ok;
+    loop(*device, 1000, [&](int tick, Status status, const drivers::Sample&) {
+      if (tick == 200) emulator.unplug();
+      last = status;
+    });
+    EXPECT_EQ(last, Status::lost);
+  }
+  ASSERT_TRUE(becomes_attached("spacemouse:", false));
+  EXPECT_THROW(drivers::open_device("spacemouse:0"), drivers::DeviceError);
+  const Emulator again("spacemouse");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  loop(*drivers::open_device("spacemouse:0"), 50,
+       [&](int, Status status, const drivers::Sample&) { EXPECT_EQ(status, Status::ok); });
+}
+
+TEST(SpaceMouse, TakesNoHarmFromTornAndTurnedReports) {
+  const Emulator emulator("spacemouse", {"--fault", "split@0.5:20,corrupt@1.0:20,drop@1.5:20"});
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  const auto device = drivers::open_device("spacemouse:0");
+  loop(*device, 2500, [&](int, Status status, const drivers::Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    for (const double position : sample.position) EXPECT_LE(std::abs(position), 0.51);
+  });
+  EXPECT_GE(figure(*device, "malformed"), 20.0);
+}
+
+TEST(SpaceMouse, OfTwoProgramsOnlyOneHasIt) {
+  const Emulator emulator("spacemouse");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  const auto device = drivers::open_device("spacemouse:0");
+  try {
+    (void)drivers::open_device("spacemouse:0");
+    FAIL() << "opened twice";
+  } catch (const drivers::DeviceError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("in use by another program"));
+  }
+}
+
+TEST(SpaceMouse, SaysHowToObtainThePermission) {
+  const Emulator emulator("spacemouse");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  // As a user without rights; the children of this process are not asked.
+  ASSERT_EQ(seteuid(65534), 0);
+  std::string problem;
+  std::string refusal;
+  try {
+    (void)drivers::open_device("spacemouse:0");
+  } catch (const drivers::DeviceError& error) {
+    refusal = error.what();
+  }
+  ASSERT_EQ(seteuid(0), 0);
+  EXPECT_THAT(refusal, testing::AllOf(testing::HasSubstr("no permission for /dev/hidraw"),
+                                      testing::HasSubstr("70-kerf.rules")));
+}
+
+}  // namespace
+}  // namespace kerf::tests
