@@ -4,6 +4,7 @@
 #include <csignal>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -32,12 +33,16 @@ class Emulator {
   Emulator& operator=(const Emulator&) = delete;
   ~Emulator() { unplug(); }
 
-  /// Ends the emulator, which unplugs the device, and waits for that.
+  /// Ends the emulator, which unplugs the device, and waits until the kernel has noticed.
   void unplug() {
     if (process_ <= 0) return;
+    const std::size_t before = drivers::list_attached().size();
     kill(process_, SIGTERM);
     waitpid(process_, nullptr, 0);
     process_ = 0;
+    for (int tries = 0; tries < 500 && drivers::list_attached().size() >= before; ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
   }
 
  private:
@@ -53,6 +58,26 @@ inline bool becomes_attached(const std::string& scheme, bool attached = true) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   return false;
+}
+
+/// What a device counted; -1 if it does not count that.
+inline double figure(const drivers::Device& device, std::string_view name) {
+  for (const auto& one : device.figures()) {
+    if (one.name == name) return one.value;
+  }
+  return -1.0;
+}
+
+/// Ticks at 1 kHz by the clock: `each(tick, status, sample)` after each reading.
+template <typename F>
+void loop(drivers::Device& device, int ticks, F each) {
+  const auto start = std::chrono::steady_clock::now();
+  for (int tick = 0; tick < ticks; ++tick) {
+    std::this_thread::sleep_until(start + std::chrono::milliseconds(tick + 1));
+    drivers::Sample sample;
+    const drivers::Status status = device.read(1e-3 * tick, sample);
+    each(tick, status, sample);
+  }
 }
 
 }  // namespace kerf::tests

@@ -1,6 +1,4 @@
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,24 +11,6 @@ namespace kerf::tests {
 namespace {
 
 using drivers::Status;
-
-double figure(const drivers::Device& device, std::string_view name) {
-  for (const auto& one : device.figures()) {
-    if (one.name == name) return one.value;
-  }
-  return -1.0;
-}
-
-/// Reads a device so many times at 1 kHz.
-template <typename F>
-void loop(drivers::Device& device, int ticks, F each) {
-  for (int tick = 0; tick < ticks; ++tick) {
-    drivers::Sample sample;
-    const Status status = device.read(1e-3 * tick, sample);
-    each(tick, status, sample);
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-}
 
 TEST(SpaceMouse, FollowsTheCapAtItsOwnPace) {
   const Emulator emulator("spacemouse?amplitude=350");
@@ -83,7 +63,11 @@ TEST(SpaceMouse, TakesNoHarmFromTornAndTurnedReports) {
     EXPECT_EQ(status, Status::ok);
     for (const double position : sample.position) EXPECT_LE(std::abs(position), 0.51);
   });
-  EXPECT_GE(figure(*device, "malformed"), 20.0);
+  // Too short ones and unknown ones the kernel keeps to itself: 60 of some 310 are missing, the rest came.
+  EXPECT_NEAR(figure(*device, "reports"), 250.0, 15.0);
+  drivers::Sample last;
+  EXPECT_EQ(device->read(2.5, last), Status::ok);
+  EXPECT_LT(last.channels[0], 0.03);
 }
 
 TEST(SpaceMouse, OfTwoProgramsOnlyOneHasIt) {
