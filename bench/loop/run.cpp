@@ -94,11 +94,11 @@ class Run {
 
  private:
   std::unique_ptr<drivers::Device> open() {
-    if (!options_.scene && !options_.virtual_time) return drivers::open_device(options_.device_uri);
     drivers::Surroundings surroundings;
     if (options_.scene) {
       surroundings = surroundings_of(*options_.scene, drivers::open_device(options_.device_uri)->info());
     }
+    surroundings.stop = &stop_;
     if (options_.virtual_time) {
       surroundings.pass_time = [this](double seconds) {
         virtual_clock_.pass(std::llround(1e9 * seconds));
