@@ -94,9 +94,12 @@ class Run {
 
  private:
   std::unique_ptr<drivers::Device> open() {
-    if (!options_.scene && !options_.virtual_time) return drivers::open_device(options_.device_uri);
     drivers::Surroundings surroundings;
     if (options_.scene) {
+      if (!options_.device_uri.starts_with("sim:")) {
+        throw drivers::DeviceError(options_.device_uri +
+                                   ": the tissue of a scene is for simulated devices; leave out --scene");
+      }
       surroundings = surroundings_of(*options_.scene, drivers::open_device(options_.device_uri)->info());
     }
     if (options_.virtual_time) {
@@ -106,6 +109,7 @@ class Run {
                                      watchdog_limit_ns(1.0 / options_.rate_hz));
       };
     }
+    surroundings.stop = &stop_;
     return drivers::open_device(options_.device_uri, std::move(surroundings));
   }
 
