@@ -76,7 +76,10 @@ using LawAt = std::tuple_element_t<I, Registry>;
 template <typename F, Place... I>
 auto dispatch(std::string_view model, F&& f, std::index_sequence<I...>) {
   std::optional<decltype(f.template operator()<0>())> result;
-  ((LawAt<I>::name == model && (result = f.template operator()<I>(), true)) || ...);
+  const auto attempt = [&]<Place At>() {
+    if (LawAt<At>::name == model) result = f.template operator()<At>();
+  };
+  (attempt.template operator()<I>(), ...);
   if (!result) {
     std::ostringstream message;
     message << "unknown law '" << model << "'; the laws are";
