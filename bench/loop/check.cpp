@@ -145,7 +145,7 @@ Verdict judge(const RunResult& result) {
   if (report.least_energy_j < -passive_within_j) {
     tell(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive", -report.least_energy_j));
   }
-  if (report.end == LoopEnd::stopped) tell("ended early by a signal");
+  if (report.end == LoopEnd::stopped) verdict.reasons.emplace_back("ended early by a signal");
   if (!result.recording_failure.empty()) tell(result.recording_failure);
   return verdict;
 }
