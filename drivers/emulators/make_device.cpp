@@ -3,12 +3,14 @@
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/uri.h>
 
+#include "falcon.h"
 #include "spacemouse.h"
 
 namespace kerf::emulators {
 
 std::unique_ptr<EmulatedDevice> make_device(std::string_view text) {
   drivers::Uri uri = drivers::parse_uri(text);
+  if (uri.name == "falcon") return std::make_unique<EmulatedFalcon>(EmulatedFalcon::parse_options(std::move(uri)));
   if (uri.name == "spacemouse") {
     return std::make_unique<EmulatedSpaceMouse>(EmulatedSpaceMouse::parse_options(std::move(uri)));
   }

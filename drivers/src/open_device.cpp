@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kerf/drivers/device.h"
+#include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
@@ -57,6 +58,10 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed, c
       throw DeviceError(std::string(uri) + ": hardware runs by the clock on the wall; leave out --virtual");
     }
   };
+  if (found && found->scheme == "falcon") {
+    refuse_surroundings();
+    return std::make_unique<Falcon>(uri, found->number, Falcon::parse_options(parsed), surroundings.stop);
+  }
   if (found && found->scheme == "spacemouse") {
     refuse_surroundings();
     return std::make_unique<SpaceMouse>(uri, found->number, SpaceMouse::parse_options(parsed));
@@ -101,6 +106,7 @@ std::vector<AttachedDevice> list_attached() {
                      .problem = one.may_open ? "" : "no permission for " + one.node + "; " + usb::permission_mend()});
     }
   };
+  add("falcon:", "Novint Falcon, 3 axes with force; needs its firmware", find_falcons());
   add("spacemouse:", "6-DOF input, no force; 62.5 Hz", find_spacemice());
   return all;
 }

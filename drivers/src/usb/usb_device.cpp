@@ -179,6 +179,10 @@ void UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcep
   libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
 }
 
+bool UsbDevice::clear_halt(std::uint8_t endpoint) noexcept {
+  return libusb_clear_halt(handle_, endpoint) == LIBUSB_SUCCESS;
+}
+
 Transfer::Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, Handler handler)
     : device_(device), buffer_(size), handler_(std::move(handler)), transfer_(libusb_alloc_transfer(0)) {
   if (transfer_ == nullptr) throw std::bad_alloc();

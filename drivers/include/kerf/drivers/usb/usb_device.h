@@ -64,6 +64,9 @@ class UsbDevice {
   /// handlers of what has ended. From one thread.
   void handle_events(std::int64_t most_ns, int wake_descriptor = -1) noexcept;
 
+  /// Ends the halt of an endpoint that has stalled; false if that could not be done. Waits for the device.
+  bool clear_halt(std::uint8_t endpoint) noexcept;
+
   [[nodiscard]] libusb_device_handle* handle() const noexcept { return handle_; }
   [[nodiscard]] const std::string& node() const noexcept { return node_; }
 

@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/drivers/device.h>
+
+#include "emulator.h"
+#include "falcon_bench.h"
+
+namespace kerf::tests {
+namespace {
+
+using drivers::Sample;
+using drivers::Status;
+
+constexpr const char* ready = "falcon?firmware=loaded&homed=on";
+
+/// A loop of two seconds and more with a wall; how many ticks were not well.
+struct Run {
+  int faults = 0;
+  int lost = 0;
+  double resent = 0.0;
+  double dropped_bytes = 0.0;
+  double malformed = 0.0;
+  double reports = 0.0;
+};
+Run run_with(const std::string& faults) {
+  const Emulator emulator(ready, {"--fault", faults});
+  EXPECT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  Run run;
+  loop(*device, 3000, [&](int, Status status, const Sample& sample) {
+    run.faults += status == Status::fault;
+    run.lost += status == Status::lost;
+    (void)device->write({0.0, 0.0, 400.0 * std::max(0.0, 0.12 - sample.position[2])});
+  });
+  run.resent = figure(*device, "resent");
+  run.dropped_bytes = figure(*device, "dropped_bytes");
+  run.malformed = figure(*device, "malformed");
+  run.reports = figure(*device, "reports");
+  return run;
+}
+
+TEST(Falcon, AsksAgainWhereAnAnswerIsLost) {
+  const Run run = run_with("drop@2.0:10");
+  EXPECT_EQ(run.faults, 0);  // 5 ms are not yet stale
+  EXPECT_EQ(run.resent, 10.0);
+  EXPECT_EQ(run.dropped_bytes, 0.0);
+  EXPECT_GT(run.reports, 2900.0);
+}
+
+TEST(Falcon, PutsATornAnswerTogether) {
+  const Run run = run_with("split@2.0:20");
+  EXPECT_EQ(run.faults, 0);
+  EXPECT_EQ(run.resent, 0.0);
+  EXPECT_EQ(run.dropped_bytes, 0.0);
+}
+
+TEST(Falcon, FindsItsFramesAgainAfterALostByte) {
+  const Run run = run_with("corrupt@2.0:5");
+  EXPECT_EQ(run.faults, 0);
+  EXPECT_GE(run.resent, 4.0);
+  EXPECT_EQ(run.dropped_bytes, 5.0 * 15.0);
+}
+
+TEST(Falcon, GoesOnAfterAStall) {
+  const Run run = run_with("stall@2.0:3");
+  EXPECT_EQ(run.lost, 0);
+  EXPECT_EQ(run.malformed, 3.0);
+  EXPECT_GT(run.reports, 2900.0);
+}
+
+TEST(Falcon, IsLostWhereItStallsForGood) {
+  const Run run = run_with("stall@2.0:1000000");
+  EXPECT_GT(run.lost, 100);
+}
+
+TEST(Falcon, ASilentOneIsAtFaultAndThenLost) {
+  const Emulator emulator(ready, {"--fault", "drop@2.0:1000000"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  int first_fault = -1;
+  int first_lost = -1;
+  double oldest = 0.0;
+  loop(*device, 4000, [&](int tick, Status status, const Sample& sample) {
+    if (status == Status::ok) oldest = std::max(oldest, sample.channels[4]);
+    if (status == Status::fault && first_fault < 0) first_fault = tick;
+    if (status == Status::lost && first_lost < 0) first_lost = tick;
+    (void)device->write({});
+  });
+  ASSERT_GE(first_fault, 0);
+  EXPECT_LE(oldest, 0.02);
+  EXPECT_NEAR(first_lost - first_fault, 980, 2);
+}
+
+TEST(Falcon, IsLostWhenItIsUnpluggedAndComesBack) {
+  Emulator emulator(ready);
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  {
+    const auto device = drivers::open_device("falcon:0");
+    Status last = Status::ok;
+    loop(*device, 600, [&](int tick, Status status, const Sample&) {
+      if (tick == 200) emulator.unplug();
+      last = status;
+      (void)device->write({0.0, 0.0, 1.0});
+    });
+    EXPECT_EQ(last, Status::lost);
+    EXPECT_EQ(device->write({}), Status::lost);
+  }
+  ASSERT_TRUE(becomes_attached("falcon:", false));
+  EXPECT_THROW((void)drivers::open_device("falcon:0"), drivers::DeviceError);
+  const Emulator again(ready);
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  loop(*device, 50, [](int, Status status, const Sample&) { EXPECT_EQ(status, Status::ok); });
+}
+
+TEST(Falcon, UnpluggedWhileItIsHomedItSaysSo) {
+  const Emulator emulator("falcon?firmware=loaded&home_after=100s", {"--fault", "unplug@2.0"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  try {
+    (void)drivers::open_device("falcon:0");
+    FAIL() << "it was homed";
+  } catch (const drivers::DeviceError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("unplugged before it was homed"));
+  }
+}
+
+std::size_t entries_of(const char* folder) {
+  const std::filesystem::directory_iterator all(folder);
+  return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+}
+
+TEST(Falcon, LeavesNothingBehindHoweverOftenItIsUnplugged) {
+  std::size_t files = 0;
+  std::size_t threads = 0;
+  for (int round = 0; round < 20; ++round) {
+    Emulator emulator(ready);
+    ASSERT_TRUE(becomes_attached("falcon:0")) << round;
+    {
+      const auto device = drivers::open_device("falcon:0");
+      loop(*device, 20, [&](int tick, Status, const Sample&) {
+        if (tick == 10 && round % 2 == 0) emulator.unplug();  // with transfers under way, or closed before
+        (void)device->write({0.0, 0.0, 1.0});
+      });
+    }
+    emulator.unplug();
+    ASSERT_TRUE(becomes_attached("falcon:", false)) << round;
+    if (round == 0) {
+      files = entries_of("/proc/self/fd");
+      threads = entries_of("/proc/self/task");
+    }
+  }
+  EXPECT_EQ(entries_of("/proc/self/fd"), files);
+  EXPECT_EQ(entries_of("/proc/self/task"), threads);
+}
+
+}  // namespace
+}  // namespace kerf::tests

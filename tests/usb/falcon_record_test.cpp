@@ -1,0 +1,149 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/drivers/device.h>
+#include <kerf/mechanisms/falcon.h>
+#include <kerf/schema/recording.h>
+
+#include "datasets-schema/same_recording.h"
+#include "emulator.h"
+#include "falcon_bench.h"
+#include "support/program.h"
+
+namespace kerf::tests {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* trace = "/tmp/wall-trace.csv";
+
+/// A wall of 400 N/m at z = 0.12 m that is pressed inwards, with a viscous arm beside the spring.
+std::string wall_file() {
+  const std::string path = "/tmp/wall.law.toml";
+  test::write_text(path, R"(model = "kelvin"
+axis = "z"
+position_unit = "m"
+force_unit = "N"
+
+[contact]
+position = { value = 0.12, unit = "m" }
+direction = "decreasing"
+
+[parameters]
+parallel_stiffness = { value = 400, unit = "N/m" }
+series_stiffness = { value = 100, unit = "N/m" }
+damping = { value = 2, unit = "N·s/m" }
+)");
+  return path;
+}
+
+/// Records the wall; the recording stays in `file`.
+test::Outcome record(const std::string& file, const std::string& emulated, double seconds,
+                     const std::vector<std::string>& emulator_arguments = {}) {
+  Emulator emulator(emulated, emulator_arguments);
+  EXPECT_TRUE(becomes_attached("falcon:0"));
+  auto outcome = test::run_kerf({"record", "--device", "falcon:0?firmware=" + firmware_file(), "--law", wall_file(),
+                                 "--seconds", std::to_string(seconds), "--force", "-o", file});
+  emulator.unplug();
+  EXPECT_TRUE(becomes_attached("falcon:", false));
+  return outcome;
+}
+
+TEST(Falcon, AWallOfTenSecondsIsRecordedTheSameEachTime) {
+  std::array<schema::Recording, 2> recordings;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string file = "/tmp/wall" + std::to_string(i) + ".h5";
+    const auto outcome = record(file, std::string("falcon?trace=") + trace, 10.0);
+    ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+    EXPECT_EQ(test::run_kerf({"validate", file}).exit_status, 0);
+    recordings[i] = schema::read_recording(file);
+  }
+  test::expect_same_samples(recordings[0], recordings[1]);
+  EXPECT_EQ(recordings[0].header.device_toml, recordings[1].header.device_toml);
+
+  const schema::Recording& wall = recordings[0];
+  EXPECT_EQ(wall.rows(), 10000U);
+  ASSERT_EQ(wall.axes.size(), 3U);
+  double deepest = 0.0;
+  double strongest = 0.0;
+  std::size_t faults = 0;
+  for (std::size_t row = 0; row < wall.rows(); ++row) {
+    deepest = std::max(deepest, 0.12 - wall.position[3 * row + 2]);
+    strongest = std::max(strongest, wall.force_commanded[3 * row + 2]);
+    faults += (wall.flags[row] & schema::flag_device_fault) != 0;
+  }
+  EXPECT_EQ(faults, 0U);
+  // 400 N/m and a hand of 300 N/m that wants to be 10 mm behind the wall: 4.3 mm, but for the arm and the motion.
+  EXPECT_NEAR(deepest, 0.0043, 0.001);
+  EXPECT_NEAR(strongest, 400.0 * deepest, 0.5);
+
+  // What went over the wire are the torques of the recorded forces.
+  std::size_t matched = 0;
+  const auto frames = read_trace(trace);
+  std::size_t next = 0;
+  for (std::size_t row = 0; row < wall.rows(); ++row) {
+    const auto at = mechanisms::Falcon::angles(
+        {wall.position[3 * row], wall.position[3 * row + 1], wall.position[3 * row + 2]});
+    ASSERT_TRUE(at);
+    const Eigen::Vector3d torque = mechanisms::Falcon::torques(
+        {wall.force_commanded[3 * row], wall.force_commanded[3 * row + 1], wall.force_commanded[3 * row + 2]}, *at);
+    for (std::size_t frame = next; frame < std::min(frames.size(), next + 2000); ++frame) {
+      bool equal = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        equal &= std::abs(frames[frame].raw[i] + 10000.0 * torque[static_cast<Eigen::Index>(i)]) < 0.501;
+      }
+      if (!equal) continue;
+      next = frame + 1;
+      ++matched;
+      break;
+    }
+  }
+  EXPECT_GT(matched, 9900U);
+}
+
+TEST(Falcon, UnpluggedWhileItIsRecordedTheRecordingIsClosedAndValid) {
+  const std::string file = "/tmp/unplugged.h5";
+  const auto outcome = record(file, "falcon?firmware=loaded&homed=on", 10.0, {"--fault", "unplug@4.0"});
+  EXPECT_EQ(outcome.exit_status, 3);
+  EXPECT_THAT(outcome.errors, HasSubstr("falcon:0"));
+  EXPECT_THAT(outcome.errors, HasSubstr("the device was lost after"));
+  EXPECT_EQ(test::run_kerf({"validate", file}).exit_status, 0);
+  const auto recording = schema::read_recording(file);
+  EXPECT_THAT(recording.header.status, HasSubstr("aborted: the device was lost"));
+  ASSERT_GT(recording.rows(), 1000U);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_EQ(recording.force_commanded[3 * (recording.rows() - 1) + axis], 0.0);
+  }
+}
+
+TEST(Falcon, AtTheEndOfARecordingTheMotorsAreLetGo) {
+  const auto outcome =
+      record("/tmp/short.h5", std::string("falcon?firmware=loaded&homed=on&trace=") + trace, 2.0);
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const auto frames = read_trace(trace);
+  ASSERT_FALSE(frames.empty());
+  EXPECT_THAT(frames.back().raw, testing::ElementsAre(0, 0, 0));
+  EXPECT_TRUE(std::ranges::any_of(frames, [](const TraceRow& row) { return row.raw[0] < -100; }));
+}
+
+// By the clock on the wall, of a machine that does other things too.
+TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
+  const Emulator emulator("falcon?firmware=loaded&homed=on");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  loop(*device, 3000, [&](int, drivers::Status, const drivers::Sample& sample) {
+    (void)device->write({0.0, 0.0, 400.0 * std::max(0.0, 0.12 - sample.position[2])});
+  });
+  EXPECT_GE(figure(*device, "report_rate"), 900.0);
+  EXPECT_LE(figure(*device, "report_rate"), 1010.0);
+}
+
+}  // namespace
+}  // namespace kerf::tests

@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/drivers/device.h>
+#include <kerf/mechanisms/falcon.h>
+
+#include "emulator.h"
+#include "falcon_bench.h"
+#include "support/allocation_counter.h"
+
+namespace kerf::tests {
+namespace {
+
+using drivers::Sample;
+using drivers::Status;
+using mechanisms::Falcon;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double wall_z = 0.12;
+constexpr double wall_n_per_m = 400.0;
+
+/// Pushes out what is pressed deeper than the wall, and a little sideways.
+drivers::Axes wall(const Sample& sample) {
+  const double depth = std::max(0.0, wall_z - sample.position[2]);
+  return {0.3 * wall_n_per_m * depth, -0.2 * wall_n_per_m * depth, wall_n_per_m * depth};
+}
+
+TEST(Falcon, LoadsItsFirmwareIsHomedAndFollowsTheHand) {
+  const Emulator emulator("falcon?offset=500");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0?led=blue&firmware=" + firmware_file());
+  EXPECT_EQ(device->info().model, "Novint Falcon");
+  ASSERT_EQ(device->info().axes.size(), 3U);
+  EXPECT_THAT(device->info().configuration, AllOf(HasSubstr("torque_scale = 10000"), HasSubstr("6616"),
+                                                  HasSubstr("3500 to 5500")));
+  Eigen::Vector3d lowest(1.0, 1.0, 1.0);
+  Eigen::Vector3d highest = -lowest;
+  bool pressed = false;
+  loop(*device, 6000, [&](int tick, Status status, const Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    EXPECT_LT(sample.channels[4], 0.0045);
+    pressed |= sample.channels[0] == 4.0;
+    if (tick < 1000) return;  // the hand returns from homing
+    const Eigen::Vector3d knob(sample.position[0], sample.position[1], sample.position[2]);
+    lowest = lowest.cwiseMin(knob);
+    highest = highest.cwiseMax(knob);
+  });
+  EXPECT_TRUE(pressed);
+  // The hand sways by 1 cm about (0, 0, 0.12), more than whole periods of each sine; it drags the knob behind a little.
+  for (int i = 0; i < 3; ++i) {
+    const double centre = i == 2 ? 0.12 : 0.0;
+    EXPECT_NEAR(highest[i], centre + 0.01, 0.001) << i;
+    EXPECT_NEAR(lowest[i], centre - 0.01, 0.001) << i;
+  }
+}
+
+TEST(Falcon, KeepsItsFirmwareAndItsHomeUntilItIsUnplugged) {
+  const Emulator emulator("falcon");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  (void)drivers::open_device("falcon:0?firmware=" + firmware_file());
+  const auto device = drivers::open_device("falcon:0?homing_timeout=0.1s");
+  loop(*device, 50, [](int, Status status, const Sample&) { EXPECT_EQ(status, Status::ok); });
+}
+
+TEST(Falcon, CountsFromWherePowerFoundItWithoutHoming) {
+  const Emulator emulator("falcon?firmware=loaded&sway=0m");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0?homing=off");
+  // Zero counts are arms at 35 degrees each.
+  const auto expected = Falcon::knob(Falcon::shoulder_of({0, 0, 0}), {0.0, 0.0, 0.12});
+  ASSERT_TRUE(expected);
+  loop(*device, 100, [&](int, Status status, const Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    EXPECT_NEAR(sample.position[2], expected->z(), 1e-4);
+  });
+}
+
+std::string refusal(const std::string& uri, const std::atomic<bool>* stop = nullptr) {
+  try {
+    drivers::Surroundings surroundings;
+    surroundings.stop = stop;
+    (void)drivers::open_device(uri, std::move(surroundings));
+  } catch (const drivers::DeviceError& error) {
+    return error.what();
+  }
+  return "it was opened";
+}
+
+TEST(Falcon, SaysWhichFirmwareIsMissing) {
+  const Emulator emulator("falcon");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  EXPECT_THAT(refusal("falcon:0"), AllOf(HasSubstr("no firmware loaded"), HasSubstr("falcon:0?firmware=FILE"),
+                                         HasSubstr("Kerf ships none")));
+  EXPECT_THAT(refusal("falcon:0?firmware=/tmp/nothing.bin"), HasSubstr("cannot be read (No such file"));
+  std::ofstream("/tmp/page.html") << "<html>";
+  EXPECT_THAT(refusal("falcon:0?firmware=/tmp/page.html"), HasSubstr("does not begin with the key 0x08AA"));
+  EXPECT_THAT(refusal("falcon:1"), HasSubstr("number 1 is not attached (1 of 0403:cb48 found)"));
+  EXPECT_THAT(refusal("falcon:0?led=pink"), HasSubstr("expected red, green, blue or off"));
+}
+
+TEST(Falcon, SaysWhatTheLoaderDoesNotAnswer) {
+  const Emulator emulator("falcon", {"--fault", "drop@0:1000000"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  EXPECT_THAT(refusal("falcon:0?firmware=" + firmware_file()), HasSubstr("does not answer at 9600 baud"));
+}
+
+TEST(Falcon, ComparesWhatTheLoaderSendsBack) {
+  // 40 kB take 2.9 s: the fault is within them.
+  const Emulator emulator("falcon", {"--fault", "corrupt@2.0"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  EXPECT_THAT(refusal("falcon:0?firmware=" + firmware_file(20000)), HasSubstr("of its firmware back wrong"));
+}
+
+TEST(Falcon, WaitsForHomingOnlySoLongAndOnlyWhileSomebodyWaits) {
+  const Emulator emulator("falcon?firmware=loaded&home_after=100s");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  EXPECT_THAT(refusal("falcon:0?homing_timeout=1s"), AllOf(HasSubstr("not homed within 1 s"), HasSubstr("homing=off")));
+  std::atomic<bool> stop{false};
+  std::thread impatient([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    stop = true;
+  });
+  EXPECT_THAT(refusal("falcon:0", &stop), HasSubstr("interrupted"));
+  impatient.join();
+}
+
+TEST(Falcon, ForcesArriveAsTheRightMotorNumbers) {
+  Emulator emulator("falcon?firmware=loaded&homed=on&trace=/tmp/trace.csv");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  struct Asked {
+    Eigen::Vector3d knob;
+    Eigen::Vector3d force;
+  };
+  std::vector<Asked> asked;
+  {
+    const auto device = drivers::open_device("falcon:0");
+    loop(*device, 3000, [&](int, Status status, const Sample& sample) {
+      EXPECT_EQ(status, Status::ok);
+      const drivers::Axes force = wall(sample);
+      EXPECT_EQ(device->write(force), Status::ok);
+      asked.push_back({{sample.position[0], sample.position[1], sample.position[2]}, {force[0], force[1], force[2]}});
+    });
+    EXPECT_NEAR(figure(*device, "report_rate"), 1000.0, 20.0);
+    EXPECT_EQ(figure(*device, "resent"), 0.0);
+    EXPECT_EQ(figure(*device, "dropped_bytes"), 0.0);
+  }
+  emulator.unplug();
+  // Every frame carries V = -K tau of one of the ticks, in their order, to the nearest unit.
+  const auto trace = read_trace("/tmp/trace.csv");
+  std::size_t matched = 0;
+  std::size_t next = 0;
+  double most_degrees = 0.0;
+  for (const TraceRow& row : trace) {
+    const auto found = std::find_if(asked.begin() + static_cast<std::ptrdiff_t>(next), asked.end(), [&](const Asked& one) {
+      const Eigen::Vector3d torque = Falcon::torques(one.force, *Falcon::angles(one.knob));
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (std::abs(row.raw[i] + 10000.0 * torque[static_cast<Eigen::Index>(i)]) > 0.5001) return false;
+      }
+      return true;
+    });
+    if (found == asked.end()) continue;
+    next = static_cast<std::size_t>(found - asked.begin());
+    ++matched;
+    if (found->force.norm() < 1.0) continue;
+    const Eigen::Vector3d torque = -Eigen::Vector3d(row.raw[0], row.raw[1], row.raw[2]) / 10000.0;
+    const Eigen::Vector3d felt = Falcon::force(torque, *Falcon::angles(found->knob));
+    most_degrees = std::max(most_degrees, std::atan2(felt.cross(found->force).norm(), felt.dot(found->force)) * 180.0 /
+                                              std::numbers::pi);
+  }
+  EXPECT_GT(matched, 2900U);
+  EXPECT_LT(trace.size() - matched, 60U);  // zeros before the first tick and after the last
+  EXPECT_GT(most_degrees, 0.0);
+  EXPECT_LT(most_degrees, 0.1);
+}
+
+TEST(Falcon, TheWallHoldsTheHandWhereTheSpringsSay) {
+  const Emulator emulator("falcon?firmware=loaded&homed=on&sway=0m");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  double z = 0.0;
+  // 2 N outward against a hand of 300 N/m: 6.67 mm, but for 0.1 N of friction.
+  loop(*device, 3000, [&](int, Status, const Sample& sample) {
+    EXPECT_EQ(device->write({0.0, 0.0, 2.0}), Status::ok);
+    z = sample.position[2];
+  });
+  EXPECT_NEAR(z, 0.12 + 2.0 / 300.0, 0.1 / 300.0 + 0.00005);
+}
+
+TEST(Falcon, LetsGoWhenReleasedForgottenOrAskedForNonsense) {
+  Emulator emulator("falcon?firmware=loaded&homed=on&trace=/tmp/trace.csv");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  {
+    const auto device = drivers::open_device("falcon:0");
+    Sample sample;
+    const auto pass = [&](int milliseconds) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+      (void)device->read(0.0, sample);
+      return std::max({std::abs(sample.channels[1]), std::abs(sample.channels[2]), std::abs(sample.channels[3])});
+    };
+    EXPECT_EQ(pass(10), 0.0);  // nothing was asked for yet
+    EXPECT_EQ(device->write({0.0, 0.0, 4.0}), Status::ok);
+    EXPECT_GT(pass(5), 900.0);
+    device->release(0.0);
+    EXPECT_EQ(pass(3), 0.0);
+    EXPECT_EQ(device->write({0.0, 0.0, 4.0}), Status::ok);
+    EXPECT_GT(pass(80), 900.0);
+    EXPECT_EQ(pass(30), 0.0);  // 100 ms without a command
+    EXPECT_EQ(device->write({0.0, 0.0, 4.0}), Status::ok);
+    EXPECT_GT(pass(5), 900.0);
+    EXPECT_EQ(device->write({0.0, std::nan(""), 0.0}), Status::fault);
+    EXPECT_EQ(pass(5), 0.0);
+    EXPECT_EQ(device->write({std::numeric_limits<double>::infinity(), 0.0, 0.0}), Status::fault);
+    EXPECT_EQ(pass(5), 0.0);
+    EXPECT_EQ(device->write({9.0, 9.0, 0.0}), Status::ok);  // more than the motors have
+    EXPECT_EQ(pass(5), 4095.0);
+    EXPECT_NE(sample.faults, 0U);
+    EXPECT_EQ(figure(*device, "motor_limited"), 1.0);
+  }
+  emulator.unplug();
+  const auto trace = read_trace("/tmp/trace.csv");
+  ASSERT_FALSE(trace.empty());
+  EXPECT_THAT(trace.back().raw, testing::ElementsAre(0, 0, 0));  // said at the end
+}
+
+TEST(Falcon, OfTwoProgramsOnlyOneHasIt) {
+  const Emulator emulator("falcon?firmware=loaded&homed=on");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  EXPECT_THAT(refusal("falcon:0"), HasSubstr("in use by another program; close that program"));
+}
+
+TEST(Falcon, SaysHowToObtainThePermission) {
+  const Emulator emulator("falcon?firmware=loaded&homed=on");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  ASSERT_EQ(seteuid(65534), 0);
+  const std::string problem = refusal("falcon:0");
+  const auto attached = drivers::list_attached();
+  ASSERT_EQ(seteuid(0), 0);
+  EXPECT_THAT(problem, AllOf(HasSubstr("no permission for /dev/bus/usb/"), HasSubstr("70-kerf.rules")));
+}
+
+TEST(Falcon, TheTickAllocatesNothing) {
+  const Emulator emulator("falcon?firmware=loaded&homed=on");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  loop(*device, 200, [&](int tick, Status, const Sample&) {
+    const test::NoAllocation guard;
+    Sample sample;
+    (void)device->read(1e-3 * tick, sample);
+    (void)device->write(wall(sample));
+    device->release(0.0);
+  });
+}
+
+}  // namespace
+}  // namespace kerf::tests
