@@ -5,6 +5,7 @@
 
 #include "falcon.h"
 #include "spacemouse.h"
+#include "woody.h"
 
 namespace kerf::emulators {
 
@@ -14,6 +15,7 @@ std::unique_ptr<EmulatedDevice> make_device(std::string_view text) {
   if (uri.name == "spacemouse") {
     return std::make_unique<EmulatedSpaceMouse>(EmulatedSpaceMouse::parse_options(std::move(uri)));
   }
+  if (uri.name == "woody") return std::make_unique<EmulatedWoody>(EmulatedWoody::parse_options(std::move(uri)));
   throw drivers::DeviceError("no emulator of '" + uri.name + "'; there are falcon, woody, u6 and spacemouse");
 }
 
