@@ -28,6 +28,8 @@ void add_loop_options(CLI::App& verb, LoopArguments& arguments) {
   RunOptions& options = arguments.options;
   verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them")
       ->capture_default_str();
+  verb.add_option("--sensor", options.sensor_uri,
+                  "URI of a force sensor beside the device: u6:0?calibration=FILE.toml");
   verb.add_option("--seconds", options.seconds, "Duration [s]")
       ->check(CLI::Range(0.01, 1e6))
       ->capture_default_str();

@@ -5,6 +5,7 @@
 
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/faulty_device.h"
+#include "kerf/drivers/force_sensor_u6.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
 #include "kerf/drivers/simulated_scissors.h"
@@ -61,6 +62,10 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed, c
     refuse_surroundings();
     return std::make_unique<SpaceMouse>(uri, found->number, SpaceMouse::parse_options(parsed));
   }
+  if (found && found->scheme == "u6") {
+    refuse_surroundings();
+    return std::make_unique<ForceSensorU6>(uri, found->number, ForceSensorU6::parse_options(uri, parsed));
+  }
   throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
 }
 
@@ -102,6 +107,7 @@ std::vector<AttachedDevice> list_attached() {
     }
   };
   add("spacemouse:", "6-DOF input, no force; 62.5 Hz", find_spacemice());
+  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml", find_labjack_u6());
   return all;
 }
 
