@@ -27,6 +27,8 @@ LawChange parse_change(const std::string& text) {
 void add_loop_options(Verb& verb, LoopArguments& arguments) {
   RunOptions& options = arguments.options;
   verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them").with_default();
+  verb.add_option("--sensor", options.sensor_uri,
+                  "URI of a force sensor beside the device: u6:0?calibration=FILE.toml");
   verb.add_option("--seconds", options.seconds, "Duration [s]").within(0.01, 1e6).with_default();
   verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]").with_default();
   verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");

@@ -14,7 +14,7 @@ struct LoopArguments {
   std::vector<std::string> changes;  ///< LAW@SECONDS
 };
 
-/// Adds --device, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control and --force.
+/// Adds --device, --sensor, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control and --force.
 void add_loop_options(Verb& verb, LoopArguments& arguments);
 
 /// What was asked for, with the laws of --switch read. @throws std::invalid_argument, std::system_error

@@ -6,6 +6,7 @@
 
 #include "cli/loop_arguments.h"
 #include "cli/verbs.h"
+#include "loop/check.h"
 #include "loop/run.h"
 #include "recordings/summary.h"
 
@@ -42,6 +43,7 @@ void run_record(const Arguments& arguments, Context& context) {
   context.result = recording_summary(recording);
   context.result["missed"] = result.report.missed();
   context.result["rows_lost"] = result.rows_lost;
+  context.result["device_figures"] = figures_as_json(result.figures);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
                   recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),

@@ -6,6 +6,7 @@
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
+#include "kerf/drivers/force_sensor_u6.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
 #include "kerf/drivers/simulated_scissors.h"
@@ -73,6 +74,10 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed, c
     return std::make_unique<WoodenHaptics>(uri, product, WoodenHaptics::parse_options(parsed, product),
                                            surroundings.stop);
   }
+  if (found && found->scheme == "u6") {
+    refuse_surroundings();
+    return std::make_unique<ForceSensorU6>(uri, found->number, ForceSensorU6::parse_options(uri, parsed));
+  }
   throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
 }
 
@@ -124,6 +129,7 @@ std::vector<AttachedDevice> list_attached() {
   for (const auto& product : WoodenHaptics::products()) {
     add(product.scheme, product.about, WoodenHaptics::find(product));
   }
+  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml", find_labjack_u6());
   return all;
 }
 
