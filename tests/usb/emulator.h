@@ -41,6 +41,10 @@ class Emulator {
   /// Ends the emulator, which unplugs the device, and waits until the kernel has noticed.
   void unplug() {
     if (process_ <= 0) return;
+    if (waitpid(process_, nullptr, WNOHANG) == process_) {
+      process_ = 0;  // it had unplugged itself
+      return;
+    }
     const std::size_t before = drivers::list_attached().size();
     kill(process_, SIGTERM);
     waitpid(process_, nullptr, 0);
