@@ -34,10 +34,12 @@ const std::array generations{Generation{"woody?generation=v1", "hid:1234:0006", 
 /// A wall below the home of a model: 400 N/m, and a little damping.
 std::string wall_below(const WoodenHaptics& mechanism) {
   const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
-  return "model = \"kelvin\"\naxis = \"z\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n\n[contact]\nposition = { value = " +
+  return "model = \"kelvin\"\naxis = \"z\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n\n[contact]\nposition "
+         "= { value = " +
          std::to_string(height) +
          ", unit = \"m\" }\ndirection = \"decreasing\"\n\n[parameters]\n"
-         "parallel_stiffness = { value = 400, unit = \"N/m\" }\nseries_stiffness = { value = 100, unit = \"N/m\" }\n"
+         "parallel_stiffness = { value = 400, unit = \"N/m\" }\nseries_stiffness = { value = 100, unit = "
+         "\"N/m\" }\n"
          "damping = { value = 1, unit = \"N·s/m\" }\n";
 }
 
@@ -79,8 +81,8 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGenerationForTenSeconds) {
     ASSERT_EQ(recording.rows(), 10'000U) << "no tick was missed";
     EXPECT_THAT(recording.header.device_toml, HasSubstr("model = \"" + one.model + "\""));
 
-    // The wall has pushed back as stiff as it is, and the force has moved the hand: 10 mm of sway at 300 N/m against
-    // 400 N/m leave 4.3 mm and 1.7 N at most, a little more while its arm is loaded.
+    // The wall has pushed back as stiff as it is, and the force has moved the hand: 10 mm of sway at 300 N/m
+    // against 400 N/m leave 4.3 mm and 1.7 N at most, a little more while its arm is loaded.
     double deepest = 0.0;
     double strongest = 0.0;
     const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
@@ -124,8 +126,8 @@ TEST(WoodyLoop, ARecordingOutlivesTheDevice) {
     test::write_text(folder / "wall.law.toml", wall_below(mechanism));
     const Emulator emulator(one.emulator, {"--fault", "unplug@2.5"});
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml", "--seconds",
-                                         "10", "-o", folder / "short.h5"});
+    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
+                                         "--seconds", "10", "-o", folder / "short.h5"});
     EXPECT_EQ(outcome.exit_status, 3);
     EXPECT_THAT(outcome.errors, HasSubstr("the device was lost"));
     EXPECT_TRUE(schema::validate(folder / "short.h5").empty());
@@ -147,8 +149,8 @@ TEST(WoodyTwice, WritesTheSameRecordingInEachGuest) {
     test::write_text(own / "wall.law.toml", wall_below(mechanism));
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml", "--seconds", "2",
-                                         "-o", own / "wall.h5"});
+    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml",
+                                         "--seconds", "1", "-o", own / "wall.h5"});
     ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
     const auto recording = schema::read_recording(own / "wall.h5");
     std::string text;
