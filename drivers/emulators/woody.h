@@ -28,7 +28,7 @@ namespace kerf::emulators {
 /// motor for motor.
 ///
 /// Options: generation (v1, v2, v3), model (woody-2019; V3: polhem-v3), button=2.0s (pressed then, once),
-/// counter_offset (what the counters say at home), sway=10mm (0mm: the hand holds still) and trace=FILE, a
+/// counter_offset (what the counters say at home), sway=0.01m (0m: the hand holds still) and trace=FILE, a
 /// CSV with a row for each order that is applied, each report that is built and each time that the motors are
 /// switched off: `t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog`.
 class EmulatedWoody final : public EmulatedDevice {

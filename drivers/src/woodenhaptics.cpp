@@ -299,26 +299,28 @@ void WoodenHaptics::release(double) noexcept {
 }
 
 void WoodenHaptics::serve(const std::stop_token& stop) noexcept {
+  std::int64_t now_ns = usb::now_ns();
   while (!stop.stop_requested()) {
-    device_.wait(next_turn_ns(usb::now_ns()), thread_.wake_descriptor());
-    thread_.take_wakes();
-    if (!hear()) {
+    const auto ready = device_.wait(next_turn_ns(now_ns), thread_.wake_descriptor());
+    if (ready.woken) thread_.take_wakes();
+    if (ready.report && !hear()) {
       lost_.store(true);
       return;  // not again and again: the kernel needs the processor to take the device away
     }
-    speak();
+    now_ns = usb::now_ns();
+    speak(now_ns);
   }
   say_goodbye();
 }
 
-/// Zero, and some reports more: a device that nobody reads from any more does not come to its next order either.
+/// Zero, and some reports more: a device that nobody reads from any more does not come to its next order
+/// either.
 void WoodenHaptics::say_goodbye() noexcept {
   send({});
   const std::uint64_t enough = reports_.load(std::memory_order_relaxed) + (streams() ? goodbye_reports : 1);
   const std::int64_t until_ns = usb::now_ns() + most_goodbye_ns;
   while (reports_.load(std::memory_order_relaxed) < enough && usb::now_ns() < until_ns) {
-    device_.wait(until_ns - usb::now_ns(), -1);
-    if (!hear()) return;
+    if (device_.wait(until_ns - usb::now_ns(), -1).report && !hear()) return;
   }
 }
 
@@ -327,20 +329,20 @@ std::int64_t WoodenHaptics::next_turn_ns(std::int64_t now_ns) const noexcept {
   return (answered_ ? heard_ns_ + idle_ns : sent_ns_ + answer_wait_ns) - now_ns;
 }
 
-/// Takes all that has come. False if the device is gone.
+/// Takes a report. False if the device is gone.
 bool WoodenHaptics::hear() noexcept {
   std::array<std::uint8_t, woodenhaptics::most_report_size> bytes{};
-  while (true) {
-    const int size = device_.read(bytes, 0);
-    if (size <= 0) return size == 0;
-    if (const auto report = woodenhaptics::parse_report(
-            std::span(bytes).first(static_cast<std::size_t>(size)), generation_)) {
-      hear(*report);
-    } else {
-      malformed_.fetch_add(1, std::memory_order_relaxed);
-      answered_ = true;
-    }
+  const int size = device_.read(bytes, 0);
+  if (size <= 0) return size == 0;
+  const auto report =
+      woodenhaptics::parse_report(std::span(bytes).first(static_cast<std::size_t>(size)), generation_);
+  if (report) {
+    hear(*report);
+  } else {
+    malformed_.fetch_add(1, std::memory_order_relaxed);
+    answered_ = true;
   }
+  return true;
 }
 
 void WoodenHaptics::hear(const Report& report) noexcept {
@@ -379,16 +381,15 @@ WoodenHaptics::Currents WoodenHaptics::wanted(std::int64_t now_ns) const noexcep
 }
 
 /// Sends what the tick wants, when it is time to.
-void WoodenHaptics::speak() noexcept {
-  const std::int64_t now = usb::now_ns();
+void WoodenHaptics::speak(std::int64_t now_ns) noexcept {
   if (commanded_.take(command_)) fresh_ = true;
-  const Currents current_ma = wanted(now);
+  const Currents current_ma = wanted(now_ns);
   const bool stops = current_ma == Currents{} && sent_ma_ != Currents{};  // is not put off
   if (streams()) {
-    if (fresh_ || stops || now - sent_ns_ >= keep_alive_ns) send(current_ma);
-  } else if (stops || (answered_ && (fresh_ || now - heard_ns_ >= idle_ns))) {
+    if (fresh_ || stops || now_ns - sent_ns_ >= keep_alive_ns) send(current_ma);
+  } else if (stops || (answered_ && (fresh_ || now_ns - heard_ns_ >= idle_ns))) {
     send(current_ma);
-  } else if (!answered_ && now - sent_ns_ >= answer_wait_ns) {
+  } else if (!answered_ && now_ns - sent_ns_ >= answer_wait_ns) {
     resent_.fetch_add(1, std::memory_order_relaxed);
     send(current_ma);
   }

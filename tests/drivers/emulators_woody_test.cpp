@@ -62,8 +62,8 @@ class Host {
 
  private:
   void send(const drivers::woodenhaptics::Output& output, std::int64_t at) {
-    device_.receive(generation_ == Generation::v3 ? 4 : 1, std::span(output.bytes).subspan(1, output.size - 1),
-                    begin + at);
+    device_.receive(generation_ == Generation::v3 ? 4 : 1,
+                    std::span(output.bytes).subspan(1, output.size - 1), begin + at);
   }
 
   EmulatedWoody::Options options_;
@@ -81,7 +81,8 @@ TEST(EmulatedWoody, DescribesReportsOfTheLengthOfItsGeneration) {
   const EmulatedWoody teensy(options_of("generation=v3"));
   EXPECT_EQ(teensy.description().vendor(), 0x16C0);
   EXPECT_EQ(teensy.description().product(), 0x0486);
-  EXPECT_EQ(drivers::usb::hid_report_sizes(teensy.description().reports[1]), (drivers::usb::HidReportSizes{64, 32}));
+  EXPECT_EQ(drivers::usb::hid_report_sizes(teensy.description().reports[1]),
+            (drivers::usb::HidReportSizes{64, 32}));
   // Each configuration is as long as it says.
   for (const char* generation : {"generation=v1", "generation=v2", "generation=v3"}) {
     const EmulatedWoody device(options_of(generation));
@@ -189,7 +190,8 @@ TEST(EmulatedWoody, PresetsItsCountersAndForgetsTheButton) {
 }
 
 TEST(EmulatedWoody, TellsThePoseByItsCounters) {
-  for (const char* options : {"generation=v1&model=woody-2016", "generation=v2&model=aluhaptics", "generation=v3"}) {
+  for (const char* options :
+       {"generation=v1&model=woody-2016", "generation=v2&model=aluhaptics", "generation=v3"}) {
     Host host(options);
     const WoodenHaptics mechanism(host.model());
     double farthest = 0.0;
@@ -228,7 +230,8 @@ TEST(EmulatedWoody, ItsMotorsMoveTheHandThatHoldsIt) {
     (void)host.poll(at);
     host.order({0, 0, -788}, at);
   }
-  // 1 N against a hand of 300 N/m, but for friction of 0.1 N that may hold it back, and a Jacobian that turns with it.
+  // 1 N against a hand of 300 N/m, but for friction of 0.1 N that may hold it back, and a Jacobian that turns
+  // with it.
   const Eigen::Vector3d moved = host.device().tip() - home;
   EXPECT_NEAR(moved[2], 1.0 / 300.0, 0.1 / 300.0 + 1e-4);
   EXPECT_LE(std::abs(moved[1]), 1e-9);
@@ -247,7 +250,8 @@ TEST(EmulatedWoody, V3IgnoresAndSendsNoiseBehindItsFourteenBytes) {
   const auto first = host.poll(0);
   ASSERT_TRUE(first);
   EXPECT_EQ(first->size(), 64U);
-  EXPECT_GT(std::count_if(first->begin() + 14, first->end(), [](std::uint8_t byte) { return byte != 0; }), 40);
+  EXPECT_GT(std::count_if(first->begin() + 14, first->end(), [](std::uint8_t byte) { return byte != 0; }),
+            40);
   Bytes order(64, 0xEE);
   const std::array<std::uint8_t, 8> head{0x64, 0x00, 0x9C, 0xFF, 0x00, 0x00, 0x00, 0x00};
   std::copy(head.begin(), head.end(), order.begin());
@@ -283,7 +287,9 @@ TEST(EmulatedWoody, WritesATraceOfWhatItDid) {
     (void)host.poll(600 * ms);
   }
   const std::string text = test::read_text(file);
-  EXPECT_THAT(text, HasSubstr("t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog\n0,report,0,0,0,0,0,0,0.025,"));
+  EXPECT_THAT(
+      text,
+      HasSubstr("t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog\n0,report,0,0,0,0,0,0,0.025,"));
   EXPECT_THAT(text, HasSubstr("\n0.001,order,100,-200,300,0,0,0,"));
   EXPECT_THAT(text, HasSubstr("\n0.501,watchdog,0,0,0,"));
 }

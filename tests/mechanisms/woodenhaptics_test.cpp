@@ -61,18 +61,16 @@ TEST(WoodenHaptics, TheJacobianIsThatOfTheTipForEveryModel) {
 
 TEST(WoodenHaptics, FindsTheAnglesAndCountsOfAPlaceThatTheTipCanReach) {
   std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  std::uniform_real_distribution<double> uniform(-0.04, 0.04);  // no model reaches all of 0.1 m around
   for (const auto& configuration : WoodenHaptics::configurations()) {
     const WoodenHaptics device(configuration);
     const Vector3d home = device.tip(device.angles({0, 0, 0}));
-    int reached = 0;
     for (int i = 0; i < 200; ++i) {
       const double x = uniform(random);
       const double y = uniform(random);
       const Vector3d place = home + Vector3d(x, y, uniform(random));
       const auto angles = device.angles_of(place);
-      if (!angles) continue;
-      ++reached;
+      ASSERT_TRUE(angles) << configuration.name;
       EXPECT_LE((device.tip(*angles) - place).norm(), 1e-12) << configuration.name;
       // Rounded to whole counts the tip is off by half a step of each encoder at most.
       std::array<int, 3> whole{};
@@ -80,7 +78,6 @@ TEST(WoodenHaptics, FindsTheAnglesAndCountsOfAPlaceThatTheTipCanReach) {
       for (std::size_t k = 0; k < 3; ++k) whole[k] = static_cast<int>(std::lround(counts[k]));
       EXPECT_LE((device.angles(whole) - *angles).cwiseAbs().maxCoeff(), 0.5 * 4.6e-4) << configuration.name;
     }
-    EXPECT_GE(reached, 180) << configuration.name;
     EXPECT_FALSE(device.angles_of(home + Vector3d(1.0, 0.0, 0.0)));
     EXPECT_FALSE(device.angles_of(Vector3d(std::nan(""), 0.0, 0.0)));
   }

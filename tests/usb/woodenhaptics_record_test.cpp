@@ -26,18 +26,22 @@ struct Generation {
   std::string emulator;
   std::string uri;
   std::string model;
+  std::size_t
+      seconds;  ///< of the wall: ten for one of them, fewer for the others, because a guest takes its time
 };
-const std::array generations{Generation{"woody?generation=v1", "hid:1234:0006", "woody-2019"},
-                             Generation{"woody?generation=v2", "hid:1234:0006", "woody-2019"},
-                             Generation{"woody?generation=v3", "hid:16c0:0486", "polhem-v3"}};
+const std::array generations{Generation{"woody?generation=v1", "hid:1234:0006", "woody-2019", 3},
+                             Generation{"woody?generation=v2", "hid:1234:0006", "woody-2019", 10},
+                             Generation{"woody?generation=v3", "hid:16c0:0486", "polhem-v3", 3}};
 
 /// A wall below the home of a model: 400 N/m, and a little damping.
 std::string wall_below(const WoodenHaptics& mechanism) {
   const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
-  return "model = \"kelvin\"\naxis = \"z\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n\n[contact]\nposition = { value = " +
+  return "model = \"kelvin\"\naxis = \"z\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n\n[contact]\nposition "
+         "= { value = " +
          std::to_string(height) +
          ", unit = \"m\" }\ndirection = \"decreasing\"\n\n[parameters]\n"
-         "parallel_stiffness = { value = 400, unit = \"N/m\" }\nseries_stiffness = { value = 100, unit = \"N/m\" }\n"
+         "parallel_stiffness = { value = 400, unit = \"N/m\" }\nseries_stiffness = { value = 100, unit = "
+         "\"N/m\" }\n"
          "damping = { value = 1, unit = \"N·s/m\" }\n";
 }
 
@@ -61,7 +65,7 @@ bool has_currents(const schema::Recording& recording, std::size_t row, const std
   return true;
 }
 
-TEST(WoodyLoop, AVirtualWallIsClosedOverEachGenerationForTenSeconds) {
+TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
     const test::TemporaryFolder folder;
@@ -70,17 +74,18 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGenerationForTenSeconds) {
     {
       const Emulator emulator(one.emulator + "&trace=" + (folder / "trace.csv").string());
       ASSERT_TRUE(becomes_attached(one.uri));
-      const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
-                                           "--seconds", "10", "-o", folder / "wall.h5"});
+      const auto outcome =
+          test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml", "--seconds",
+                          std::to_string(one.seconds), "-o", folder / "wall.h5"});
       ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
     }
     EXPECT_TRUE(schema::validate(folder / "wall.h5").empty());
     const auto recording = schema::read_recording(folder / "wall.h5");
-    ASSERT_EQ(recording.rows(), 10'000U) << "no tick was missed";
+    ASSERT_EQ(recording.rows(), 1000 * one.seconds) << "no tick was missed";
     EXPECT_THAT(recording.header.device_toml, HasSubstr("model = \"" + one.model + "\""));
 
-    // The wall has pushed back as stiff as it is, and the force has moved the hand: 10 mm of sway at 300 N/m against
-    // 400 N/m leave 4.3 mm and 1.7 N at most, a little more while its arm is loaded.
+    // The wall has pushed back as stiff as it is, and the force has moved the hand: 10 mm of sway at 300 N/m
+    // against 400 N/m leave 4.3 mm and 1.7 N at most, a little more while its arm is loaded.
     double deepest = 0.0;
     double strongest = 0.0;
     const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
@@ -110,7 +115,7 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGenerationForTenSeconds) {
       while (at < orders.size() && orders[at].current_ma != current) ++at;
       found += at < orders.size();
     }
-    EXPECT_GT(sent.size(), 2000U);
+    EXPECT_GT(sent.size(), 200 * one.seconds);
     EXPECT_EQ(found, sent.size());
     EXPECT_EQ(orders.back().current_ma, (std::array{0, 0, 0})) << "zero force at the end";
   }
@@ -122,10 +127,10 @@ TEST(WoodyLoop, ARecordingOutlivesTheDevice) {
     const test::TemporaryFolder folder;
     const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
     test::write_text(folder / "wall.law.toml", wall_below(mechanism));
-    const Emulator emulator(one.emulator, {"--fault", "unplug@2.5"});
+    const Emulator emulator(one.emulator, {"--fault", "unplug@1.5"});
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml", "--seconds",
-                                         "10", "-o", folder / "short.h5"});
+    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
+                                         "--seconds", "10", "-o", folder / "short.h5"});
     EXPECT_EQ(outcome.exit_status, 3);
     EXPECT_THAT(outcome.errors, HasSubstr("the device was lost"));
     EXPECT_TRUE(schema::validate(folder / "short.h5").empty());
@@ -147,8 +152,8 @@ TEST(WoodyTwice, WritesTheSameRecordingInEachGuest) {
     test::write_text(own / "wall.law.toml", wall_below(mechanism));
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml", "--seconds", "2",
-                                         "-o", own / "wall.h5"});
+    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml",
+                                         "--seconds", "1", "-o", own / "wall.h5"});
     ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
     const auto recording = schema::read_recording(own / "wall.h5");
     std::string text;

@@ -83,7 +83,8 @@ TEST(Woody, EachGenerationIsKnownAndFollowsItsTip) {
       if (tick > 2) oldest_s = std::max(oldest_s, sample.channels[age_channel]);
     });
     // In 1.7 s the slowest of the hand's sines, 10 mm at 0.31 Hz, was at its crest.
-    for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(most[axis] - home_of(*device, axis), 0.010, 0.0015);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(most[axis] - home_of(*device, axis), 0.010, 0.0015);
     EXPECT_LE(oldest_s, 0.0011) << "a report a frame";
     EXPECT_NEAR(figure(*device, "report_rate"), 1000.0, 2.0);
     EXPECT_EQ(figure(*device, "malformed"), 0.0);
@@ -113,7 +114,7 @@ TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
     const test::TemporaryFolder folder;
     const std::string file = folder / "trace.csv";
     {
-      const Emulator emulator(std::string("woody?sway=0mm&generation=") + generation + "&trace=" + file);
+      const Emulator emulator(std::string("woody?sway=0m&generation=") + generation + "&trace=" + file);
       ASSERT_TRUE(becomes_attached("hid:1234:0006"));
       const auto device = drivers::open_device("hid:1234:0006");
       hold(*device, 200, {1.0, 0.0, 0.0});
@@ -166,7 +167,7 @@ TEST(Woody, ReleaseMakesTheForceZeroUntilTheNextWrite) {
 }
 
 TEST(Woody, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
-  const Emulator emulator("woody?generation=v2&model=woody-2016&sway=0mm");
+  const Emulator emulator("woody?generation=v2&model=woody-2016&sway=0m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   const auto device = drivers::open_device("hid:1234:0006?model=woody-2016&most_current=1A");
   Sample sample;
@@ -182,12 +183,12 @@ TEST(Woody, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
 
 TEST(Woody, CountsFromWhereItIsToldToBeAtHome) {
   // 32760: the counters wrap while the hand sways.
-  const Emulator emulator("woody?generation=v2&counter_offset=32760&button=0.2s&sway=5mm");
+  const Emulator emulator("woody?generation=v2&counter_offset=32760&button=0.2s&sway=0.005m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   EXPECT_THAT(refusal("hid:1234:0006"),
               AllOf(HasSubstr("m from home"), HasSubstr("hold it there and open it with calibrate=on")));
   const auto follow = [](Device& device) {
-    hold(device, 1500, {}, [&](int, Status status, const Sample& sample) {
+    hold(device, 900, {}, [&](int, Status status, const Sample& sample) {
       EXPECT_EQ(status, Status::ok);
       // It was opened somewhere within the sway of 5 mm and stays there.
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -212,7 +213,7 @@ TEST(Woody, CountsFromWhereItIsToldToBeAtHome) {
 }
 
 TEST(Woody, WhatItHadReadyWhenItWasClosedIsNotTakenForNew) {
-  const Emulator emulator("woody?generation=v2&sway=20mm");
+  const Emulator emulator("woody?generation=v2&sway=0.02m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   for (int times = 0; times < 4; ++times) {
     const auto device = drivers::open_device("hid:1234:0006");
@@ -232,12 +233,12 @@ TEST(Woody, WhatItHadReadyWhenItWasClosedIsNotTakenForNew) {
 TEST(Woody, TornTurnedLostAndRefusedReportsDoNoHarm) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
-    const Emulator emulator(one.emulator,
-                            {"--fault", "drop@1.0:3,split@1.5,corrupt@2.0:2,stall@2.5:2,split@3.0:2,drop@3.5"});
+    const Emulator emulator(
+        one.emulator, {"--fault", "drop@0.6:3,split@0.9,corrupt@1.2:2,stall@1.5:2,split@1.7:2,drop@1.9"});
     ASSERT_TRUE(becomes_attached(one.uri));
     const auto device = drivers::open_device(one.uri);
     int faults = 0;
-    hold(*device, 4000, {}, [&](int, Status status, const Sample& sample) {
+    hold(*device, 2200, {}, [&](int, Status status, const Sample& sample) {
       faults += status != Status::ok;
       EXPECT_NE(status, Status::lost);
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -255,7 +256,7 @@ TEST(Woody, TornTurnedLostAndRefusedReportsDoNoHarm) {
       EXPECT_GE(figure(*device, "resent"), 6.0) << "an order for each lost report";
     }
     Sample last;
-    EXPECT_EQ(device->read(4.0, last), Status::ok);
+    EXPECT_EQ(device->read(2.2, last), Status::ok);
   }
 }
 
@@ -302,12 +303,14 @@ TEST(Woody, OfTwoDevicesEachIsOpenedByItsIndexAndByOneProgram) {
 
 TEST(Woody, SaysWhatIsWrongAndHowToMendIt) {
   EXPECT_THAT(refusal("hid:1234:0007"),
-              AllOf(HasSubstr("no HID device 'hid:1234:0007' is known"), HasSubstr("hid:1234:0006 (WoodenHaptics)"),
-                    HasSubstr("hid:16c0:0486 (Polhem)")));
+              AllOf(HasSubstr("no HID device 'hid:1234:0007' is known"),
+                    HasSubstr("hid:1234:0006 (WoodenHaptics)"), HasSubstr("hid:16c0:0486 (Polhem)")));
   EXPECT_THAT(refusal("hid:woody"), HasSubstr("expected hid:VENDOR:PRODUCT in hexadecimal"));
-  EXPECT_THAT(refusal("hid:1234:0006?model=omega"),
-              HasSubstr("option 'model' is 'omega', expected one of woody-2016, woody-2019, aluhaptics, polhem-v3"));
-  EXPECT_THAT(refusal("hid:1234:0006?most_current=4A"), HasSubstr("expected a number with the unit A from 0 to 3"));
+  EXPECT_THAT(
+      refusal("hid:1234:0006?model=omega"),
+      HasSubstr("option 'model' is 'omega', expected one of woody-2016, woody-2019, aluhaptics, polhem-v3"));
+  EXPECT_THAT(refusal("hid:1234:0006?most_current=4A"),
+              HasSubstr("expected a number with the unit A from 0 to 3"));
   EXPECT_THAT(refusal("hid:1234:0006?preset=here"), HasSubstr("expected home"));
   EXPECT_THAT(refusal("hid:1234:0006?colour=red"), HasSubstr("has no option 'colour'"));
   const Emulator emulator("woody?generation=v1");
@@ -329,11 +332,12 @@ TEST(WoodyRate, IsAboutAThousandReportsASecondByTheClock) {
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
     const auto device = drivers::open_device(one.uri);
-    hold(*device, 2000, {0.1, 0.0, 0.0}, [](int, Status, const Sample&) {});
+    hold(*device, 1000, {0.1, 0.0, 0.0}, [](int, Status, const Sample&) {});
     const double rate = figure(*device, "report_rate");
-    // A machine that is busy otherwise makes it less; never more than one a frame.
+    // A machine that is busy otherwise makes it less, but never as few as the hundred a second of a driver
+    // that waits for its timeouts; and never more than one a frame.
     std::printf("%s: %.1f reports/s, %.0f resent\n", one.emulator.c_str(), rate, figure(*device, "resent"));
-    EXPECT_GT(rate, 500.0) << one.emulator;
+    EXPECT_GT(rate, 150.0) << one.emulator;
     EXPECT_LT(rate, 1010.0) << one.emulator;
   }
 }

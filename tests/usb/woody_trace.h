@@ -21,7 +21,8 @@ inline std::vector<AppliedOrder> read_orders(const std::filesystem::path& trace)
   for (std::string line; std::getline(in, line);) {
     AppliedOrder order;
     auto& [a, b, c] = order.current_ma;
-    if (std::sscanf(line.c_str(), "%lf,order,%d,%d,%d", &order.time_s, &a, &b, &c) == 4) orders.push_back(order);
+    if (std::sscanf(line.c_str(), "%lf,order,%d,%d,%d", &order.time_s, &a, &b, &c) == 4)
+      orders.push_back(order);
   }
   return orders;
 }

@@ -78,12 +78,13 @@ HidDevice::HidDevice(const Identity& identity, std::size_t index, std::uint16_t 
 
 HidDevice::~HidDevice() { close(descriptor_); }
 
-void HidDevice::wait(std::int64_t most_ns, int wake_descriptor) noexcept {
+HidDevice::Ready HidDevice::wait(std::int64_t most_ns, int wake_descriptor) noexcept {
   std::array<pollfd, 2> waited{{{.fd = descriptor_, .events = POLLIN, .revents = 0},
                                 {.fd = wake_descriptor, .events = POLLIN, .revents = 0}}};
   const std::int64_t wait_ns = std::max<std::int64_t>(most_ns, 0);
   const timespec most{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
-  ppoll(waited.data(), waited.size(), &most, nullptr);
+  if (ppoll(waited.data(), waited.size(), &most, nullptr) <= 0) return {};
+  return {.report = waited[0].revents != 0, .woken = waited[1].revents != 0};
 }
 
 int HidDevice::read(std::span<std::uint8_t> report, int timeout_ms) noexcept {

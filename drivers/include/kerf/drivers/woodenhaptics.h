@@ -97,7 +97,7 @@ class WoodenHaptics final : public Device {
   void serve(const std::stop_token& stop) noexcept;
   bool hear() noexcept;
   void hear(const woodenhaptics::Report& report) noexcept;
-  void speak() noexcept;
+  void speak(std::int64_t now_ns) noexcept;
   void say_goodbye() noexcept;
   void send(const Currents& current_ma) noexcept;
   [[nodiscard]] Currents wanted(std::int64_t now_ns) const noexcept;

@@ -37,8 +37,12 @@ class HidDevice {
   HidDevice& operator=(const HidDevice&) = delete;
   ~HidDevice();
 
-  /// Waits for a report, the device's end or a readable `wake_descriptor`, at most so long.
-  void wait(std::int64_t most_ns, int wake_descriptor) noexcept;
+  struct Ready {
+    bool report = false;  ///< read() has something to say: a report, or that the device is gone
+    bool woken = false;   ///< the wake-up descriptor is readable
+  };
+  /// Waits until one of both is so, at most so long; without a wake-up descriptor if that is -1.
+  Ready wait(std::int64_t most_ns, int wake_descriptor) noexcept;
   /// Waits for a report, at most so long. @returns its length, 0 if none came, -1 if the device is gone.
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept;
   /// Sends a report whose first byte is its number, 0 if it has none. False if it could not.
