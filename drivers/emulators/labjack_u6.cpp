@@ -40,8 +40,8 @@ constexpr double room_k = 295.15;
 const Description& labjack() {
   static const Description description{
       .speed = Description::Speed::full,
-      .device = {0x12, 0x01, 0x00, 0x02, 0xFF, 0xFF, 0xFF, 0x40, 0xD5, 0x0C, 0x06, 0x00, 0x00, 0x00, 0x01, 0x02, 0x00,
-                 0x01},
+      .device = {0x12, 0x01, 0x00, 0x02, 0xFF, 0xFF, 0xFF, 0x40, 0xD5, 0x0C, 0x06, 0x00, 0x00, 0x00, 0x01,
+                 0x02, 0x00, 0x01},
       .configuration = {0x09, 0x02, 0x27, 0x00, 0x01, 0x01, 0x00, 0x80, 0xFA, 0x09, 0x04, 0x00, 0x00,
                         0x03, 0xFF, 0xFF, 0xFF, 0x00, 0x07, 0x05, 0x01, 0x02, 0x40, 0x00, 0x00, 0x07,
                         0x05, 0x82, 0x02, 0x40, 0x00, 0x00, 0x07, 0x05, 0x83, 0x02, 0x40, 0x00, 0x00},
@@ -83,12 +83,14 @@ EmulatedU6::Options EmulatedU6::parse_options(drivers::Uri uri) {
   options.serial = static_cast<std::uint32_t>(given.count("serial", options.serial));
   options.overflow_s = given.number("overflow", {"s", options.overflow_s, 0.0, 1e9});
   options.trace = given.text("trace").value_or("");
-  if (const auto file = given.text("calibration")) options.transducer = drivers::read_force_calibration(*file);
+  if (const auto file = given.text("calibration"))
+    options.transducer = drivers::read_force_calibration(*file);
   given.refuse_others();
   return options;
 }
 
-EmulatedU6::EmulatedU6(const Options& options) : options_(options), to_volts_(options.transducer.matrix.inverse()) {
+EmulatedU6::EmulatedU6(const Options& options)
+    : options_(options), to_volts_(options.transducer.matrix.inverse()) {
   if (options.trace.empty()) return;
   trace_.open(options.trace);
   if (!trace_) throw drivers::DeviceError("trace " + options.trace + " cannot be written");
@@ -233,7 +235,8 @@ std::int64_t EmulatedU6::scan_ns(std::uint64_t scan) const noexcept {
 
 std::uint64_t EmulatedU6::scans_due(std::int64_t now_ns) const noexcept {
   const double interval_ns = interval_ns_ * (1.0 + 1e-6 * options_.drift_ppm);
-  auto due = static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(now_ns - stream_start_ns_) / interval_ns));
+  auto due =
+      static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(now_ns - stream_start_ns_) / interval_ns));
   // The division may be off by one where the product is not.
   while (due > 0 && scan_ns(due - 1) > now_ns) --due;
   while (scan_ns(due) <= now_ns) ++due;
@@ -264,7 +267,8 @@ void EmulatedU6::take_scan(std::uint64_t scan) {
   trace_ << fmt::format("{},{},{},{}\n", scan, 1e-9 * interval_ns_ * static_cast<double>(scan + 1),
                         1e-9 * static_cast<double>(taken_ns), [&] {
                           std::string text;
-                          for (const double one : wrench(time_s)) text += fmt::format("{}{}", text.empty() ? "" : ",", one);
+                          for (const double one : wrench(time_s))
+                            text += fmt::format("{}{}", text.empty() ? "" : ",", one);
                           return text;
                         }());
 }
@@ -340,8 +344,8 @@ std::optional<std::size_t> EmulatedU6::send_stream(std::span<std::uint8_t> buffe
   return filled;
 }
 
-std::optional<std::size_t> EmulatedU6::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer, std::int64_t,
-                                            std::int64_t now_ns, Disturbance& next) {
+std::optional<std::size_t> EmulatedU6::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
+                                            std::int64_t, std::int64_t now_ns, Disturbance& next) {
   if (endpoint == 3) return send_stream(buffer, now_ns, next);
   if (endpoint != 2 || answers_.empty()) return std::nullopt;
   const Bytes answer = std::move(answers_.front());
@@ -360,8 +364,8 @@ std::optional<std::int64_t> EmulatedU6::next_event_ns(std::int64_t now_ns) const
 }
 
 std::string EmulatedU6::tell() const {
-  return fmt::format("{} commands, {} packets of {} samples, {} scans without room, LED {}", commands_, packets_,
-                     samples_per_packet_, scans_lost_, led_ ? "on" : "off");
+  return fmt::format("{} commands, {} packets of {} samples, {} scans without room, LED {}", commands_,
+                     packets_, samples_per_packet_, scans_lost_, led_ ? "on" : "off");
 }
 
 }  // namespace kerf::emulators

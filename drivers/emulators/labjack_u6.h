@@ -17,24 +17,28 @@
 
 namespace kerf::emulators {
 
-/// The transducer that the emulator has on its inputs unless told otherwise: the one of examples/u6.calibration.toml.
+/// The transducer that the emulator has on its inputs unless told otherwise: the one of
+/// examples/u6.calibration.toml.
 [[nodiscard]] const drivers::ForceCalibration& example_transducer();
 
-/// A LabJack U6 (0cd5:0006) with a six-axis force/torque transducer on AIN0/1 to AIN10/11, on which a known wrench acts:
+/// A LabJack U6 (0cd5:0006) with a six-axis force/torque transducer on AIN0/1 to AIN10/11, on which a known
+/// wrench acts:
 ///
-///     component i = A_i sin(2 pi f_i t),   f = 0.7, 1.1, 1.3, 1.7, 1.9, 2.3 Hz,   t from the first StreamStart
+///     component i = A_i sin(2 pi f_i t),   f = 0.7, 1.1, 1.3, 1.7, 1.9, 2.3 Hz,   t from the first
+///     StreamStart
 ///
-/// It becomes volts by the inverse of the transducer's matrix, and codes by the inverse of the U6's own constants,
-/// rounded and cut to 16 bits. All channels of a scan are sampled at one instant (a real one takes some tens of us from
-/// channel to channel). A converter of 16 bits, 984 samples of buffer and a clock that may run wrong stand between
-/// that and the host: when the host does not read, the buffer fills, what is in it comes with error 59 and then one dummy
-/// scan with error 60 and the count of those that are missing.
+/// It becomes volts by the inverse of the transducer's matrix, and codes by the inverse of the U6's own
+/// constants, rounded and cut to 16 bits. All channels of a scan are sampled at one instant (a real one takes
+/// some tens of us from channel to channel). A converter of 16 bits, 984 samples of buffer and a clock that
+/// may run wrong stand between that and the host: when the host does not read, the buffer fills, what is in
+/// it comes with error 59 and then one dummy scan with error 60 and the count of those that are missing.
 ///
-/// Options: force (8N), torque (0.4Nm): the amplitudes; calibration=FILE.toml: another transducer; drift (0ppm): by
-/// how much its millisecond is longer than the host's; noise (0): of the converter, its deviation in codes; trim (0ppm):
-/// by how much its constants differ from the nominal ones; serial; overflow (2.0s after StreamStart, once): for
-/// 0.19 s no packet leaves, so that the buffer overflows; trace=FILE.csv: number of the scan, its time by the device's
-/// clock from StreamStart and by the host's monotonic one, and its wrench.
+/// Options: force (8N), torque (0.4Nm): the amplitudes; calibration=FILE.toml: another transducer; drift
+/// (0ppm): by how much its millisecond is longer than the host's; noise (0): of the converter, its deviation
+/// in codes; trim (0ppm): by how much its constants differ from the nominal ones; serial; overflow (2.0s
+/// after StreamStart, once): for 0.19 s no packet leaves, so that the buffer overflows; trace=FILE.csv:
+/// number of the scan, its time by the device's clock from StreamStart and by the host's monotonic one, and
+/// its wrench.
 ///
 /// Descriptors and strings are made up where the vendor tells nothing of them.
 class EmulatedU6 final : public EmulatedDevice {
@@ -54,10 +58,12 @@ class EmulatedU6 final : public EmulatedDevice {
   explicit EmulatedU6(const Options& options);
 
   [[nodiscard]] const Description& description() const override;
-  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data, std::int64_t now_ns) override;
+  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data,
+                               std::int64_t now_ns) override;
   void receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
-  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
-                                  std::int64_t now_ns, Disturbance& next) override;
+  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
+                                  std::int64_t waits_since_ns, std::int64_t now_ns,
+                                  Disturbance& next) override;
   [[nodiscard]] std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const override;
   [[nodiscard]] std::string tell() const override;
 
@@ -87,7 +93,8 @@ class EmulatedU6 final : public EmulatedDevice {
   [[nodiscard]] std::uint8_t stop_stream();
 
   // Signals.
-  [[nodiscard]] double volts(std::uint8_t channel, bool differential, const drivers::Axes& inputs) const noexcept;
+  [[nodiscard]] double volts(std::uint8_t channel, bool differential,
+                             const drivers::Axes& inputs) const noexcept;
   /// Code of a voltage, 0 to 65535, not yet rounded.
   [[nodiscard]] double code(double volts, unsigned gain) const noexcept;
   [[nodiscard]] drivers::Axes inputs(double time_s) const noexcept;
@@ -103,7 +110,8 @@ class EmulatedU6 final : public EmulatedDevice {
   [[nodiscard]] bool is_blocked(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool has_packet() const noexcept;
   [[nodiscard]] drivers::labjack_u6::Message next_packet();
-  std::optional<std::size_t> send_stream(std::span<std::uint8_t> buffer, std::int64_t now_ns, Disturbance& next);
+  std::optional<std::size_t> send_stream(std::span<std::uint8_t> buffer, std::int64_t now_ns,
+                                         Disturbance& next);
 
   Options options_;
   Eigen::Matrix<double, 6, 6> to_volts_;

@@ -60,7 +60,8 @@ std::size_t size_of_io(std::uint8_t type) {
 }
 
 void append24(Bytes& bytes, std::uint32_t number) {
-  for (unsigned shift = 0; shift < 24; shift += 8) bytes.push_back(static_cast<std::uint8_t>(number >> shift));
+  for (unsigned shift = 0; shift < 24; shift += 8)
+    bytes.push_back(static_cast<std::uint8_t>(number >> shift));
 }
 
 }  // namespace
@@ -140,8 +141,10 @@ Bytes EmulatedU6::read_constants(std::span<const std::uint8_t> command) const {
   }
   const auto values = constants(command[7]);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto bits = static_cast<std::uint64_t>(std::llround(values[i] * 0x1p32));  // 32.32, two's complement
-    for (unsigned byte = 0; byte < 8; ++byte) reply[8 + 8 * i + byte] = static_cast<std::uint8_t>(bits >> 8U * byte);
+    const auto bits =
+        static_cast<std::uint64_t>(std::llround(values[i] * 0x1p32));  // 32.32, two's complement
+    for (unsigned byte = 0; byte < 8; ++byte)
+      reply[8 + 8 * i + byte] = static_cast<std::uint8_t>(bits >> 8U * byte);
   }
   return reply;
 }
@@ -171,13 +174,16 @@ Bytes EmulatedU6::feedback(std::span<const std::uint8_t> command, std::int64_t n
 
 bool EmulatedU6::feed_back(std::span<const std::uint8_t> io, Bytes& data, std::int64_t now_ns) {
   const std::uint8_t type = io[0];
-  const auto bank = [&] { return std::min<std::size_t>(io[1] / 8U, 2); };  // IO number 0-7 FIO, 8-15 EIO, 16-19 CIO
+  const auto bank = [&] {
+    return std::min<std::size_t>(io[1] / 8U, 2);
+  };  // IO number 0-7 FIO, 8-15 EIO, 16-19 CIO
   const auto set_bit = [&](std::uint32_t& bits) {
     const std::uint32_t bit = 1U << (io[1] & 7U);
     bits = (io[1] & 0x80U) != 0 ? bits | bit : bits & ~bit;
   };
   const auto write_ports = [&](std::array<std::uint32_t, 3>& ports) {
-    for (std::size_t i = 0; i < 3; ++i) ports[i] = (ports[i] & ~static_cast<std::uint32_t>(io[1 + i])) | (io[4 + i] & io[1 + i]);
+    for (std::size_t i = 0; i < 3; ++i)
+      ports[i] = (ports[i] & ~static_cast<std::uint32_t>(io[1 + i])) | (io[4 + i] & io[1 + i]);
   };
   const auto read_ports = [&](const std::array<std::uint32_t, 3>& ports) {
     for (const std::uint32_t port : ports) data.push_back(static_cast<std::uint8_t>(port));
@@ -236,7 +242,8 @@ bool EmulatedU6::feed_back(std::span<const std::uint8_t> io, Bytes& data, std::i
       return true;
     default:
       // Waits take no time here; timers and counters, none of which is on, are at zero.
-      if ((type >= 42 && type <= 48 && type % 2 == 0) || type == 54 || type == 55) data.insert(data.end(), 4, 0);
+      if ((type >= 42 && type <= 48 && type % 2 == 0) || type == 54 || type == 55)
+        data.insert(data.end(), 4, 0);
       return true;
   }
 }

@@ -8,11 +8,10 @@
 #include <sstream>
 #include <string_view>
 
+#include <Eigen/LU>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
-
-#include <Eigen/LU>
 
 namespace kerf::drivers {
 namespace {
@@ -26,7 +25,7 @@ struct UnitFactor {
 };
 constexpr std::array<UnitFactor, 3> force_units{{{"N", 1.0}, {"mN", 1e-3}, {"lbf", pound_force_n}}};
 constexpr std::array<UnitFactor, 3> torque_units{
-    {{"N·m", 1.0}, {"N·mm", 1e-3}, {"lbf·in", pound_force_n * inch_m}}};
+    {{"N·m", 1.0}, {"N·mm", 1e-3}, {"lbf·in", pound_force_n* inch_m}}};
 constexpr std::array<UnitFactor, 2> signal_units{{{"V", 1.0}, {"mV", 1e-3}}};
 
 /// Reads one file and says in it what is wrong where.
@@ -37,8 +36,8 @@ class Reader {
   ForceCalibration read() const {
     allow_only(root_, {"provenance", "serial", "units", "matrix", "bias", "axes"}, "a force calibration");
     ForceCalibration calibration;
-    calibration.provenance = text(required(root_, "provenance", "a text in quotes: where the numbers come from"),
-                                  "provenance");
+    calibration.provenance =
+        text(required(root_, "provenance", "a text in quotes: where the numbers come from"), "provenance");
     calibration.serial = serial();
     const toml::node& node = required(root_, "units", R"({ force = "N", torque = "N·m", signal = "V" })");
     if (!node.is_table()) refuse(node, R"('units' must be {{ force = "N", torque = "N·m", signal = "V" }})");
@@ -51,7 +50,8 @@ class Reader {
     calibration.matrix.topRows<3>() *= force / signal;
     calibration.matrix.bottomRows<3>() *= torque / signal;
     const auto bias = six_numbers(required(root_, "bias", "six numbers: the signals without load"), "'bias'");
-    for (std::size_t i = 0; i < max_axes; ++i) calibration.bias_v[static_cast<Eigen::Index>(i)] = signal * bias[i];
+    for (std::size_t i = 0; i < max_axes; ++i)
+      calibration.bias_v[static_cast<Eigen::Index>(i)] = signal * bias[i];
     read_axes(calibration.mounts);
     return calibration;
   }
@@ -72,9 +72,11 @@ class Reader {
     }
   }
 
-  const toml::node& required(const toml::table& table, std::string_view key, std::string_view expected) const {
+  const toml::node& required(const toml::table& table, std::string_view key,
+                             std::string_view expected) const {
     const toml::node* node = table.get(key);
-    if (node == nullptr) throw DeviceError(fmt::format("{}: '{}' is missing; expected {}", name_, key, expected));
+    if (node == nullptr)
+      throw DeviceError(fmt::format("{}: '{}' is missing; expected {}", name_, key, expected));
     return *node;
   }
 
@@ -105,8 +107,8 @@ class Reader {
     for (const UnitFactor& one : known) names.push_back(one.name);
     const toml::node* node = units.get(key);
     if (node == nullptr) {
-      throw DeviceError(
-          fmt::format("{}: the unit of '{}' is missing in 'units'; expected {}", name_, key, fmt::join(names, " or ")));
+      throw DeviceError(fmt::format("{}: the unit of '{}' is missing in 'units'; expected {}", name_, key,
+                                    fmt::join(names, " or ")));
     }
     const std::string given = text(*node, key);
     for (const UnitFactor& one : known) {
@@ -121,7 +123,8 @@ class Reader {
       refuse(node, "{} must be {} numbers, found {}", what, max_axes, array == nullptr ? 0 : array->size());
     }
     Axes numbers{};
-    for (std::size_t i = 0; i < max_axes; ++i) numbers[i] = number((*array)[i], fmt::format("{}[{}]", what, i));
+    for (std::size_t i = 0; i < max_axes; ++i)
+      numbers[i] = number((*array)[i], fmt::format("{}[{}]", what, i));
     return numbers;
   }
 
@@ -142,7 +145,8 @@ class Reader {
     Eigen::Matrix<double, 6, 6> scaled = matrix;
     for (Eigen::Index row = 0; row < 6; ++row) scaled.row(row) /= std::max(1e-300, scaled.row(row).norm());
     if (std::abs(scaled.determinant()) < 1e-9) {
-      refuse(node, "'matrix' is singular: six components cannot be told from these signals; is a row missing?");
+      refuse(node,
+             "'matrix' is singular: six components cannot be told from these signals; is a row missing?");
     }
   }
 
@@ -154,7 +158,8 @@ class Reader {
       component = text(required(*table, "component", "one of fx to tz, perhaps with a minus"), "component");
       if (const toml::node* lever = table->get("lever_m")) {
         lever_m = number(*lever, "'lever_m'");
-        if (!(lever_m > 0.0)) refuse(*lever, "'lever_m' must be more than 0; a minus stands before the component");
+        if (!(lever_m > 0.0))
+          refuse(*lever, "'lever_m' must be more than 0; a minus stands before the component");
       }
     } else {
       component = text(node, axis);
@@ -197,7 +202,8 @@ std::string in_quotes(const std::string& text) {
 }  // namespace
 
 Axes ForceCalibration::wrench(const Axes& volts) const noexcept {
-  const Eigen::Matrix<double, 6, 1> signal = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(volts.data()) - bias_v;
+  const Eigen::Matrix<double, 6, 1> signal =
+      Eigen::Map<const Eigen::Matrix<double, 6, 1>>(volts.data()) - bias_v;
   Axes wrench{};
   Eigen::Map<Eigen::Matrix<double, 6, 1>>(wrench.data()).noalias() = matrix * signal;
   return wrench;
@@ -217,9 +223,10 @@ ForceCalibration read_force_calibration(const std::string& file) {
   std::ostringstream text;
   text << in.rdbuf();
   if (!in) {
-    throw DeviceError(fmt::format("{}: the force calibration cannot be read; is the path right? "
-                                  "examples/u6.calibration.toml is an example",
-                                  file));
+    throw DeviceError(
+        fmt::format("{}: the force calibration cannot be read; is the path right? "
+                    "examples/u6.calibration.toml is an example",
+                    file));
   }
   return parse_force_calibration(text.str(), file);
 }
@@ -228,14 +235,16 @@ std::string to_toml(const ForceCalibration& calibration) {
   std::string text = fmt::format("provenance = {}\n", in_quotes(calibration.provenance));
   if (calibration.serial) text += fmt::format("serial = {}\n", *calibration.serial);
   text += "units = { force = \"N\", torque = \"N·m\", signal = \"V\" }\nmatrix = [\n";
-  for (Eigen::Index row = 0; row < 6; ++row) text += fmt::format("  {},\n", row_text(calibration.matrix.row(row)));
+  for (Eigen::Index row = 0; row < 6; ++row)
+    text += fmt::format("  {},\n", row_text(calibration.matrix.row(row)));
   text += fmt::format("]\nbias = {}\n", row_text(calibration.bias_v.transpose()));
   if (calibration.mounts.empty()) return text;
   std::string mounts;
   for (const ForceMount& mount : calibration.mounts) {
     const std::string lever = mount.lever_m > 0.0 ? fmt::format(", lever_m = {}", mount.lever_m) : "";
-    mounts += fmt::format("{}{} = {{ component = \"{}{}\"{} }}", mounts.empty() ? "" : ", ", in_quotes(mount.axis),
-                          mount.sign < 0.0 ? "-" : "", wrench_names[mount.component], lever);
+    mounts +=
+        fmt::format("{}{} = {{ component = \"{}{}\"{} }}", mounts.empty() ? "" : ", ", in_quotes(mount.axis),
+                    mount.sign < 0.0 ? "-" : "", wrench_names[mount.component], lever);
   }
   return text + fmt::format("axes = {{ {} }}\n", mounts);
 }

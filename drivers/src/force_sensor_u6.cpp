@@ -4,9 +4,8 @@
 #include <cmath>
 #include <exception>
 
-#include <libusb.h>
-
 #include <fmt/format.h>
+#include <libusb.h>
 
 namespace kerf::drivers {
 namespace {
@@ -17,7 +16,8 @@ using usb::Transfer;
 constexpr double scan_rate_hz = 1000.0;
 constexpr double scan_period_s = 1.0 / scan_rate_hz;
 constexpr std::size_t channel_count = 6;
-constexpr std::size_t transfer_count = 8;  // as many milliseconds that the thread may be late without a pause on the bus
+constexpr std::size_t transfer_count =
+    8;  // as many milliseconds that the thread may be late without a pause on the bus
 constexpr std::size_t fifo_packets = 984 / channel_count;  // what an earlier program may have left in it
 constexpr std::int64_t wait_ns = 20'000'000;
 constexpr std::int64_t silent_ns = 230'000'000;  // below the 256 packets after which their counter wraps
@@ -50,10 +50,11 @@ ForceSensorU6::Options ForceSensorU6::parse_options(std::string_view text, Uri u
   const auto file = given.text("calibration");
   given.refuse_others();
   if (!file || file->empty()) {
-    throw DeviceError(fmt::format(
-        "device '{}': which force a voltage is it cannot know; name the transducer's calibration, for example "
-        "u6:0?calibration=examples/u6.calibration.toml",
-        text));
+    throw DeviceError(
+        fmt::format("device '{}': which force a voltage is it cannot know; name the transducer's "
+                    "calibration, for example "
+                    "u6:0?calibration=examples/u6.calibration.toml",
+                    text));
   }
   return {.calibration_file = *file};
 }
@@ -69,39 +70,44 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
   stop_stream();
   identify();
   if (calibration_.serial && *calibration_.serial != identification_.serial) {
-    refuse(fmt::format("{} is for the LabJack with serial number {}, and this one has {}; plug in that one, or name "
-                       "the calibration of this one's transducer",
-                       options.calibration_file, *calibration_.serial, identification_.serial));
+    refuse(fmt::format(
+        "{} is for the LabJack with serial number {}, and this one has {}; plug in that one, or name "
+        "the calibration of this one's transducer",
+        options.calibration_file, *calibration_.serial, identification_.serial));
   }
   read_constants();
   configure();
-  info_ = {.uri = uri_,
-           .model = fmt::format("LabJack U6{}", identification_.pro ? "-Pro" : ""),
-           .about = "force/torque transducer on six channels; 1000 Hz",
-           .axes = {axis("x", false), axis("y", false), axis("z", false), axis("rx", true), axis("ry", true),
-                    axis("rz", true)},
-           .channels = {{.name = "force_age", .unit = "s"}, {.name = "force_scan", .unit = "1"}},
-           .measures_force = true,
-           .configuration = fmt::format(
-               "labjack = {{ serial = {}, firmware = \"{}.{:02}\", hardware = \"{}.{:02}\" }}\n"
-               "scan_rate = 1000.0 # Hz, by the device's clock\n"
-               "# V = slope (code - centre) above, negative_slope (centre - code) below; from the device's memory\n"
-               "input = {{ range = \"+-10 V, differential, AIN0/1 to AIN10/11\", slope = {}, negative_slope = {}, "
-               "centre = {} }}\n{}",
-               identification_.serial, identification_.firmware_major, identification_.firmware_minor,
-               identification_.hardware_major, identification_.hardware_minor, volts_.slope, volts_.negative_slope,
-               volts_.centre, to_toml(calibration_)),
-           .mounts = calibration_.mounts};
+  info_ = {
+      .uri = uri_,
+      .model = fmt::format("LabJack U6{}", identification_.pro ? "-Pro" : ""),
+      .about = "force/torque transducer on six channels; 1000 Hz",
+      .axes = {axis("x", false), axis("y", false), axis("z", false), axis("rx", true), axis("ry", true),
+               axis("rz", true)},
+      .channels = {{.name = "force_age", .unit = "s"}, {.name = "force_scan", .unit = "1"}},
+      .measures_force = true,
+      .configuration = fmt::format(
+          "labjack = {{ serial = {}, firmware = \"{}.{:02}\", hardware = \"{}.{:02}\" }}\n"
+          "scan_rate = 1000.0 # Hz, by the device's clock\n"
+          "# V = slope (code - centre) above, negative_slope (centre - code) below; from the device's "
+          "memory\n"
+          "input = {{ range = \"+-10 V, differential, AIN0/1 to AIN10/11\", slope = {}, negative_slope = {}, "
+          "centre = {} }}\n{}",
+          identification_.serial, identification_.firmware_major, identification_.firmware_minor,
+          identification_.hardware_major, identification_.hardware_minor, volts_.slope, volts_.negative_slope,
+          volts_.centre, to_toml(calibration_)),
+      .mounts = calibration_.mounts};
   for (std::size_t i = 0; i < transfer_count; ++i) {
-    transfers_.push_back(std::make_unique<Transfer>(
-        usb_, labjack_u6::stream_endpoint, labjack_u6::most_packet,
-        [this, i](Transfer::End end, std::span<const std::uint8_t> bytes) {
-          if (end == Transfer::End::gone) lost_.store(true);
-          if (end == Transfer::End::stalled || end == Transfer::End::failed) broken_ = true;
-          if (end != Transfer::End::completed || broken_) return;
-          take_packet(bytes);
-          if (!lost_.load(std::memory_order_relaxed) && !transfers_[i]->submit()) lost_.store(true);
-        }));
+    transfers_.push_back(
+        std::make_unique<Transfer>(usb_, labjack_u6::stream_endpoint, labjack_u6::most_packet,
+                                   [this, i](Transfer::End end, std::span<const std::uint8_t> bytes) {
+                                     if (end == Transfer::End::gone) lost_.store(true);
+                                     if (end == Transfer::End::stalled || end == Transfer::End::failed)
+                                       broken_ = true;
+                                     if (end != Transfer::End::completed || broken_) return;
+                                     take_packet(bytes);
+                                     if (!lost_.load(std::memory_order_relaxed) && !transfers_[i]->submit())
+                                       lost_.store(true);
+                                   }));
   }
   start_stream();
   thread_.start([this](const std::stop_token& stop) { stream(stop); });
@@ -119,7 +125,9 @@ ForceSensorU6::~ForceSensorU6() {
   }
 }
 
-void ForceSensorU6::refuse(const std::string& why) const { throw DeviceError(fmt::format("{}: {}", uri_, why)); }
+void ForceSensorU6::refuse(const std::string& why) const {
+  throw DeviceError(fmt::format("{}: {}", uri_, why));
+}
 
 std::size_t ForceSensorU6::ask(const labjack_u6::Message& question, std::span<std::uint8_t> answer) {
   usb_.bulk_out(labjack_u6::command_endpoint, question.view());
@@ -163,7 +171,8 @@ void ForceSensorU6::read_constants() {
     std::array<std::uint8_t, labjack_u6::most_packet> answer{};
     const std::size_t size = ask(labjack_u6::read_constants(number), answer);
     const auto constants = labjack_u6::parse_constants(std::span(answer).first(size));
-    if (!constants) refuse(fmt::format("block {} of its calibration cannot be read; plug it in again", number));
+    if (!constants)
+      refuse(fmt::format("block {} of its calibration cannot be read; plug it in again", number));
     return *constants;
   };
   const auto volts = labjack_u6::ten_volt_calibration(block(0), block(2));
@@ -273,7 +282,8 @@ bool ForceSensorU6::restart() noexcept {
   } catch (const std::exception&) {
     return false;
   }
-  // The scans go on counting as if the stream had never stopped; its first one comes a period after its start.
+  // The scans go on counting as if the stream had never stopped; its first one comes a period after its
+  // start.
   const std::int64_t now = usb::now_ns();
   if (next_number_ > 0) {
     const double missed = 1e-9 * static_cast<double>(now - clock_.time_ns(next_number_ - 1)) * scan_rate_hz;

@@ -6,7 +6,7 @@
 namespace kerf::drivers {
 namespace {
 
-constexpr double steepest = 500e-6;  // no crystal is off by more
+constexpr double steepest = 500e-6;      // no crystal is off by more
 constexpr std::size_t least_blocks = 4;  // before, a packet that came late would turn the line too far
 
 }  // namespace

@@ -25,8 +25,8 @@ double factor_of(const ForceMount& mount, const std::string& component_unit, con
   const bool same = component_unit == axis.force_unit;
   if (same == (mount.lever_m > 0.0)) {
     throw DeviceError(fmt::format(
-        "force sensor: [axes] '{}' takes {} [{}] for a force in {}: {}", axis.name, wrench_names.at(mount.component),
-        component_unit, axis.force_unit,
+        "force sensor: [axes] '{}' takes {} [{}] for a force in {}: {}", axis.name,
+        wrench_names.at(mount.component), component_unit, axis.force_unit,
         same ? "leave out lever_m" : "give the lever between them, { component = ..., lever_m = 0.04 }"));
   }
   if (same) return mount.sign;
@@ -41,16 +41,18 @@ SensedDevice::SensedDevice(std::unique_ptr<Device> device, std::unique_ptr<Devic
       info_(device_->info()),
       own_channels_(info_.channels.size()) {
   const DeviceInfo& sensing = sensor_->info();
-  if (!sensing.measures_force) throw DeviceError(fmt::format("{} measures no force: it is no --sensor", sensing.uri));
+  if (!sensing.measures_force)
+    throw DeviceError(fmt::format("{} measures no force: it is no --sensor", sensing.uri));
   find_sources();
   info_.channels.insert(info_.channels.end(), sensing.channels.begin(), sensing.channels.end());
   if (info_.channels.size() > max_channels) {
-    throw DeviceError(fmt::format("{} and {} have {} channels together, {} can be recorded; leave out the device's",
-                                  info_.uri, sensing.uri, info_.channels.size(), max_channels));
+    throw DeviceError(
+        fmt::format("{} and {} have {} channels together, {} can be recorded; leave out the device's",
+                    info_.uri, sensing.uri, info_.channels.size(), max_channels));
   }
   info_.measures_force = true;
-  info_.configuration += fmt::format("\n[sensor]\nuri = \"{}\"\nmodel = \"{}\"\n{}", sensing.uri, sensing.model,
-                                     sensing.configuration);
+  info_.configuration += fmt::format("\n[sensor]\nuri = \"{}\"\nmodel = \"{}\"\n{}", sensing.uri,
+                                     sensing.model, sensing.configuration);
 }
 
 void SensedDevice::find_sources() {
@@ -69,11 +71,12 @@ void SensedDevice::find_sources() {
     any |= sources_[at].factor != 0.0;
   }
   if (any) return;
-  throw DeviceError(fmt::format(
-      "{} has no axis that {} could measure ({} and {}); say in [axes] of the sensor's calibration which component acts "
-      "on which axis, for example {} = \"fx\"",
-      info_.uri, sensing.uri, names_of(info_.axes), names_of(sensing.axes),
-      info_.axes.empty() ? "x" : info_.axes.front().name));
+  throw DeviceError(
+      fmt::format("{} has no axis that {} could measure ({} and {}); say in [axes] of the sensor's "
+                  "calibration which component acts "
+                  "on which axis, for example {} = \"fx\"",
+                  info_.uri, sensing.uri, names_of(info_.axes), names_of(sensing.axes),
+                  info_.axes.empty() ? "x" : info_.axes.front().name));
 }
 
 Status SensedDevice::read(double now_s, Sample& sample) noexcept {
@@ -96,7 +99,8 @@ std::vector<Figure> SensedDevice::figures() const {
   return all;
 }
 
-std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri, Surroundings surroundings) {
+std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri,
+                                    Surroundings surroundings) {
   if (sensor_uri.empty()) return open_device(uri, std::move(surroundings));
   Surroundings around_sensor;
   around_sensor.pass_time = surroundings.pass_time;

@@ -169,7 +169,8 @@ TEST(EmulatedU6, TurnsTheWrenchIntoCodesThatGiveItBack) {
       const auto acting = host.device.wrench(1e-3 * scan);
       for (std::size_t i = 0; i < 6; ++i) {
         // Half a code on each channel.
-        const double most = 0.5 * volts->slope * example_transducer().matrix.row(static_cast<int>(i)).cwiseAbs().sum();
+        const double most =
+            0.5 * volts->slope * example_transducer().matrix.row(static_cast<int>(i)).cwiseAbs().sum();
         EXPECT_NEAR(found[i], acting[i], 1.001 * most);
       }
     }
@@ -242,7 +243,9 @@ TEST(EmulatedU6, ReadsAnInputAndItsTemperatureByFeedback) {
   ASSERT_EQ(reply.size(), 16U);
   EXPECT_EQ(reply[6], 0);
   EXPECT_EQ(reply[8], 7);
-  const auto number = [&](std::size_t at) { return (reply[at] | reply[at + 1] << 8 | reply[at + 2] << 16) / 256.0; };
+  const auto number = [&](std::size_t at) {
+    return (reply[at] | reply[at + 1] << 8 | reply[at + 2] << 16) / 256.0;
+  };
   // Before the first stream no wrench acts: AIN4 shows the bias, 0.204 V. 22 degrees Celsius are 295.15 K.
   EXPECT_NEAR((number(9) - 33523.0) * 3.1580578e-4, 0.204, 1e-5);
   EXPECT_NEAR((number(12) - 33523.0) * 3.1580578e-4 * -92.379 + 465.129, 295.15, 0.01);
@@ -253,13 +256,18 @@ TEST(EmulatedU6, KnowsEveryIoTypeOfItsTableAndNoOther) {
     Bytes sent;
     std::size_t returned;
   };
-  const std::vector<Io> table{{{1, 0, 0}, 2},       {{2, 0, 0, 0}, 3},   {{3, 0, 0, 0}, 5}, {{5, 1}, 0},
-                              {{6, 1}, 0},          {{9, 1}, 0},         {{10, 3}, 1},      {{11, 0x83}, 0},
-                              {{12, 3}, 1},         {{13, 0x83}, 0},     {{26}, 3},         {{27, 1, 1, 1, 0, 0, 0}, 0},
-                              {{28}, 3},            {{29, 1, 1, 1, 0, 0, 0}, 0},            {{34, 9}, 0},
-                              {{35, 9}, 0},         {{38, 1, 2}, 0},     {{39, 1, 2}, 0},   {{42, 0, 0, 0}, 4},
-                              {{43, 0, 0, 0}, 0},   {{48, 0, 0, 0}, 4},  {{49, 0, 0, 0}, 0}, {{54, 0}, 4},
-                              {{55, 0}, 4}};
+  const std::vector<Io> table{{{1, 0, 0}, 2},     {{2, 0, 0, 0}, 3},
+                              {{3, 0, 0, 0}, 5},  {{5, 1}, 0},
+                              {{6, 1}, 0},        {{9, 1}, 0},
+                              {{10, 3}, 1},       {{11, 0x83}, 0},
+                              {{12, 3}, 1},       {{13, 0x83}, 0},
+                              {{26}, 3},          {{27, 1, 1, 1, 0, 0, 0}, 0},
+                              {{28}, 3},          {{29, 1, 1, 1, 0, 0, 0}, 0},
+                              {{34, 9}, 0},       {{35, 9}, 0},
+                              {{38, 1, 2}, 0},    {{39, 1, 2}, 0},
+                              {{42, 0, 0, 0}, 4}, {{43, 0, 0, 0}, 0},
+                              {{48, 0, 0, 0}, 4}, {{49, 0, 0, 0}, 0},
+                              {{54, 0}, 4},       {{55, 0}, 4}};
   for (const Io& io : table) {
     Host host;
     Bytes command{0, 0xF8, 0, 0, 0, 0, 0};

@@ -60,9 +60,10 @@ TEST(ForceCalibration, MakesAWrenchOfVolts) {
 }
 
 TEST(ForceCalibration, TakesTheUnitsOfTheFile) {
-  const auto pounds = parse_force_calibration(
-      replaced(R"({ force = "N", torque = "N·m", signal = "V" })", R"({ force = "lbf", torque = "lbf·in", signal = "mV" })"),
-      "c.toml");
+  const auto pounds =
+      parse_force_calibration(replaced(R"({ force = "N", torque = "N·m", signal = "V" })",
+                                       R"({ force = "lbf", torque = "lbf·in", signal = "mV" })"),
+                              "c.toml");
   // 2 lbf/mV is 2 x 4.4482216 N over 1e-3 V; 0.1 lbf·in/mV is 0.1 x 0.1129848 N·m over 1e-3 V; 0.5 mV.
   EXPECT_NEAR(pounds.matrix(0, 0), 8896.4432, 1e-3);
   EXPECT_NEAR(pounds.matrix(3, 3), 11.29848, 1e-5);
@@ -109,7 +110,8 @@ TEST(ForceCalibration, RefusesMissingUnits) {
 }
 
 TEST(ForceCalibration, RefusesAUnitThatItDoesNotKnow) {
-  EXPECT_THAT(refusal(replaced(R"("N·m")", R"("kg")")), HasSubstr("c.toml:3: the unit of 'torque' is \"kg\", expected"));
+  EXPECT_THAT(refusal(replaced(R"("N·m")", R"("kg")")),
+              HasSubstr("c.toml:3: the unit of 'torque' is \"kg\", expected"));
 }
 
 TEST(ForceCalibration, RefusesAMatrixOfTheWrongSize) {
@@ -119,28 +121,34 @@ TEST(ForceCalibration, RefusesAMatrixOfTheWrongSize) {
 }
 
 TEST(ForceCalibration, RefusesAMatrixThatIsSingular) {
-  EXPECT_THAT(refusal(replaced("[0, 3, 0, 0, 0, 0]", "[4, 0, 0, 0, 0, 0]")), HasSubstr("'matrix' is singular"));
+  EXPECT_THAT(refusal(replaced("[0, 3, 0, 0, 0, 0]", "[4, 0, 0, 0, 0, 0]")),
+              HasSubstr("'matrix' is singular"));
 }
 
 TEST(ForceCalibration, RefusesWhatIsNoNumber) {
-  EXPECT_THAT(refusal(replaced("[0, 3,", "[0, \"3\",")), HasSubstr("c.toml:6: row fy of 'matrix'[1] must be a finite"));
+  EXPECT_THAT(refusal(replaced("[0, 3,", "[0, \"3\",")),
+              HasSubstr("c.toml:6: row fy of 'matrix'[1] must be a finite"));
   EXPECT_THAT(refusal(replaced("[0.5,", "[nan,")), HasSubstr("c.toml:12: 'bias'[0] must be a finite number"));
 }
 
 TEST(ForceCalibration, RefusesABiasOfTheWrongSize) {
-  EXPECT_THAT(refusal(replaced("bias = [0.5, ", "bias = [")), HasSubstr("c.toml:12: 'bias' must be 6 numbers, found 5"));
+  EXPECT_THAT(refusal(replaced("bias = [0.5, ", "bias = [")),
+              HasSubstr("c.toml:12: 'bias' must be 6 numbers, found 5"));
 }
 
 TEST(ForceCalibration, RefusesToBeWithoutProvenance) {
-  EXPECT_THAT(refusal(replaced("provenance = \"a certificate\"", "")), HasSubstr("c.toml: 'provenance' is missing"));
+  EXPECT_THAT(refusal(replaced("provenance = \"a certificate\"", "")),
+              HasSubstr("c.toml: 'provenance' is missing"));
 }
 
 TEST(ForceCalibration, RefusesAComponentThatThereIsNot) {
-  EXPECT_THAT(refusal(replaced("\"fx\"", "\"fw\"")), HasSubstr("c.toml:15: [axes] 'x_s' is \"fw\", expected one of fx,"));
+  EXPECT_THAT(refusal(replaced("\"fx\"", "\"fw\"")),
+              HasSubstr("c.toml:15: [axes] 'x_s' is \"fw\", expected one of fx,"));
 }
 
 TEST(ForceCalibration, RefusesALeverThatIsNone) {
-  EXPECT_THAT(refusal(replaced("lever_m = 0.04", "lever_m = 0")), HasSubstr("c.toml:14: 'lever_m' must be more than 0"));
+  EXPECT_THAT(refusal(replaced("lever_m = 0.04", "lever_m = 0")),
+              HasSubstr("c.toml:14: 'lever_m' must be more than 0"));
 }
 
 }  // namespace

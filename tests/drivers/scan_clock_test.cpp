@@ -68,7 +68,8 @@ TEST(ScanClock, KnowsTheTimeToATenthOfAMillisecondFromTheFirstScanOn) {
     ScanClock clock(period_s);
     for (std::uint64_t scan = 0; scan < 3'000; ++scan) {
       clock.add(scan, taken_ns(scan, drift_ppm));
-      ASSERT_LE(std::abs(static_cast<double>(clock.time_ns(scan) - taken_ns(scan, drift_ppm))), 100e3) << scan;
+      ASSERT_LE(std::abs(static_cast<double>(clock.time_ns(scan) - taken_ns(scan, drift_ppm))), 100e3)
+          << scan;
     }
   }
 }

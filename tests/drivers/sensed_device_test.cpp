@@ -50,8 +50,8 @@ struct Pair {
                                                      .configuration = "length = 1\n"});
     auto other = std::make_unique<Scripted>(
         DeviceInfo{.uri = "cell",
-                   .axes = {axis("x", "N"), axis("y", "N"), axis("z", "N"), axis("rx", "N·m"), axis("ry", "N·m"),
-                            axis("rz", "N·m")},
+                   .axes = {axis("x", "N"), axis("y", "N"), axis("z", "N"), axis("rx", "N·m"),
+                            axis("ry", "N·m"), axis("rz", "N·m")},
                    .channels = {{.name = "force_age", .unit = "s"}, {.name = "force_scan", .unit = "1"}},
                    .measures_force = true,
                    .configuration = "serial = 1\n",
@@ -140,7 +140,8 @@ TEST(SensedDevice, RefusesASensorThatMeasuresNoneOfItsAxes) {
 }
 
 TEST(SensedDevice, RefusesUnitsThatDoNotFit) {
-  EXPECT_THAT(refusal({axis("theta", "N")}, {{.axis = "theta", .component = 5}}), HasSubstr("give the lever"));
+  EXPECT_THAT(refusal({axis("theta", "N")}, {{.axis = "theta", .component = 5}}),
+              HasSubstr("give the lever"));
   EXPECT_THAT(refusal({axis("theta", "N")}, {{.axis = "theta", .component = 0, .lever_m = 0.1}}),
               HasSubstr("leave out lever_m"));
 }
@@ -155,7 +156,8 @@ TEST(SensedDevice, RefusesVirtualTimeForASensorOfHardware) {
   Surroundings surroundings;
   surroundings.pass_time = [](double) {};
   try {
-    (void)open_device("sim:scissors", "u6:0?calibration=examples/u6.calibration.toml", std::move(surroundings));
+    (void)open_device("sim:scissors", "u6:0?calibration=examples/u6.calibration.toml",
+                      std::move(surroundings));
     FAIL();
   } catch (const DeviceError& error) {
     EXPECT_THAT(error.what(), HasSubstr("leave out --virtual"));

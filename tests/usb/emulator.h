@@ -49,7 +49,8 @@ class Emulator {
     kill(process_, SIGTERM);
     waitpid(process_, nullptr, 0);
     process_ = 0;
-    for (int tries = 0; before > 0 && tries < 500 && drivers::list_attached().size() >= before; ++tries) {
+    // One that has unplugged itself is gone already.
+    for (int tries = 0; tries < 500 && before > 0 && drivers::list_attached().size() >= before; ++tries) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   }

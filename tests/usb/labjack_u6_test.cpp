@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/sensed_device.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/validate.h>
 
@@ -111,7 +113,8 @@ std::size_t measured(const std::vector<Seen>& seen) {
   return static_cast<std::size_t>(std::ranges::count(seen, Status::ok, &Seen::status));
 }
 
-/// Every wrench that was seen is what acted at the time that it was given, on every axis; up to 0.1 ms of misalignment.
+/// Every wrench that was seen is what acted at the time that it was given, on every axis; up to 0.1 ms of
+/// misalignment.
 void expect_what_acted(const std::vector<Seen>& seen) {
   constexpr double two_pi = 6.283185307179586;
   constexpr std::array steepest{8.0 * two_pi * 0.7, 8.0 * two_pi * 1.1, 8.0 * two_pi * 1.3,
@@ -125,7 +128,8 @@ void expect_what_acted(const std::vector<Seen>& seen) {
     for (std::size_t i = 0; i < acted.size(); ++i) {
       const double most = 1.01 * resolution[i] + 1e-4 * steepest[i];
       if (std::abs(one.wrench[i] - acted[i]) > most && ++wrong < 5) {
-        ADD_FAILURE() << "axis " << i << ", scan " << one.scan << ": " << one.wrench[i] << " for " << acted[i];
+        ADD_FAILURE() << "axis " << i << ", scan " << one.scan << ": " << one.wrench[i] << " for "
+                      << acted[i];
       }
     }
   }
@@ -158,8 +162,8 @@ TEST(U6, SaysWhoItIsAndWhatMadeItsNumbers) {
   EXPECT_EQ(device->info().axes.size(), 6U);
   EXPECT_TRUE(device->info().measures_force);
   EXPECT_THAT(device->info().configuration,
-              AllOf(HasSubstr("serial = 360001234"), HasSubstr("firmware = \"1.46\""), HasSubstr("slope = 0.000315805"),
-                    HasSubstr("provenance = "), HasSubstr("11.9")));
+              AllOf(HasSubstr("serial = 360001234"), HasSubstr("firmware = \"1.46\""),
+                    HasSubstr("slope = 0.000315805"), HasSubstr("provenance = "), HasSubstr("11.9")));
 }
 
 TEST(U6, IsNoForceSensorWithoutACalibration) {
@@ -182,7 +186,9 @@ TEST(U6, LosesNothingInAMinuteAndKnowsTheDriftOfItsClock) {
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 60'000, [&](int tick) {
-    if (tick == 10'000) EXPECT_NEAR(figure(*device, "clock_drift"), 80.0, 5.0);
+    if (tick == 10'000) {
+      EXPECT_NEAR(figure(*device, "clock_drift"), 80.0, 5.0);
+    }
   });
   EXPECT_GT(measured(seen), 59'990U);
   EXPECT_EQ(figure(*device, "scans_lost"), 0.0);
@@ -200,20 +206,21 @@ TEST(U6, MeasuresTheWrenchThatActed) {
   Emulator emulator(std::string("u6?trim=20000ppm&drift=-80ppm&trace=") + trace_file);
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 4000);
+  const auto seen = watch(*device, 2000);
   emulator.unplug();
-  EXPECT_GT(measured(seen), 3990U);
+  EXPECT_GT(measured(seen), 1990U);
   double largest = 0.0;
-  for (const Seen& one : seen) largest = std::max(largest, one.status == Status::ok ? std::abs(one.wrench[2]) : 0.0);
+  for (const Seen& one : seen)
+    largest = std::max(largest, one.status == Status::ok ? std::abs(one.wrench[2]) : 0.0);
   EXPECT_NEAR(largest, 8.0, 0.01);
   expect_what_acted(seen);
 }
 
 TEST(U6, MakesAGapOfPacketsThatAreMissing) {
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.5:7"});
+  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.0:7"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 2500);
+  const auto seen = watch(*device, 1500);
   emulator.unplug();
   EXPECT_EQ(figure(*device, "scans_lost"), 7.0);
   EXPECT_EQ(largest_jump(seen), 8.0);
@@ -221,10 +228,10 @@ TEST(U6, MakesAGapOfPacketsThatAreMissing) {
 }
 
 TEST(U6, MakesAGapOfPacketsThatWereTurnedOrTorn) {
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "corrupt@1.2:3,split@1.8:2"});
+  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "corrupt@0.8:3,split@1.1:2"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 2500);
+  const auto seen = watch(*device, 1500);
   emulator.unplug();
   EXPECT_EQ(figure(*device, "checksum_errors"), 3.0 + 2.0 * 2.0);
   EXPECT_EQ(figure(*device, "scans_lost"), 5.0);
@@ -233,10 +240,10 @@ TEST(U6, MakesAGapOfPacketsThatWereTurnedOrTorn) {
 }
 
 TEST(U6, MakesAGapOfScansThatFoundNoRoom) {
-  Emulator emulator(std::string("u6?overflow=1s&trace=") + trace_file);
+  Emulator emulator(std::string("u6?overflow=0.5s&trace=") + trace_file);
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 2500);
+  const auto seen = watch(*device, 1500);
   emulator.unplug();
   EXPECT_EQ(figure(*device, "overflows"), 1.0);
   EXPECT_EQ(figure(*device, "restarts"), 0.0);
@@ -249,30 +256,30 @@ TEST(U6, MakesAGapOfScansThatFoundNoRoom) {
 }
 
 TEST(U6, StartsAStalledStreamAnew) {
-  Emulator emulator(std::string("u6?drift=80ppm&trace=") + trace_file, {"--fault", "stall@2.0:1"});
+  Emulator emulator(std::string("u6?drift=80ppm&trace=") + trace_file, {"--fault", "stall@1.8:1"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 4000);
+  const auto seen = watch(*device, 2500);
   emulator.unplug();
   EXPECT_EQ(figure(*device, "restarts"), 1.0);
   EXPECT_EQ(seen.back().status, Status::ok);
-  EXPECT_GT(measured(seen), 3900U);
+  EXPECT_GT(measured(seen), 2400U);
   // The numbers go on as if it had not stopped: as many as milliseconds have passed.
-  EXPECT_NEAR(seen.back().scan - seen[100].scan, 3899.0, 2.0);
+  EXPECT_NEAR(seen.back().scan - seen[100].scan, 2399.0, 2.0);
   EXPECT_NEAR(figure(*device, "scans") + figure(*device, "scans_lost"), seen.back().scan + 1.0, 2.0);
   expect_what_acted(seen);
 }
 
 TEST(U6, StartsASilentStreamAnew) {
   // 400 packets: more than their counter counts.
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.5:400"});
+  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.0:400"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 3000);
+  const auto seen = watch(*device, 2000);
   emulator.unplug();
   EXPECT_GE(figure(*device, "restarts"), 1.0);
   EXPECT_EQ(seen.back().status, Status::ok);
-  EXPECT_NEAR(seen.back().scan - seen[100].scan, 2899.0, 2.0);
+  EXPECT_NEAR(seen.back().scan - seen[100].scan, 1899.0, 2.0);
   expect_what_acted(seen);
 }
 
@@ -281,7 +288,7 @@ TEST(U6, IsLostWhenItIsUnpluggedAndComesBack) {
   ASSERT_TRUE(becomes_attached("u6:0"));
   {
     const auto device = drivers::open_device(sensor);
-    const auto seen = watch(*device, 1000, [&](int tick) {
+    const auto seen = watch(*device, 500, [&](int tick) {
       if (tick == 300) emulator.unplug();
     });
     EXPECT_EQ(seen[200].status, Status::ok);
@@ -322,8 +329,8 @@ TEST(U6, TakesOverAStreamThatAnotherProgramLeftRunning) {
   const Emulator emulator("u6");
   ASSERT_TRUE(becomes_attached("u6:0"));
   // Killed at work, it stops nothing.
-  const auto killed = test::run({"timeout", "-s", "KILL", "1.5", KERF_PROGRAM, "record", "--device", "sim:pose6",
-                                 "--sensor", sensor, "--seconds", "20", "-o", "/tmp/killed.h5"});
+  const auto killed = test::run({"timeout", "-s", "KILL", "1.5", KERF_PROGRAM, "record", "--device",
+                                 "sim:pose6", "--sensor", sensor, "--seconds", "20", "-o", "/tmp/killed.h5"});
   EXPECT_NE(killed.exit_status, 0);
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 500);
@@ -351,8 +358,8 @@ TEST(U6, SaysHowToObtainThePermission) {
 TEST(U6, JoinsARecordingOnItsClock) {
   const Emulator emulator("u6?drift=80ppm");
   ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor, "--seconds",
-                                  "5", "--json", "-o", "/tmp/joined.h5"});
+  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor,
+                                  "--seconds", "3", "--json", "-o", "/tmp/joined.h5"});
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("\"device_figures\""), HasSubstr("\"clock_drift\"")));
   EXPECT_TRUE(schema::validate("/tmp/joined.h5").empty());
@@ -378,30 +385,68 @@ TEST(U6, JoinsARecordingOnItsClock) {
       for (std::size_t row = 50; row < recording.rows(); ++row) ASSERT_LE(channel.values[row], 0.0021) << row;
     } else {
       EXPECT_EQ(channel.name, "force_scan");
-      EXPECT_NEAR(channel.values.back() - channel.values[100], static_cast<double>(recording.rows() - 101), 2.0);
+      EXPECT_NEAR(channel.values.back() - channel.values[100], static_cast<double>(recording.rows() - 101),
+                  2.0);
     }
   }
 }
 
 TEST(U6, ThatIsUnpluggedEndsARecordingThatIsKept) {
-  const Emulator emulator("u6", {"--seconds", "3"});
+  const Emulator emulator("u6", {"--seconds", "2"});
   ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor, "--seconds",
-                                  "20", "-o", "/tmp/cut-off.h5"});
+  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor,
+                                  "--seconds", "20", "-o", "/tmp/cut-off.h5"});
   EXPECT_EQ(outcome.exit_status, 3) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("the device was lost"));
   EXPECT_TRUE(schema::validate("/tmp/cut-off.h5").empty());
   const auto recording = schema::read_recording("/tmp/cut-off.h5");
   EXPECT_EQ(recording.header.status, "aborted: the device was lost");
-  EXPECT_GT(recording.rows(), 1000U);
+  EXPECT_GT(recording.rows(), 500U);
+}
+
+TEST(U6, MeasuresBesideADeviceThatMeasuresNothing) {
+  const Emulator cap("spacemouse");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));  // two at once would want the same port
+  const Emulator emulator("u6");
+  ASSERT_TRUE(becomes_attached("u6:0"));
+  const auto device = drivers::open_device("spacemouse:0", sensor, {});
+  EXPECT_TRUE(device->info().measures_force);
+  drivers::Sample last;
+  loop(*device, 300, [&](int, Status status, const drivers::Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    last = sample;
+  });
+  for (const double force : last.force_measured) EXPECT_NE(force, 0.0);
+  EXPECT_GT(last.channels[3], 250.0) << "force_scan, behind report_age, buttons and force_age";
+  EXPECT_GT(figure(*device, "report_rate"), 0.0);
+  EXPECT_EQ(figure(*device, "scans_lost"), 0.0);
+}
+
+/// What the last ticks saw, as text: equal in two runs of one machine in virtual time.
+TEST(U6Twice, SeesTheSameEachTime) {
+  const Emulator emulator("u6?noise=2&drift=33ppm", {"--fault", "drop@0.6:2"});
+  ASSERT_TRUE(becomes_attached("u6:0"));
+  const auto device = drivers::open_device(sensor);
+  const auto seen = watch(*device, 800);
+  EXPECT_EQ(figure(*device, "scans_lost"), 2.0);
+  std::uint64_t digest = 14695981039346656037U;  // FNV-1a
+  const auto add = [&](double number) {
+    digest = (digest ^ std::bit_cast<std::uint64_t>(number)) * 1099511628211U;
+  };
+  for (const Seen& one : seen) {
+    add(one.age_s);
+    add(one.scan);
+    for (const double force : one.wrench) add(force);
+  }
+  std::cout << "digest " << digest << '\n';
 }
 
 TEST(U6, ThatPausesIsAGapAndNoFaultOfTheDevice) {
   const Emulator emulator("u6?overflow=1s");
   ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome =
-      test::run({KERF_PROGRAM, "check", KERF_SOURCE_DIR "/examples/kelvin.law.toml", "--device", "sim:scissors",
-                 "--sensor", sensor, "--seconds", "3", "--floor", "0", "--record", "/tmp/gap.h5", "--json"});
+  const auto outcome = test::run({KERF_PROGRAM, "check", KERF_SOURCE_DIR "/examples/kelvin.law.toml",
+                                  "--device", "sim:scissors", "--sensor", sensor, "--seconds", "2", "--floor",
+                                  "0", "--record", "/tmp/gap.h5", "--json"});
   EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("\"device_fault\": 0"), HasSubstr("\"overflows\"")));
   EXPECT_TRUE(schema::validate("/tmp/gap.h5").empty());
@@ -414,8 +459,8 @@ TEST(U6, ThatPausesIsAGapAndNoFaultOfTheDevice) {
     rendered += recording.force_commanded[2 * row] != 0.0 ? 1U : 0U;
   }
   EXPECT_NEAR(static_cast<double>(gap), 170.0, 10.0);
-  const auto fitted = test::run({KERF_PROGRAM, "fit", "/tmp/gap.h5", "--models", "kelvin", "--contact", "0.5rad",
-                                 "-o", "/tmp/fits"});
+  const auto fitted = test::run({KERF_PROGRAM, "fit", "/tmp/gap.h5", "--models", "kelvin", "--contact", "0.5",
+                                 "--direction", "decreasing", "-o", "/tmp/fits"});
   EXPECT_THAT(fitted.errors + fitted.output, HasSubstr("rows are not finite and are left out"));
   std::cout << rendered << " of " << gap << " ticks without a measurement were rendered\n";
 }
@@ -433,7 +478,9 @@ TEST(U6Rate, LosesNothingInTenSeconds) {
     longest_s = std::max(longest_s, std::chrono::duration<double>(now - last).count());
     last = now;
   });
-  if (longest_s > 0.1) GTEST_SKIP() << "the machine stood still for " << longest_s << " s";
+  std::cout << "scans " << figure(*device, "scans") << ", lost " << figure(*device, "scans_lost")
+            << "; the machine stood still for up to " << longest_s << " s\n";
+  if (longest_s > 0.15) GTEST_SKIP() << "too long for the emulator's buffer of 0.164 s";
   EXPECT_EQ(figure(*device, "scans_lost"), 0.0);
   EXPECT_NEAR(figure(*device, "scan_rate"), 1000.0 / (1.0 + 80e-6), 0.5);
   EXPECT_NEAR(figure(*device, "clock_drift"), 80.0, 5.0);

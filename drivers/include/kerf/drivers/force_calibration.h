@@ -16,8 +16,8 @@ namespace kerf::drivers {
 ///
 ///     w = M (u - u_0),   w = (fx, fy, fz [N], tx, ty, tz [N·m]),   u [V]
 ///
-/// in the transducer's own frame, of the force that acts on it. M and the bias u_0 are the maker's and the lab's: no
-/// program can know them, so they stand in a file that goes into every recording.
+/// in the transducer's own frame, of the force that acts on it. M and the bias u_0 are the maker's and the
+/// lab's: no program can know them, so they stand in a file that goes into every recording.
 struct ForceCalibration {
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();  ///< M, rows N/V and N·m/V
   Eigen::Matrix<double, 6, 1> bias_v = Eigen::Matrix<double, 6, 1>::Zero();  ///< u_0
@@ -43,8 +43,8 @@ inline constexpr std::array<const char*, max_axes> wrench_names{"fx", "fy", "fz"
 ///     theta = { component = "-tz", lever_m = 0.0369 }
 ///     x_s = "fx"
 ///
-/// Forces in N, mN or lbf, torques in N·m, N·mm or lbf·in, signals in V or mV. A lever [m] stands between a torque and an
-/// axis whose force is in N (F = t / lever) or a force and an axis in N·m (t = F lever).
+/// Forces in N, mN or lbf, torques in N·m, N·mm or lbf·in, signals in V or mV. A lever [m] stands between a
+/// torque and an axis whose force is in N (F = t / lever) or a force and an axis in N·m (t = F lever).
 /// @throws DeviceError in one line with file, line and key.
 [[nodiscard]] ForceCalibration read_force_calibration(const std::string& file);
 /// The same from a text; `name` for the messages.

@@ -24,27 +24,28 @@ namespace kerf::drivers {
 /// Every LabJack U6 that is attached.
 [[nodiscard]] std::vector<usb::Attached> find_labjack_u6();
 
-/// `u6:N?calibration=FILE.toml`: a six-axis force/torque transducer on the analogue inputs of a LabJack U6, by libusb.
+/// `u6:N?calibration=FILE.toml`: a six-axis force/torque transducer on the analogue inputs of a LabJack U6,
+/// by libusb.
 ///
-/// AIN0/1, 2/3, ... 10/11 are read as six differential channels of +-10 V, 16 bits, once a millisecond by the U6's own
-/// clock; its own calibration constants make volts of codes and ForceCalibration makes a wrench of volts. The axes are
-/// `x` to `rz`, at rest at 0, since it does not move: only `force_measured` says something, in N and N·m in the
-/// transducer's frame. One code is 0.32 mV.
+/// AIN0/1, 2/3, ... 10/11 are read as six differential channels of +-10 V, 16 bits, once a millisecond by the
+/// U6's own clock; its own calibration constants make volts of codes and ForceCalibration makes a wrench of
+/// volts. The axes are `x` to `rz`, at rest at 0, since it does not move: only `force_measured` says
+/// something, in N and N·m in the transducer's frame. One code is 0.32 mV.
 ///
-/// Channels: `force_scan` is the number of the scan, which jumps where scans were lost, and `force_age` [s] how much older
-/// than the tick it is on the loop's clock, by the line of ScanClock; so the scan was taken at time - force_age. A scan
-/// older than 20 ms is no measurement of this tick: force_measured is then NaN and the answer is Status::fault. After
-/// a second without a scan it is lost.
+/// Channels: `force_scan` is the number of the scan, which jumps where scans were lost, and `force_age` [s]
+/// how much older than the tick it is on the loop's clock, by the line of ScanClock; so the scan was taken at
+/// time - force_age. A scan older than 20 ms is no measurement of this tick: force_measured is then NaN and
+/// the answer is Status::fault. After a second without a scan it is lost.
 ///
-/// Latency: a packet leaves with the last channel of its scan and takes one USB frame, so a tick sees a scan that is up
-/// to one period and some 0.2 ms of transport old. What is the same for all packets (the end of the scan, the frame) is
-/// not in `force_age`: by the data sheet at most about 0.3 ms. The six channels are sampled one after the other, a
-/// settling time of some tens of us apart; all are given the time of the scan.
+/// Latency: a packet leaves with the last channel of its scan and takes one USB frame, so a tick sees a scan
+/// that is up to one period and some 0.2 ms of transport old. What is the same for all packets (the end of
+/// the scan, the frame) is not in `force_age`: by the data sheet at most about 0.3 ms. The six channels are
+/// sampled one after the other, a settling time of some tens of us apart; all are given the time of the scan.
 ///
-/// A packet with a wrong checksum, or one that is missing, and scans that did not find room in the U6 are gaps of
-/// `force_scan` and never shift a channel. A stream that stops for 230 ms (the packets' counter wraps after 256),
-/// stalls or has lost count is started anew by the I/O thread, and the gap has as many scans as the clock says; if that
-/// fails, the device is lost.
+/// A packet with a wrong checksum, or one that is missing, and scans that did not find room in the U6 are
+/// gaps of `force_scan` and never shift a channel. A stream that stops for 230 ms (the packets' counter wraps
+/// after 256), stalls or has lost count is started anew by the I/O thread, and the gap has as many scans as
+/// the clock says; if that fails, the device is lost.
 class ForceSensorU6 final : public Device {
  public:
   struct Options {
@@ -64,8 +65,8 @@ class ForceSensorU6 final : public Device {
   /// It has no motors: any force is taken and none is exerted.
   [[nodiscard]] Status write(const Axes& force) noexcept override;
   void release(double) noexcept override {}
-  /// scan_rate, scans, scans_lost, checksum_errors, overflows, restarts, and once there are four blocks of ScanClock
-  /// clock_drift and clock_drift_error.
+  /// scan_rate, scans, scans_lost, checksum_errors, overflows, restarts, and once there are four blocks of
+  /// ScanClock clock_drift and clock_drift_error.
   [[nodiscard]] std::vector<Figure> figures() const override;
 
  private:
@@ -88,7 +89,8 @@ class ForceSensorU6 final : public Device {
   // The I/O thread.
   void stream(const std::stop_token& stop) noexcept;
   void take_packet(std::span<const std::uint8_t> bytes) noexcept;
-  void take_scan(std::uint64_t number, std::span<const std::uint16_t> codes, std::int64_t arrived_ns) noexcept;
+  void take_scan(std::uint64_t number, std::span<const std::uint16_t> codes,
+                 std::int64_t arrived_ns) noexcept;
   bool restart() noexcept;
 
   std::string uri_;

@@ -11,16 +11,16 @@ namespace kerf::drivers {
 ///
 ///     t_host(n) = a + b n,   arrival(n) = t_host(n) + delay,   delay >= 0
 ///
-/// n: number of the scan; b: the device's period on the host's clock [s]. A delay only ever adds, so the line lies below
-/// all arrivals, as high as it can. Of each block of 250 scans the one that came least late is kept, for 256 blocks (64 s
-/// at 1 kHz); of all lines below them the one with the least sum of distances is an edge of their lower convex hull,
-/// the one above their mean number. A packet that came late, or a whole second of them, does not move it. Source of the
-/// criterion: Moon, Skelly and Towsley 1999.
+/// n: number of the scan; b: the device's period on the host's clock [s]. A delay only ever adds, so the line
+/// lies below all arrivals, as high as it can. Of each block of 250 scans the one that came least late is
+/// kept, for 256 blocks (64 s at 1 kHz); of all lines below them the one with the least sum of distances is
+/// an edge of their lower convex hull, the one above their mean number. A packet that came late, or a whole
+/// second of them, does not move it. Source of the criterion: Moon, Skelly and Towsley 1999.
 ///
 /// For the first second the period is taken for the nominal one, or that from before a restart.
 ///
-/// The least delay of all cannot be told from a clock that stands earlier: times are late by it. Constant size, no
-/// allocation; one thread adds and asks.
+/// The least delay of all cannot be told from a clock that stands earlier: times are late by it. Constant
+/// size, no allocation; one thread adds and asks.
 class ScanClock {
  public:
   /// @param nominal_period_s b as the device was told
@@ -33,10 +33,11 @@ class ScanClock {
 
   /// On the host's clock, in its nanoseconds. Not later than any arrival so far says.
   [[nodiscard]] std::int64_t time_ns(std::uint64_t scan) const noexcept;
-  /// By how much the device's millisecond is longer than the host's: (b / nominal - 1) 1e6 [ppm]; at most 500 either way.
+  /// By how much the device's millisecond is longer than the host's: (b / nominal - 1) 1e6 [ppm]; at most 500
+  /// either way.
   [[nodiscard]] double drift_ppm() const noexcept { return 1e6 * slope_; }
-  /// What the drift may be off by: the slope by which the line would turn if each end rose or fell by the median
-  /// distance of the kept scans above it. Infinite before there are four blocks.
+  /// What the drift may be off by: the slope by which the line would turn if each end rose or fell by the
+  /// median distance of the kept scans above it. Infinite before there are four blocks.
   [[nodiscard]] double drift_error_ppm() const noexcept { return 1e6 * slope_error_; }
 
  private:

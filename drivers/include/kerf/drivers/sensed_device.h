@@ -12,11 +12,11 @@ namespace kerf::drivers {
 
 /// A device whose forces are measured by a sensor beside it: any Device, and any other that measures force.
 ///
-/// `force_measured` of an axis is the component that the sensor's ForceMount names for it, with its sign and lever, or
-/// else that of the sensor's axis of the same name (x to rz). It is NaN on axes that no component belongs to, and on all
-/// while the sensor has nothing to say: that is a gap in a measurement and no fault of the device, which goes on
-/// rendering. A sensor that is lost ends the loop as a lost device does. The sensor's channels come after the device's
-/// own; its settings stand under [sensor] in the configuration.
+/// `force_measured` of an axis is the component that the sensor's ForceMount names for it, with its sign and
+/// lever, or else that of the sensor's axis of the same name (x to rz). It is NaN on axes that no component
+/// belongs to, and on all while the sensor has nothing to say: that is a gap in a measurement and no fault of
+/// the device, which goes on rendering. A sensor that is lost ends the loop as a lost device does. The
+/// sensor's channels come after the device's own; its settings stand under [sensor] in the configuration.
 class SensedDevice final : public Device {
  public:
   /// @throws DeviceError if the sensor measures nothing that the device has an axis for, or units do not fit.
@@ -45,7 +45,8 @@ class SensedDevice final : public Device {
   Sample sensed_;
 };
 
-/// Opens a device and, unless `sensor_uri` is empty, the sensor of its forces: first the sensor, which moves nothing.
+/// Opens a device and, unless `sensor_uri` is empty, the sensor of its forces: first the sensor, which moves
+/// nothing.
 /// @throws DeviceError as open_device() and SensedDevice.
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri,
                                                   Surroundings surroundings);

@@ -7,8 +7,8 @@
 
 #include <kerf/drivers/protocols/labjack_u6.h>
 
-/// The commands by which a LabJack U6 is set up before it streams, and their answers. Pure functions. Source: as for
-/// labjack_u6.h.
+/// The commands by which a LabJack U6 is set up before it streams, and their answers. Pure functions. Source:
+/// as for labjack_u6.h.
 namespace kerf::drivers::labjack_u6 {
 
 inline constexpr std::uint16_t vendor = 0x0CD5;
@@ -30,14 +30,16 @@ struct Identification {
 /// ConfigU6 that changes nothing and asks.
 [[nodiscard]] Message identify() noexcept;
 /// Nothing unless it is such an answer, without an error, of a U6.
-[[nodiscard]] std::optional<Identification> parse_identification(std::span<const std::uint8_t> bytes) noexcept;
+[[nodiscard]] std::optional<Identification> parse_identification(
+    std::span<const std::uint8_t> bytes) noexcept;
 
 /// ReadCal: one block, 0 to 9, of four constants.
 [[nodiscard]] Message read_constants(std::uint8_t block) noexcept;
-[[nodiscard]] std::optional<std::array<double, 4>> parse_constants(std::span<const std::uint8_t> bytes) noexcept;
+[[nodiscard]] std::optional<std::array<double, 4>> parse_constants(
+    std::span<const std::uint8_t> bytes) noexcept;
 
-/// The calibration of +-10 V from blocks 0 and 2. Nothing if it is farther than 5 % from the nominal one: a memory
-/// that was erased or never written.
+/// The calibration of +-10 V from blocks 0 and 2. Nothing if it is farther than 5 % from the nominal one: a
+/// memory that was erased or never written.
 [[nodiscard]] std::optional<Calibration> ten_volt_calibration(const std::array<double, 4>& block_0,
                                                               const std::array<double, 4>& block_2) noexcept;
 
