@@ -115,7 +115,7 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
       while (at < orders.size() && orders[at].current_ma != current) ++at;
       found += at < orders.size();
     }
-    EXPECT_GT(sent.size(), 200 * one.seconds);
+    EXPECT_GT(sent.size(), 100 * one.seconds);
     EXPECT_EQ(found, sent.size());
     EXPECT_EQ(orders.back().current_ma, (std::array{0, 0, 0})) << "zero force at the end";
   }
