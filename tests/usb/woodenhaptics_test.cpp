@@ -77,16 +77,16 @@ TEST(Woody, EachGenerationIsKnownAndFollowsItsTip) {
     EXPECT_THAT(device->info().configuration, HasSubstr("provenance"));
     std::array<double, 3> most{-1.0, -1.0, -1.0};
     double oldest_s = 0.0;
-    hold(*device, 1700, {}, [&](int tick, Status status, const Sample& sample) {
+    hold(*device, 1000, {}, [&](int tick, Status status, const Sample& sample) {
       EXPECT_EQ(status, Status::ok);
       for (std::size_t axis = 0; axis < 3; ++axis) most[axis] = std::max(most[axis], sample.position[axis]);
       if (tick > 2) oldest_s = std::max(oldest_s, sample.channels[age_channel]);
     });
-    // In 1.7 s the slowest of the hand's sines, 10 mm at 0.31 Hz, was at its crest.
+    // In the first second the slowest of the hand's sines, 10 mm at 0.31 Hz, was at its crest.
     for (std::size_t axis = 0; axis < 3; ++axis)
       EXPECT_NEAR(most[axis] - home_of(*device, axis), 0.010, 0.0015);
     EXPECT_LE(oldest_s, 0.0011) << "a report a frame";
-    EXPECT_NEAR(figure(*device, "report_rate"), 1000.0, 2.0);
+    EXPECT_NEAR(figure(*device, "report_rate"), 1000.0, 5.0);
     EXPECT_EQ(figure(*device, "malformed"), 0.0);
     EXPECT_EQ(figure(*device, "implausible"), 0.0);
     EXPECT_LE(figure(*device, "resent"), 0.0);
