@@ -30,10 +30,11 @@ const Description& falcon() {
   // Class and endpoints as a generic FT232R tells them; the strings are an assumption, nobody reads them.
   static const Description description{
       .speed = Description::Speed::full,
-      .device = {0x12, 0x01, 0x00, 0x02, 0x00, 0x00, 0x00, 0x08, 0x03, 0x04, 0x48, 0xCB, 0x00, 0x06, 0x01, 0x02, 0x03,
-                 0x01},
-      .configuration = {0x09, 0x02, 0x20, 0x00, 0x01, 0x01, 0x00, 0xA0, 0x2D, 0x09, 0x04, 0x00, 0x00, 0x02, 0xFF, 0xFF,
-                        0xFF, 0x02, 0x07, 0x05, 0x81, 0x02, 0x40, 0x00, 0x00, 0x07, 0x05, 0x02, 0x02, 0x40, 0x00, 0x00},
+      .device = {0x12, 0x01, 0x00, 0x02, 0x00, 0x00, 0x00, 0x08, 0x03, 0x04, 0x48, 0xCB, 0x00, 0x06, 0x01,
+                 0x02, 0x03, 0x01},
+      .configuration = {0x09, 0x02, 0x20, 0x00, 0x01, 0x01, 0x00, 0xA0, 0x2D, 0x09, 0x04,
+                        0x00, 0x00, 0x02, 0xFF, 0xFF, 0xFF, 0x02, 0x07, 0x05, 0x81, 0x02,
+                        0x40, 0x00, 0x00, 0x07, 0x05, 0x02, 0x02, 0x40, 0x00, 0x00},
       .strings = {"Kerf", "Falcon (emulated)", "KERF0001"},
       .reports = {}};
   return description;
@@ -84,7 +85,8 @@ bool EmulatedFalcon::line_runs_at(double baud) const noexcept {
   return std::abs(bridge_.baud() - baud) < 0.02 * baud;  // as far off as a line may be
 }
 
-std::optional<Bytes> EmulatedFalcon::control(const Setup& setup, std::span<const std::uint8_t>, std::int64_t now_ns) {
+std::optional<Bytes> EmulatedFalcon::control(const Setup& setup, std::span<const std::uint8_t>,
+                                             std::int64_t now_ns) {
   (void)seconds_at(now_ns);
   Ftdi::Event event = Ftdi::Event::none;
   auto sent_back = bridge_.control(setup, event);
@@ -99,7 +101,8 @@ std::optional<Bytes> EmulatedFalcon::control(const Setup& setup, std::span<const
   return sent_back;
 }
 
-void EmulatedFalcon::receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
+void EmulatedFalcon::receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes,
+                             std::int64_t now_ns) {
   if (endpoint != out_endpoint) return;
   for (const std::uint8_t byte : bytes) {
     switch (boot_) {
@@ -182,33 +185,37 @@ void EmulatedFalcon::take_command(const drivers::falcon::Frame& frame, std::int6
   if (!homed_) {
     for (std::size_t i = 0; i < 3; ++i) encoder[i] += options_.offset - at_power_on_[i];
   }
-  const drivers::falcon::Report report{.encoder = encoder,
-                                       .homed = {homed_, homed_, homed_},
-                                       .centre = std::fmod(time_s, 2.0) >= 1.0};
+  const drivers::falcon::Report report{
+      .encoder = encoder, .homed = {homed_, homed_, homed_}, .centre = std::fmod(time_s, 2.0) >= 1.0};
   bridge_.put(drivers::falcon::encode(report), now_ns + 2 * frame_time_ns);
   ++frames_;
   if (!trace_.is_open()) return;
   const auto& raw = command->motor;
   const Eigen::Vector3d p = tip_.position();
-  trace_ << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{:.9f}\n", time_s, raw[0], raw[1], raw[2],
-                        motor_[0], motor_[1], motor_[2], encoder[0], encoder[1], encoder[2], p.x(), p.y(), p.z());
+  trace_ << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{:.9f}\n", time_s, raw[0], raw[1],
+                        raw[2], motor_[0], motor_[1], motor_[2], encoder[0], encoder[1], encoder[2], p.x(),
+                        p.y(), p.z());
 }
 
 std::optional<std::size_t> EmulatedFalcon::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
-                                                std::int64_t waits_since_ns, std::int64_t now_ns, Disturbance& next) {
+                                                std::int64_t waits_since_ns, std::int64_t now_ns,
+                                                Disturbance& next) {
   if (endpoint != in_endpoint) return std::nullopt;
   return bridge_.send(buffer, waits_since_ns, now_ns, next);
 }
 
-std::optional<std::int64_t> EmulatedFalcon::next_event_ns(std::int64_t) const { return bridge_.next_event_ns(); }
+std::optional<std::int64_t> EmulatedFalcon::next_event_ns(std::int64_t) const {
+  return bridge_.next_event_ns();
+}
 
 std::string EmulatedFalcon::tell() const {
   const char* firmware = "no firmware";
   if (boot_ == Boot::running) firmware = "firmware runs";
   if (boot_ == Boot::loading) firmware = "an image is half loaded";
-  return fmt::format("{}, {} frames answered, {} motor values clipped, {} bytes not of a frame, {} bytes purged or lost{}",
-                     firmware, frames_, clips_, reader_.dropped(), bridge_.lost(),
-                     image_.problem().empty() ? std::string() : fmt::format("; the image: {}", image_.problem()));
+  return fmt::format(
+      "{}, {} frames answered, {} motor values clipped, {} bytes not of a frame, {} bytes purged or lost{}",
+      firmware, frames_, clips_, reader_.dropped(), bridge_.lost(),
+      image_.problem().empty() ? std::string() : fmt::format("; the image: {}", image_.problem()));
 }
 
 }  // namespace kerf::emulators

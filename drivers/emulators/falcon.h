@@ -18,20 +18,22 @@
 
 namespace kerf::emulators {
 
-/// A Novint Falcon (0403:cb48): its bridge, its boot loader, its firmware's answers, and its arms in a hand that sways.
+/// A Novint Falcon (0403:cb48): its bridge, its boot loader, its firmware's answers, and its arms in a hand
+/// that sways.
 ///
-/// Without firmware it is silent but for the hello: 0A 43 0D at 9600 baud, after DTR has risen, is answered 0A 44 2C 0D.
-/// Then an 'A' at 142 857 baud is sent back, and so is every byte after it, which are taken for an image (c2000::Stream;
-/// any will do). When that is whole and the line runs at 1.5 Mbaud, each run-time frame gets one reply 0.2 ms later. A hello
-/// takes the firmware away again; closing does not.
+/// Without firmware it is silent but for the hello: 0A 43 0D at 9600 baud, after DTR has risen, is answered
+/// 0A 44 2C 0D. Then an 'A' at 142 857 baud is sent back, and so is every byte after it, which are taken for
+/// an image (c2000::Stream; any will do). When that is whole and the line runs at 1.5 Mbaud, each run-time
+/// frame gets one reply 0.2 ms later. A hello takes the firmware away again; closing does not.
 ///
-/// The motors are clamped to +-4096. Encoders count from where the knob stood at power-on until it is homed: with the homing bit
-/// set the hand leads the knob out and in, and after `home_after` the three homed bits come on and the counts are absolute.
-/// A frame without that bit ends the homing. The centre button is down every other second.
+/// The motors are clamped to +-4096. Encoders count from where the knob stood at power-on until it is homed:
+/// with the homing bit set the hand leads the knob out and in, and after `home_after` the three homed bits
+/// come on and the counts are absolute. A frame without that bit ends the homing. The centre button is down
+/// every other second.
 ///
-/// Options: firmware=loaded|none (none), homed=on|off (off: it is not yet when plugged in), home_after (0.3s), offset (counts that
-/// stand for the power-on place, 0), torque_scale (of the plant's motors, 10000 per N·m), sway (0.01m), trace=FILE (CSV, a line for
-/// each frame).
+/// Options: firmware=loaded|none (none), homed=on|off (off: it is not yet when plugged in), home_after
+/// (0.3s), offset (counts that stand for the power-on place, 0), torque_scale (of the plant's motors, 10000
+/// per N·m), sway (0.01m), trace=FILE (CSV, a line for each frame).
 class EmulatedFalcon final : public EmulatedDevice {
  public:
   struct Options {
@@ -48,10 +50,12 @@ class EmulatedFalcon final : public EmulatedDevice {
   explicit EmulatedFalcon(const Options& options);
 
   [[nodiscard]] const Description& description() const override;
-  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data, std::int64_t now_ns) override;
+  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data,
+                               std::int64_t now_ns) override;
   void receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
-  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
-                                  std::int64_t now_ns, Disturbance& next) override;
+  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
+                                  std::int64_t waits_since_ns, std::int64_t now_ns,
+                                  Disturbance& next) override;
   [[nodiscard]] std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const override;
   [[nodiscard]] std::string tell() const override;
 

@@ -122,8 +122,8 @@ std::size_t Ftdi::fill(std::span<std::uint8_t> buffer, std::size_t data) {
   return at;
 }
 
-std::optional<std::size_t> Ftdi::send(std::span<std::uint8_t> buffer, std::int64_t waits_since_ns, std::int64_t now_ns,
-                                      Disturbance& next) {
+std::optional<std::size_t> Ftdi::send(std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
+                                      std::int64_t now_ns, Disturbance& next) {
   const std::int64_t expires_ns = waits_since_ns + latency_ns_;
   const std::size_t there = waiting(now_ns);
   if (there < packet_data && now_ns < expires_ns) {

@@ -9,13 +9,13 @@
 
 namespace kerf::emulators {
 
-/// The serial bridge of FTDI (FT232) that many devices hang on: its vendor requests, and the way in which what arrives on
-/// the line becomes packets.
+/// The serial bridge of FTDI (FT232) that many devices hang on: its vendor requests, and the way in which
+/// what arrives on the line becomes packets.
 ///
-/// Each packet to the host begins with two bytes of modem and line status, 01 60, and carries at most 62 more. A transfer
-/// is answered when 62 bytes wait, or when the latency timer expires, with whatever is there, perhaps the status alone. The
-/// timer starts with the transfer or with the end of the one before, whichever is later. A transfer longer than a
-/// packet has the two bytes again every 64.
+/// Each packet to the host begins with two bytes of modem and line status, 01 60, and carries at most 62
+/// more. A transfer is answered when 62 bytes wait, or when the latency timer expires, with whatever is
+/// there, perhaps the status alone. The timer starts with the transfer or with the end of the one before,
+/// whichever is later. A transfer longer than a packet has the two bytes again every 64.
 class Ftdi {
  public:
   /// What the device behind it learns from a request.
@@ -28,8 +28,8 @@ class Ftdi {
   void put(std::span<const std::uint8_t> bytes, std::int64_t ready_ns);
 
   /// As EmulatedDevice::send(). `corrupt` loses one byte of the data.
-  std::optional<std::size_t> send(std::span<std::uint8_t> buffer, std::int64_t waits_since_ns, std::int64_t now_ns,
-                                  Disturbance& next);
+  std::optional<std::size_t> send(std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
+                                  std::int64_t now_ns, Disturbance& next);
   /// When the transfer that send() last let wait will be answered.
   [[nodiscard]] std::optional<std::int64_t> next_event_ns() const noexcept { return due_ns_; }
 

@@ -2,7 +2,8 @@
 
 #include "kerf/drivers/protocols/c2000_image.h"
 
-// A file that somebody took for firmware: what is found whole ends with its last byte, and holds no more than it has.
+// A file that somebody took for firmware: what is found whole ends with its last byte, and holds no more than
+// it has.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kerf::drivers;
   const bool whole = c2000::problem_of({data, size}).empty();

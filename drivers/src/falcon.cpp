@@ -21,8 +21,10 @@ constexpr std::int64_t stale_ns = 20'000'000;
 constexpr std::int64_t silent_ns = 1'000'000'000;
 constexpr std::size_t axes = 3;
 constexpr std::chrono::milliseconds pause(2);
-constexpr std::array<std::pair<std::string_view, Falcon::Led>, 4> leds{
-    {{"off", Falcon::Led::off}, {"red", Falcon::Led::red}, {"green", Falcon::Led::green}, {"blue", Falcon::Led::blue}}};
+constexpr std::array<std::pair<std::string_view, Falcon::Led>, 4> leds{{{"off", Falcon::Led::off},
+                                                                        {"red", Falcon::Led::red},
+                                                                        {"green", Falcon::Led::green},
+                                                                        {"blue", Falcon::Led::blue}}};
 
 AxisInfo axis(std::string name, double lower, double upper) {
   return {.name = std::move(name),
@@ -39,9 +41,11 @@ AxisInfo axis(std::string name, double lower, double upper) {
 std::string configuration_of(const Falcon::Options& options) {
   const auto* led = std::ranges::find(leds, options.led, [](const auto& one) { return one.second; });
   return fmt::format(
-      "torque_scale = {} # motor units per N·m of an arm, not settled: 10000 of libnifalcon, 6616 of Martin and "
+      "torque_scale = {} # motor units per N·m of an arm, not settled: 10000 of libnifalcon, 6616 of Martin "
+      "and "
       "Hillier, 3500 to 5500 fitted to force vectors of the maker's SDK; forces in N are nominal\n"
-      "degrees_at_zero = {} # of an arm, disputed: 35 of libnifalcon, 40 measured by an independent author, 50 of "
+      "degrees_at_zero = {} # of an arm, disputed: 35 of libnifalcon, 40 measured by an independent author, "
+      "50 of "
       "Martin and Hillier\n"
       "degrees_per_count = {} # 1280 counts a turn of the motor, gain 7.719\n"
       "homing = {} # without it counts are from where the knob stood at power-on\n"
@@ -71,7 +75,9 @@ Falcon::Led led_of(const std::string& name) {
 
 }  // namespace
 
-std::vector<usb::Attached> find_falcons() { return usb::find_usb(falcon_identity.vendor, falcon_identity.product); }
+std::vector<usb::Attached> find_falcons() {
+  return usb::find_usb(falcon_identity.vendor, falcon_identity.product);
+}
 
 Falcon::Options Falcon::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
@@ -85,7 +91,8 @@ Falcon::Options Falcon::parse_options(Uri uri) {
   return options;
 }
 
-Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options, const std::atomic<bool>* stop)
+Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options,
+               const std::atomic<bool>* stop)
     : options_(options), info_(describe(uri, options)), device_(falcon_identity, number) {
   set_up_falcon(device_, {.uri = uri, .firmware = options.firmware, .homing = options.homing, .stop = stop});
   link_ = std::make_unique<FalconLink>(device_, thread_, options.homing, options.led);
@@ -113,13 +120,14 @@ void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
   while (!link_->homed()) {
     refuse_if_stopped(stop);
     if (link_->lost()) {
-      throw DeviceError(fmt::format("{}: it was unplugged before it was homed; plug it in again", falcon_identity.what));
+      throw DeviceError(
+          fmt::format("{}: it was unplugged before it was homed; plug it in again", falcon_identity.what));
     }
     if (usb::now_ns() > until_ns) {
-      throw DeviceError(
-          fmt::format("{}: it was not homed within {} s; while its light is red, pull the knob fully out and push it "
-                      "fully in, or leave it relative: {}?homing=off",
-                      falcon_identity.what, options_.homing_timeout_s, info_.uri.substr(0, info_.uri.find('?'))));
+      throw DeviceError(fmt::format(
+          "{}: it was not homed within {} s; while its light is red, pull the knob fully out and push it "
+          "fully in, or leave it relative: {}?homing=off",
+          falcon_identity.what, options_.homing_timeout_s, info_.uri.substr(0, info_.uri.find('?'))));
     }
     std::this_thread::sleep_for(pause);
   }
@@ -140,7 +148,8 @@ Status Falcon::read(double now_s, Sample& sample) noexcept {
   }
   velocity_.advance(now_s);
   const falcon::Report& report = reading.report;
-  sample.channels[0] = (report.plus ? 1 : 0) | (report.forward ? 2 : 0) | (report.centre ? 4 : 0) | (report.minus ? 8 : 0);
+  sample.channels[0] =
+      (report.plus ? 1 : 0) | (report.forward ? 2 : 0) | (report.centre ? 4 : 0) | (report.minus ? 8 : 0);
   for (std::size_t i = 0; i < axes; ++i) sample.channels[1 + i] = reading.motor[i];
   sample.channels[4] = 1e-9 * static_cast<double>(age_ns);
   sample.faults = limited_ ? force_was_limited : 0U;

@@ -14,9 +14,9 @@ using usb::now_ns;
 using End = usb::Transfer::End;
 
 constexpr std::int64_t millisecond = 1'000'000;
-constexpr std::int64_t answer_ns = 5 * millisecond;     // it takes at most 1.3
-constexpr std::int64_t unasked_ns = 2 * millisecond;    // a tick of 1 kHz, and as much again
-constexpr std::int64_t order_ns = 100 * millisecond;    // nobody stands behind an older one
+constexpr std::int64_t answer_ns = 5 * millisecond;   // it takes at most 1.3
+constexpr std::int64_t unasked_ns = 2 * millisecond;  // a tick of 1 kHz, and as much again
+constexpr std::int64_t order_ns = 100 * millisecond;  // nobody stands behind an older one
 constexpr std::int64_t farewell_ns = 50 * millisecond;
 constexpr unsigned most_bad = 20;
 constexpr std::array<int, 3> zero{};
@@ -32,7 +32,8 @@ FalconLink::FalconLink(usb::UsbDevice& device, usb::IoThread& thread, bool homin
       homing_(homing),
       led_(led),
       nearby_(vector_of(middle)),
-      out_(device, falcon_out, falcon::frame_size, [this](End end, std::span<const std::uint8_t>) { sent(end); }) {
+      out_(device, falcon_out, falcon::frame_size,
+           [this](End end, std::span<const std::uint8_t>) { sent(end); }) {
   for (std::size_t which = 0; which < receiving; ++which) {
     in_[which] = std::make_unique<usb::Transfer>(
         device, falcon_in, 64,
@@ -64,14 +65,16 @@ void FalconLink::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested() && !lost()) {
     recover();
     send_if_due();
-    device_.handle_events(wait_ns(), thread_.wake_descriptor());
-    thread_.take_wakes();
+    if (device_.handle_events(wait_ns(), thread_.wake_descriptor())) thread_.take_wakes();
   }
   if (!lost()) let_go();
   ending_ = true;  // what still ends is not submitted again
 }
 
 std::int64_t FalconLink::wait_ns() const noexcept {
+  // The end of what is on its way wakes it. Not to wait at all would keep the kernel from sending it, on one
+  // processor.
+  if (out_.pending()) return answer_ns;
   return std::max<std::int64_t>(0, sent_ns_ + (unanswered_ > 0 ? answer_ns : unasked_ns) - now_ns());
 }
 

@@ -17,8 +17,9 @@
 
 namespace kerf::drivers {
 
-/// What speaks to a Falcon while it runs, from one thread of its own: keeps receiving, has one command under way at a time, sends
-/// the newest, asks again where an answer was lost. The tick's side are command() and take(), which wait for nobody.
+/// What speaks to a Falcon while it runs, from one thread of its own: keeps receiving, has one command under
+/// way at a time, sends the newest, asks again where an answer was lost. The tick's side are command() and
+/// take(), which wait for nobody.
 class FalconLink {
  public:
   /// An answer, and what it was an answer to.
@@ -34,7 +35,8 @@ class FalconLink {
 
   /// Motor values that hold until the next, at most for 100 ms.
   void command(const std::array<int, 3>& motor) noexcept;
-  /// Takes the newest reading, if there is one since the last time, and gives the last one taken; at_ns is 0 before the first.
+  /// Takes the newest reading, if there is one since the last time, and gives the last one taken; at_ns is 0
+  /// before the first.
   const Reading& take() noexcept {
     (void)readings_.take(taken_);
     return taken_;
@@ -50,8 +52,8 @@ class FalconLink {
     std::atomic<std::uint64_t> reports{0};
     std::atomic<std::uint64_t> resent{0};
     std::atomic<std::uint64_t> dropped_bytes{0};
-    std::atomic<std::uint64_t> malformed{0};         ///< transfers that ended badly
-    std::atomic<std::uint64_t> reports_before{0};    ///< the first command
+    std::atomic<std::uint64_t> malformed{0};       ///< transfers that ended badly
+    std::atomic<std::uint64_t> reports_before{0};  ///< the first command
     std::atomic<std::int64_t> first_command_ns{0};
   };
   [[nodiscard]] const Counts& counts() const noexcept { return counts_; }

@@ -21,14 +21,14 @@ namespace {
 using usb::now_ns;
 
 constexpr std::int64_t millisecond = 1'000'000;
-constexpr std::int64_t silence_ns = 150 * millisecond;        // a loaded one answers within 2
+constexpr std::int64_t silence_ns = 150 * millisecond;  // a loaded one answers within 2
 constexpr std::int64_t ask_again_ns = 20 * millisecond;
 constexpr std::int64_t boot_ns = 1000 * millisecond;
-constexpr std::int64_t hello_ns = 30 * millisecond;           // 7 on the line, 16 of latency
+constexpr std::int64_t hello_ns = 30 * millisecond;  // 7 on the line, 16 of latency
 constexpr std::int64_t echo_ns = 1000 * millisecond;
 constexpr int most_hellos = 60;
 constexpr int read_timeout_ms = 100;
-constexpr std::size_t block_size = 62;                        // the data of one packet
+constexpr std::size_t block_size = 62;  // the data of one packet
 constexpr std::size_t most_image = 1U << 20U;
 
 constexpr std::array<std::uint8_t, 3> hello{0x0A, 0x43, 0x0D};
@@ -70,7 +70,8 @@ void enter_run_mode(usb::UsbDevice& device) {
   purge(device);
 }
 
-/// Reads for so long and calls `take(byte)` for each byte of data until it returns true. @returns whether it did.
+/// Reads for so long and calls `take(byte)` for each byte of data until it returns true. @returns whether it
+/// did.
 template <typename F>
 bool read_until(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup& setup, F take) {
   std::array<std::uint8_t, 64> buffer{};
@@ -93,7 +94,8 @@ bool runs(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup& setup
   const std::int64_t until_ns = now_ns() + most_ns;
   while (now_ns() < until_ns) {
     device.bulk_out(falcon_out, frame);
-    if (read_until(device, ask_again_ns, setup, [&](std::uint8_t byte) { return reader.take(byte).has_value(); })) {
+    if (read_until(device, ask_again_ns, setup,
+                   [&](std::uint8_t byte) { return reader.take(byte).has_value(); })) {
       return true;
     }
   }
@@ -103,8 +105,8 @@ bool runs(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup& setup
 std::vector<std::uint8_t> read_image(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    fail(fmt::format("firmware={} cannot be read ({}); give the path of the image that came with your Falcon", path,
-                     std::strerror(errno)));
+    fail(fmt::format("firmware={} cannot be read ({}); give the path of the image that came with your Falcon",
+                     path, std::strerror(errno)));
   }
   std::vector<std::uint8_t> image;
   std::vector<char> piece(4096);
@@ -114,8 +116,9 @@ std::vector<std::uint8_t> read_image(const std::string& path) {
   }
   const auto problem = c2000::problem_of(image);
   if (!problem.empty()) {
-    fail(fmt::format("firmware={} is no firmware image of a Falcon ({}); give the file that came with your Falcon", path,
-                     problem));
+    fail(fmt::format(
+        "firmware={} is no firmware image of a Falcon ({}); give the file that came with your Falcon", path,
+        problem));
   }
   return image;
 }
@@ -139,8 +142,10 @@ void greet(usb::UsbDevice& device, const FalconSetup& setup) {
     });
     if (answered) return;
   }
-  fail("it does not answer at 9600 baud, so that its firmware cannot be loaded; check its power supply, unplug it and "
-       "plug it in again");
+  fail(
+      "it does not answer at 9600 baud, so that its firmware cannot be loaded; check its power supply, "
+      "unplug it and "
+      "plug it in again");
 }
 
 /// Sends bytes and reads them back.
@@ -155,8 +160,9 @@ void send_echoed(usb::UsbDevice& device, std::span<const std::uint8_t> bytes, st
     return !equal || back == bytes.size();
   });
   if (whole && equal) return;
-  fail(fmt::format("it sent byte {} of its firmware back {}; unplug it, plug it in again, and use another cable or port",
-                   before + back, equal ? "not at all" : "wrong"));
+  fail(fmt::format(
+      "it sent byte {} of its firmware back {}; unplug it, plug it in again, and use another cable or port",
+      before + back, equal ? "not at all" : "wrong"));
 }
 
 void load(usb::UsbDevice& device, std::span<const std::uint8_t> image, const FalconSetup& setup) {
@@ -187,15 +193,17 @@ void set_up_falcon(usb::UsbDevice& device, const FalconSetup& setup) {
   enter_run_mode(device);
   if (runs(device, silence_ns, setup)) return;
   if (image.empty()) {
-    fail(fmt::format("this Falcon has no firmware loaded; give the image that came with your Falcon: "
-                     "{}?firmware=FILE; Kerf ships none",
-                     setup.uri.substr(0, setup.uri.find('?'))));
+    fail(
+        fmt::format("this Falcon has no firmware loaded; give the image that came with your Falcon: "
+                    "{}?firmware=FILE; Kerf ships none",
+                    setup.uri.substr(0, setup.uri.find('?'))));
   }
   greet(device, setup);
   load(device, image, setup);
   enter_run_mode(device);
   if (!runs(device, boot_ns, setup)) {
-    fail(fmt::format("it took firmware={} and answers nothing; is it the firmware of a Falcon?", setup.firmware));
+    fail(fmt::format("it took firmware={} and answers nothing; is it the firmware of a Falcon?",
+                     setup.firmware));
   }
 }
 

@@ -14,8 +14,8 @@ inline constexpr std::uint8_t falcon_out = 0x02;
 
 struct FalconSetup {
   std::string_view uri;
-  std::string firmware;                      ///< path of an image; empty: none
-  bool homing = true;                        ///< so that asking does not end a homing that was
+  std::string firmware;  ///< path of an image; empty: none
+  bool homing = true;    ///< so that asking does not end a homing that was
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -28,9 +28,10 @@ constexpr std::int64_t millisecond = 1'000'000;
 
 TEST(C2000Image, IsAStreamOfWordsWithTheLowByteFirst) {
   const c2000::Block block{.destination = 0x3F8002, .words = {0x1234, 0x00FF}};
-  EXPECT_THAT(c2000::make_image(0x3F8002, std::array{block}),
-              ElementsAre(0xAA, 0x08, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x3F, 0x00, 0x02, 0x80,  //
-                          0x02, 0x00, 0x3F, 0x00, 0x02, 0x80, 0x34, 0x12, 0xFF, 0x00, 0x00, 0x00));
+  EXPECT_THAT(
+      c2000::make_image(0x3F8002, std::array{block}),
+      ElementsAre(0xAA, 0x08, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x3F, 0x00, 0x02, 0x80,  //
+                  0x02, 0x00, 0x3F, 0x00, 0x02, 0x80, 0x34, 0x12, 0xFF, 0x00, 0x00, 0x00));
 }
 
 TEST(C2000Image, IsReadToItsLastByteAndNoFurther) {
@@ -41,7 +42,8 @@ TEST(C2000Image, IsReadToItsLastByteAndNoFurther) {
   c2000::Stream stream;
   for (std::size_t i = 0; i < image.size(); ++i) {
     const bool last = i + 1 == image.size();
-    EXPECT_EQ(stream.take(image[i]), last ? c2000::Stream::State::finished : c2000::Stream::State::reading) << i;
+    EXPECT_EQ(stream.take(image[i]), last ? c2000::Stream::State::finished : c2000::Stream::State::reading)
+        << i;
   }
   EXPECT_EQ(stream.words(), 4U);
   EXPECT_EQ(stream.entry(), 0x3F8002U);
@@ -129,9 +131,13 @@ class Host {
   explicit Host(const std::string& uri = "falcon")
       : device_(EmulatedFalcon::parse_options(drivers::parse_uri(uri))) {}
 
-  void control(std::uint8_t number, std::uint16_t value) { EXPECT_TRUE(device_.control(request(number, value), {}, now_ns)); }
+  void control(std::uint8_t number, std::uint16_t value) {
+    EXPECT_TRUE(device_.control(request(number, value), {}, now_ns));
+  }
   void send(std::span<const std::uint8_t> bytes) { device_.receive(2, bytes, now_ns); }
-  void send(std::string_view text) { send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}); }
+  void send(std::string_view text) {
+    send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  }
   /// One transfer, with its status bytes.
   Bytes receive(std::size_t size = 64, Disturbance disturbance = Disturbance::none) {
     Bytes buffer(size);
@@ -216,7 +222,9 @@ TEST(EmulatedFalcon, EchoesAnImageAndRunsIt) {
     ASSERT_EQ(back.size(), block.size() + 2);
     EXPECT_TRUE(std::equal(block.begin(), block.end(), back.begin() + 2));
     // 62 bytes of 10 bits at 142 857 baud.
-    if (block.size() == 62) EXPECT_NEAR(1e-9 * static_cast<double>(host.now_ns - before_ns), 4.34e-3, 1e-5);
+    if (block.size() == 62) {
+      EXPECT_NEAR(1e-9 * static_cast<double>(host.now_ns - before_ns), 4.34e-3, 1e-5);
+    }
   }
   host.run_mode();
   EXPECT_TRUE(host.ask({}));
@@ -239,7 +247,7 @@ TEST(EmulatedFalcon, DoesNotRunHalfAnImageNorNoImage) {
     (void)host.receive();
     host.run_mode();
     EXPECT_FALSE(host.ask({}));
-    if (!half) EXPECT_THAT(host.tell(), HasSubstr("key 0x08AA"));
+    EXPECT_EQ(host.tell().find("key 0x08AA") != std::string::npos, !half);
   }
 }
 
@@ -277,7 +285,8 @@ TEST(EmulatedFalcon, TellsTheCountsOfItsPlace) {
   std::optional<wire::Report> report;
   for (int i = 0; i < 3000; ++i) report = host.ask({.motor = {-753, -753, -753}, .homing = true});
   ASSERT_TRUE(report);
-  const auto knob = mechanisms::Falcon::knob(mechanisms::Falcon::shoulder_of(report->encoder), {0.0, 0.0, 0.12});
+  const auto knob =
+      mechanisms::Falcon::knob(mechanisms::Falcon::shoulder_of(report->encoder), {0.0, 0.0, 0.12});
   ASSERT_TRUE(knob);
   EXPECT_NEAR(knob->z(), 0.12 + 3.0 / 300.0, 0.1 / 300.0 + 1e-4);
   EXPECT_NEAR(knob->x(), 0.0, 1e-4);

@@ -1,5 +1,6 @@
 #include "kerf/drivers/usb/usb_device.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -166,17 +167,22 @@ std::size_t UsbDevice::bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> bu
   return static_cast<std::size_t>(received);
 }
 
-void UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcept {
+bool UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcept {
   std::array<pollfd, 8> waited{};
   std::size_t count = 0;
   for (const Waited& one : waited_) {
     if (count + 1 < waited.size()) waited[count++] = {.fd = one.descriptor, .events = one.events, .revents = 0};
   }
+  const std::size_t of_usb = count;
   if (wake_descriptor >= 0) waited[count++] = {.fd = wake_descriptor, .events = POLLIN, .revents = 0};
   const timespec most{.tv_sec = most_ns / 1'000'000'000, .tv_nsec = most_ns % 1'000'000'000};
-  ppoll(waited.data(), count, &most, nullptr);
-  timeval at_once{};
-  libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
+  if (ppoll(waited.data(), count, &most, nullptr) <= 0) return false;
+  const auto ready = [](const pollfd& one) { return one.revents != 0; };
+  if (std::any_of(waited.begin(), waited.begin() + static_cast<std::ptrdiff_t>(of_usb), ready)) {
+    timeval at_once{};
+    libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
+  }
+  return count > of_usb && ready(waited[of_usb]);
 }
 
 bool UsbDevice::clear_halt(std::uint8_t endpoint) noexcept {

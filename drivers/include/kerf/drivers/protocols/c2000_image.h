@@ -6,12 +6,15 @@
 #include <string_view>
 #include <vector>
 
-/// The stream that a TI C28x signal processor boots from over a serial line: what the image of a Falcon's firmware is.
+/// The stream that a TI C28x signal processor boots from over a serial line: what the image of a Falcon's
+/// firmware is.
 ///
-/// Words of 16 bits, low byte first: the key 0x08AA, eight reserved words, the entry point (two words, high first), then
-/// blocks of {size in words, destination (two words, high first), that many words}; a size of zero ends it.
+/// Words of 16 bits, low byte first: the key 0x08AA, eight reserved words, the entry point (two words, high
+/// first), then blocks of {size in words, destination (two words, high first), that many words}; a size of
+/// zero ends it.
 ///
-/// Source: TI's description of the boot ROM (SCI boot), told from memory and found true of images by parsing them.
+/// Source: TI's description of the boot ROM (SCI boot), told from memory and found true of images by parsing
+/// them.
 namespace kerf::drivers::c2000 {
 
 inline constexpr std::uint16_t stream_key = 0x08AA;
@@ -51,7 +54,8 @@ class Stream {
   std::string_view problem_;
 };
 
-/// What keeps a file from being such a stream, whole and with nothing behind it, in half a sentence; empty if nothing does.
+/// What keeps a file from being such a stream, whole and with nothing behind it, in half a sentence; empty if
+/// nothing does.
 [[nodiscard]] std::string_view problem_of(std::span<const std::uint8_t> image) noexcept;
 
 /// One block of program or data.
