@@ -40,7 +40,7 @@ std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product, std:
     if (known) continue;
     const auto name = std::filesystem::path(one->path).filename().string();
     found.push_back({.node = one->path,
-                     .vendor = vendor,
+                     .vendor = one->vendor_id,
                      .product = one->product_id,
                      .name = narrow(one->product_string),
                      .may_open = access(one->path, R_OK | W_OK) == 0,

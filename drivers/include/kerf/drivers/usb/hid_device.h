@@ -11,7 +11,7 @@
 
 namespace kerf::drivers::usb {
 
-/// HID devices of one vendor and product, in the order of hidapi. `usage_page` 0 takes any.
+/// HID devices of one vendor and product, in the order of hidapi; 0 takes any, also for `usage_page`.
 [[nodiscard]] std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product,
                                              std::uint16_t usage_page = 0);
 
