@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
@@ -20,16 +21,6 @@ int fail(Exit status, std::string_view message) {
 }
 
 }  // namespace
-
-CLI::App& add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
-                   const std::string& example, std::function<void()> action) {
-  CLI::App* verb = app.add_subcommand(name, description);
-  verb->add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
-  verb->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
-  verb->footer("Example:\n  " + example);
-  verb->callback(std::move(action));
-  return *verb;
-}
 
 void say(std::string_view line) { fmt::print(stderr, "{}\n", line); }
 

@@ -1,11 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <string>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 namespace kerf::bench {
@@ -20,12 +17,6 @@ struct Context {
   Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
   nlohmann::ordered_json result;  ///< printed at the end with --json
 };
-
-/// Adds a verb with --json and --seed, its description and an example under --help; `action` runs after
-/// parsing. Exceptions leave through run_program(): std::invalid_argument and schema::FormatError exit 2,
-/// drivers::DeviceError 3, std::system_error and anything else 4, each with one line on standard error.
-CLI::App& add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
-                   const std::string& example, std::function<void()> action);
 
 /// Text for people: to standard error, never mixed into the JSON.
 void say(std::string_view line);

@@ -24,20 +24,19 @@ LawChange parse_change(const std::string& text) {
 
 }  // namespace
 
-void add_loop_options(CLI::App& verb, LoopArguments& arguments) {
+void add_loop_options(Verb& verb, LoopArguments& arguments) {
   RunOptions& options = arguments.options;
-  verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them")
-      ->capture_default_str();
-  verb.add_option("--seconds", options.seconds, "Duration [s]")
-      ->check(CLI::Range(0.01, 1e6))
-      ->capture_default_str();
-  verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]")->capture_default_str();
+  verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them").with_default();
+  verb.add_option("--sensor", options.sensor_uri,
+                  "URI of a force sensor beside the device: u6:0?calibration=FILE.toml");
+  verb.add_option("--seconds", options.seconds, "Duration [s]").within(0.01, 1e6).with_default();
+  verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]").with_default();
   verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");
   verb.add_option("--switch", arguments.changes,
                   "LAW@SECONDS: go over to another law, softly; may be repeated");
   verb.add_option("--ramp", options.ramp_s, "Soft start, and softly from law to law, over so long [s]")
-      ->check(CLI::Range(0.0, 60.0))
-      ->capture_default_str();
+      .within(0.0, 60.0)
+      .with_default();
   verb.add_flag("--passivity-control", options.passivity_control,
                 "Add damping wherever the rendering has given energy");
   verb.add_flag("--force", options.replace, "Replace existing files");

@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
+#include "cli/verb.h"
 #include "loop/run.h"
 
 namespace kerf::bench {
@@ -15,8 +14,8 @@ struct LoopArguments {
   std::vector<std::string> changes;  ///< LAW@SECONDS
 };
 
-/// Adds --device, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control and --force.
-void add_loop_options(CLI::App& verb, LoopArguments& arguments);
+/// Adds --device, --sensor, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control and --force.
+void add_loop_options(Verb& verb, LoopArguments& arguments);
 
 /// What was asked for, with the laws of --switch read. @throws std::invalid_argument, std::system_error
 [[nodiscard]] RunOptions run_options(const LoopArguments& arguments);

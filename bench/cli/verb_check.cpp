@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -18,8 +19,8 @@ struct Arguments {
   std::string record;
   std::string output;
   std::string direction;
-  double contact = 0.0;
-  bool has_contact = false;
+  std::optional<double> contact;
+  std::optional<double> floor;
 };
 
 void print_table(const nlohmann::ordered_json& json) {
@@ -39,14 +40,16 @@ void print_table(const nlohmann::ordered_json& json) {
 void run_check(const Arguments& arguments, Context& context) {
   if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.loop.options.replace);
   RunOptions options = run_options(arguments.loop);
+  options.floor_s = arguments.floor.value_or(3.0);
+  options.floor_anew = arguments.floor.has_value();
   options.law = read_law_file(arguments.law);
-  if (options.law->law.is_spatial() && (arguments.has_contact || !arguments.direction.empty())) {
+  if (options.law->law.is_spatial() && (arguments.contact || !arguments.direction.empty())) {
     throw std::invalid_argument(fmt::format(
         "law '{}' acts on axes of its own; --contact and --direction are for a law along one axis",
         options.law->law.model()));
   }
   if (!arguments.record.empty()) options.record = arguments.record;
-  if (arguments.has_contact) options.law->contact.position = arguments.contact;
+  if (arguments.contact) options.law->contact.position = *arguments.contact;
   if (!arguments.direction.empty())
     options.law->contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
   const StopOnSignal signals;
@@ -84,37 +87,26 @@ void run_check(const Arguments& arguments, Context& context) {
 
 void add_check(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb =
+  Verb verb =
       add_verb(app, context, "check", "Run a law in closed loop with a device and judge its timing",
                "kerf check fits/kelvin.law.toml --device sim:scissors --seconds 10\n\n"
                "Exit status 1 if the law is too slow, more than 1 % of the deadlines were missed, or\n"
                "law or device failed; the verdict says whose doing it was. An empty loop is measured\n"
                "first, so that a late machine is not taken for a slow law. docs/real-time.md says more.",
                [arguments, &context] { run_check(*arguments, context); });
-  verb.add_option("LAW", arguments->law, "Law file")->required();
-  arguments->loop.options.floor_s = 3.0;
+  verb.add_option("LAW", arguments->law, "Law file").required();
   add_loop_options(verb, arguments->loop);
-  verb.add_option_function<double>(
-      "--contact",
-      [arguments](const double& value) {
-        arguments->contact = value;
-        arguments->has_contact = true;
-      },
-      "Position of first contact instead of the law file's, in its unit");
+  verb.add_option("--contact", arguments->contact,
+                  "Position of first contact instead of the law file's, in its unit");
   verb.add_option("--direction", arguments->direction, "Direction of engagement instead of the law file's")
-      ->check(CLI::IsMember({"increasing", "decreasing"}));
+      .one_of({"increasing", "decreasing"});
   verb.add_option("--record", arguments->record, "Record the closed loop to this file");
   verb.add_option("-o,--output", arguments->output, "Write the JSON to this file");
-  verb.add_option_function<double>(
-          "--floor",
-          [arguments](const double& seconds) {
-            arguments->loop.options.floor_s = seconds;
-            arguments->loop.options.floor_anew = true;
-          },
+  verb.add_option(
+          "--floor", arguments->floor,
           "Measure an empty loop anew over so long first; 0: not at all (default: 3 s, once since the "
-          "machine was "
-          "started) [s]")
-      ->check(CLI::Range(0.0, 3600.0));
+          "machine was started) [s]")
+      .within(0.0, 3600.0);
 }
 
 }  // namespace kerf::bench

@@ -88,13 +88,12 @@ void run_demo(const Arguments& arguments, Context& context) {
 
 void add_demo(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb =
-      add_verb(app, context, "demo", "From a simulated cut to a report, in some ten seconds",
-               "kerf demo -o kerf-demo", [arguments, &context] { run_demo(*arguments, context); });
-  verb.add_option("-o,--output", arguments->folder, "Folder for its files")->capture_default_str();
+  Verb verb = add_verb(app, context, "demo", "From a simulated cut to a report, in some ten seconds",
+                       "kerf demo -o kerf-demo", [arguments, &context] { run_demo(*arguments, context); });
+  verb.add_option("-o,--output", arguments->folder, "Folder for its files").with_default();
   verb.add_option("--seconds", arguments->check_s, "Duration of the closed loop [s]")
-      ->check(CLI::Range(0.1, 3600.0))
-      ->capture_default_str();
+      .within(0.1, 3600.0)
+      .with_default();
   verb.add_flag("--force", arguments->force, "Replace an earlier demo");
 }
 

@@ -26,6 +26,28 @@ nlohmann::ordered_json to_json(const drivers::DeviceInfo& device) {
           {"axes", axes}};
 }
 
+nlohmann::ordered_json to_json(const drivers::AttachedDevice& device) {
+  return {{"uri", device.uri},
+          {"about", device.about},
+          {"simulated", false},
+          {"emulated", device.emulated},
+          {"node", device.node},
+          {"problem", device.problem}};
+}
+
+void list_attached(Context& context) {
+  const auto attached = drivers::list_attached();
+  for (const drivers::AttachedDevice& device : attached) {
+    context.result["devices"].push_back(to_json(device));
+    if (context.json) continue;
+    fmt::print("{}  {}; {}{}\n", device.uri, device.about, device.node, device.emulated ? ", emulated" : "");
+    if (!device.problem.empty()) fmt::print("  {}\n", device.problem);
+  }
+  if (attached.empty() && !context.json) {
+    fmt::print("On the USB: none that Kerf knows. kerf-emulate plays one; docs/devices.md says how.\n");
+  }
+}
+
 void run_devices(Context& context) {
   context.result["devices"] = nlohmann::ordered_json::array();
   for (const drivers::DeviceInfo& device : drivers::list_devices()) {
@@ -38,17 +60,23 @@ void run_devices(Context& context) {
                  axis.force_unit);
     }
   }
+  list_attached(context);
 }
 
 }  // namespace
 
 void add_devices(CLI::App& app, Context& context) {
-  add_verb(app, context, "devices", "List the devices that can be opened, with their axes and limits",
+  add_verb(app, context, "devices",
+           "List the devices that can be opened: simulated ones, and what is on the USB, real or emulated",
            "kerf devices --json\n\n"
-           "Options of sim:scissors stand behind a question mark: sim:scissors?seed=3&noise=off. They are "
-           "seed; hand,\n"
-           "noise, encoder (on or off); open, close (40deg); stroke, pause (0.8s); variation (0.05); grip "
-           "(500N/m).",
+           "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
+           "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"
+           "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
+           "                    came with the device: falcon:0?firmware=FILE. Kerf ships none.\n"
+           "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
+           "  u6:N              LabJack U6 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
+           "  spacemouse:N      3Dconnexion, a source of trajectories\n"
+           "Options, permissions and what was verified: docs/devices.md.",
            [&context] { run_devices(context); });
 }
 

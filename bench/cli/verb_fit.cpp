@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/core.h>
@@ -16,8 +17,7 @@ struct Arguments {
   std::string output;
   std::string axis;
   std::string direction;
-  double contact = 0.0;
-  bool has_contact = false;
+  std::optional<double> contact;
   bool force = false;
   FitRecordingOptions options;
 };
@@ -40,9 +40,9 @@ void run_fit(const Arguments& arguments, Context& context) {
   const schema::Recording recording = schema::read_recording(arguments.recording);
   FitRecordingOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);
-  if (arguments.has_contact || !arguments.direction.empty()) {
+  if (arguments.contact || !arguments.direction.empty()) {
     options.contact = contact_of(recording, options.axis);
-    if (arguments.has_contact) options.contact->position = arguments.contact;
+    if (arguments.contact) options.contact->position = *arguments.contact;
     if (!arguments.direction.empty())
       options.contact->direction = arguments.direction == "increasing" ? 1.0 : -1.0;
   }
@@ -68,39 +68,34 @@ void run_fit(const Arguments& arguments, Context& context) {
 void add_fit(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   FitRecordingOptions& options = arguments->options;
-  CLI::App& verb =
+  Verb verb =
       add_verb(app, context, "fit", "Fit force laws to a recording, with the uncertainty of each parameter",
                "kerf fit punch.h5 --models kelvin,piecewise --segments 4 -o fits\n\n"
                "Segment a recording of cycles first: laws with branches are then fitted as loops, and held-\n"
                "out errors are by cycle. Exit status 1 if no law converged.",
                [arguments, &context] { run_fit(*arguments, context); });
-  verb.add_option("RECORDING", arguments->recording, "Recording")->required();
+  verb.add_option("RECORDING", arguments->recording, "Recording").required();
   verb.add_option("--models", options.models,
                   "Laws, separated by commas (default: kelvin, exponential, piecewise, recording)")
-      ->delimiter(',');
+      .separated_by(',');
   verb.add_option("--axis", arguments->axis, "Axis to fit (default: the first)");
   verb.add_option("--segments", options.segments, "Segments of the piecewise law")
-      ->check(CLI::Range(1, 12))
-      ->capture_default_str();
-  verb.add_option_function<double>(
-      "--contact",
-      [arguments](const double& value) {
-        arguments->contact = value;
-        arguments->has_contact = true;
-      },
-      "Position where the penetration is zero, in m or rad (default: from the recording)");
+      .within(1, 12)
+      .with_default();
+  verb.add_option("--contact", arguments->contact,
+                  "Position where the penetration is zero, in m or rad (default: from the recording)");
   verb.add_option("--direction", arguments->direction, "Way into the tissue (default: from the recording)")
-      ->check(CLI::IsMember({"increasing", "decreasing"}));
+      .one_of({"increasing", "decreasing"});
   verb.add_option("--weber", options.fit.jnd.weber_fraction, "Weber fraction of the force JND")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
+      .within(0.0, 1.0)
+      .with_default();
   verb.add_option("--threshold", options.fit.jnd.threshold_n, "Smallest force JND [N]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+      .not_negative()
+      .with_default();
   verb.add_option("--folds", options.fit.folds, "Folds of the cross-validation")
-      ->check(CLI::Range(2, 100))
-      ->capture_default_str();
-  verb.add_option("-o,--output", arguments->output, "Folder for law files, fit.json and fit.csv")->required();
+      .within(2, 100)
+      .with_default();
+  verb.add_option("-o,--output", arguments->output, "Folder for law files, fit.json and fit.csv").required();
   verb.add_flag("--force", arguments->force, "Replace an existing fit");
 }
 

@@ -89,7 +89,7 @@ void run_import(const Arguments& arguments, Context& context) {
 
 void add_import(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(
+  Verb verb = add_verb(
       app, context, "import", "Turn CSV, TSV or an instrument's text file into a recording, in SI",
       "kerf import punch.txt --map 'time=5[ms],position=4[deg],force=2[gf]' -o punch.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
@@ -103,17 +103,15 @@ void add_import(CLI::App& app, Context& context) {
       "left out, and so are lines whose time repeats or goes back; NaN and infinity are kept and reported.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data, "Text file")->required();
-  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)")
-      ->allow_extra_args(false);
+  verb.add_option("DATA", arguments->data, "Text file").required();
+  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
-      ->check(CLI::PositiveNumber);
-  verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]")
-      ->check(CLI::PositiveNumber);
+      .positive();
+  verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]").positive();
   verb.add_option("--velocity-window", arguments->options.velocity_window_s,
                   "Window of the derived velocity [s] (default: 0.02, within 5 to 401 samples)")
-      ->check(CLI::PositiveNumber);
+      .positive();
   verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
   verb.add_flag("--force", arguments->force, "Replace an existing recording");
 }

@@ -102,7 +102,7 @@ void run_info(const Arguments& arguments, Context& context) {
 
 void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb =
+  Verb verb =
       add_verb(app, context, "info", "Say what is in a recording, also in one that is still written",
                "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
                "info --schema",

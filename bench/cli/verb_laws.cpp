@@ -77,14 +77,14 @@ void describe_law(const std::string& name, Context& context) {
 
 void add_laws(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(app, context, "laws", "List the force laws, or the parameters and options of one",
-                            "kerf laws blade", [arguments, &context] {
-                              if (arguments->law.empty()) {
-                                list_laws(context);
-                              } else {
-                                describe_law(arguments->law, context);
-                              }
-                            });
+  Verb verb = add_verb(app, context, "laws", "List the force laws, or the parameters and options of one",
+                       "kerf laws blade", [arguments, &context] {
+                         if (arguments->law.empty()) {
+                           list_laws(context);
+                         } else {
+                           describe_law(arguments->law, context);
+                         }
+                       });
   verb.add_option("NAME", arguments->law, "Law");
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/loop_arguments.h"
 #include "cli/verbs.h"
+#include "loop/check.h"
 #include "loop/run.h"
 #include "recordings/summary.h"
 
@@ -42,6 +43,7 @@ void run_record(const Arguments& arguments, Context& context) {
   context.result = recording_summary(recording);
   context.result["missed"] = result.report.missed();
   context.result["rows_lost"] = result.rows_lost;
+  context.result["device_figures"] = figures_as_json(result.figures);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
                   recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),
@@ -52,7 +54,7 @@ void run_record(const Arguments& arguments, Context& context) {
 
 void add_record(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(
+  Verb verb = add_verb(
       app, context, "record", "Record a device's trajectory and forces",
       "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
       "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue. Ctrl-C ends a\n"
@@ -62,7 +64,7 @@ void add_record(CLI::App& app, Context& context) {
   add_loop_options(verb, arguments->loop);
   verb.add_option("--scene", arguments->scene, "Scene file: the tissue that a simulated device meets");
   verb.add_option("--law", arguments->law, "Law file to render while recording");
-  verb.add_option("-o,--output", arguments->output, "Recording to write")->required();
+  verb.add_option("-o,--output", arguments->output, "Recording to write").required();
 }
 
 }  // namespace kerf::bench

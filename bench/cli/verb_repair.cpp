@@ -29,13 +29,13 @@ void run_repair(const Arguments& arguments, Context& context) {
 
 void add_repair(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb =
+  Verb verb =
       add_verb(app, context, "repair", "Close a recording that a crash left open",
                "kerf repair cut.h5\n\n"
                "Takes NAME or NAME.partial. Every row that reached the file is written to NAME; only\n"
                "then is NAME.partial removed.",
                [arguments, &context] { run_repair(*arguments, context); });
-  verb.add_option("recording", arguments->recording, "The recording, or its NAME.partial")->required();
+  verb.add_option("recording", arguments->recording, "The recording, or its NAME.partial").required();
   verb.add_option("-o,--output", arguments->output,
                   "Write it here instead, and keep the partial file (on a full disk, say)");
   verb.add_flag("--force", arguments->force, "Replace an existing output");

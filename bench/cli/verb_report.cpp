@@ -33,14 +33,14 @@ void run_report(const Arguments& arguments, Context& context) {
 
 void add_report(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
-                            "kerf report punch.h5 --fits fits --check check.json -o punch.html",
-                            [arguments, &context] { run_report(*arguments, context); });
-  verb.add_option("RECORDING", arguments->recording, "Recording")->required();
+  Verb verb = add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
+                       "kerf report punch.h5 --fits fits --check check.json -o punch.html",
+                       [arguments, &context] { run_report(*arguments, context); });
+  verb.add_option("RECORDING", arguments->recording, "Recording").required();
   verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");
   verb.add_option("--check", arguments->check, "JSON that 'kerf check -o' wrote");
   verb.add_option("--axis", arguments->axis, "Axis to report (default: that of the cycles, or the first)");
-  verb.add_option("-o,--output", arguments->output, "Page to write")->required();
+  verb.add_option("-o,--output", arguments->output, "Page to write").required();
   verb.add_flag("--force", arguments->force, "Replace an existing page");
 }
 

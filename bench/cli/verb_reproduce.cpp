@@ -45,16 +45,16 @@ void run_reproduce(const Arguments& arguments, Context& context) {
 
 void add_reproduce(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(
+  Verb verb = add_verb(
       app, context, "reproduce", "Run the experiments of a paper, draw its figures and judge its claims",
       "kerf reproduce 004 -o scissors\n\n"
       "The papers: 000 blade and tissue, 001 orthogonal decomposition, 002 fuzzy-Kelvin hybrid, 003 two-\n"
       "mesh scissors, 004 haptic scissors. Experiments run in virtual time on simulated devices and on\n"
       "tissues made for this bench. A claim holds, does not hold, or answers what a paper left open.",
       [arguments, &context] { run_reproduce(*arguments, context); });
-  verb.add_option("PAPER", arguments->paper, "000, 001, 002, 003 or 004")->required();
+  verb.add_option("PAPER", arguments->paper, "000, 001, 002, 003 or 004").required();
   verb.add_option("-o,--output", arguments->output, "Folder for the figures, claims.md and claims.json")
-      ->required();
+      .required();
   verb.add_flag("--force", arguments->force, "Replace earlier results there");
 }
 

@@ -87,24 +87,24 @@ void run_segment(const Arguments& arguments, Context& context) {
 
 void add_segment(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(
+  Verb verb = add_verb(
       app, context, "segment", "Find the cycles of opening and closing in a recording and store them in it",
       "kerf segment punch.h5 -o charts", [arguments, &context] { run_segment(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording; its cycles are added or replaced")
-      ->required();
+      .required();
   verb.add_option("--axis", arguments->axis, "Axis that opens and closes (default: the first)");
   verb.add_option("--prominence", arguments->options.prominence,
                   "Share of the range that a stroke must cover")
-      ->check(CLI::Range(0.01, 0.99))
-      ->capture_default_str();
+      .within(0.01, 0.99)
+      .with_default();
   verb.add_option("--corner", arguments->options.corner_hz, "Corner of the zero-phase low-pass [Hz]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      .positive()
+      .with_default();
   verb.add_option("--points", arguments->options.points, "Points of the grid of the averaged cycle")
-      ->check(CLI::Range(2, 4096))
-      ->capture_default_str();
+      .within(2, 4096)
+      .with_default();
   verb.add_option("--closing", arguments->closing, "Way of closing (default: the one that costs more work)")
-      ->check(CLI::IsMember({"increasing", "decreasing"}));
+      .one_of({"increasing", "decreasing"});
   verb.add_option("-o,--output", arguments->charts, "Folder for charts: cycles.svg and loops.svg");
 }
 

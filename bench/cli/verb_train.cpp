@@ -75,7 +75,7 @@ void run_train(const Arguments& arguments, Context& context) {
 
 void add_train(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App& verb = add_verb(
+  Verb verb = add_verb(
       app, context, "train", "Train the rupture threshold of a fuzzy law from a table of ruptures",
       "kerf train --example -o ruptures.csv\n"
       "  kerf train ruptures.csv -o threshold.law.toml\n"
@@ -87,22 +87,22 @@ void add_train(CLI::App& app, Context& context) {
   verb.add_flag("--example", arguments->example, "Write a table made from a formula instead");
   verb.add_option("--memberships", arguments->options.memberships,
                   "Memberships an input; rules are its square")
-      ->check(CLI::Range(1, 5))
-      ->capture_default_str();
+      .within(1, 5)
+      .with_default();
   verb.add_option("--learning", arguments->learning,
                   "projection (variable projection) or gradient (plain back-propagation)")
-      ->check(CLI::IsMember({"projection", "gradient"}))
-      ->capture_default_str();
+      .one_of({"projection", "gradient"})
+      .with_default();
   verb.add_option("--iterations", arguments->options.iterations,
                   "At most so many (default: 200, or 20000 of gradient)")
-      ->check(CLI::Range(1, 10000000));
+      .within(1, 10000000);
   verb.add_option("--element", arguments->element,
                   "K1 K2 B of a Kelvin element [N/m, N/m, N·s/m]: write a fuzzy_kelvin law")
-      ->expected(3);
+      .taking(3);
   verb.add_option("--depth", arguments->depth_m, "Depth of the blade for a fuzzy_kelvin law [m]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  verb.add_option("-o,--output", arguments->output, "Law file, or the table of --example")->required();
+      .not_negative()
+      .with_default();
+  verb.add_option("-o,--output", arguments->output, "Law file, or the table of --example").required();
   verb.add_flag("--force", arguments->force, "Replace an existing file");
 }
 

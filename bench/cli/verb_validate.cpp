@@ -28,10 +28,9 @@ void run_validate(const std::string& file, Context& context) {
 
 void add_validate(CLI::App& app, Context& context) {
   auto file = std::make_shared<std::string>();
-  CLI::App& verb =
-      add_verb(app, context, "validate", "List every way in which a file departs from the schema",
-               "kerf validate cut.h5", [file, &context] { run_validate(*file, context); });
-  verb.add_option("recording", *file, "The recording")->required();
+  Verb verb = add_verb(app, context, "validate", "List every way in which a file departs from the schema",
+                       "kerf validate cut.h5", [file, &context] { run_validate(*file, context); });
+  verb.add_option("recording", *file, "The recording").required();
 }
 
 }  // namespace kerf::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/app.h"
+#include "cli/verb.h"
 
 namespace kerf::bench {
 

@@ -118,7 +118,7 @@ void report_irregular_lines(Imported& imported) {
     imported.warnings.push_back(text);
     events.push_back({.time_s = 0.0, .kind = "misplaced_lines", .text = text});
     if (imported.misplaced_lines.size() * 10 > imported.recording.rows()) {
-      imported.warnings.push_back(
+      imported.warnings.emplace_back(
           "that is much of the file; if its clock restarts or is coarse, map no time and give --rate HZ");
     }
   }

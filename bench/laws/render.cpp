@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <kerf/models/branch.h>
+
 #include "laws/law_toml.h"
 
 namespace kerf::bench {

@@ -145,9 +145,17 @@ Verdict judge(const RunResult& result) {
   if (report.least_energy_j < -passive_within_j) {
     tell(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive", -report.least_energy_j));
   }
-  if (report.end == LoopEnd::stopped) tell("ended early by a signal");
+  if (report.end == LoopEnd::stopped) verdict.reasons.emplace_back("ended early by a signal");
   if (!result.recording_failure.empty()) tell(result.recording_failure);
   return verdict;
+}
+
+nlohmann::ordered_json figures_as_json(const std::vector<drivers::Figure>& figures) {
+  auto json = nlohmann::ordered_json::object();
+  for (const drivers::Figure& figure : figures) {
+    json[figure.name] = {{"value", figure.value}, {"unit", figure.unit}};
+  }
+  return json;
 }
 
 nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& verdict) {
@@ -172,6 +180,7 @@ nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& ver
     json["ticks_with"][std::string(flag.name)] = report.ticks_with(flag.flag);
   }
   json["rows_lost"] = result.rows_lost;
+  json["device_figures"] = figures_as_json(result.figures);
   json["page_faults"] = result.usage.page_faults + result.usage.major_page_faults;
   json["involuntary_switches"] = result.usage.involuntary_switches;
   json["spin_us"] = to_us(static_cast<double>(result.spin_ns));

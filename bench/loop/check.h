@@ -34,6 +34,9 @@ struct Verdict {
 /// not fail: a held spring always gives some.
 [[nodiscard]] Verdict judge(const RunResult& result);
 
+/// What the device counted, by name: value and unit.
+[[nodiscard]] nlohmann::ordered_json figures_as_json(const std::vector<drivers::Figure>& figures);
+
 /// The JSON of `kerf check`.
 [[nodiscard]] nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& verdict);
 

@@ -70,7 +70,7 @@ void Recorder::write_until_stopped(const std::stop_token& stop) {
   }
 }
 
-void Recorder::close(const std::string& status) {
+void Recorder::close(const std::string& status, const schema::Properties& device) {
   thread_.request_stop();
   thread_.join();
   if (failure_) std::rethrow_exception(failure_);
@@ -81,7 +81,7 @@ void Recorder::close(const std::string& status) {
          .text = fmt::format("{} rows lost in all, because the writer did not keep up", lost())});
   }
   for (const schema::Event& event : events_) writer_.append_event(event);
-  writer_.close(status);
+  writer_.close(status, device);
 }
 
 }  // namespace kerf::bench

@@ -53,9 +53,10 @@ class Recorder {
   /// An event for the file; not to be called from the tick.
   void note(schema::Event event) { events_.push_back(std::move(event)); }
 
-  /// Writes what is left, ends the recording with a status and puts the file in its place.
+  /// Writes what is left, ends the recording with a status and what the device counted, and puts the file in
+  /// its place.
   /// @throws std::system_error if anything could not be written; what could be stays in the partial file.
-  void close(const std::string& status);
+  void close(const std::string& status, const schema::Properties& device = {});
 
   /// Rows that never reached the writer.
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }

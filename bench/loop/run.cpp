@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/drivers/sensed_device.h>
+
 #include "cli/progress.h"
 #include "laws/placement.h"
 #include "loop/clock.h"
@@ -83,11 +85,12 @@ class Run {
         run_by_clock(none, control);
       }
     }
+    result_.figures = device_->figures();
     if (recorder) close(*recorder);
     if (result_.report.end == LoopEnd::device_lost) {
       throw drivers::DeviceError(fmt::format(
           "{}: the device was lost after {} ticks; its force is zero, and what was recorded is kept",
-          options_.device_uri, result_.report.executed));
+          devices_in_words(), result_.report.executed));
     }
     return std::move(result_);
   }
@@ -96,6 +99,10 @@ class Run {
   std::unique_ptr<drivers::Device> open() {
     drivers::Surroundings surroundings;
     if (options_.scene) {
+      if (!options_.device_uri.starts_with("sim:")) {
+        throw drivers::DeviceError(options_.device_uri +
+                                   ": the tissue of a scene is for simulated devices; leave out --scene");
+      }
       surroundings = surroundings_of(*options_.scene, drivers::open_device(options_.device_uri)->info());
     }
     surroundings.stop = &stop_;
@@ -106,7 +113,13 @@ class Run {
                                      watchdog_limit_ns(1.0 / options_.rate_hz));
       };
     }
-    return drivers::open_device(options_.device_uri, std::move(surroundings));
+    surroundings.stop = &stop_;
+    return drivers::open_device(options_.device_uri, options_.sensor_uri, std::move(surroundings));
+  }
+
+  [[nodiscard]] std::string devices_in_words() const {
+    return options_.sensor_uri.empty() ? options_.device_uri
+                                       : options_.device_uri + " with " + options_.sensor_uri;
   }
 
   /// The laws in their order, each on its axes.
@@ -198,6 +211,15 @@ class Run {
       }
       recorder.note({.time_s = at, .kind = "gap", .text = std::move(text)});
     }
+    schema::Properties figures;
+    for (const drivers::Figure& figure : result_.figures) {
+      const bool counts = figure.unit == "1";
+      figures[counts ? figure.name : figure.name + "_" + figure.unit] = figure.value;
+      recorder.note({.time_s = at,
+                     .kind = "device",
+                     .text = fmt::format("{} {:.6g}{}{}", figure.name, figure.value, counts ? "" : " ",
+                                         counts ? "" : figure.unit)});
+    }
     std::string status = "complete";
     if (report.end == LoopEnd::stopped) {
       recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
@@ -206,7 +228,7 @@ class Run {
       status = "aborted: the device was lost";
     }
     try {
-      recorder.close(status);
+      recorder.close(status, figures);
     } catch (const std::system_error& error) {
       result_.recording_failure =
           fmt::format("{}; what was recorded until then is in {}.partial, and 'kerf repair' closes it",

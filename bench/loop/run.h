@@ -28,6 +28,7 @@ struct LawChange {
 /// What to run on a device, for how long, and where to record it.
 struct RunOptions {
   std::string device_uri = "sim:scissors";
+  std::string sensor_uri;  ///< what measures the device's forces beside it; empty: the device itself, or nothing
   double seconds = 10.0;
   double rate_hz = 1000.0;
   bool virtual_time = false;
@@ -53,6 +54,7 @@ struct RunResult {
   ThreadUsage usage;                      ///< of the loop's thread while it ran; zero in virtual time
   std::optional<HostFloor> floor;         ///< if it was asked for
   std::int64_t spin_ns = 0;               ///< how long before its deadline the loop woke up
+  std::vector<drivers::Figure> figures;   ///< what the device counted
   std::uint64_t rows_lost = 0;
   std::string recording_failure;  ///< why the recording could not be written to its end; empty if it could
 };

@@ -27,11 +27,12 @@ struct SafetyOptions {
 /// Stands between a rendering and the hand: believes no reading that cannot be true, and lets no force through
 /// that nobody vouches for.
 ///
-/// A reading that is not finite, or farther from the last one than hand and mechanism can move, makes the
+/// A position or velocity that is not finite, or a position farther from the last one than hand and mechanism can move, makes the
 /// force zero, and so does a law that fails, a number that is not finite, or a loop that had stalled. Zero
 /// comes at once (the slew limit is there to spare the hand a jump, not to hold on to a bad force), and the
 /// force then comes back along the ramp of a soft start. Every other command is kept within each axis' force
-/// and slew limit.
+/// and slew limit. A measured force that is not finite is a gap in a measurement, not a fault: no law renders
+/// from it, and a sensor that pauses must not take the force from the hand.
 class Safety {
  public:
   Safety(const std::vector<drivers::AxisInfo>& axes, const SafetyOptions& options) noexcept
@@ -96,8 +97,7 @@ class Safety {
   [[nodiscard]] bool is_finite(const drivers::Sample& sample) const noexcept {
     bool finite = true;
     for (std::size_t axis = 0; axis < count_; ++axis) {
-      finite &= std::isfinite(sample.position[axis]) && std::isfinite(sample.velocity[axis]) &&
-                std::isfinite(sample.force_measured[axis]);
+      finite &= std::isfinite(sample.position[axis]) && std::isfinite(sample.velocity[axis]);
     }
     return finite;
   }

@@ -107,7 +107,7 @@ std::string verdict_paragraph(const json& check) {
         "<p class=\"answer{}\"><strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed.",
         passed ? "" : " bad", passed ? "pass" : "FAIL", check.at("ticks").get<std::uint64_t>(),
         1.0 / check.at("period_s").get<double>(), check.at("missed").get<std::uint64_t>());
-    for (const json& reason : check.at("reasons")) text += " " + escaped(reason.get<std::string>()) + ".";
+    for (const json& reason : check.at("reasons")) text += fmt::format(" {}.", escaped(reason.get<std::string>()));
     return text + "</p>\n";
   } catch (const json::exception& error) {
     refuse(error);

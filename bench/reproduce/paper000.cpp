@@ -9,6 +9,7 @@
 #include <kerf/drivers/hand.h>
 #include <kerf/models/blade.h>
 #include <kerf/models/precontact.h>
+#include <kerf/models/two_thresholds.h>
 
 #include "reproduce/reproduce.h"
 

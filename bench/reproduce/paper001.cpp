@@ -8,6 +8,7 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/hand.h>
+#include <kerf/models/fracture.h>
 #include <kerf/models/orthogonal.h>
 
 #include "reproduce/reproduce.h"

@@ -7,6 +7,7 @@
 
 #include <kerf/fitting/rupture.h>
 #include <kerf/models/fuzzy_kelvin.h>
+#include <kerf/models/kelvin.h>
 
 #include "fits/rupture_table.h"
 #include "reproduce/reproduce.h"

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/models/branch.h>
 #include <kerf/models/piecewise.h>
 
 #include "fits/fit_recording.h"

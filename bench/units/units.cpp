@@ -141,7 +141,7 @@ Unit parse_unit(std::string_view given) {
       throw std::invalid_argument(fmt::format("unit '{}' ends in an operator", given));
   }
   unit.si = joined(above);
-  if (unit.si.empty()) unit.si = "1";
+  if (unit.si.empty()) unit.si.push_back('1');
   if (const std::string divisor = joined(below); !divisor.empty()) unit.si += "/" + divisor;
   return unit;
 }

@@ -64,21 +64,23 @@ bool is_in_table(std::string_view object, std::string_view name) {
   });
 }
 
-void write_origin(hid_t file, const std::string& path, const Properties& properties, const Sources& sources) {
-  const auto group = h5::create_group(file, path);
-  write_attributes(group.id(), path, sources);
+void write_properties(hid_t group, const Properties& properties) {
   for (const auto& property : properties) {
     const std::string& name = property.first;
-    if (is_in_table(path, name)) {
-      throw std::invalid_argument(path + ": the property '" + name +
-                                  "' has the name of an attribute of the schema");
-    }
+    if (h5::has_attribute(group, name)) h5::delete_attribute(group, name);
     std::visit(Overloaded{[&](double number) {
-                            h5::write_attribute(group.id(), name, h5::native<double>(), {}, &number);
+                            h5::write_attribute(group, name, h5::native<double>(), {}, &number);
                           },
-                          [&](const std::string& text) { h5::write_attribute(group.id(), name, text); }},
+                          [&](const std::string& text) { h5::write_attribute(group, name, text); }},
                property.second);
   }
+}
+
+void write_origin(hid_t file, const std::string& path, const Properties& properties, const Sources& sources) {
+  for (const auto& property : properties) check_property(path, property.first);
+  const auto group = h5::create_group(file, path);
+  write_attributes(group.id(), path, sources);
+  write_properties(group.id(), properties);
 }
 
 // The longest beginning that fits without splitting a UTF-8 character.
@@ -95,6 +97,16 @@ std::string text_in(const std::byte* field, std::size_t room) {
 }
 
 }  // namespace
+
+void check_property(const std::string& path, const std::string& name) {
+  if (!is_in_table(path, name)) return;
+  throw std::invalid_argument(path + ": the property '" + name + "' has the name of an attribute of the schema");
+}
+
+void add_to_origin(hid_t file, const std::string& path, const Properties& properties) {
+  const auto group = h5::is_group(file, path) ? h5::open(file, path) : h5::create_group(file, path);
+  write_properties(group.id(), properties);
+}
 
 void write_head(hid_t file, const Sources& sources) {
   const auto root = h5::open(file, "/");

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <kerf/schema/recording.h>
@@ -24,6 +25,12 @@ void write_attributes(hid_t object, std::string_view path, const Sources& source
 
 /// Root attributes, the group /samples, and /device and /scene where there is something to say.
 void write_head(hid_t file, const Sources& sources);
+
+/// @throws std::invalid_argument for a property of /device or /scene whose name is the schema's own.
+void check_property(const std::string& path, const std::string& name);
+
+/// Adds properties to /device or /scene, which is made if there is none; those of the same name are replaced.
+void add_to_origin(hid_t file, const std::string& path, const Properties& properties);
 
 /// A dataset with its units and its other attributes.
 [[nodiscard]] h5::Handle make_dataset(hid_t file, const layout::Dataset& rule, hid_t type,

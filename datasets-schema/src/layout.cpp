@@ -88,7 +88,7 @@ const std::array dataset_table{
             "Force that the device was told to exert; absent if none was", &Recording::force_commanded,
             &Row::force_commanded},
     Dataset{"/samples/force_measured", "float64", "ND", Units::axis_force, optional,
-            "Force that a sensor measured; absent without a sensor", &Recording::force_measured,
+            "Force that a sensor measured; NaN where it had none, absent without a sensor", &Recording::force_measured,
             &Row::force_measured},
     Dataset{"/samples/wake_latency", "float32", "N", Units::second, optional,
             "From the deadline to the wake-up", &Recording::wake_latency, &Row::wake_latency_s},

@@ -229,7 +229,7 @@ struct RecordingWriter::Implementation {
     std::filesystem::remove(path, ignored);
   }
 
-  void finish(const std::string& status) {
+  void finish(const std::string& status, const Properties& device) {
     guarded([&] {
       columns.clear();
       channels.clear();
@@ -242,6 +242,7 @@ struct RecordingWriter::Implementation {
       const auto root = h5::open(file.id(), "/");
       h5::delete_attribute(root.id(), "status");
       h5::write_attribute(root.id(), "status", status);
+      if (!device.empty()) add_to_origin(file.id(), "/device", device);
     });
     guarded([&] { file.close(); });
   }
@@ -298,14 +299,15 @@ void RecordingWriter::append_event(const Event& event) {
 
 void RecordingWriter::flush() { implementation_->flush(); }
 
-void RecordingWriter::close(std::string_view status) {
+void RecordingWriter::close(std::string_view status, const Properties& device) {
   auto& self = *implementation_;
   if (status != "complete" && !status.starts_with("aborted: ")) {
     throw std::invalid_argument("recording: found the status '" + std::string(status) +
                                 "', expected 'complete' or 'aborted: WHY'");
   }
+  for (const auto& property : device) check_property("/device", property.first);
   self.flush();
-  self.finish(std::string(status));
+  self.finish(std::string(status), device);
   synchronise(self.path);
   rename_file(self.path, self.target);
   self.path = self.target;

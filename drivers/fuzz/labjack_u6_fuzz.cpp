@@ -3,12 +3,18 @@
 #include <vector>
 
 #include "kerf/drivers/protocols/labjack_u6.h"
+#include "kerf/drivers/protocols/labjack_u6_commands.h"
 
 // A stream of packets, sealed so that their insides are reached: scans are numbered upwards, and none is
 // counted twice.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace kerf::drivers::labjack_u6;
   (void)parse_stream({data, size});
+  (void)parse_identification({data, size});
+  (void)parse_constants({data, size});
+  (void)parse_stream_config({data, size});
+  (void)parse_stream_start({data, size});
+  (void)is_no_timers({data, size});
   if (size < 2) return 0;
   const std::size_t channels = 1 + data[0] % most_channels;
   const std::size_t samples = 1 + data[1] % most_samples;

@@ -6,12 +6,14 @@
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
+#include "kerf/drivers/force_sensor_u6.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
 #include "kerf/drivers/simulated_scissors.h"
 #include "kerf/drivers/spacemouse.h"
 #include "kerf/drivers/uri.h"
 #include "kerf/drivers/usb/usb_device.h"
+#include "kerf/drivers/woodenhaptics.h"
 
 namespace kerf::drivers {
 
@@ -66,7 +68,23 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed, c
     refuse_surroundings();
     return std::make_unique<SpaceMouse>(uri, found->number, SpaceMouse::parse_options(parsed));
   }
+  if (parsed.name.starts_with("hid:")) {
+    const auto& product = WoodenHaptics::product(parsed.name);
+    refuse_surroundings();
+    return std::make_unique<WoodenHaptics>(uri, product, WoodenHaptics::parse_options(parsed, product),
+                                           surroundings.stop);
+  }
+  if (found && found->scheme == "u6") {
+    refuse_surroundings();
+    return std::make_unique<ForceSensorU6>(uri, found->number, ForceSensorU6::parse_options(uri, parsed));
+  }
   throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
+}
+
+/// "falcon:" and 1 make "falcon:1"; a HID product is its own name, and its others have an option.
+std::string uri_of(std::string_view scheme, std::size_t number) {
+  if (scheme.ends_with(':')) return std::string(scheme) + std::to_string(number);
+  return std::string(scheme) + (number == 0 ? "" : "?index=" + std::to_string(number));
 }
 
 }  // namespace
@@ -99,7 +117,7 @@ std::vector<AttachedDevice> list_attached() {
   const auto add = [&](std::string_view scheme, std::string_view what, const std::vector<usb::Attached>& found) {
     for (std::size_t number = 0; number < found.size(); ++number) {
       const usb::Attached& one = found[number];
-      all.push_back({.uri = std::string(scheme) + std::to_string(number),
+      all.push_back({.uri = uri_of(scheme, number),
                      .about = std::string(what),
                      .node = one.node,
                      .emulated = one.emulated,
@@ -108,6 +126,10 @@ std::vector<AttachedDevice> list_attached() {
   };
   add("falcon:", "Novint Falcon, 3 axes with force; needs its firmware", find_falcons());
   add("spacemouse:", "6-DOF input, no force; 62.5 Hz", find_spacemice());
+  for (const auto& product : WoodenHaptics::products()) {
+    add(product.scheme, product.about, WoodenHaptics::find(product));
+  }
+  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml", find_labjack_u6());
   return all;
 }
 

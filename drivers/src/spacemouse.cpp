@@ -1,5 +1,6 @@
 #include "kerf/drivers/spacemouse.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -25,14 +26,16 @@ constexpr std::array<Model, 20> models{{{0x046d, 0xc603}, {0x046d, 0xc605}, {0x0
 
 /// The model and the index among its kind of the `number`-th cap.
 std::pair<usb::Identity, std::size_t> find(std::size_t number) {
-  std::size_t before = 0;
-  for (const Model& model : models) {
-    const std::size_t count = usb::find_hid(model.vendor, model.product).size();
-    if (number < before + count) return {{model.vendor, model.product, "SpaceMouse"}, number - before};
-    before += count;
+  const auto all = find_spacemice();
+  if (number >= all.size()) {
+    throw DeviceError("SpaceMouse: number " + std::to_string(number) + " is not attached (" +
+                      std::to_string(all.size()) +
+                      " found); plug it in, or start its emulator: kerf-emulate spacemouse");
   }
-  throw DeviceError("SpaceMouse: number " + std::to_string(number) + " is not attached (" + std::to_string(before) +
-                    " found); plug it in, or start its emulator: kerf-emulate spacemouse");
+  const usb::Attached& one = all[number];
+  const auto before = std::count_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(number),
+                                    [&](const usb::Attached& other) { return other.product == one.product; });
+  return {{one.vendor, one.product, "SpaceMouse"}, static_cast<std::size_t>(before)};
 }
 
 AxisInfo axis(std::string name, bool turns, double travel) {
@@ -60,11 +63,11 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
 }  // namespace
 
 std::vector<usb::Attached> find_spacemice() {
-  std::vector<usb::Attached> all;
-  for (const Model& model : models) {
-    const auto some = usb::find_hid(model.vendor, model.product);
-    all.insert(all.end(), some.begin(), some.end());
-  }
+  auto all = usb::find_hid(0, 0);
+  std::erase_if(all, [](const usb::Attached& one) {
+    return std::ranges::none_of(
+        models, [&](const Model& model) { return model.vendor == one.vendor && model.product == one.product; });
+  });
   return all;
 }
 

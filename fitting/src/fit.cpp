@@ -8,8 +8,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 
+#include "least_squares.h"
 #include "samples.h"
 #include "search.h"
 #include "statistics.h"
@@ -233,7 +234,7 @@ double line_rmse(const Series& series) {
     normal += row * row.transpose();
     right += row * series.force[i];
   }
-  const Eigen::Vector2d line = normal.completeOrthogonalDecomposition().solve(right);
+  const Eigen::Vector2d line = solve_normal(normal, right);
   double squares = 0.0;
   for (std::size_t i = 0; i < series.force.size(); ++i) {
     const double error = line[0] + line[1] * series.penetration[i] - series.force[i];

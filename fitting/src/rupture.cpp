@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <ceres/ceres.h>
 
 namespace kerf::fitting {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
+#include <kerf/models/branch.h>
+
+#include "least_squares.h"
 
 namespace kerf::fitting {
 namespace {
@@ -138,7 +140,7 @@ HatEquations hat_equations(const Samples& samples, const Mask& mask, const std::
 std::vector<double> forces_at_knots(const Samples& samples, const Mask& mask,
                                     const std::vector<double>& knots, const BranchOf& branch) {
   const HatEquations equations = hat_equations(samples, mask, knots, branch);
-  const Eigen::VectorXd forces = equations.normal.completeOrthogonalDecomposition().solve(equations.right);
+  const Eigen::VectorXd forces = solve_normal(equations.normal, equations.right);
   return {forces.begin(), forces.end()};
 }
 

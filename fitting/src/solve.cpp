@@ -8,6 +8,12 @@
 #include <ceres/ceres.h>
 #include <glog/logging.h>
 
+#include <kerf/models/exponential.h>
+#include <kerf/models/kelvin.h>
+#include <kerf/models/piecewise.h>
+#include <kerf/models/precontact.h>
+#include <kerf/models/scissors_analytic.h>
+
 namespace kerf::fitting {
 namespace {
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Dense>
+#include <kerf/models/piecewise.h>
 
+#include "least_squares.h"
 #include "segments.h"
 
 namespace kerf::fitting {
@@ -31,7 +32,7 @@ Eigen::Vector2d combine(const std::vector<double>& first, const std::vector<doub
     right += row * samples.force[i];
     total += samples.force[i] * samples.force[i];
   }
-  const Eigen::Vector2d best = normal.completeOrthogonalDecomposition().solve(right);
+  const Eigen::Vector2d best = solve_normal(normal, right);
   sum_of_squares = total - right.dot(best);
   return best;
 }
@@ -93,7 +94,7 @@ Start linear_start(const Problem& problem, const Samples& samples, const Mask& m
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (mask[i]) force[static_cast<Eigen::Index>(i)] = samples.force[i];
   }
-  Eigen::VectorXd best = response.colPivHouseholderQr().solve(force);
+  Eigen::VectorXd best = least_squares(response, force);
   for (Eigen::Index k = 0; k < count; ++k) {
     const auto& info = problem.parameters[static_cast<std::size_t>(k)];
     best[k] = std::clamp(best[k], info.lower, info.upper);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/LU>
+
 namespace kerf::mechanisms {
 namespace {
 
@@ -72,12 +74,39 @@ WoodenHaptics::Vector WoodenHaptics::angles(const std::array<int, 3>& counts) co
   return {turn[0], turn[1], 0.5 * std::numbers::pi - turn[2]};
 }
 
+std::array<double, 3> WoodenHaptics::counts(const Vector& angles_rad) const noexcept {
+  const Vector turn(angles_rad[0], angles_rad[1], 0.5 * std::numbers::pi - angles_rad[2]);
+  std::array<double, 3> counts{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    counts[i] = encoder_sign[i] * turn[static_cast<Eigen::Index>(i)] / (2.0 * std::numbers::pi) *
+                made_.counts_per_turn * made_.body_m[i] / made_.capstan_m[i];
+  }
+  return counts;
+}
+
 WoodenHaptics::Vector WoodenHaptics::tip(const Vector& angles_rad) const noexcept {
   const auto& [ln, lb, lc] = made_.length_m;
   const auto& [ox, oy, oz] = made_.origin_m;
   const double reach = lb * std::sin(angles_rad[1]) + lc * std::sin(angles_rad[2]);
   return {std::cos(angles_rad[0]) * reach - ox, std::sin(angles_rad[0]) * reach - oy,
           ln + lb * std::cos(angles_rad[1]) - lc * std::cos(angles_rad[2]) - oz};
+}
+
+std::optional<WoodenHaptics::Vector> WoodenHaptics::angles_of(const Vector& tip_m) const noexcept {
+  const auto& [ln, lb, lc] = made_.length_m;
+  const auto& [ox, oy, oz] = made_.origin_m;
+  const double forward = tip_m[0] + ox;
+  const double aside = tip_m[1] + oy;
+  const double out = std::hypot(forward, aside);
+  const double up = tip_m[2] + oz - ln;
+  const double square = out * out + up * up;
+  const double far = std::sqrt(square);
+  const double cos_at_b = (lb * lb + square - lc * lc) / (2.0 * lb * far);
+  const double cos_at_c = (lc * lc + square - lb * lb) / (2.0 * lc * far);
+  if (!(std::abs(cos_at_b) <= 1.0 && std::abs(cos_at_c) <= 1.0)) return std::nullopt;
+  const double from_vertical = std::atan2(out, up);
+  return Vector(std::atan2(aside, forward), from_vertical - std::acos(cos_at_b),
+                std::numbers::pi - from_vertical - std::acos(cos_at_c));
 }
 
 WoodenHaptics::Matrix WoodenHaptics::jacobian(const Vector& angles_rad) const noexcept {
@@ -113,6 +142,16 @@ WoodenHaptics::Currents WoodenHaptics::currents(const Vector& force_n,
     for (double& current : all.ampere) current *= made_.most_current_a / largest;
   }
   return all;
+}
+
+WoodenHaptics::Vector WoodenHaptics::force(const std::array<double, 3>& ampere,
+                                           const Vector& angles_rad) const noexcept {
+  Vector torque;
+  for (std::size_t i = 0; i < 3; ++i) {
+    torque[static_cast<Eigen::Index>(i)] =
+        motor_sign[i] * ampere[i] * made_.torque_constant[i] * made_.body_m[i] / made_.capstan_m[i];
+  }
+  return jacobian(angles_rad).transpose().inverse() * torque;
 }
 
 }  // namespace kerf::mechanisms

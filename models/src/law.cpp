@@ -1,32 +1,89 @@
 #include "kerf/models/law.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 #include <utility>
 
+#include "kerf/models/blade.h"
+#include "kerf/models/exponential.h"
+#include "kerf/models/fracture.h"
+#include "kerf/models/fuzzy_kelvin.h"
+#include "kerf/models/fuzzy_kelvin_3d.h"
+#include "kerf/models/fuzzy_rupture.h"
+#include "kerf/models/kelvin.h"
+#include "kerf/models/orthogonal.h"
+#include "kerf/models/piecewise.h"
+#include "kerf/models/precontact.h"
+#include "kerf/models/recording.h"
+#include "kerf/models/scissors_analytic.h"
+#include "kerf/models/scissors_free.h"
+#include "kerf/models/scissors_mesh.h"
+
 namespace kerf::models {
+
+/// Place of a law in the registry.
+using Place = std::size_t;
+
+struct AnyState {
+  explicit AnyState(Place of) noexcept : law(of) {}
+  AnyState(const AnyState&) = default;
+  AnyState& operator=(const AnyState&) = delete;
+  virtual ~AnyState() = default;
+  [[nodiscard]] virtual std::unique_ptr<AnyState> copy() const = 0;
+  /// Only of a state of the same law.
+  virtual void assign(const AnyState& other) = 0;
+
+  const Place law;
+};
+
+struct AnyLaw {
+  AnyLaw() = default;
+  AnyLaw(const AnyLaw&) = delete;
+  AnyLaw& operator=(const AnyLaw&) = delete;
+  virtual ~AnyLaw() = default;
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  [[nodiscard]] virtual std::unique_ptr<AnyState> initial_state() const = 0;
+  // Not a number: a fault, also if the state is another law's or the law of the other kind.
+  [[nodiscard]] virtual double step(AnyState& state, const Motion& motion,
+                                    double period_s) const noexcept = 0;
+  [[nodiscard]] virtual AxisValues step(AnyState& state, const SpatialMotion& motion,
+                                        double period_s) const noexcept = 0;
+};
+
 namespace {
 
-constexpr std::size_t law_count = std::variant_size_v<AnyLaw>;
+/// The registry: every law, once. A new law is one header, one entry here and one test.
+///
+/// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
+/// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
+using Registry =
+    std::tuple<Kelvin<double>, Exponential<double>, Piecewise<double>, Recording<double>,
+               ScissorsAnalytic<double>, Precontact<double>, Fracture<double>, FuzzyRupture<double>,
+               FuzzyKelvin<double>, FuzzyKelvin3d, Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
 
-/// Calls `f.template operator()<L>()` for the law of that name.
-template <typename F, std::size_t... I>
+constexpr std::size_t law_count = std::tuple_size_v<Registry>;
+template <Place I>
+using LawAt = std::tuple_element_t<I, Registry>;
+
+/// Calls `f.template operator()<I>()` for the place of the law of that name.
+template <typename F, Place... I>
 auto dispatch(std::string_view model, F&& f, std::index_sequence<I...>) {
-  using Result = decltype(f.template operator()<std::variant_alternative_t<0, AnyLaw>>());
-  std::optional<Result> result;
-  const auto attempt = [&]<typename L>() {
-    if (L::name == model) result = f.template operator()<L>();
+  std::optional<decltype(f.template operator()<0>())> result;
+  const auto attempt = [&]<Place At>() {
+    if (LawAt<At>::name == model) result = f.template operator()<At>();
   };
-  (attempt.template operator()<std::variant_alternative_t<I, AnyLaw>>(), ...);
+  (attempt.template operator()<I>(), ...);
   if (!result) {
     std::ostringstream message;
     message << "unknown law '" << model << "'; the laws are";
-    ((message << (I ? ", " : " ") << std::variant_alternative_t<I, AnyLaw>::name), ...);
+    ((message << (I ? ", " : " ") << LawAt<I>::name), ...);
     throw std::invalid_argument(message.str());
   }
   return *std::move(result);
@@ -60,31 +117,44 @@ concept Spatial = requires {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// One tick as law number I, or a fault if the state is another law's, or the law of the other kind.
-template <std::size_t I>
-double step_as(const AnyLaw& law, Law::State& state, const Motion& motion, double period_s) noexcept {
-  if constexpr (Spatial<std::variant_alternative_t<I, AnyLaw>>) {
-    return not_a_number;
-  } else {
-    auto* const own = std::get_if<I>(&state);
-    return own == nullptr ? not_a_number : std::get_if<I>(&law)->step(*own, motion, period_s);
-  }
-}
-template <std::size_t I>
-AxisValues step_as(const AnyLaw& law, Law::State& state, const SpatialMotion& motion,
-                   double period_s) noexcept {
-  if constexpr (Spatial<std::variant_alternative_t<I, AnyLaw>>) {
-    if (auto* const own = std::get_if<I>(&state)) return std::get_if<I>(&law)->step(*own, motion, period_s);
-  }
-  return {not_a_number};
-}
+template <Place I>
+struct StateAt final : AnyState {
+  using Value = typename LawAt<I>::State;
+  explicit StateAt(Value first) : AnyState(I), value(std::move(first)) {}
+  [[nodiscard]] std::unique_ptr<AnyState> copy() const override { return std::make_unique<StateAt>(value); }
+  void assign(const AnyState& other) override { value = static_cast<const StateAt&>(other).value; }
 
-template <typename Answer, typename Input>
-constexpr auto steps = []<std::size_t... I>(std::index_sequence<I...>) {
-  using Step = Answer (*)(const AnyLaw&, Law::State&, const Input&, double) noexcept;
-  return std::array<Step, law_count>{&step_as<I>...};
-}
-(std::make_index_sequence<law_count>{});
+  Value value;
+};
+
+template <Place I>
+struct RegisteredLaw final : AnyLaw {
+  using L = LawAt<I>;
+  explicit RegisteredLaw(L of) : law(std::move(of)) {}
+  [[nodiscard]] std::string_view name() const noexcept override { return L::name; }
+  [[nodiscard]] std::unique_ptr<AnyState> initial_state() const override {
+    if constexpr (requires { law.initial_state(); }) {
+      return std::make_unique<StateAt<I>>(law.initial_state());
+    } else {
+      return std::make_unique<StateAt<I>>(typename L::State{});
+    }
+  }
+  [[nodiscard]] double step(AnyState& state, const Motion& motion, double period_s) const noexcept override {
+    if constexpr (!Spatial<L>) {
+      if (state.law == I) return law.step(static_cast<StateAt<I>&>(state).value, motion, period_s);
+    }
+    return not_a_number;
+  }
+  [[nodiscard]] AxisValues step(AnyState& state, const SpatialMotion& motion,
+                                double period_s) const noexcept override {
+    if constexpr (Spatial<L>) {
+      if (state.law == I) return law.step(static_cast<StateAt<I>&>(state).value, motion, period_s);
+    }
+    return {not_a_number};
+  }
+
+  L law;
+};
 
 template <typename L>
 LawInfo info_of() {
@@ -100,66 +170,70 @@ LawInfo info_of() {
 
 std::vector<LawInfo> registry() {
   return []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::vector<LawInfo>{info_of<std::variant_alternative_t<I, AnyLaw>>()...};
+    return std::vector<LawInfo>{info_of<LawAt<I>>()...};
   }
   (std::make_index_sequence<law_count>{});
 }
 
 LawInfo law_info(std::string_view model) {
-  return dispatch(model, []<typename L>() { return info_of<L>(); });
+  return dispatch(model, []<Place I>() { return info_of<LawAt<I>>(); });
 }
 
 std::vector<ParameterInfo> Law::parameters(std::string_view model, const Options& options) {
-  return dispatch(model, [&]<typename L>() {
+  return dispatch(model, [&]<Place I>() {
+    using L = LawAt<I>;
     const OptionReader refuses_unknown(L::name, L::options(), options);
     return L::parameters(options);
   });
 }
 
 std::vector<OptionInfo> Law::options(std::string_view model) {
-  return dispatch(model, []<typename L>() { return L::options(); });
+  return dispatch(model, []<Place I>() { return LawAt<I>::options(); });
 }
 
 std::vector<LawAxis> Law::axes(std::string_view model) {
-  return dispatch(model, []<typename L>() {
-    if constexpr (Spatial<L>) return L::axes();
+  return dispatch(model, []<Place I>() {
+    if constexpr (Spatial<LawAt<I>>) return LawAt<I>::axes();
     return std::vector<LawAxis>{};
   });
 }
 
+Law::State::State(std::unique_ptr<AnyState> state) noexcept : state_(std::move(state)) {}
+Law::State::State(const State& other) : state_(other.state_ ? other.state_->copy() : nullptr) {}
+Law::State::State(State&& other) noexcept = default;
+Law::State& Law::State::operator=(State&& other) noexcept = default;
+Law::State::~State() = default;
+
+Law::State& Law::State::operator=(const State& other) {
+  if (state_ && other.state_ && state_->law == other.state_->law) {
+    state_->assign(*other.state_);
+  } else {
+    *this = State(other);
+  }
+  return *this;
+}
+
+Law::Law(std::shared_ptr<const AnyLaw> law, std::vector<double> values, Options options)
+    : law_(std::move(law)), values_(std::move(values)), options_(std::move(options)) {}
+
 Law Law::make(std::string_view model, std::span<const double> values, const Options& options) {
   check_values(model, parameters(model, options), values);
-  auto law = dispatch(model, [&]<typename L>() { return AnyLaw(L::make(values, options)); });
+  auto law = dispatch(model, [&]<Place I>() -> std::shared_ptr<const AnyLaw> {
+    return std::make_shared<const RegisteredLaw<I>>(LawAt<I>::make(values, options));
+  });
   return {std::move(law), {values.begin(), values.end()}, options};
 }
 
-std::string_view Law::model() const noexcept {
-  return std::visit([](const auto& law) { return std::string_view(law.name); }, law_);
-}
+std::string_view Law::model() const noexcept { return law_->name(); }
 
-Law::State Law::initial_state() const {
-  return [this]<std::size_t... I>(std::index_sequence<I...>) {
-    State state;
-    const auto begin = [&]<std::size_t Index>() {
-      if (law_.index() != Index) return;
-      if constexpr (requires { std::get<Index>(law_).initial_state(); }) {
-        state.emplace<Index>(std::get<Index>(law_).initial_state());
-      } else {
-        state.emplace<Index>();
-      }
-    };
-    (begin.template operator()<I>(), ...);
-    return state;
-  }
-  (std::make_index_sequence<law_count>{});
-}
+Law::State Law::initial_state() const { return State(law_->initial_state()); }
 
 Response Law::step(State& state, const Motion& motion, double period_s) const noexcept {
   if (!std::isfinite(motion.penetration) || !std::isfinite(motion.velocity) || !(period_s > 0.0) ||
       !std::isfinite(period_s)) {
     return {.force = 0.0, .fault = true};
   }
-  const double force = steps<double, Motion>[law_.index()](law_, state, motion, period_s);
+  const double force = state.state_ ? law_->step(*state.state_, motion, period_s) : not_a_number;
   if (!std::isfinite(force)) return {.force = 0.0, .fault = true};
   return {.force = force, .fault = false};
 }
@@ -172,7 +246,8 @@ SpatialResponse Law::step(State& state, const SpatialMotion& motion, double peri
       !std::isfinite(period_s)) {
     return {.force = {}, .fault = true};
   }
-  const AxisValues force = steps<AxisValues, SpatialMotion>[law_.index()](law_, state, motion, period_s);
+  if (!state.state_) return {.force = {}, .fault = true};
+  const AxisValues force = law_->step(*state.state_, motion, period_s);
   if (!all_finite(force)) return {.force = {}, .fault = true};
   return {.force = force, .fault = false};
 }

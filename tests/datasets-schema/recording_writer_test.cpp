@@ -222,6 +222,31 @@ TEST(RecordingWriter, CutsALongEventBetweenTwoCharacters) {
   EXPECT_EQ(read_recording(folder / "r.h5").events.at(0).text, "x" + std::string(254, 'y'));
 }
 
+TEST(RecordingWriter, LearnsAtItsEndWhatTheDeviceCounted) {
+  const test::TemporaryFolder folder;
+  for (const bool has_device : {true, false}) {
+    Header head = header();
+    if (!has_device) {
+      head.device_uri.clear();
+      head.device_toml.clear();
+      head.device_properties.clear();
+    }
+    const auto file = folder / (has_device ? "with.h5" : "without.h5");
+    RecordingWriter writer(file, head, axes(), {.measures_force = true});
+    writer.append(rows_of(0, 10));
+    EXPECT_THROW(writer.close("complete", {{"uri", "mine"}}), std::invalid_argument);
+    writer.close("complete", {{"clock_drift_ppm", 37.25}, {"scans", 10.0}});
+    EXPECT_THAT(validate(file), IsEmpty());
+    auto properties = head.device_properties;
+    properties["clock_drift_ppm"] = 37.25;
+    properties["scans"] = 10.0;
+    const Recording recording = read_recording(file);
+    EXPECT_EQ(recording.header.device_properties, properties);
+    EXPECT_EQ(recording.header.device_uri, head.device_uri);
+    EXPECT_EQ(recording.rows(), 10U);
+  }
+}
+
 TEST(RecordingWriter, RefusesAStatusThatDoesNotEndARecording) {
   const test::TemporaryFolder folder;
   RecordingWriter writer(folder / "r.h5", header(), axes(), {});

@@ -13,6 +13,7 @@
 #include <kerf/drivers/protocols/labjack_u6.h>
 #include <kerf/drivers/protocols/spacemouse.h>
 #include <kerf/drivers/protocols/woodenhaptics.h>
+#include <kerf/drivers/usb/hid_device.h>
 #include <kerf/mechanisms/falcon.h>
 
 namespace kerf::drivers {
@@ -161,6 +162,42 @@ TEST(WoodenHapticsProtocol, WritesCurrentsAndCounters) {
               ElementsAre(0, 4, 0, 5, 0, 6, 0, 1, 0, 1, 0, 2, 0, 3, 0));
   EXPECT_FALSE(woodenhaptics::preset_counters({}, Generation::v1));
   EXPECT_EQ(woodenhaptics::wrapped_difference(-32760, 32760), 16) << "over the end of 16 bits";
+}
+
+TEST(WoodenHapticsProtocol, FollowsCountersBeyondSixteenBitsAndBelievesNoLeap) {
+  woodenhaptics::Counters counters;
+  counters.start({32000, -5, 0, 0, 0, 0});
+  int true_count = 32000;
+  for (int i = 0; i < 2000; ++i) {
+    true_count += 100;
+    EXPECT_TRUE(counters.take({static_cast<std::int16_t>(static_cast<std::uint16_t>(true_count)), -5, 0, 0, 0, 0}, 150));
+    ASSERT_EQ(counters.count()[0], true_count);
+  }
+  // A turned bit and a restarted device: not believed, and nothing is lost when the right one comes again.
+  const int raw = static_cast<std::int16_t>(static_cast<std::uint16_t>(true_count));
+  EXPECT_FALSE(counters.take({raw ^ 0x4000, -5, 0, 0, 0, 0}, 150));
+  EXPECT_FALSE(counters.take({raw, -5, 151, 0, 0, 0}, 150));
+  EXPECT_TRUE(counters.take({raw, -4, 150, 9999, 0, 0}, 150)) << "the gimbal's are not followed";
+  EXPECT_THAT(counters.count(), ElementsAre(true_count, -4, 150));
+}
+
+TEST(HidReportSizes, AreThoseOfTheLongestReportInEachDirection) {
+  using Sizes = usb::HidReportSizes;
+  // Report 1: six bytes in; report 2: three times 16 bits in and a byte out; a long item of two bytes between them.
+  const std::vector<std::uint8_t> descriptor{0x85, 0x01, 0x75, 0x08, 0x95, 0x05, 0x81, 0x02, 0x95, 0x01, 0x81,
+                                             0x03, 0xFE, 0x02, 0x10, 0xAA, 0xBB, 0x85, 0x02, 0x75, 0x10, 0x96,
+                                             0x03, 0x00, 0x81, 0x02, 0x75, 0x01, 0x95, 0x07, 0x91, 0x02};
+  EXPECT_EQ(usb::hid_report_sizes(descriptor), (Sizes{6, 1}));
+  EXPECT_EQ(usb::hid_report_sizes(std::span(descriptor).first(8)), (Sizes{5, 0}));
+  EXPECT_EQ(usb::hid_report_sizes({}), (Sizes{0, 0}));
+  // What no device says must not take long or read beyond its end.
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> byte(0, 255);
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<std::uint8_t> noise(static_cast<std::size_t>(i % 64));
+    for (auto& one : noise) one = static_cast<std::uint8_t>(byte(random));
+    EXPECT_LE(usb::hid_report_sizes(noise).input, 8192U);
+  }
 }
 
 TEST(SpaceMouseProtocol, ReadsTheReportsOfItsCapture) {

@@ -4,7 +4,15 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <kerf/models/law.h>
+#include <kerf/models/exponential.h>
+#include <kerf/models/fracture.h>
+#include <kerf/models/fuzzy_kelvin.h>
+#include <kerf/models/fuzzy_rupture.h>
+#include <kerf/models/kelvin.h>
+#include <kerf/models/piecewise.h>
+#include <kerf/models/precontact.h>
+#include <kerf/models/recording.h>
+#include <kerf/models/scissors_analytic.h>
 
 namespace kerf::models {
 namespace {

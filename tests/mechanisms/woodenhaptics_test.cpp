@@ -59,6 +59,51 @@ TEST(WoodenHaptics, TheJacobianIsThatOfTheTipForEveryModel) {
   }
 }
 
+TEST(WoodenHaptics, FindsTheAnglesAndCountsOfAPlaceThatTheTipCanReach) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(-0.04, 0.04);  // no model reaches all of 0.1 m around
+  for (const auto& configuration : WoodenHaptics::configurations()) {
+    const WoodenHaptics device(configuration);
+    const Vector3d home = device.tip(device.angles({0, 0, 0}));
+    for (int i = 0; i < 200; ++i) {
+      const double x = uniform(random);
+      const double y = uniform(random);
+      const Vector3d place = home + Vector3d(x, y, uniform(random));
+      const auto angles = device.angles_of(place);
+      ASSERT_TRUE(angles) << configuration.name;
+      EXPECT_LE((device.tip(*angles) - place).norm(), 1e-12) << configuration.name;
+      // Rounded to whole counts the tip is off by half a step of each encoder at most.
+      std::array<int, 3> whole{};
+      const auto counts = device.counts(*angles);
+      for (std::size_t k = 0; k < 3; ++k) whole[k] = static_cast<int>(std::lround(counts[k]));
+      EXPECT_LE((device.angles(whole) - *angles).cwiseAbs().maxCoeff(), 0.5 * 4.6e-4) << configuration.name;
+    }
+    EXPECT_FALSE(device.angles_of(home + Vector3d(1.0, 0.0, 0.0)));
+    EXPECT_FALSE(device.angles_of(Vector3d(std::nan(""), 0.0, 0.0)));
+  }
+}
+
+TEST(WoodenHaptics, MakesTheForceWhoseCurrentsItIsGiven) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const auto& configuration : WoodenHaptics::configurations()) {
+    const WoodenHaptics device(configuration);
+    for (int i = 0; i < 100; ++i) {
+      const double a = 0.3 * uniform(random);
+      const double b = 0.3 * uniform(random);
+      const Vector3d angles(a, b, 1.5 + 0.3 * uniform(random));
+      const double x = uniform(random);
+      const double y = uniform(random);
+      const Vector3d asked(0.1 * x, 0.1 * y, 0.1 * uniform(random));
+      const auto currents = device.currents(asked, angles);
+      ASSERT_FALSE(currents.limited);
+      EXPECT_LE((device.force(currents.ampere, angles) - asked).norm(), 1e-12) << configuration.name;
+    }
+  }
+  // The other way round from the documented check: 0.591 A in motor A is 1 N along y.
+  EXPECT_LE((woody.force({0.591, 0.0, 0.0}, woody.angles({0, 0, 0})) - Vector3d::UnitY()).norm(), 1e-3);
+}
+
 TEST(WoodenHaptics, CutsAForceWithoutTurningIt) {
   const Vector3d zero = woody.angles({100, -200, 300});
   const auto small = woody.currents(Vector3d(0.1, 0.2, -0.3), zero);

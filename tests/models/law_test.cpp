@@ -94,6 +94,32 @@ TEST_P(EveryLaw, AllocatesNothingInAStep) {
   EXPECT_EQ(test::allocations(), before);
 }
 
+TEST_P(EveryLaw, GoesOnAloneFromACopyOfAState) {
+  auto state = law.initial_state();
+  for (int tick = 0; tick < 500; ++tick) (void)tick_of(law, state, tick);
+  auto copy = state;
+  auto assigned = law.initial_state();
+  const std::size_t before = test::allocations();
+  assigned = state;
+  EXPECT_EQ(test::allocations(), before) << "a state of the same law has the memory already";
+  std::vector<AxisValues> first;
+  for (int tick = 500; tick < 1000; ++tick) first.push_back(tick_of(law, state, tick).force);
+  for (auto* const other : {&copy, &assigned}) {
+    for (int tick = 500; tick < 1000; ++tick) {
+      ASSERT_EQ(tick_of(law, *other, tick).force, first[static_cast<std::size_t>(tick - 500)]) << tick;
+    }
+  }
+}
+
+TEST_P(EveryLaw, TakesTheStateOfAnotherLawByAssignment) {
+  for (const LawInfo& other : registry()) {
+    auto state = example(other.name).initial_state();
+    const auto own = law.initial_state();
+    state = own;
+    EXPECT_FALSE(tick_of(law, state, 1).fault) << other.name;
+  }
+}
+
 TEST_P(EveryLaw, AnswersNonFiniteInputWithZeroForceAndAFault) {
   auto state = law.initial_state();
   for (int tick = 0; tick < 500; ++tick) (void)tick_of(law, state, tick);

@@ -61,6 +61,20 @@ TEST(Run, IsTheSameBitForBitInVirtualTime) {
   EXPECT_THAT(first.compute_time, testing::Each(0.0F));
 }
 
+TEST(Run, RecordsTheForcesOfASensorBesideTheDevice) {
+  const test::TemporaryFolder folder;
+  RunOptions options = virtual_seconds(0.2);
+  options.device_uri = "sim:pose6?seed=3";
+  options.sensor_uri = "sim:pose6?seed=4";
+  options.record = folder / "r.h5";
+  (void)run(options);
+  const auto recording = schema::read_recording(*options.record);
+  EXPECT_EQ(recording.force_measured.size(), 6 * recording.rows());
+  EXPECT_THAT(recording.header.device_toml, testing::HasSubstr("[sensor]\nuri = \"sim:pose6?seed=4\""));
+  options.sensor_uri = "sim:scissors";
+  EXPECT_THROW((void)run(options), drivers::DeviceError) << "none of its axes is one of the tool's";
+}
+
 TEST(Run, KeepsTheSceneAndTheDeviceInTheRecording) {
   const test::TemporaryFolder folder;
   RunOptions options = virtual_seconds(0.5);

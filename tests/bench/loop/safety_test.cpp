@@ -74,6 +74,12 @@ TEST(Safety, BelievesNoAnswerThatIsNone) {
   EXPECT_EQ(judged(safety, 0.3), 0U) << "anywhere at first";
 }
 
+TEST(Safety, TakesAForceThatNobodyMeasuredForAGapAndNotForAFault) {
+  Safety safety(scissors, {.soft_start_s = 0.0});
+  EXPECT_EQ(safety.judge(drivers::Status::ok, {.force_measured = {not_a_number, not_a_number}}, 1e-3), 0U);
+  EXPECT_EQ(applied(safety, {.force = {1.0}}).force[0], 1.0);
+}
+
 TEST(Safety, BelievesAPositionThatTheHandCanReachInTheTimeThatHasPassed) {
   Safety safety(scissors, {});
   EXPECT_EQ(judged(safety, 0.0), 0U);

@@ -46,10 +46,10 @@ class RecordingWriter {
   /// Hands everything to the operating system. @throws std::system_error.
   void flush();
 
-  /// Ends the recording with a status ("complete", "aborted: WHY"), brings it to the disk and renames it to
-  /// its final name. Nothing may be appended after it.
-  /// @throws std::invalid_argument for another status; std::system_error, and then the partial file stays.
-  void close(std::string_view status);
+  /// Ends the recording with a status ("complete", "aborted: WHY") and further attributes of /device that were
+  /// not known before, brings it to the disk and renames it to its final name. Nothing may be appended after it.
+  /// @throws std::invalid_argument for another status, or an attribute's name that is the schema's own; std::system_error, and then the partial file stays.
+  void close(std::string_view status, const Properties& device = {});
 
   /// Rows appended so far.
   [[nodiscard]] std::uint64_t rows() const noexcept;

@@ -39,6 +39,14 @@ struct ChannelInfo {
   std::string unit;
 };
 
+/// Which component of a force sensor acts on which axis of the device that it is mounted to.
+struct ForceMount {
+  std::string axis;
+  std::size_t component = 0;  ///< 0 to 5: fx, fy, fz, tx, ty, tz
+  double sign = 1.0;
+  double lever_m = 0.0;  ///< between a torque and an axis in N, or a force and one in N·m; 0: none
+};
+
 struct DeviceInfo {
   std::string uri;
   std::string model;
@@ -48,6 +56,7 @@ struct DeviceInfo {
   bool measures_force = false;
   bool simulated = false;
   std::string configuration;  ///< the settings that it runs with, as TOML, for the recording
+  std::vector<ForceMount> mounts;  ///< of a force sensor, beside axes of its own names
 };
 
 /// Something that a device counted while it ran.
@@ -61,7 +70,7 @@ struct Figure {
 struct Sample {
   Axes position{};
   Axes velocity{};
-  Axes force_measured{};
+  Axes force_measured{};  ///< NaN where a sensor has nothing to say now; never a reason to render nothing
   std::array<double, max_channels> channels{};  ///< in the order of DeviceInfo::channels
   std::uint32_t faults = 0;
 };

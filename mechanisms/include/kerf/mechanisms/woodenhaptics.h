@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -48,7 +49,13 @@ class WoodenHaptics {
   [[nodiscard]] const Configuration& configuration() const noexcept { return made_; }
   /// A, B, C [rad] from the counts of the three encoders.
   [[nodiscard]] Vector angles(const std::array<int, 3>& counts) const noexcept;
+  /// The counts of the three encoders at these angles: angles() backwards, not rounded.
+  [[nodiscard]] std::array<double, 3> counts(const Vector& angles_rad) const noexcept;
   [[nodiscard]] Vector tip(const Vector& angles_rad) const noexcept;
+  /// The angles that put the tip there, the second body bent as at home (B < pi - C); nothing for a place out
+  /// of reach. With r and h the tip's distance from the axis of A and its height above that of B, the lengths
+  /// Lb and Lc are two sides of a triangle whose third is sqrt(r^2 + h^2).
+  [[nodiscard]] std::optional<Vector> angles_of(const Vector& tip_m) const noexcept;
   /// d tip / d(A, B, C) [m/rad].
   [[nodiscard]] Matrix jacobian(const Vector& angles_rad) const noexcept;
 
@@ -59,6 +66,9 @@ class WoodenHaptics {
   /// Currents for a force of the tip [N], all scaled alike if one exceeds what the motors bear, so that the
   /// force keeps its direction. Zero for a force that is not finite.
   [[nodiscard]] Currents currents(const Vector& force_n, const Vector& angles_rad) const noexcept;
+  /// The force at the tip [N] that currents of the three motors [A] make: currents() backwards, without its
+  /// limit. Not finite where an arm is stretched out, because there a direction bears any force.
+  [[nodiscard]] Vector force(const std::array<double, 3>& ampere, const Vector& angles_rad) const noexcept;
 
  private:
   Configuration made_;

@@ -1,40 +1,19 @@
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include <kerf/models/blade.h>
-#include <kerf/models/exponential.h>
-#include <kerf/models/fracture.h>
-#include <kerf/models/fuzzy_kelvin.h>
-#include <kerf/models/fuzzy_kelvin_3d.h>
-#include <kerf/models/fuzzy_rupture.h>
-#include <kerf/models/kelvin.h>
 #include <kerf/models/motion.h>
-#include <kerf/models/orthogonal.h>
 #include <kerf/models/parameter.h>
-#include <kerf/models/piecewise.h>
-#include <kerf/models/precontact.h>
-#include <kerf/models/recording.h>
-#include <kerf/models/scissors_analytic.h>
-#include <kerf/models/scissors_free.h>
-#include <kerf/models/scissors_mesh.h>
 #include <kerf/models/spatial.h>
 
 namespace kerf::models {
 
-/// The registry: every law, once. A new law is one header, one entry here and one test.
-///
-/// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
-/// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
-using AnyLaw =
-    std::variant<Kelvin<double>, Exponential<double>, Piecewise<double>, Recording<double>,
-                 ScissorsAnalytic<double>, Precontact<double>, Fracture<double>, FuzzyRupture<double>,
-                 FuzzyKelvin<double>, FuzzyKelvin3d, Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
+// One of the laws, and one's state; src/law.cpp has the list.
+struct AnyLaw;
+struct AnyState;
 
 /// What the registry knows of a law without building one.
 struct LawInfo {
@@ -60,19 +39,25 @@ struct SpatialResponse {
   bool fault = false;  ///< an input or the result was not finite; every force is then zero
 };
 
-/// A force law ready to be rendered: a value with its parameters, to be stepped with a State of its own.
+/// A force law ready to be rendered: a value with its parameters, to be stepped with a State of its own. A
+/// law does not change, so that copies share its tables.
 class Law {
-  template <typename Any>
-  struct StatesOf;
-  template <typename... Each>
-  struct StatesOf<std::variant<Each...>> {
-    // A law's place in the variant selects its state, also where two laws share a type of state.
-    using type = std::variant<typename Each::State...>;
-  };
-
  public:
-  /// A copy of a state is a state of its own. A law with a mesh takes its memory in initial_state().
-  using State = StatesOf<AnyLaw>::type;
+  /// What a law remembers from tick to tick: a value, a copy of a state is a state of its own. Its memory is
+  /// taken by initial_state() and by copying; assigning a state of the same law takes none anew.
+  class State {
+   public:
+    State(const State& other);
+    State(State&& other) noexcept;
+    State& operator=(const State& other);
+    State& operator=(State&& other) noexcept;
+    ~State();
+
+   private:
+    friend class Law;
+    explicit State(std::unique_ptr<AnyState> state) noexcept;
+    std::unique_ptr<AnyState> state_;
+  };
 
   /// Builds a law by name; `values` in the order of `parameters(model, options)`.
   /// @throws std::invalid_argument with a sentence that names what is wrong: an unknown law or option, a
@@ -93,7 +78,6 @@ class Law {
   [[nodiscard]] std::vector<ParameterInfo> parameters() const { return parameters(model(), options_); }
   [[nodiscard]] std::vector<LawAxis> axes() const { return axes(model()); }
   [[nodiscard]] bool is_spatial() const { return !axes().empty(); }
-  [[nodiscard]] const AnyLaw& any() const noexcept { return law_; }
 
   /// A state before the first tick.
   [[nodiscard]] State initial_state() const;
@@ -106,10 +90,9 @@ class Law {
                                      double period_s) const noexcept;
 
  private:
-  Law(AnyLaw law, std::vector<double> values, Options options)
-      : law_(std::move(law)), values_(std::move(values)), options_(std::move(options)) {}
+  Law(std::shared_ptr<const AnyLaw> law, std::vector<double> values, Options options);
 
-  AnyLaw law_;
+  std::shared_ptr<const AnyLaw> law_;
   std::vector<double> values_;
   Options options_;
 };

@@ -54,4 +54,32 @@ struct Output {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(now - before));
 }
 
+/// Follows the counters of the three motors beyond 16 bits, and believes no report that is farther from the
+/// last one than a hand could have moved: the bytes were turned on their way, or the device was restarted and
+/// counts anew.
+class Counters {
+ public:
+  /// Where they are, as signed numbers.
+  void start(const std::array<int, 6>& encoder) noexcept {
+    raw_ = encoder;
+    for (std::size_t i = 0; i < count_.size(); ++i) count_[i] = encoder[i];
+  }
+  /// False, and no change, if one of them is more than `most_step` counts from where it was.
+  bool take(const std::array<int, 6>& encoder, int most_step) noexcept {
+    std::array<int, 3> step{};
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      step[i] = wrapped_difference(encoder[i], raw_[i]);
+      if (step[i] > most_step || step[i] < -most_step) return false;
+    }
+    for (std::size_t i = 0; i < step.size(); ++i) count_[i] += step[i];
+    raw_ = encoder;
+    return true;
+  }
+  [[nodiscard]] const std::array<int, 3>& count() const noexcept { return count_; }
+
+ private:
+  std::array<int, 6> raw_{};
+  std::array<int, 3> count_{};
+};
+
 }  // namespace kerf::drivers::woodenhaptics

@@ -9,16 +9,26 @@
 
 #include <kerf/drivers/usb/usb_device.h>
 
-struct hid_device_;
-
 namespace kerf::drivers::usb {
 
-/// HID devices of one vendor and product, in the order of hidapi. `usage_page` 0 takes any.
+/// HID devices of one vendor and product, in the order of hidapi; 0 takes any, also for `usage_page`.
 [[nodiscard]] std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product,
                                              std::uint16_t usage_page = 0);
 
-/// An open HID device, by hidapi on hidraw. read() and write() allocate nothing; write() returns when the device has
-/// taken the report, which is why only a thread of the device's own calls them.
+/// Bytes of the longest report in each direction, by a report descriptor, without the number of a report.
+struct HidReportSizes {
+  std::size_t input = 0;
+  std::size_t output = 0;
+
+  friend bool operator==(const HidReportSizes&, const HidReportSizes&) = default;
+};
+/// Reads the items of a report descriptor (HID 1.11, chapter 6.2.2); what it cannot read it leaves out.
+[[nodiscard]] HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexcept;
+
+/// An open HID device: found by hidapi, and then spoken to through its hidraw node itself, because hidapi
+/// gives out no descriptor that a thread could wait on together with a wake-up. read() and write() allocate
+/// nothing; write() returns when the device has taken the report, which is why only a thread of the device's
+/// own calls them.
 class HidDevice {
  public:
   /// @throws DeviceError if it is not there, may not be opened, or another Kerf has it, each with its mend.
@@ -27,19 +37,26 @@ class HidDevice {
   HidDevice& operator=(const HidDevice&) = delete;
   ~HidDevice();
 
+  struct Ready {
+    bool report = false;  ///< read() has something to say: a report, or that the device is gone
+    bool woken = false;   ///< the wake-up descriptor is readable
+  };
+  /// Waits until one of both is so, at most so long; without a wake-up descriptor if that is -1.
+  Ready wait(std::int64_t most_ns, int wake_descriptor) noexcept;
   /// Waits for a report, at most so long. @returns its length, 0 if none came, -1 if the device is gone.
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept;
   /// Sends a report whose first byte is its number, 0 if it has none. False if it could not.
   bool write(std::span<const std::uint8_t> report) noexcept;
 
+  /// How long its reports are, by its report descriptor; zero if the kernel does not tell.
+  [[nodiscard]] HidReportSizes report_sizes() const noexcept;
   [[nodiscard]] const std::string& node() const noexcept { return node_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
  private:
   std::string node_;
   std::string name_;
-  int lock_ = -1;
-  hid_device_* handle_ = nullptr;
+  int descriptor_ = -1;
 };
 
 }  // namespace kerf::drivers::usb

@@ -1,0 +1,91 @@
+#include "cli/verb.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/app.h"
+
+namespace kerf::bench {
+
+Option& Option::required() {
+  option_.required();
+  return *this;
+}
+
+Option& Option::with_default() {
+  option_.capture_default_str();
+  return *this;
+}
+
+Option& Option::within(int lower, int upper) {
+  option_.check(CLI::Range(lower, upper));
+  return *this;
+}
+
+Option& Option::within(double lower, double upper) {
+  option_.check(CLI::Range(lower, upper));
+  return *this;
+}
+
+Option& Option::positive() {
+  option_.check(CLI::PositiveNumber);
+  return *this;
+}
+
+Option& Option::not_negative() {
+  option_.check(CLI::NonNegativeNumber);
+  return *this;
+}
+
+Option& Option::one_of(std::initializer_list<std::string> values) {
+  option_.check(CLI::IsMember(std::vector<std::string>(values)));
+  return *this;
+}
+
+Option& Option::separated_by(char delimiter) {
+  option_.delimiter(delimiter);
+  return *this;
+}
+
+Option& Option::taking(int values) {
+  option_.expected(values);
+  return *this;
+}
+
+Option& Option::one_value_each() {
+  option_.allow_extra_args(false);
+  return *this;
+}
+
+template <typename Value>
+Option Verb::add_option(const std::string& name, Value& variable, const std::string& description) {
+  return Option(*verb_.add_option(name, variable, description));
+}
+
+template Option Verb::add_option(const std::string&, std::string&, const std::string&);
+template Option Verb::add_option(const std::string&, double&, const std::string&);
+template Option Verb::add_option(const std::string&, std::size_t&, const std::string&);
+template Option Verb::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Verb::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option Verb::add_option(const std::string&, std::optional<double>&, const std::string&);
+
+Option Verb::add_flag(const std::string& name, bool& variable, const std::string& description) {
+  return Option(*verb_.add_flag(name, variable, description));
+}
+
+Verb add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+              const std::string& example, std::function<void()> action) {
+  CLI::App* const subcommand = app.add_subcommand(name, description);
+  subcommand->footer("Example:\n  " + example);
+  subcommand->callback(std::move(action));
+  Verb verb(*subcommand);
+  verb.add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
+  verb.add_option("--seed", context.seed, "Seed of every random choice").with_default();
+  return verb;
+}
+
+}  // namespace kerf::bench

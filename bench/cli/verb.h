@@ -1,0 +1,61 @@
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <string>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace kerf::bench {
+
+struct Context;
+
+/// An option of a verb while it is declared; each call says one thing more about it. The library that reads
+/// command lines is included in verb.cpp and app.cpp alone: it costs every file that includes it seconds.
+class Option {
+ public:
+  explicit Option(CLI::Option& option) : option_(option) {}
+
+  Option& required();
+  /// --help shows the value that the variable has now.
+  Option& with_default();
+  Option& within(int lower, int upper);
+  Option& within(double lower, double upper);
+  Option& positive();
+  Option& not_negative();
+  Option& one_of(std::initializer_list<std::string> values);
+  Option& separated_by(char delimiter);
+  /// Takes so many values at once.
+  Option& taking(int values);
+  /// May be repeated, with one value each time.
+  Option& one_value_each();
+
+ private:
+  CLI::Option& option_;
+};
+
+/// A verb while its options are declared.
+class Verb {
+ public:
+  explicit Verb(CLI::App& verb) : verb_(verb) {}
+
+  /// Value: std::string, double, std::size_t, a vector of strings or of doubles, or std::optional<double>.
+  /// The variable has to live until the verb has run.
+  template <typename Value>
+  Option add_option(const std::string& name, Value& variable, const std::string& description);
+  Option add_flag(const std::string& name, bool& variable, const std::string& description);
+
+ private:
+  CLI::App& verb_;
+};
+
+/// Adds a verb with --json and --seed, its description and an example under --help; `action` runs after
+/// parsing. Exceptions leave through run_program(): std::invalid_argument and schema::FormatError exit 2,
+/// drivers::DeviceError 3, std::system_error and anything else 4, each with one line on standard error.
+Verb add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
+              const std::string& example, std::function<void()> action);
+
+}  // namespace kerf::bench
