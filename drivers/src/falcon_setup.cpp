@@ -136,7 +136,7 @@ void greet(usb::UsbDevice& device, const FalconSetup& setup) {
   for (int tries = 0; tries < most_hellos; ++tries) {
     device.bulk_out(falcon_out, hello);
     const bool answered = read_until(device, hello_ns, setup, [&](std::uint8_t byte) {
-      std::ranges::rotate(last, last.begin() + 1);
+      std::rotate(last.begin(), last.begin() + 1, last.end());
       last.back() = byte;
       return last == answer;
     });

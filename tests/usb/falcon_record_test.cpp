@@ -181,13 +181,13 @@ double taken_away() {
   return lost.count() / 0.2;
 }
 
-// By the clock on the wall, of a machine that does other things too: the best quarter of a second of forty.
+// By the clock on the wall, of a machine that does other things too: the best quarter of a second of twelve.
 TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
   const Emulator emulator("falcon?firmware=loaded&homed=on");
   ASSERT_TRUE(becomes_attached("falcon:0"));
   const auto device = drivers::open_device("falcon:0");
   double best_hz = 0.0;
-  for (int part = 0; part < 40 && best_hz < 900.0; ++part) {
+  for (int part = 0; part < 12 && best_hz < 900.0; ++part) {
     const double before = figure(*device, "reports");
     const auto start = std::chrono::steady_clock::now();
     loop(*device, 250, [&](int, drivers::Status, const drivers::Sample& sample) {
