@@ -105,7 +105,6 @@ class Run {
       }
       surroundings = surroundings_of(*options_.scene, drivers::open_device(options_.device_uri)->info());
     }
-    surroundings.stop = &stop_;
     if (options_.virtual_time) {
       surroundings.pass_time = [this](double seconds) {
         virtual_clock_.pass(std::llround(1e9 * seconds));

@@ -55,6 +55,7 @@ EmulatedFalcon::Options EmulatedFalcon::parse_options(drivers::Uri uri) {
   options.home_after_s = given.number("home_after", {"s", options.home_after_s, 0.0, 1e6});
   options.offset = static_cast<int>(given.number("offset", {"1", 0.0, -10000.0, 10000.0}));
   options.units_per_n_m = given.number("torque_scale", {"1", options.units_per_n_m, 1000.0, 30000.0});
+  options.glitch = given.flag("glitch", options.glitch);
   options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, 0.03});
   options.trace = given.text("trace").value_or("");
   given.refuse_others();
@@ -71,7 +72,8 @@ EmulatedFalcon::EmulatedFalcon(const Options& options)
   if (options.trace.empty()) return;
   trace_.open(options.trace);
   if (!trace_) throw drivers::DeviceError(options.trace + " cannot be written; give another trace=FILE");
-  trace_ << "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,x_m,y_m,z_m\n";
+  trace_ << "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,x_m,y_m,z_m,homing,"
+            "led\n";
 }
 
 const Description& EmulatedFalcon::description() const { return falcon(); }
@@ -129,7 +131,9 @@ void EmulatedFalcon::take_greeting(std::uint8_t byte, std::int64_t now_ns) {
     if (!greeting_.ends_with(hello)) return;
     greeting_.clear();
     boot_ = Boot::greeted;
-    bridge_.put(answer, now_ns + bridge_.line_time_ns(hello.size() + answer.size()));
+    const std::int64_t ready_ns = now_ns + bridge_.line_time_ns(hello.size() + answer.size());
+    if (options_.glitch) bridge_.put(std::array<std::uint8_t, 1>{0x00}, ready_ns);
+    bridge_.put(answer, ready_ns);
   } else if (line_runs_at(load_baud) && boot_ == Boot::greeted && byte == autobaud) {
     boot_ = Boot::loading;
     image_ = {};
@@ -192,9 +196,10 @@ void EmulatedFalcon::take_command(const drivers::falcon::Frame& frame, std::int6
   if (!trace_.is_open()) return;
   const auto& raw = command->motor;
   const Eigen::Vector3d p = tip_.position();
-  trace_ << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{:.9f}\n", time_s, raw[0], raw[1],
-                        raw[2], motor_[0], motor_[1], motor_[2], encoder[0], encoder[1], encoder[2], p.x(),
-                        p.y(), p.z());
+  const char* led = command->red ? "red" : command->green ? "green" : command->blue ? "blue" : "off";
+  trace_ << fmt::format("{:.9f},{},{},{},{},{},{},{},{},{},{:.9f},{:.9f},{:.9f},{},{}\n", time_s, raw[0],
+                        raw[1], raw[2], motor_[0], motor_[1], motor_[2], encoder[0], encoder[1], encoder[2],
+                        p.x(), p.y(), p.z(), command->homing ? 1 : 0, led);
 }
 
 std::optional<std::size_t> EmulatedFalcon::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,

@@ -33,7 +33,8 @@ namespace kerf::emulators {
 ///
 /// Options: firmware=loaded|none (none), homed=on|off (off: it is not yet when plugged in), home_after
 /// (0.3s), offset (counts that stand for the power-on place, 0), torque_scale (of the plant's motors, 10000
-/// per N·m), sway (0.01m), trace=FILE (CSV, a line for each frame).
+/// per N·m), sway (0.01m), glitch=on|off (off: a zero byte before the answer to the hello), trace=FILE (CSV,
+/// a line for each frame).
 class EmulatedFalcon final : public EmulatedDevice {
  public:
   struct Options {
@@ -42,6 +43,7 @@ class EmulatedFalcon final : public EmulatedDevice {
     double home_after_s = 0.3;
     int offset = 0;
     double units_per_n_m = 10000.0;
+    bool glitch = false;
     double sway_m = 0.01;
     std::string trace;
   };

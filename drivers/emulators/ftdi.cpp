@@ -124,7 +124,9 @@ std::size_t Ftdi::fill(std::span<std::uint8_t> buffer, std::size_t data) {
 
 std::optional<std::size_t> Ftdi::send(std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
                                       std::int64_t now_ns, Disturbance& next) {
-  const std::int64_t expires_ns = waits_since_ns + latency_ns_;
+  // The timer of a real bridge does not wait for this program to be woken.
+  const bool follows = waits_since_ns == answered_ns_ && answered_ns_ - meant_ns_ < latency_ns_;
+  const std::int64_t expires_ns = (follows ? meant_ns_ : waits_since_ns) + latency_ns_;
   const std::size_t there = waiting(now_ns);
   if (there < packet_data && now_ns < expires_ns) {
     due_ns_ = expires_ns;
@@ -132,6 +134,8 @@ std::optional<std::size_t> Ftdi::send(std::span<std::uint8_t> buffer, std::int64
     return std::nullopt;
   }
   due_ns_.reset();
+  answered_ns_ = now_ns;
+  meant_ns_ = there < packet_data ? expires_ns : now_ns;
   std::size_t data = std::min(there, room_in(buffer.size()));
   if (data > 0) {
     switch (next) {

@@ -53,6 +53,8 @@ class Ftdi {
   std::deque<Arrival> line_;  ///< towards the host
   std::int64_t latency_ns_ = 16'000'000;
   std::optional<std::int64_t> due_ns_;
+  std::int64_t answered_ns_ = -1;  ///< when the last transfer was
+  std::int64_t meant_ns_ = -1;     ///< when it should have been
   double baud_ = 9600.0;
   bool dtr_ = false;
   std::uint64_t lost_ = 0;

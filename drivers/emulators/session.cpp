@@ -85,7 +85,7 @@ bool Session::read_messages(std::int64_t now) {
     const ssize_t got = recv(socket_, received_.data() + before, 4096, MSG_DONTWAIT);
     received_.resize(before + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0 || (got < 0 && errno == ECONNRESET)) return false;
-    if (got < 0) break;
+    if (got < 4096) break;  // that was all, or nothing
   }
   std::span<const std::uint8_t> rest = received_;
   while (rest.size() >= usbip::header_size) {

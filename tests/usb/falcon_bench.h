@@ -28,6 +28,8 @@ struct TraceRow {
   std::array<int, 3> motor{};
   std::array<int, 3> encoder{};
   std::array<double, 3> knob{};
+  bool homing = false;
+  std::string led;
 };
 inline std::vector<TraceRow> read_trace(const std::string& path) {
   std::vector<TraceRow> rows;
@@ -43,6 +45,7 @@ inline std::vector<TraceRow> read_trace(const std::string& path) {
       for (int& number : *numbers) words >> number;
     }
     for (double& number : row.knob) words >> number;
+    words >> row.homing >> row.led;
     if (words) rows.push_back(row);
   }
   return rows;

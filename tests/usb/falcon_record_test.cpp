@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <string>
-#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,6 @@
 #include <kerf/mechanisms/falcon.h>
 #include <kerf/schema/recording.h>
 
-#include "datasets-schema/same_recording.h"
 #include "emulator.h"
 #include "falcon_bench.h"
 #include "support/program.h"
@@ -133,43 +132,78 @@ TEST(Falcon, AtTheEndOfARecordingTheMotorsAreLetGo) {
   EXPECT_TRUE(std::ranges::any_of(frames, [](const TraceRow& row) { return row.raw[0] < -100; }));
 }
 
-// In a guest that the next test starts; the file outlives it.
-TEST(FalconInAGuest, RecordsTheWall) {
-  const char* file = std::getenv("KERF_RECORDING");
-  if (file == nullptr) GTEST_SKIP() << "for FalconTwice";
-  EXPECT_EQ(record(file, "falcon", 2.0).exit_status, 0);
-}
-
-// On the machine itself.
-TEST(FalconTwice, RecordsTheSameInVirtualTime) {
-  std::array<schema::Recording, 2> recordings;
-  for (std::size_t i = 0; i < 2; ++i) {
-    // The guest may write below the project's folder.
-    const std::string file = KERF_BUILD_DIR "/falcon-twice-" + std::to_string(i) + ".h5";
-    setenv("KERF_RECORDING", file.c_str(), 1);
-    const auto outcome = test::run({KERF_USB_MACHINE, "--virtual-time", "--seconds", "100", "--",
-                                    std::filesystem::read_symlink("/proc/self/exe").string(),
-                                    "--gtest_filter=FalconInAGuest.*"});
-    if (outcome.exit_status == 77) GTEST_SKIP() << outcome.errors;
-    ASSERT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
-    recordings[i] = schema::read_recording(file);
-    std::filesystem::remove(file);
+/// A dataset in hexadecimal, a line for each number.
+template <typename T>
+void append(std::string& text, const char* name, const std::vector<T>& values) {
+  text += name;
+  for (const T value : values) {
+    std::array<char, 64> line{};
+    std::snprintf(line.data(), line.size(), "\n%a", static_cast<double>(value));
+    text += line.data();
   }
-  EXPECT_EQ(recordings[0].rows(), 2000U);
-  test::expect_same_samples(recordings[0], recordings[1]);
-  EXPECT_EQ(recordings[0].header.device_toml, recordings[1].header.device_toml);
+  text += '\n';
 }
 
-// By the clock on the wall, of a machine that does other things too.
+// tests/usb/same-twice runs it in two guests: what it writes must be the same to the last bit.
+TEST(FalconTwice, WritesTheSameRecordingInEachGuest) {
+  const char* folder = std::getenv("KERF_TWICE");
+  if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
+  const std::string file = "/tmp/twice.h5";
+  ASSERT_EQ(record(file, "falcon", 2.0).exit_status, 0);
+  const auto recording = schema::read_recording(file);
+  EXPECT_EQ(recording.rows(), 2000U);
+  std::string text = recording.header.device_toml;
+  append(text, "time", recording.time);
+  append(text, "tick", recording.tick);
+  append(text, "position", recording.position);
+  append(text, "velocity", recording.velocity);
+  append(text, "force_commanded", recording.force_commanded);
+  append(text, "wake_latency", recording.wake_latency);
+  append(text, "read_time", recording.read_time);
+  append(text, "compute_time", recording.compute_time);
+  append(text, "write_time", recording.write_time);
+  append(text, "flags", recording.flags);
+  for (const auto& channel : recording.channels) append(text, channel.name.c_str(), channel.values);
+  test::write_text(std::string(folder) + "/recording", text);
+}
+
+/// The share of a fifth of a second in which this program, doing nothing but look at the clock, did not get
+/// to do it.
+double taken_away() {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  std::chrono::duration<double> lost{};
+  for (auto last = start; last - start < std::chrono::milliseconds(200);) {
+    const auto now = Clock::now();
+    if (now - last > std::chrono::microseconds(200)) lost += now - last;
+    last = now;
+  }
+  return lost.count() / 0.2;
+}
+
+// By the clock on the wall, of a machine that does other things too: the best quarter of a second of forty.
 TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
   const Emulator emulator("falcon?firmware=loaded&homed=on");
   ASSERT_TRUE(becomes_attached("falcon:0"));
   const auto device = drivers::open_device("falcon:0");
-  loop(*device, 3000, [&](int, drivers::Status, const drivers::Sample& sample) {
-    (void)device->write({0.0, 0.0, 400.0 * std::max(0.0, 0.12 - sample.position[2])});
-  });
-  EXPECT_GE(figure(*device, "report_rate"), 900.0);
-  EXPECT_LE(figure(*device, "report_rate"), 1010.0);
+  double best_hz = 0.0;
+  for (int part = 0; part < 40 && best_hz < 900.0; ++part) {
+    const double before = figure(*device, "reports");
+    const auto start = std::chrono::steady_clock::now();
+    loop(*device, 250, [&](int, drivers::Status, const drivers::Sample& sample) {
+      (void)device->write({0.0, 0.0, 400.0 * std::max(0.0, 0.12 - sample.position[2])});
+    });
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    best_hz = std::max(best_hz, (figure(*device, "reports") - before) / elapsed.count());
+  }
+  std::printf("at best %.0f answers a second\n", best_hz);
+  const double disturbed = taken_away();
+  if (best_hz < 900.0 && disturbed > 0.1) {
+    GTEST_SKIP() << "others took " << 100.0 * disturbed << " % of this processor, at best " << best_hz
+                 << " answers a second";
+  }
+  EXPECT_GE(best_hz, 900.0);
+  EXPECT_LE(best_hz, 1050.0);
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ drivers::Axes wall(const Sample& sample) {
 }
 
 TEST(Falcon, LoadsItsFirmwareIsHomedAndFollowsTheHand) {
-  const Emulator emulator("falcon?offset=500");
+  const Emulator emulator("falcon?offset=500&glitch=on");
   ASSERT_TRUE(becomes_attached("falcon:0"));
   const auto device = drivers::open_device("falcon:0?led=blue&firmware=" + firmware_file());
   EXPECT_EQ(device->info().model, "Novint Falcon");
@@ -73,6 +73,23 @@ TEST(Falcon, KeepsItsFirmwareAndItsHomeUntilItIsUnplugged) {
   (void)drivers::open_device("falcon:0?firmware=" + firmware_file());
   const auto device = drivers::open_device("falcon:0?homing_timeout=0.1s");
   loop(*device, 50, [](int, Status status, const Sample&) { EXPECT_EQ(status, Status::ok); });
+}
+
+TEST(Falcon, ItsLightIsRedUntilItIsHomedAndThenAsAskedFor) {
+  Emulator emulator("falcon?firmware=loaded&trace=/tmp/trace.csv");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  { const auto device = drivers::open_device("falcon:0?led=blue"); }
+  emulator.unplug();
+  auto trace = read_trace("/tmp/trace.csv");
+  ASSERT_GT(trace.size(), 10U);
+  EXPECT_TRUE(std::ranges::all_of(trace, &TraceRow::homing));  // without a gap
+  EXPECT_EQ(trace.back().led, "off");                          // the last word
+  trace.pop_back();
+  const auto red = [](const TraceRow& row) { return row.led == "red"; };
+  const auto blue =
+      std::find_if_not(trace.begin() + 1, trace.end(), red);  // the first one only asks who is there
+  EXPECT_NEAR(blue->time_s - trace.front().time_s, 0.3, 0.01);
+  EXPECT_TRUE(std::all_of(blue, trace.end(), [](const TraceRow& row) { return row.led == "blue"; }));
 }
 
 TEST(Falcon, CountsFromWherePowerFoundItWithoutHoming) {
