@@ -35,7 +35,7 @@ Losses run_with(const std::string& faults) {
   EXPECT_TRUE(becomes_attached("falcon:0"));
   const auto device = drivers::open_device("falcon:0");
   Losses run;
-  loop(*device, 900, [&](int, Status status, const Sample& sample) {
+  loop(*device, 700, [&](int, Status status, const Sample& sample) {
     run.faults += status == Status::fault;
     run.lost += status == Status::lost;
     (void)device->write({0.0, 0.0, 400.0 * std::max(0.0, 0.12 - sample.position[2])});
@@ -52,7 +52,7 @@ TEST(Falcon, AsksAgainWhereAnAnswerIsLost) {
   EXPECT_EQ(run.faults, 0);  // 5 ms are not yet stale
   EXPECT_EQ(run.resent, 3.0);
   EXPECT_EQ(run.dropped_bytes, 0.0);
-  EXPECT_GT(run.reports, 850.0);
+  EXPECT_GT(run.reports, 650.0);
 }
 
 TEST(Falcon, PutsATornAnswerTogether) {
@@ -73,7 +73,7 @@ TEST(Falcon, GoesOnAfterAStall) {
   const Losses run = run_with("stall@0.8:3");
   EXPECT_EQ(run.lost, 0);
   EXPECT_EQ(run.malformed, 3.0);
-  EXPECT_GT(run.reports, 850.0);
+  EXPECT_GT(run.reports, 650.0);
 }
 
 TEST(Falcon, IsLostWhereItStallsForGood) {

@@ -109,7 +109,7 @@ TEST(Falcon, AWallOfTenSecondsIsRecordedAndSentAsItsTorques) {
 
 TEST(Falcon, UnpluggedWhileItIsRecordedTheRecordingIsClosedAndValid) {
   const std::string file = "/tmp/unplugged.h5";
-  const auto outcome = record(file, "falcon?firmware=loaded&homed=on", 10.0, {"--fault", "unplug@2.5"});
+  const auto outcome = record(file, "falcon?firmware=loaded&homed=on", 10.0, {"--fault", "unplug@1.8"});
   EXPECT_EQ(outcome.exit_status, 3);
   EXPECT_THAT(outcome.errors, HasSubstr("falcon:0"));
   EXPECT_THAT(outcome.errors, HasSubstr("the device was lost after"));
@@ -124,7 +124,7 @@ TEST(Falcon, UnpluggedWhileItIsRecordedTheRecordingIsClosedAndValid) {
 
 TEST(Falcon, AtTheEndOfARecordingTheMotorsAreLetGo) {
   const auto outcome =
-      record("/tmp/short.h5", std::string("falcon?firmware=loaded&homed=on&trace=") + trace, 2.0);
+      record("/tmp/short.h5", std::string("falcon?firmware=loaded&homed=on&trace=") + trace, 1.0);
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
   const auto frames = read_trace(trace);
   ASSERT_FALSE(frames.empty());
@@ -149,9 +149,9 @@ TEST(FalconTwice, WritesTheSameRecordingInEachGuest) {
   const char* folder = std::getenv("KERF_TWICE");
   if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
   const std::string file = "/tmp/twice.h5";
-  ASSERT_EQ(record(file, "falcon", 2.0).exit_status, 0);
+  ASSERT_EQ(record(file, "falcon", 1.0).exit_status, 0);
   const auto recording = schema::read_recording(file);
-  EXPECT_EQ(recording.rows(), 2000U);
+  EXPECT_EQ(recording.rows(), 1000U);
   std::string text = recording.header.device_toml;
   append(text, "time", recording.time);
   append(text, "tick", recording.tick);
