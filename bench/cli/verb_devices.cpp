@@ -27,12 +27,8 @@ nlohmann::ordered_json to_json(const drivers::DeviceInfo& device) {
 }
 
 nlohmann::ordered_json to_json(const drivers::AttachedDevice& device) {
-  return {{"uri", device.uri},
-          {"about", device.about},
-          {"simulated", false},
-          {"emulated", device.emulated},
-          {"node", device.node},
-          {"problem", device.problem}};
+  return {{"uri", device.uri},           {"about", device.about}, {"simulated", false},
+          {"emulated", device.emulated}, {"node", device.node},   {"problem", device.problem}};
 }
 
 void list_attached(Context& context) {
@@ -66,18 +62,19 @@ void run_devices(Context& context) {
 }  // namespace
 
 void add_devices(CLI::App& app, Context& context) {
-  add_verb(app, context, "devices",
-           "List the devices that can be opened: simulated ones, and what is on the USB, real or emulated",
-           "kerf devices --json\n\n"
-           "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
-           "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"
-           "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
-           "                    came with the device: falcon:0?firmware=FILE. Kerf ships none.\n"
-           "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
-           "  u6:N              LabJack U6 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
-           "  spacemouse:N      3Dconnexion, a source of trajectories\n"
-           "Options, permissions and what was verified: docs/devices.md.",
-           [&context] { run_devices(context); });
+  add_verb(
+      app, context, "devices",
+      "List the devices that can be opened: simulated ones, and what is on the USB, real or emulated",
+      "kerf devices --json\n\n"
+      "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
+      "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"
+      "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
+      "                    came with the device: falcon:0?firmware=FILE. Kerf ships none.\n"
+      "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
+      "  u6:N              LabJack U6 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
+      "  spacemouse:N      3Dconnexion, a source of trajectories\n"
+      "Options, permissions and what was verified: docs/devices.md.",
+      [&context] { run_devices(context); });
 }
 
 }  // namespace kerf::bench

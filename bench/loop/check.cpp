@@ -86,7 +86,8 @@ std::string beside_the_floor(const LoopReport& report, const HostFloor& floor) {
 std::string in_words(const LoopReport& report) {
   std::string text = fmt::format("{} of {} deadlines missed:", report.missed(), report.ticks());
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
-    if (report.missed_by[stage] > 0) text += fmt::format(" {} by {}", report.missed_by[stage], stage_names[stage]);
+    if (report.missed_by[stage] > 0)
+      text += fmt::format(" {} by {}", report.missed_by[stage], stage_names[stage]);
   }
   if (missed_by(report, Stage::wake) > 0) text += " (the machine woke the loop late)";
   return text;
@@ -115,13 +116,15 @@ Verdict judge(const RunResult& result) {
   const double wall_ns = report.stages[static_cast<std::size_t>(Stage::compute)].percentile_ns(0.999);
   if (is_slow(report, period_ns)) {
     fail(Cause::law,
-         fmt::format("your law is too slow: 99.9 % of its ticks take up to {:.1f} us of processor time, of {:.0f} "
-                     "us that may be half used",
-                     to_us(cpu_ns), to_us(period_ns)));
+         fmt::format(
+             "your law is too slow: 99.9 % of its ticks take up to {:.1f} us of processor time, of {:.0f} "
+             "us that may be half used",
+             to_us(cpu_ns), to_us(period_ns)));
   } else if (wall_ns > compute_share * period_ns) {
-    tell(fmt::format("computations took up to {:.1f} us by the clock, but {:.1f} us of processor time: your "
-                     "machine was late, not your law slow",
-                     to_us(wall_ns), to_us(cpu_ns)));
+    tell(
+        fmt::format("computations took up to {:.1f} us by the clock, but {:.1f} us of processor time: your "
+                    "machine was late, not your law slow",
+                    to_us(wall_ns), to_us(cpu_ns)));
   }
   if (report.missed() > 0) {
     if (static_cast<double>(report.missed()) > missed_share * static_cast<double>(report.ticks())) {
@@ -131,19 +134,20 @@ Verdict judge(const RunResult& result) {
     }
   }
   if (result.floor) tell(beside_the_floor(report, *result.floor));
-  for (const auto& [flag, cause] : {std::pair{schema::flag_law_fault, Cause::law},
-                                    std::pair{schema::flag_device_fault, Cause::device},
-                                    std::pair{schema::flag_position_jump, Cause::device}}) {
+  for (const auto& [flag, cause] :
+       {std::pair{schema::flag_law_fault, Cause::law}, std::pair{schema::flag_device_fault, Cause::device},
+        std::pair{schema::flag_position_jump, Cause::device}}) {
     const std::uint64_t ticks = report.ticks_with(flag);
     if (ticks > 0) fail(cause, fmt::format("in {} ticks {}", ticks, meaning_of(flag)));
   }
-  for (const schema::Flag flag : {schema::flag_watchdog, schema::flag_force_limited, schema::flag_slew_limited,
-                                  schema::flag_passivity_control}) {
+  for (const schema::Flag flag : {schema::flag_watchdog, schema::flag_force_limited,
+                                  schema::flag_slew_limited, schema::flag_passivity_control}) {
     const std::uint64_t ticks = report.ticks_with(flag);
     if (ticks > 0) tell(fmt::format("in {} ticks {}", ticks, meaning_of(flag)));
   }
   if (report.least_energy_j < -passive_within_j) {
-    tell(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive", -report.least_energy_j));
+    tell(fmt::format("the rendering gave up to {:.3g} J more than it took: not passive",
+                     -report.least_energy_j));
   }
   if (report.end == LoopEnd::stopped) verdict.reasons.emplace_back("ended early by a signal");
   if (!result.recording_failure.empty()) tell(result.recording_failure);

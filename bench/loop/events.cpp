@@ -24,7 +24,8 @@ void EventFinder::look_at_flags(const schema::Row& row, std::vector<schema::Even
     const schema::FlagInfo& flag = schema::flag_table[i];
     if ((row.flags & flag.flag) == 0) continue;
     if (row.time_s - last_seen_s_[i] > quiet_s) {
-      events.push_back({.time_s = row.time_s, .kind = std::string(flag.name), .text = text_of(flag, missing)});
+      events.push_back(
+          {.time_s = row.time_s, .kind = std::string(flag.name), .text = text_of(flag, missing)});
     }
     last_seen_s_[i] = row.time_s;
   }

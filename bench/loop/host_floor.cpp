@@ -27,7 +27,9 @@ using json = nlohmann::ordered_json;
 class NoDevice final : public drivers::Device {
  public:
   [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override { return drivers::Status::ok; }
+  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override {
+    return drivers::Status::ok;
+  }
   [[nodiscard]] drivers::Status write(const drivers::Axes&) noexcept override { return drivers::Status::ok; }
   void release(double) noexcept override {}
 
@@ -58,7 +60,8 @@ Histogram sleep_lateness(int sleeps) {
 std::int64_t spin_for(const Histogram& lateness, std::int64_t period_ns) {
   constexpr double margin = 1.2;
   constexpr std::int64_t least_ns = 10'000;
-  return std::clamp(static_cast<std::int64_t>(margin * lateness.percentile_ns(0.99)), least_ns, period_ns / 2);
+  return std::clamp(static_cast<std::int64_t>(margin * lateness.percentile_ns(0.99)), least_ns,
+                    period_ns / 2);
 }
 
 /// Floors that may be compared: those of one start of the machine, one user's rights and one rate.
@@ -114,14 +117,10 @@ double HostFloor::most_expected(std::uint64_t of_ticks) const {
 }
 
 json to_json(const HostFloor& floor) {
-  return {{"rate_hz", floor.rate_hz},
-          {"ticks", floor.ticks},
-          {"missed", floor.missed},
-          {"sleep_us", to_json(floor.sleep)},
-          {"wake_us", to_json(floor.wake)},
-          {"spin_us", 1e-3 * static_cast<double>(floor.spin_ns)},
-          {"measured", floor.measured},
-          {"from_cache", floor.from_cache}};
+  return {{"rate_hz", floor.rate_hz},       {"ticks", floor.ticks},
+          {"missed", floor.missed},         {"sleep_us", to_json(floor.sleep)},
+          {"wake_us", to_json(floor.wake)}, {"spin_us", 1e-3 * static_cast<double>(floor.spin_ns)},
+          {"measured", floor.measured},     {"from_cache", floor.from_cache}};
 }
 
 std::int64_t learn_spin_ns(std::int64_t period_ns) { return spin_for(sleep_lateness(200), period_ns); }

@@ -27,8 +27,8 @@ struct HostFloor {
   std::string measured;      ///< when: ISO 8601, UTC
   bool from_cache = false;
 
-  /// So many missed deadlines of `ticks` may be the machine's own: the upper 95 % bound of its rate, and three
-  /// standard deviations of the count.
+  /// So many missed deadlines of `ticks` may be the machine's own: the upper 95 % bound of its rate, and
+  /// three standard deviations of the count.
   [[nodiscard]] double most_expected(std::uint64_t ticks) const;
 };
 
@@ -39,15 +39,16 @@ struct HostFloor {
 /// 0.1 s.
 [[nodiscard]] std::int64_t learn_spin_ns(std::int64_t period_ns);
 
-/// Runs an empty loop at a rate for so many seconds on a thread with every real-time measure that is permitted.
+/// Runs an empty loop at a rate for so many seconds on a thread with every real-time measure that is
+/// permitted.
 [[nodiscard]] HostFloor measure_host_floor(double rate_hz, double seconds);
 
 /// The floor as it was measured since the machine was started, by this user and with these rights; nothing if
 /// there is none. Kept in $XDG_CACHE_HOME/kerf, or ~/.cache/kerf.
 [[nodiscard]] std::optional<HostFloor> cached_host_floor(double rate_hz);
 
-/// The cached floor, or one measured now over so many seconds and kept, always so if it is wanted anew. A cache
-/// that cannot be written is done without.
+/// The cached floor, or one measured now over so many seconds and kept, always so if it is wanted anew. A
+/// cache that cannot be written is done without.
 [[nodiscard]] HostFloor host_floor(double rate_hz, double seconds, bool anew = false);
 
 }  // namespace kerf::bench

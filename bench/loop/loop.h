@@ -87,7 +87,7 @@ struct LoopReport {
   Histogram cycle;                                   ///< read to record
   Histogram compute_cpu;  ///< processor time of the computation, in every second tick: see samples_cpu()
   std::array<std::uint64_t, schema::flag_table.size()> flagged{};  ///< ticks with each flag, by its bit
-  double energy_j = 0.0;      ///< taken out of the hand by the rendering
+  double energy_j = 0.0;                                           ///< taken out of the hand by the rendering
   double least_energy_j = 0.0;
   LoopEnd end = LoopEnd::completed;
 
@@ -153,7 +153,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
               const LoopOptions& options, const LoopControl& control, LoopReport& report) noexcept {
   static_assert(std::is_nothrow_invocable_r_v<Command, Rendering&, const drivers::Sample&, double>);
   static_assert(noexcept(recorder.push(std::declval<const schema::Row&>())));
-  static_assert(noexcept(clock.sleep_until(0)) && noexcept(clock.now_ns()) && noexcept(clock.cpu_ns()));
+  static_assert(noexcept(clock.sleep_until(0))&& noexcept(clock.now_ns())&& noexcept(clock.cpu_ns()));
   static_assert(schema::max_axes == drivers::max_axes && schema::max_channels == drivers::max_channels);
   static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
                 std::is_trivially_copyable_v<drivers::Sample>);

@@ -7,7 +7,8 @@
 #include "loop/histogram.h"
 #include "loop/row_ring.h"
 
-// What a push to the recorder's ring costs while another thread empties it, row after row at 100 kHz. Prints JSON.
+// What a push to the recorder's ring costs while another thread empties it, row after row at 100 kHz. Prints
+// JSON.
 
 namespace {
 
@@ -45,6 +46,6 @@ int main() {
   done = true;
   fmt::print(R"({{"p50_ns": {}, "p99_ns": {}, "p999_ns": {}, "clock_p50_ns": {}, "pushes": {}}})"
              "\n",
-             cost.percentile_ns(0.5), cost.percentile_ns(0.99), cost.percentile_ns(0.999), nothing.percentile_ns(0.5),
-             cost.count());
+             cost.percentile_ns(0.5), cost.percentile_ns(0.99), cost.percentile_ns(0.999),
+             nothing.percentile_ns(0.5), cost.count());
 }

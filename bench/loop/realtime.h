@@ -20,8 +20,8 @@ struct RealtimeMeasure {
 /// Keeps the calling thread on the last processor that it may use.
 [[nodiscard]] RealtimeMeasure pin_to_processor();
 
-/// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel cannot
-/// always be interrupted.
+/// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel
+/// cannot always be interrupted.
 void stay_off_loop_processor() noexcept;
 /// Makes the calling thread more urgent than the loop, where permitted.
 void be_more_urgent_than_the_loop() noexcept;

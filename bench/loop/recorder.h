@@ -23,11 +23,11 @@ struct NoRecorder {
 
 /// Takes rows from the tick without waiting and writes them from a thread of its own.
 ///
-/// push() hands a row to a ring of fixed size, all of it touched beforehand. A full ring loses the row: `tick`
-/// then jumps in the file, and the next row that finds room carries the flag rows_lost. With `lossless` (for
-/// virtual time, which has no deadlines) push() waits for room instead. The writer appends in chunks, adds an
-/// event where a row's flags say that something began, and flushes every 0.25 s or 10,000 rows. When the disk is full it
-/// says so once and the loop goes on; close() says it again.
+/// push() hands a row to a ring of fixed size, all of it touched beforehand. A full ring loses the row:
+/// `tick` then jumps in the file, and the next row that finds room carries the flag rows_lost. With
+/// `lossless` (for virtual time, which has no deadlines) push() waits for room instead. The writer appends in
+/// chunks, adds an event where a row's flags say that something began, and flushes every 0.25 s or 10,000
+/// rows. When the disk is full it says so once and the loop goes on; close() says it again.
 class Recorder {
  public:
   struct Options {

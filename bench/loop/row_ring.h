@@ -12,9 +12,9 @@ namespace kerf::bench {
 
 /// Rows on their way from the tick to the writer: one thread pushes, another pops, neither ever waits.
 ///
-/// The queue between them (Boost's) carries numbers of slots; the rows lie beside it, and every push prefetches
-/// the slot of the next one, whose memory was last used when the ring went round. At 100 kHz that takes the
-/// 99th percentile of a push from 390 ns to less than 100 ns.
+/// The queue between them (Boost's) carries numbers of slots; the rows lie beside it, and every push
+/// prefetches the slot of the next one, whose memory was last used when the ring went round. At 100 kHz that
+/// takes the 99th percentile of a push from 390 ns to less than 100 ns.
 class RowRing {
  public:
   explicit RowRing(std::size_t rows) : queue_(rows), slots_(rows + most_popped + 2) {}

@@ -28,7 +28,8 @@ struct LawChange {
 /// What to run on a device, for how long, and where to record it.
 struct RunOptions {
   std::string device_uri = "sim:scissors";
-  std::string sensor_uri;  ///< what measures the device's forces beside it; empty: the device itself, or nothing
+  std::string
+      sensor_uri;  ///< what measures the device's forces beside it; empty: the device itself, or nothing
   double seconds = 10.0;
   double rate_hz = 1000.0;
   bool virtual_time = false;
@@ -59,8 +60,8 @@ struct RunResult {
   std::string recording_failure;  ///< why the recording could not be written to its end; empty if it could
 };
 
-/// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly. However it ends, the
-/// device is left with zero force.
+/// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly. However it ends,
+/// the device is left with zero force.
 /// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be begun).
 [[nodiscard]] RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop);
 

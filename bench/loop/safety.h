@@ -15,24 +15,24 @@
 namespace kerf::bench {
 
 /// Flags of a tick whose force is zero, whatever was computed.
-inline constexpr std::uint32_t zero_force_flags = schema::flag_law_fault | schema::flag_device_fault |
-                                                  schema::flag_position_jump | schema::flag_watchdog;
+inline constexpr std::uint32_t zero_force_flags =
+    schema::flag_law_fault | schema::flag_device_fault | schema::flag_position_jump | schema::flag_watchdog;
 
 struct SafetyOptions {
   double period_s = 1e-3;
-  double soft_start_s = 0.25;       ///< ramp of the force at the start and after every zero_force_flags
+  double soft_start_s = 0.25;      ///< ramp of the force at the start and after every zero_force_flags
   bool passivity_control = false;  ///< add damping where the rendering has given energy
 };
 
-/// Stands between a rendering and the hand: believes no reading that cannot be true, and lets no force through
-/// that nobody vouches for.
+/// Stands between a rendering and the hand: believes no reading that cannot be true, and lets no force
+/// through that nobody vouches for.
 ///
-/// A position or velocity that is not finite, or a position farther from the last one than hand and mechanism can move, makes the
-/// force zero, and so does a law that fails, a number that is not finite, or a loop that had stalled. Zero
-/// comes at once (the slew limit is there to spare the hand a jump, not to hold on to a bad force), and the
-/// force then comes back along the ramp of a soft start. Every other command is kept within each axis' force
-/// and slew limit. A measured force that is not finite is a gap in a measurement, not a fault: no law renders
-/// from it, and a sensor that pauses must not take the force from the hand.
+/// A position or velocity that is not finite, or a position farther from the last one than hand and mechanism
+/// can move, makes the force zero, and so does a law that fails, a number that is not finite, or a loop that
+/// had stalled. Zero comes at once (the slew limit is there to spare the hand a jump, not to hold on to a bad
+/// force), and the force then comes back along the ramp of a soft start. Every other command is kept within
+/// each axis' force and slew limit. A measured force that is not finite is a gap in a measurement, not a
+/// fault: no law renders from it, and a sensor that pauses must not take the force from the hand.
 class Safety {
  public:
   Safety(const std::vector<drivers::AxisInfo>& axes, const SafetyOptions& options) noexcept

@@ -81,7 +81,8 @@ std::string floor_paragraph(const json& check) {
                                  check.at("involuntary_switches").get<std::int64_t>());
   if (!floor.is_null()) {
     html += fmt::format(
-        " An empty loop on this machine missed {} of {} deadlines; at 99.9 % it was woken {:.1f} us late, at worst {:.0f} us.",
+        " An empty loop on this machine missed {} of {} deadlines; at 99.9 % it was woken {:.1f} us late, at "
+        "worst {:.0f} us.",
         floor.at("missed").get<std::uint64_t>(), floor.at("ticks").get<std::uint64_t>(),
         floor.at("wake_us").at("p999").get<double>(), floor.at("wake_us").at("max").get<double>());
   }
@@ -93,7 +94,8 @@ std::string intervention_table(const json& check) {
   std::vector<std::vector<std::string>> rows{{"intervention", "ticks", "meaning"}};
   for (const schema::FlagInfo& flag : schema::flag_table) {
     const auto ticks = check.at("ticks_with").value(std::string(flag.name), std::uint64_t{0});
-    if (ticks > 0) rows.push_back({std::string(flag.name), fmt::format("{}", ticks), std::string(flag.meaning)});
+    if (ticks > 0)
+      rows.push_back({std::string(flag.name), fmt::format("{}", ticks), std::string(flag.meaning)});
   }
   return rows.size() > 1 ? html_table(rows) : "<p>No intervention.</p>\n";
 }
@@ -107,7 +109,8 @@ std::string verdict_paragraph(const json& check) {
         "<p class=\"answer{}\"><strong>Closed loop: {}.</strong> {} ticks at {:.0f} Hz, {} missed.",
         passed ? "" : " bad", passed ? "pass" : "FAIL", check.at("ticks").get<std::uint64_t>(),
         1.0 / check.at("period_s").get<double>(), check.at("missed").get<std::uint64_t>());
-    for (const json& reason : check.at("reasons")) text += fmt::format(" {}.", escaped(reason.get<std::string>()));
+    for (const json& reason : check.at("reasons"))
+      text += fmt::format(" {}.", escaped(reason.get<std::string>()));
     return text + "</p>\n";
   } catch (const json::exception& error) {
     refuse(error);

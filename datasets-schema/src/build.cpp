@@ -100,7 +100,8 @@ std::string text_in(const std::byte* field, std::size_t room) {
 
 void check_property(const std::string& path, const std::string& name) {
   if (!is_in_table(path, name)) return;
-  throw std::invalid_argument(path + ": the property '" + name + "' has the name of an attribute of the schema");
+  throw std::invalid_argument(path + ": the property '" + name +
+                              "' has the name of an attribute of the schema");
 }
 
 void add_to_origin(hid_t file, const std::string& path, const Properties& properties) {

@@ -119,7 +119,8 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
     call(H5Pset_file_space_strategy, creation.id(), H5F_FSPACE_STRATEGY_PAGE, hbool_t{false}, smallest_hole);
     call(H5Pset_file_space_page_size, creation.id(), page);
   }
-  return {std::move(failure), Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, creation.id(), access.id()))};
+  return {std::move(failure),
+          Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, creation.id(), access.id()))};
 }
 
 WritableFile WritableFile::open(const std::filesystem::path& file) {

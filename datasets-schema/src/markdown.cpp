@@ -70,8 +70,8 @@ std::string schema_as_markdown() {
   text += row({"every dataset", code("units"), "text", "see above", "yes", "Unit, or units one a column"});
   text += "\n### Flags\n\n" + row({"bit", "name", "what it says of its row"}) + row({"---", "---", "---"});
   for (const auto& flag : flag_table) {
-    text += row({std::to_string(static_cast<std::uint32_t>(flag.flag)), code(flag.name),
-                 std::string(flag.meaning)});
+    text += row(
+        {std::to_string(static_cast<std::uint32_t>(flag.flag)), code(flag.name), std::string(flag.meaning)});
   }
   return text;
 }

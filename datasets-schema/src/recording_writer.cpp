@@ -62,8 +62,9 @@ void append_column(const Column& column, std::uint64_t rows_before, std::span<co
 [[noreturn]] void refuse(const std::filesystem::path& partial) {
   throw std::invalid_argument(
       partial.string() +
-      (is_marked(partial) ? ": is being recorded by another process; give another name, or stop that one"
-                          : ": exists already, from a recording that was not closed; 'kerf repair' closes it"));
+      (is_marked(partial)
+           ? ": is being recorded by another process; give another name, or stop that one"
+           : ": exists already, from a recording that was not closed; 'kerf repair' closes it"));
 }
 
 void require_new(const std::filesystem::path& target, const std::filesystem::path& partial, bool replace) {
@@ -198,7 +199,8 @@ struct RecordingWriter::Implementation {
       std::vector<double> values;
       values.reserve(pending.size());
       for (const auto& row : pending) values.push_back(row.channels[at]);
-      h5::append(channels[at].id(), h5::native<double>(), rows - pending.size(), values.size(), values.data());
+      h5::append(channels[at].id(), h5::native<double>(), rows - pending.size(), values.size(),
+                 values.data());
     }
     for (auto column = columns.rbegin(); column != columns.rend(); ++column) {
       append_column(*column, rows - pending.size(), pending, axes.size());

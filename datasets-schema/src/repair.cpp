@@ -20,8 +20,8 @@ Repaired repair(const std::filesystem::path& name, const RepairOptions& options)
   }
   Recording recording = read_recording(place.file);
   if (recording.header.status != "recording") {
-    throw std::invalid_argument(place.file.string() + ": was closed, its status is '" + recording.header.status +
-                                "'; there is nothing to repair");
+    throw std::invalid_argument(place.file.string() + ": was closed, its status is '" +
+                                recording.header.status + "'; there is nothing to repair");
   }
   auto output = options.output;
   if (output.empty()) {

@@ -146,7 +146,8 @@ class DatasetWriter {
   }
 
   void write(const Channel& channel) {
-    require_length(std::string(layout::channels) + '/' + channel.name, channel.values.size(), recording_.rows());
+    require_length(std::string(layout::channels) + '/' + channel.name, channel.values.size(),
+                   recording_.rows());
     const h5::Extent extent{recording_.rows()};
     const auto dataset =
         make_channel(file_, channel, {.extent = extent, .chunk_rows = std::min(extent[0], chunk_rows)});

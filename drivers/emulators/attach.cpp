@@ -33,7 +33,8 @@ int free_port() {
   std::ifstream status(std::string(vhci) + "status");
   if (!status) {
     throw std::runtime_error(
-        "this kernel has no virtual USB host controller: run 'modprobe vhci-hcd' as root, or leave out --attach and "
+        "this kernel has no virtual USB host controller: run 'modprobe vhci-hcd' as root, or leave out "
+        "--attach and "
         "attach with 'usbip'");
   }
   std::string line;

@@ -28,6 +28,7 @@ class Descriptor {
 
 /// Waits for a client of USB/IP that imports the device, answering those that only list it, at most so long.
 /// @returns no descriptor (-1) if none came.
-[[nodiscard]] Descriptor accept_import(const Descriptor& listening, const Description& device, int timeout_ms);
+[[nodiscard]] Descriptor accept_import(const Descriptor& listening, const Description& device,
+                                       int timeout_ms);
 
 }  // namespace kerf::emulators

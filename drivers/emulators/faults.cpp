@@ -45,9 +45,10 @@ Fault parse_fault(std::string_view text) {
     good = good && reads(rest.substr(0, colon), fault.at_s) && fault.at_s >= 0.0;
   }
   if (good) return fault;
-  throw std::invalid_argument("fault '" + std::string(text) +
-                              "': expected KIND@SECONDS or KIND@SECONDS:COUNT, KIND one of drop, split, corrupt, "
-                              "stall, unplug; for example drop@2.0:3");
+  throw std::invalid_argument(
+      "fault '" + std::string(text) +
+      "': expected KIND@SECONDS or KIND@SECONDS:COUNT, KIND one of drop, split, corrupt, "
+      "stall, unplug; for example drop@2.0:3");
 }
 
 }  // namespace
@@ -70,7 +71,8 @@ const Fault* FaultPlan::find(Fault::Kind kind, double time_s) const noexcept {
 }
 
 void FaultPlan::count(Fault::Kind kind, double time_s) noexcept {
-  if (const Fault* found = find(kind, time_s)) --faults_[static_cast<std::size_t>(found - faults_.data())].count;
+  if (const Fault* found = find(kind, time_s))
+    --faults_[static_cast<std::size_t>(found - faults_.data())].count;
 }
 
 Disturbance FaultPlan::due(double time_s) const noexcept {

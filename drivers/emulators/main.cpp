@@ -67,7 +67,8 @@ int run(const Arguments& arguments) {
   Descriptor listening;
   if (!arguments.attach) {
     listening = listen_on(arguments.port);
-    std::fprintf(stderr, "kerf-emulate: %s waits on 127.0.0.1:%u; attach it with 'usbip attach -r 127.0.0.1 -b %s'\n",
+    std::fprintf(stderr,
+                 "kerf-emulate: %s waits on 127.0.0.1:%u; attach it with 'usbip attach -r 127.0.0.1 -b %s'\n",
                  arguments.device.c_str(), arguments.port, usbip::bus_id);
   }
   for (unsigned plugged = 0; !stop.load() && (arguments.times == 0 || plugged < arguments.times); ++plugged) {
@@ -81,7 +82,8 @@ int run(const Arguments& arguments) {
     if (host.number() < 0) break;
     std::fprintf(stderr, "kerf-emulate: %s is plugged in\n", arguments.device.c_str());
     const auto end = Session(host.number(), *device, plan).run(stop, arguments.seconds);
-    std::fprintf(stderr, "kerf-emulate: %s: %s; %s\n", arguments.device.c_str(), in_words(end), device->tell().c_str());
+    std::fprintf(stderr, "kerf-emulate: %s: %s; %s\n", arguments.device.c_str(), in_words(end),
+                 device->tell().c_str());
   }
   return 0;
 }
@@ -91,7 +93,8 @@ int run(const Arguments& arguments) {
 int main(int count, char** texts) {
   Arguments arguments;
   CLI::App app(
-      "kerf-emulate plays a device on the USB of this machine or of another, over USB/IP: its descriptors, its wire\n"
+      "kerf-emulate plays a device on the USB of this machine or of another, over USB/IP: its descriptors, "
+      "its wire\n"
       "protocol, and behind them a mechanism in a hand that the motor commands really move.\n\n"
       "Devices: falcon, woody, u6, spacemouse; options stand behind a question mark, as in docs/devices.md.\n"
       "Example, as root: modprobe vhci-hcd && kerf-emulate falcon --attach");
@@ -99,10 +102,12 @@ int main(int count, char** texts) {
   app.add_flag("--attach", arguments.attach, "Plug it into this machine's own kernel (root, vhci-hcd)");
   app.add_option("--port", arguments.port, "Else wait for 'usbip attach' on this port of loopback")
       ->capture_default_str();
-  app.add_option("--fault", arguments.faults,
-                 "What goes wrong: KIND@SECONDS[:COUNT],..., from when it was plugged in; KIND is drop, split, corrupt, "
-                 "stall or unplug");
-  app.add_option("--seconds", arguments.seconds, "Unplug it after so long; 0: never")->check(CLI::Range(0.0, 1e9));
+  app.add_option(
+      "--fault", arguments.faults,
+      "What goes wrong: KIND@SECONDS[:COUNT],..., from when it was plugged in; KIND is drop, split, corrupt, "
+      "stall or unplug");
+  app.add_option("--seconds", arguments.seconds, "Unplug it after so long; 0: never")
+      ->check(CLI::Range(0.0, 1e9));
   app.add_option("--times", arguments.times, "Plug it in so many times; 0: for ever")->capture_default_str();
   app.add_option("--pause", arguments.pause_s, "Between unplugging and plugging in again [s]")
       ->check(CLI::Range(0.0, 3600.0))

@@ -41,8 +41,11 @@ constexpr std::uint8_t hid_set_protocol = 0x0B;
 }  // namespace
 
 Setup Setup::parse(std::span<const std::uint8_t, 8> bytes) noexcept {
-  const auto word = [&](std::size_t at) { return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8); };
-  return {.request_type = bytes[0], .request = bytes[1], .value = word(2), .index = word(4), .length = word(6)};
+  const auto word = [&](std::size_t at) {
+    return static_cast<std::uint16_t>(bytes[at] | bytes[at + 1] << 8);
+  };
+  return {
+      .request_type = bytes[0], .request = bytes[1], .value = word(2), .index = word(4), .length = word(6)};
 }
 
 Session::Session(int socket, EmulatedDevice& device, FaultPlan faults)
@@ -66,10 +69,12 @@ Session::End Session::run(const std::atomic<bool>& stop, double seconds) {
 
 std::int64_t Session::wait_until_ns(std::int64_t now, double seconds) const {
   std::int64_t until = now + longest_wait_ns;
-  const bool waited_for = std::ranges::any_of(endpoints_, [](const Endpoint& one) { return !one.waiting.empty(); });
+  const bool waited_for =
+      std::ranges::any_of(endpoints_, [](const Endpoint& one) { return !one.waiting.empty(); });
   if (waited_for) {
     // A device that names a time gone by must not keep the processor from the host.
-    if (const auto next = device_.next_event_ns(now)) until = std::min(until, std::max(*next, now + shortest_wait_ns));
+    if (const auto next = device_.next_event_ns(now))
+      until = std::min(until, std::max(*next, now + shortest_wait_ns));
   }
   if (const auto at_s = faults_.unplugged_at_s()) {
     until = std::min(until, start_ns_ + static_cast<std::int64_t>(1e9 * *at_s));
@@ -113,14 +118,17 @@ void Session::take(const usbip::Request& request, std::span<const std::uint8_t> 
   reply(request.sequence, 0, {}, data.size());
 }
 
-void Session::take_control(const usbip::Request& request, std::span<const std::uint8_t> data, std::int64_t now) {
+void Session::take_control(const usbip::Request& request, std::span<const std::uint8_t> data,
+                           std::int64_t now) {
   const auto sent_back = answer(Setup::parse(request.setup), data, now);
   if (!sent_back) return reply(request.sequence, stalled, {}, 0);
   if (!request.in) return reply(request.sequence, 0, {}, data.size());
-  reply_in(request.sequence, std::span(*sent_back).first(std::min<std::size_t>(sent_back->size(), request.length)));
+  reply_in(request.sequence,
+           std::span(*sent_back).first(std::min<std::size_t>(sent_back->size(), request.length)));
 }
 
-std::optional<Bytes> Session::answer(const Setup& setup, std::span<const std::uint8_t> data, std::int64_t now) {
+std::optional<Bytes> Session::answer(const Setup& setup, std::span<const std::uint8_t> data,
+                                     std::int64_t now) {
   if (setup.request_type == hid_class_out &&
       (setup.request == hid_set_idle || setup.request == hid_set_protocol)) {
     return Bytes{};

@@ -13,7 +13,8 @@
 
 namespace kerf::emulators {
 
-/// One attachment of an emulated device to a host, over a socket that speaks USB/IP: from plugging in to unplugging.
+/// One attachment of an emulated device to a host, over a socket that speaks USB/IP: from plugging in to
+/// unplugging.
 class Session {
  public:
   enum class End : std::uint8_t { host_left, unplugged, stopped, time_over };
@@ -46,8 +47,11 @@ class Session {
   void unlink(const usbip::Request& request);
   void serve_waiting(std::int64_t now_ns);
   [[nodiscard]] std::int64_t wait_until_ns(std::int64_t now_ns, double seconds) const;
-  void reply(std::uint32_t sequence, std::int32_t status, std::span<const std::uint8_t> data, std::size_t actual);
-  void reply_in(std::uint32_t sequence, std::span<const std::uint8_t> data) { reply(sequence, 0, data, data.size()); }
+  void reply(std::uint32_t sequence, std::int32_t status, std::span<const std::uint8_t> data,
+             std::size_t actual);
+  void reply_in(std::uint32_t sequence, std::span<const std::uint8_t> data) {
+    reply(sequence, 0, data, data.size());
+  }
   void write_all(std::span<const std::uint8_t> bytes);
   [[nodiscard]] double seconds_at(std::int64_t now_ns) const {
     return 1e-9 * static_cast<double>(now_ns - start_ns_);

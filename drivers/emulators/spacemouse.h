@@ -10,9 +10,9 @@
 
 namespace kerf::emulators {
 
-/// A 3Dconnexion SpaceNavigator (046d:c626), its cap in a hand that sways along sines of 0.13 to 0.41 Hz and presses
-/// button 1 every other second. One report each 8 ms, translation and rotation by turns, so that each axis comes 62.5
-/// times a second; at rest three pairs of zeros and then silence.
+/// A 3Dconnexion SpaceNavigator (046d:c626), its cap in a hand that sways along sines of 0.13 to 0.41 Hz and
+/// presses button 1 every other second. One report each 8 ms, translation and rotation by turns, so that each
+/// axis comes 62.5 times a second; at rest three pairs of zeros and then silence.
 ///
 /// Options: amplitude (300 of the 350 that a cap gives), rest (0s: never; else it lets go after so long).
 class EmulatedSpaceMouse final : public EmulatedDevice {
@@ -25,10 +25,12 @@ class EmulatedSpaceMouse final : public EmulatedDevice {
   explicit EmulatedSpaceMouse(const Options& options) : options_(options) {}
 
   [[nodiscard]] const Description& description() const override;
-  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data, std::int64_t now_ns) override;
+  std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data,
+                               std::int64_t now_ns) override;
   void receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) override;
-  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer, std::int64_t waits_since_ns,
-                                  std::int64_t now_ns, Disturbance& next) override;
+  std::optional<std::size_t> send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
+                                  std::int64_t waits_since_ns, std::int64_t now_ns,
+                                  Disturbance& next) override;
   [[nodiscard]] std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const override;
   [[nodiscard]] std::string tell() const override;
 

@@ -49,7 +49,8 @@ void append_device(Bytes& bytes, const Description& device) {
   append16(bytes, device.vendor());
   append16(bytes, device.product());
   append16(bytes, static_cast<std::uint16_t>(device.device[12] | device.device[13] << 8));
-  bytes.insert(bytes.end(), device.device.begin() + 4, device.device.begin() + 7);  // class, subclass, protocol
+  bytes.insert(bytes.end(), device.device.begin() + 4,
+               device.device.begin() + 7);  // class, subclass, protocol
   bytes.push_back(device.configuration[5]);
   bytes.push_back(device.device[17]);
   bytes.push_back(device.configuration[4]);
@@ -59,7 +60,8 @@ void append_device(Bytes& bytes, const Description& device) {
 
 std::optional<Request> parse_request(std::span<const std::uint8_t, header_size> header) noexcept {
   const std::uint32_t command = word_at(header, 0);
-  Request request{.sequence = word_at(header, 4), .device = word_at(header, 8), .in = word_at(header, 12) != 0};
+  Request request{
+      .sequence = word_at(header, 4), .device = word_at(header, 8), .in = word_at(header, 12) != 0};
   const std::uint32_t endpoint = word_at(header, 16);
   if (endpoint > 15) return std::nullopt;
   request.endpoint = static_cast<std::uint8_t>(endpoint);

@@ -6,7 +6,8 @@
 
 #include "usbip.h"
 
-// A request that is understood names an endpoint that exists and a buffer that fits, and says the same again when written.
+// A request that is understood names an endpoint that exists and a buffer that fits, and says the same again
+// when written.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace usbip = kerf::emulators::usbip;
   std::array<std::uint8_t, usbip::header_size> header{};
@@ -21,7 +22,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   }
   if (size >= usbip::operation_size) {
-    (void)usbip::parse_operation(std::span<const std::uint8_t, usbip::operation_size>(data, usbip::operation_size));
+    (void)usbip::parse_operation(
+        std::span<const std::uint8_t, usbip::operation_size>(data, usbip::operation_size));
   }
   return 0;
 }

@@ -13,7 +13,8 @@
 namespace kerf::drivers {
 namespace {
 
-constexpr double velocity_corner_rad_s = 2.0 * std::numbers::pi * 20.0;  // as the simulated encoders' velocity
+constexpr double velocity_corner_rad_s =
+    2.0 * std::numbers::pi * 20.0;  // as the simulated encoders' velocity
 
 struct KindInfo {
   Fault::Kind kind;
@@ -21,11 +22,10 @@ struct KindInfo {
   std::string_view unit;  ///< of the size; empty: it has none
   bool needs_size;
 };
-constexpr std::array kinds{KindInfo{Fault::Kind::unplug, "unplug", "", false},
-                           KindInfo{Fault::Kind::stall, "stall", "s", true},
-                           KindInfo{Fault::Kind::late, "late", "s", true},
-                           KindInfo{Fault::Kind::nan, "nan", "s", false},
-                           KindInfo{Fault::Kind::jump, "jump", "m", true}};
+constexpr std::array kinds{
+    KindInfo{Fault::Kind::unplug, "unplug", "", false}, KindInfo{Fault::Kind::stall, "stall", "s", true},
+    KindInfo{Fault::Kind::late, "late", "s", true}, KindInfo{Fault::Kind::nan, "nan", "s", false},
+    KindInfo{Fault::Kind::jump, "jump", "m", true}};
 
 [[noreturn]] void refuse(std::string_view fault) {
   throw DeviceError("fault '" + std::string(fault) +
@@ -56,14 +56,14 @@ Fault parse_fault(std::string_view text) {
                     .at_s = quantity(moment, moment.ends_with('s') ? "s" : ""),
                     .size = has_size ? quantity(rest.substr(colon + 1), found->unit) : 0.0};
   const bool backwards = fault.kind != Fault::Kind::jump && fault.size < 0.0;
-  if (!(fault.at_s >= 0.0 && fault.at_s <= 1e6) || !(std::abs(fault.size) <= 100.0) || backwards) refuse(text);
+  if (!(fault.at_s >= 0.0 && fault.at_s <= 1e6) || !(std::abs(fault.size) <= 100.0) || backwards)
+    refuse(text);
   return fault;
 }
 
 void sleep_for(double seconds) {
   const auto whole = static_cast<time_t>(seconds);
-  timespec rest{.tv_sec = whole,
-                .tv_nsec = static_cast<long>(1e9 * (seconds - static_cast<double>(whole)))};
+  timespec rest{.tv_sec = whole, .tv_nsec = static_cast<long>(1e9 * (seconds - static_cast<double>(whole)))};
   while (clock_nanosleep(CLOCK_MONOTONIC, 0, &rest, &rest) == EINTR) {
   }
 }

@@ -50,12 +50,14 @@ std::optional<Numbered> numbered(std::string_view name) {
   return found;
 }
 
-std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed, const Surroundings& surroundings) {
+std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed,
+                                      const Surroundings& surroundings) {
   const auto found = numbered(parsed.name);
   const auto refuse_surroundings = [&] {
-    const bool meets_tissue =
-        std::ranges::any_of(surroundings.tissue, [](const Tissue& tissue) { return static_cast<bool>(tissue); });
-    if (meets_tissue) throw DeviceError(std::string(uri) + ": a scene's tissue is for simulated devices alone");
+    const bool meets_tissue = std::ranges::any_of(
+        surroundings.tissue, [](const Tissue& tissue) { return static_cast<bool>(tissue); });
+    if (meets_tissue)
+      throw DeviceError(std::string(uri) + ": a scene's tissue is for simulated devices alone");
     if (surroundings.pass_time) {
       throw DeviceError(std::string(uri) + ": hardware runs by the clock on the wall; leave out --virtual");
     }
@@ -114,14 +116,16 @@ std::vector<DeviceInfo> list_devices() {
 
 std::vector<AttachedDevice> list_attached() {
   std::vector<AttachedDevice> all;
-  const auto add = [&](std::string_view scheme, std::string_view what, const std::vector<usb::Attached>& found) {
+  const auto add = [&](std::string_view scheme, std::string_view what,
+                       const std::vector<usb::Attached>& found) {
     for (std::size_t number = 0; number < found.size(); ++number) {
       const usb::Attached& one = found[number];
-      all.push_back({.uri = uri_of(scheme, number),
-                     .about = std::string(what),
-                     .node = one.node,
-                     .emulated = one.emulated,
-                     .problem = one.may_open ? "" : "no permission for " + one.node + "; " + usb::permission_mend()});
+      all.push_back(
+          {.uri = uri_of(scheme, number),
+           .about = std::string(what),
+           .node = one.node,
+           .emulated = one.emulated,
+           .problem = one.may_open ? "" : "no permission for " + one.node + "; " + usb::permission_mend()});
     }
   };
   add("falcon:", "Novint Falcon, 3 axes with force; needs its firmware", find_falcons());
@@ -129,7 +133,8 @@ std::vector<AttachedDevice> list_attached() {
   for (const auto& product : WoodenHaptics::products()) {
     add(product.scheme, product.about, WoodenHaptics::find(product));
   }
-  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml", find_labjack_u6());
+  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml",
+      find_labjack_u6());
   return all;
 }
 

@@ -18,11 +18,11 @@ struct Model {
   std::uint16_t product;
 };
 // Those that send the reports of the family; keyboards and mice of the same makers are left out.
-constexpr std::array<Model, 20> models{{{0x046d, 0xc603}, {0x046d, 0xc605}, {0x046d, 0xc606}, {0x046d, 0xc623},
-                                        {0x046d, 0xc625}, {0x046d, 0xc626}, {0x046d, 0xc627}, {0x046d, 0xc628},
-                                        {0x046d, 0xc629}, {0x046d, 0xc62b}, {0x256f, 0xc62e}, {0x256f, 0xc62f},
-                                        {0x256f, 0xc631}, {0x256f, 0xc632}, {0x256f, 0xc633}, {0x256f, 0xc635},
-                                        {0x256f, 0xc636}, {0x256f, 0xc638}, {0x256f, 0xc63a}, {0x256f, 0xc652}}};
+constexpr std::array<Model, 20> models{
+    {{0x046d, 0xc603}, {0x046d, 0xc605}, {0x046d, 0xc606}, {0x046d, 0xc623}, {0x046d, 0xc625},
+     {0x046d, 0xc626}, {0x046d, 0xc627}, {0x046d, 0xc628}, {0x046d, 0xc629}, {0x046d, 0xc62b},
+     {0x256f, 0xc62e}, {0x256f, 0xc62f}, {0x256f, 0xc631}, {0x256f, 0xc632}, {0x256f, 0xc633},
+     {0x256f, 0xc635}, {0x256f, 0xc636}, {0x256f, 0xc638}, {0x256f, 0xc63a}, {0x256f, 0xc652}}};
 
 /// The model and the index among its kind of the `number`-th cap.
 std::pair<usb::Identity, std::size_t> find(std::size_t number) {
@@ -53,8 +53,8 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
   return {.uri = std::string(uri),
           .model = name,
           .about = "6-DOF input, no force; 62.5 Hz",
-          .axes = {axis("x", false, reach), axis("y", false, reach), axis("z", false, reach), axis("rx", true, swing),
-                   axis("ry", true, swing), axis("rz", true, swing)},
+          .axes = {axis("x", false, reach), axis("y", false, reach), axis("z", false, reach),
+                   axis("rx", true, swing), axis("ry", true, swing), axis("rz", true, swing)},
           .channels = {{.name = "report_age", .unit = "s"}, {.name = "buttons", .unit = "1"}},
           .configuration =
               "reach = " + std::to_string(reach) + " # m\nswing = " + std::to_string(swing) + " # rad\n"};
@@ -65,8 +65,9 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
 std::vector<usb::Attached> find_spacemice() {
   auto all = usb::find_hid(0, 0);
   std::erase_if(all, [](const usb::Attached& one) {
-    return std::ranges::none_of(
-        models, [&](const Model& model) { return model.vendor == one.vendor && model.product == one.product; });
+    return std::ranges::none_of(models, [&](const Model& model) {
+      return model.vendor == one.vendor && model.product == one.product;
+    });
   });
   return all;
 }
@@ -116,7 +117,8 @@ Status SpaceMouse::read(double now_s, Sample& sample) noexcept {
   if (lost_.load(std::memory_order_relaxed)) return Status::lost;
   (void)latest_.take(report_);
   const auto& raw = report_.state.axis;
-  // From right, towards the user, down to right, away from the user, up; pitch, roll and yaw turn with their axes.
+  // From right, towards the user, down to right, away from the user, up; pitch, roll and yaw turn with their
+  // axes.
   constexpr std::array<double, max_axes> sign{1.0, -1.0, -1.0, 1.0, -1.0, -1.0};
   for (std::size_t at = 0; at < max_axes; ++at) {
     const double travel = at < 3 ? options_.reach_m : options_.swing_rad;

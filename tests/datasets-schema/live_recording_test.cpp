@@ -1,9 +1,9 @@
-#include <kerf/schema/live_recording.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <kerf/schema/live_recording.h>
 
 #include "datasets-schema/live_rows.h"
 #include "support/program.h"

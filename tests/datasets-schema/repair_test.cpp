@@ -1,8 +1,7 @@
-#include <kerf/schema/repair.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/schema/repair.h>
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/live_rows.h"
@@ -53,9 +52,9 @@ TEST(Repair, IsReadByAnyHdf5Reader) {
   const test::TemporaryFolder folder;
   leave_open(folder / "r.h5", 100);
   (void)repair(folder / "r.h5", {});
-  const test::Outcome outcome = test::run(
-      {"/usr/bin/python3", "-c", "import h5py,sys; print(len(h5py.File(sys.argv[1])['samples/time']))",
-       folder / "r.h5"});
+  const test::Outcome outcome =
+      test::run({"/usr/bin/python3", "-c",
+                 "import h5py,sys; print(len(h5py.File(sys.argv[1])['samples/time']))", folder / "r.h5"});
   EXPECT_EQ(outcome.output, "100\n") << outcome.errors;
 }
 

@@ -20,7 +20,8 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(ParseFaults, ReadsEachKind) {
-  const auto faults = parse_faults("unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:-20mm,late@5s:0.003s,nan@6:20ms");
+  const auto faults =
+      parse_faults("unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:-20mm,late@5s:0.003s,nan@6:20ms");
   ASSERT_EQ(faults.size(), 6U);
   EXPECT_EQ(faults[0].kind, Fault::Kind::unplug);
   EXPECT_EQ(faults[0].at_s, 2.5);
@@ -35,8 +36,9 @@ TEST(ParseFaults, ReadsEachKind) {
 }
 
 TEST(ParseFaults, RefusesWhatItCannotReadAndSaysWhatItExpects) {
-  for (const auto* text : {"", "unplug", "unplug@", "unplug@x", "unplug@2:3ms", "stall@1", "stall@1:50", "stall@1:50mm",
-                           "stall@1:-5ms", "jump@4:20ms", "melt@1", "nan@-1", "nan@1,", "stall@1:1e9s", "nan@2m"}) {
+  for (const auto* text :
+       {"", "unplug", "unplug@", "unplug@x", "unplug@2:3ms", "stall@1", "stall@1:50", "stall@1:50mm",
+        "stall@1:-5ms", "jump@4:20ms", "melt@1", "nan@-1", "nan@1,", "stall@1:1e9s", "nan@2m"}) {
     EXPECT_THAT(refusal(text), HasSubstr("expected KIND@SECONDS")) << text;
   }
 }
@@ -135,7 +137,8 @@ TEST(FaultyDevice, SleepsWhereNobodyMovesTheTime) {
   clock_gettime(CLOCK_MONOTONIC, &before);
   (void)device->read(0.0, sample);
   clock_gettime(CLOCK_MONOTONIC, &after);
-  EXPECT_GE(static_cast<double>(after.tv_sec - before.tv_sec) + 1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec),
+  EXPECT_GE(static_cast<double>(after.tv_sec - before.tv_sec) +
+                1e-9 * static_cast<double>(after.tv_nsec - before.tv_nsec),
             0.02)
       << "a sleep is never shorter";
 }

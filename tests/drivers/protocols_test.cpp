@@ -170,7 +170,8 @@ TEST(WoodenHapticsProtocol, FollowsCountersBeyondSixteenBitsAndBelievesNoLeap) {
   int true_count = 32000;
   for (int i = 0; i < 2000; ++i) {
     true_count += 100;
-    EXPECT_TRUE(counters.take({static_cast<std::int16_t>(static_cast<std::uint16_t>(true_count)), -5, 0, 0, 0, 0}, 150));
+    EXPECT_TRUE(counters.take(
+        {static_cast<std::int16_t>(static_cast<std::uint16_t>(true_count)), -5, 0, 0, 0, 0}, 150));
     ASSERT_EQ(counters.count()[0], true_count);
   }
   // A turned bit and a restarted device: not believed, and nothing is lost when the right one comes again.
@@ -183,7 +184,8 @@ TEST(WoodenHapticsProtocol, FollowsCountersBeyondSixteenBitsAndBelievesNoLeap) {
 
 TEST(HidReportSizes, AreThoseOfTheLongestReportInEachDirection) {
   using Sizes = usb::HidReportSizes;
-  // Report 1: six bytes in; report 2: three times 16 bits in and a byte out; a long item of two bytes between them.
+  // Report 1: six bytes in; report 2: three times 16 bits in and a byte out; a long item of two bytes between
+  // them.
   const std::vector<std::uint8_t> descriptor{0x85, 0x01, 0x75, 0x08, 0x95, 0x05, 0x81, 0x02, 0x95, 0x01, 0x81,
                                              0x03, 0xFE, 0x02, 0x10, 0xAA, 0xBB, 0x85, 0x02, 0x75, 0x10, 0x96,
                                              0x03, 0x00, 0x81, 0x02, 0x75, 0x01, 0x95, 0x07, 0x91, 0x02};

@@ -100,8 +100,8 @@ TEST(SimulatedPremium, AcceleratesByTheInverseOfItsInertia) {
 }
 
 TEST(SimulatedPremium, KeepsItsEnergyWhereNothingTakesIt) {
-  const auto energy = energies(coasting(bare + "&gravity=off", {0.1, 0.05, -0.03}, 0.5),
-                                Premium({.with_gravity = false}));
+  const auto energy =
+      energies(coasting(bare + "&gravity=off", {0.1, 0.05, -0.03}, 0.5), Premium({.with_gravity = false}));
   for (std::size_t i = 1; i < energy.size(); ++i) ASSERT_LT(energy[i], energy[i - 1] * (1.0 + 1e-6));
   EXPECT_GT(energy.back(), 0.999 * energy.front());
 }
@@ -131,8 +131,10 @@ TEST(SimulatedPremium, SticksUnderATorqueBelowItsFriction) {
 }
 
 TEST(SimulatedPremium, ReachesTheWaypointsOfItsHand) {
-  const auto device = open_device("sim:premium?path=0:0:0mm,30:-20:10mm,-30:20:0mm&stroke=0.5s&pause=0.5s&encoder=off");
-  const std::vector<Vector> waypoints{{0.0, 0.0, 0.0}, {0.03, -0.02, 0.01}, {-0.03, 0.02, 0.0}, {0.0, 0.0, 0.0}};
+  const auto device =
+      open_device("sim:premium?path=0:0:0mm,30:-20:10mm,-30:20:0mm&stroke=0.5s&pause=0.5s&encoder=off");
+  const std::vector<Vector> waypoints{
+      {0.0, 0.0, 0.0}, {0.03, -0.02, 0.01}, {-0.03, 0.02, 0.0}, {0.0, 0.0, 0.0}};
   const auto all = samples(*device, 3500);
   for (std::size_t at = 0; at < waypoints.size(); ++at) {
     const double off = (tip(all[1000 * at + 490]) - waypoints[at]).norm();
@@ -166,7 +168,8 @@ TEST(SimulatedPremium, SwingsBackToItsHandAsAMassOnASpringAndADamper) {
 }
 
 TEST(SimulatedPremium, StaysWithinItsStops) {
-  for (const Axes& torque : {Axes{1.0, 1.0, 1.0}, Axes{-1.0, -1.0, -1.0}, Axes{0.0, 1.0, -1.0}, Axes{0.0, -1.0, 1.0}}) {
+  for (const Axes& torque :
+       {Axes{1.0, 1.0, 1.0}, Axes{-1.0, -1.0, -1.0}, Axes{0.0, 1.0, -1.0}, Axes{0.0, -1.0, 1.0}}) {
     const auto device = open_device(bare);
     for (const Sample& sample : samples(*device, 500, torque)) {
       const Vector q = angles(sample);
@@ -240,8 +243,10 @@ TEST(SimulatedPremium, TakesNoTorqueThatIsNotFiniteAndNoneAfterARelease) {
 }
 
 TEST(SimulatedPremium, RefusesWhatItCannotDo) {
-  EXPECT_THAT(refusal("sim:premium?swing=3deg"), AllOf(HasSubstr("no option 'swing'"), HasSubstr("path, reach")));
-  EXPECT_THAT(refusal("sim:premium?path=0:0:500mm"), AllOf(HasSubstr("cannot be at 0:0:500mm"), HasSubstr("40 mm")));
+  EXPECT_THAT(refusal("sim:premium?swing=3deg"),
+              AllOf(HasSubstr("no option 'swing'"), HasSubstr("path, reach")));
+  EXPECT_THAT(refusal("sim:premium?path=0:0:500mm"),
+              AllOf(HasSubstr("cannot be at 0:0:500mm"), HasSubstr("40 mm")));
   EXPECT_THAT(refusal("sim:premium?path=0:0:0"), HasSubstr("expected X:Y:Z"));
   EXPECT_THAT(refusal("sim:premium?path="), HasSubstr("expected X:Y:Z"));
   EXPECT_THAT(refusal("sim:premium?payload=-1kg"), HasSubstr("unit kg"));
@@ -250,7 +255,8 @@ TEST(SimulatedPremium, RefusesWhatItCannotDo) {
 TEST(SimulatedPremium, ReachesEverythingWithinTheLargestReach) {
   for (const double x : {-0.06, 0.06}) {
     for (const double y : {-0.06, 0.06}) {
-      for (const double z : {-0.06, 0.06}) EXPECT_TRUE(Premium::joint_angles({x, y, z})) << x << " " << y << " " << z;
+      for (const double z : {-0.06, 0.06})
+        EXPECT_TRUE(Premium::joint_angles({x, y, z})) << x << " " << y << " " << z;
     }
   }
 }

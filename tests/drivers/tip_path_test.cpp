@@ -10,7 +10,8 @@ namespace {
 using Eigen::Vector3d;
 
 TEST(TipPath, RestsAtEachWaypointAndGoesStraightToTheNext) {
-  const TipPath path({.waypoints_m = {{0.0, 0.0, 0.0}, {0.02, -0.04, 0.0}}, .stroke_s = 0.5, .pause_s = 0.25});
+  const TipPath path(
+      {.waypoints_m = {{0.0, 0.0, 0.0}, {0.02, -0.04, 0.0}}, .stroke_s = 0.5, .pause_s = 0.25});
   EXPECT_EQ(path.at(0.2).place_m, Vector3d::Zero());
   EXPECT_EQ(path.at(0.2).speed_m_s, Vector3d::Zero());
   EXPECT_LT((path.at(0.5).place_m - Vector3d(0.01, -0.02, 0.0)).norm(), 1e-15) << "half of the stroke";
@@ -35,7 +36,8 @@ TEST(TipPath, ReadsWaypointsInMillimetresAndMetres) {
 }
 
 TEST(TipPath, RefusesATextThatIsNoPath) {
-  for (const char* text : {"", "0:0mm", "0:0:0", "0:0:0cm", "0:0:0:0mm", "0:0:0mm,", "0,0,0mm", "nan:0:0m", "a:b:cm"}) {
+  for (const char* text :
+       {"", "0:0mm", "0:0:0", "0:0:0cm", "0:0:0:0mm", "0:0:0mm,", "0,0,0mm", "nan:0:0m", "a:b:cm"}) {
     EXPECT_THROW((void)parse_waypoints(text), DeviceError) << text;
   }
 }

@@ -1,3 +1,5 @@
+#include "usbip.h"
+
 #include <array>
 #include <cerrno>
 #include <stdexcept>
@@ -13,7 +15,6 @@
 #include "faults.h"
 #include "make_device.h"
 #include "session.h"
-#include "usbip.h"
 
 namespace kerf::emulators {
 namespace {
@@ -23,9 +24,11 @@ using testing::HasSubstr;
 using usbip::Request;
 
 TEST(UsbIp, ReadsTheSubmitOfTheKernelsDocument) {
-  // CMD_SUBMIT number 13 of device 0x00010002, IN from endpoint 1, 64 bytes: Documentation/usb/usbip_protocol.rst
-  std::array<std::uint8_t, usbip::header_size> header{0, 0, 0, 1, 0, 0, 0, 13, 0, 1, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1,
-                                                      0, 0, 2, 0, 0, 0, 0, 64, 0, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 4};
+  // CMD_SUBMIT number 13 of device 0x00010002, IN from endpoint 1, 64 bytes:
+  // Documentation/usb/usbip_protocol.rst
+  std::array<std::uint8_t, usbip::header_size> header{0, 0, 0, 1, 0,   0,   0,   13,  0, 1, 0, 2, 0, 0,
+                                                      0, 1, 0, 0, 0,   1,   0,   0,   2, 0, 0, 0, 0, 64,
+                                                      0, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 4};
   const auto request = usbip::parse_request(header);
   ASSERT_TRUE(request.has_value());
   EXPECT_EQ(request->kind, Request::Kind::submit);
@@ -63,7 +66,8 @@ TEST(EmulatorFaults, ComeAtTheirTimeAndAsOftenAsAsked) {
 }
 
 TEST(EmulatorFaults, SayWhatWasExpected) {
-  for (const char* text : {"drop", "drop@", "drop@x", "drop@-1", "drop@1:0", "drop@1:x", "fall@1", "drop@1,,stall@2"}) {
+  for (const char* text :
+       {"drop", "drop@", "drop@x", "drop@-1", "drop@1:0", "drop@1:x", "fall@1", "drop@1,,stall@2"}) {
     try {
       (void)parse_faults(text);
       ADD_FAILURE() << text;
@@ -110,7 +114,8 @@ class Host {
     std::array<std::uint8_t, usbip::header_size> header{};
     if (recv(here_.number(), header.data(), header.size(), MSG_WAITALL) <= 0) return {};
     const auto word = [&](std::size_t at) {
-      return static_cast<std::uint32_t>(header[at] << 24 | header[at + 1] << 16 | header[at + 2] << 8 | header[at + 3]);
+      return static_cast<std::uint32_t>(header[at] << 24 | header[at + 1] << 16 | header[at + 2] << 8 |
+                                        header[at + 3]);
     };
     Reply reply{.command = word(0), .sequence = word(4), .status = static_cast<std::int32_t>(word(20))};
     if (reply.command == 3 && in && reply.status == 0) reply.data.resize(word(24));
@@ -119,7 +124,10 @@ class Host {
   }
   Reply control(std::array<std::uint8_t, 8> setup) {
     const bool in = (setup[0] & 0x80U) != 0;
-    send({.sequence = 1, .in = in, .length = static_cast<std::uint32_t>(setup[6] | setup[7] << 8), .setup = setup});
+    send({.sequence = 1,
+          .in = in,
+          .length = static_cast<std::uint32_t>(setup[6] | setup[7] << 8),
+          .setup = setup});
     return receive(in);
   }
   void leave() { here_ = Descriptor(); }
@@ -147,14 +155,16 @@ TEST(Session, AnswersTheStandardRequests) {
   EXPECT_EQ(name.size(), 2 + 2 * std::string("SpaceNavigator").size());
   EXPECT_EQ(host.control({0x81, 6, 0, 0x22, 0, 0, 217, 0}).data.size(), 217U);
   EXPECT_EQ(host.control({0x80, 6, 3, 3, 9, 4, 255, 0}).status, -EPIPE) << "there is no third string";
-  EXPECT_EQ(host.control({0x80, 6, 0, 6, 0, 0, 10, 0}).status, -EPIPE) << "a full-speed device has no qualifier";
+  EXPECT_EQ(host.control({0x80, 6, 0, 6, 0, 0, 10, 0}).status, -EPIPE)
+      << "a full-speed device has no qualifier";
   EXPECT_EQ(host.control({0x00, 9, 1, 0, 0, 0, 0, 0}).status, 0);
 }
 
 TEST(Session, EndsATransferThatIsUnlinkedAndNotOneThatHasEnded) {
   Host host("spacemouse?rest=0.001s");
   // Let go, the cap falls silent after its zeros: the last transfer waits for ever.
-  for (std::uint32_t number = 10; number < 30; ++number) host.send({.sequence = number, .in = true, .endpoint = 1, .length = 8});
+  for (std::uint32_t number = 10; number < 30; ++number)
+    host.send({.sequence = number, .in = true, .endpoint = 1, .length = 8});
   std::uint32_t last = 0;
   for (int i = 0; i < 7; ++i) last = host.receive(true).sequence;
   EXPECT_EQ(last, 16U) << "in the order in which they were asked for";
@@ -195,7 +205,8 @@ TEST(UsbIp, ServesAClientOverLoopback) {
   EXPECT_EQ(usbip::list_reply(device->description()).size(), 8U + 4 + 312 + 4);
   const auto granted = usbip::import_reply(device->description(), true);
   ASSERT_EQ(granted.size(), 8U + 312);
-  EXPECT_THAT(std::vector(granted.begin() + 8 + 300, granted.begin() + 8 + 304), ElementsAre(0x04, 0x6d, 0xc6, 0x26));
+  EXPECT_THAT(std::vector(granted.begin() + 8 + 300, granted.begin() + 8 + 304),
+              ElementsAre(0x04, 0x6d, 0xc6, 0x26));
   EXPECT_EQ(usbip::import_reply(device->description(), false).size(), 8U);
 }
 

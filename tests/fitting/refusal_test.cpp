@@ -35,8 +35,9 @@ TEST(Refusal, OfAConstantPosition) {
 }
 
 TEST(Refusal, OfALawThatHasNoFit) {
-  EXPECT_THAT(refusal(Strokes(2000, 0.0, kelvin), "fracture"),
-              HasSubstr("law 'fracture' cannot be fitted to a recording; those that can are kelvin, exponential"));
+  EXPECT_THAT(
+      refusal(Strokes(2000, 0.0, kelvin), "fracture"),
+      HasSubstr("law 'fracture' cannot be fitted to a recording; those that can are kelvin, exponential"));
   EXPECT_THAT(refusal(Strokes(2000, 0.0, kelvin), "blade"), HasSubstr("cannot be fitted"));
 }
 

@@ -56,7 +56,8 @@ void over_the_workspace(Check check) {
 /// The derivative of a function of the pose as it moves at `qd`.
 template <typename Function>
 auto rate_of(Function function, const Motion& motion) {
-  return ((function(motion.q + step * motion.qd) - function(motion.q - step * motion.qd)) / (2.0 * step)).eval();
+  return ((function(motion.q + step * motion.qd) - function(motion.q - step * motion.qd)) / (2.0 * step))
+      .eval();
 }
 
 TEST(Premium, HasItsTipAtTheOriginWhenTheUpperArmIsLevelAndTheForearmHangs) {
@@ -121,8 +122,9 @@ TEST(Premium, FeelsLikeFortyToEightyGramsAtTheTip) {
 TEST(Premium, CarriesAPayloadAsAPointAtTheTip) {
   const Premium empty;
   const Matrix at_zero = arm.inertia(Vector::Zero()) - empty.inertia(Vector::Zero());
-  EXPECT_LT((at_zero - Matrix((0.05 * Vector(0.215 * 0.215, 0.215 * 0.215, 0.170 * 0.170)).asDiagonal())).norm(),
-            1e-16);
+  EXPECT_LT(
+      (at_zero - Matrix((0.05 * Vector(0.215 * 0.215, 0.215 * 0.215, 0.170 * 0.170)).asDiagonal())).norm(),
+      1e-16);
   over_the_workspace([&](const Motion& at) {
     const Matrix j = Premium::jacobian(at.q);
     ASSERT_LT((arm.inertia(at.q) - empty.inertia(at.q) - 0.05 * j.transpose() * j).norm(), 1e-16);
@@ -151,7 +153,8 @@ TEST(Premium, HasTheGradientOfItsKineticEnergyInItsCoriolisTerms) {
     Vector gradient;
     for (int joint = 0; joint < 3; ++joint) {
       const Vector d = step * Vector::Unit(joint);
-      gradient[joint] = (arm.kinetic_energy(at.q + d, at.qd) - arm.kinetic_energy(at.q - d, at.qd)) / (2.0 * step);
+      gradient[joint] =
+          (arm.kinetic_energy(at.q + d, at.qd) - arm.kinetic_energy(at.q - d, at.qd)) / (2.0 * step);
     }
     const auto momentum = [&](const Vector& q) { return (arm.inertia(q) * at.qd).eval(); };
     ASSERT_LT((arm.coriolis(at.q, at.qd) * at.qd - rate_of(momentum, at) + gradient).norm(), 1e-8);
@@ -171,8 +174,12 @@ TEST(Premium, HasTheGradientOfItsPotentialEnergyAsGravity) {
 
 /// One step of the classical Runge-Kutta method of fourth order, without input.
 Motion stepped(const Motion& from, double dt) {
-  const auto slope = [](const Motion& at) { return Motion{at.qd, arm.acceleration(at.q, at.qd, Vector::Zero())}; };
-  const auto moved = [&](const Motion& by, double t) { return Motion{from.q + t * by.q, from.qd + t * by.qd}; };
+  const auto slope = [](const Motion& at) {
+    return Motion{at.qd, arm.acceleration(at.q, at.qd, Vector::Zero())};
+  };
+  const auto moved = [&](const Motion& by, double t) {
+    return Motion{from.q + t * by.q, from.qd + t * by.qd};
+  };
   const Motion k1 = slope(from);
   const Motion k2 = slope(moved(k1, 0.5 * dt));
   const Motion k3 = slope(moved(k2, 0.5 * dt));

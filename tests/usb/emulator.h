@@ -59,7 +59,8 @@ class Emulator {
   pid_t process_ = 0;
 };
 
-/// Whether a device whose URI begins so is attached (or not any more) within 10 s: the kernel takes its time with both.
+/// Whether a device whose URI begins so is attached (or not any more) within 10 s: the kernel takes its time
+/// with both.
 inline bool becomes_attached(const std::string& scheme, bool attached = true) {
   for (int tries = 0; tries < 500; ++tries) {
     bool found = false;

@@ -6,12 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/format.h>
 #include <libusb.h>
 #include <poll.h>
 #include <time.h>
 #include <unistd.h>
-
-#include <fmt/format.h>
 
 #include "kerf/drivers/device.h"
 
@@ -61,7 +60,8 @@ void for_each(libusb_context* context, std::uint16_t vendor, std::uint16_t produ
 }  // namespace
 
 std::string permission_mend() {
-  return "copy drivers/udev/70-kerf.rules to /etc/udev/rules.d, run 'udevadm control --reload', and plug it in "
+  return "copy drivers/udev/70-kerf.rules to /etc/udev/rules.d, run 'udevadm control --reload', and plug it "
+         "in "
          "again";
 }
 
@@ -93,7 +93,8 @@ std::vector<Attached> find_usb(std::uint16_t vendor, std::uint16_t product) {
 
 UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identity.what) {
   if (const int error = libusb_init(&context_); error != LIBUSB_SUCCESS) {
-    throw DeviceError(fmt::format("{}: no USB here ({}); is /dev/bus/usb there?", what_, libusb_error_name(error)));
+    throw DeviceError(
+        fmt::format("{}: no USB here ({}); is /dev/bus/usb there?", what_, libusb_error_name(error)));
   }
   std::size_t count = 0;
   int error = LIBUSB_ERROR_NOT_FOUND;
@@ -105,13 +106,15 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
   });
   try {
     if (error == LIBUSB_ERROR_NOT_FOUND && node_.empty()) {
-      throw DeviceError(fmt::format(
-          "{}: number {} is not attached ({} of {:04x}:{:04x} found); plug it in, or start its emulator: kerf-emulate",
-          what_, index, count, identity.vendor, identity.product));
+      throw DeviceError(
+          fmt::format("{}: number {} is not attached ({} of {:04x}:{:04x} found); plug it in, or start its "
+                      "emulator: kerf-emulate",
+                      what_, index, count, identity.vendor, identity.product));
     }
     if (error != LIBUSB_SUCCESS) fail("opening it", error);
     libusb_set_auto_detach_kernel_driver(handle_, 1);
-    if (error = libusb_claim_interface(handle_, 0); error != LIBUSB_SUCCESS) fail("claiming its interface", error);
+    if (error = libusb_claim_interface(handle_, 0); error != LIBUSB_SUCCESS)
+      fail("claiming its interface", error);
   } catch (...) {
     if (handle_ != nullptr) libusb_close(handle_);
     libusb_exit(context_);
@@ -139,8 +142,8 @@ void UsbDevice::fail(std::string_view doing, int error) const {
     case LIBUSB_ERROR_NO_DEVICE:
       throw DeviceError(fmt::format("{}: {} was unplugged; plug it in again", what_, node_));
     default:
-      throw DeviceError(fmt::format("{}: {}: {} failed ({}); unplug it and plug it in again", what_, node_, doing,
-                                    libusb_error_name(error)));
+      throw DeviceError(fmt::format("{}: {}: {} failed ({}); unplug it and plug it in again", what_, node_,
+                                    doing, libusb_error_name(error)));
   }
 }
 
@@ -171,7 +174,8 @@ bool UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcep
   std::array<pollfd, 8> waited{};
   std::size_t count = 0;
   for (const Waited& one : waited_) {
-    if (count + 1 < waited.size()) waited[count++] = {.fd = one.descriptor, .events = one.events, .revents = 0};
+    if (count + 1 < waited.size())
+      waited[count++] = {.fd = one.descriptor, .events = one.events, .revents = 0};
   }
   const std::size_t of_usb = count;
   if (wake_descriptor >= 0) waited[count++] = {.fd = wake_descriptor, .events = POLLIN, .revents = 0};
@@ -214,8 +218,8 @@ Transfer::Transfer(UsbDevice& device, std::uint8_t endpoint, std::size_t size, H
     }
     self.handler_(end, {transfer->buffer, static_cast<std::size_t>(transfer->actual_length)});
   };
-  libusb_fill_bulk_transfer(transfer_, device.handle(), endpoint, buffer_.data(), static_cast<int>(size), ended, this,
-                            0);
+  libusb_fill_bulk_transfer(transfer_, device.handle(), endpoint, buffer_.data(), static_cast<int>(size),
+                            ended, this, 0);
 }
 
 Transfer::~Transfer() {

@@ -1,7 +1,7 @@
+#include "support/program.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "support/program.h"
 
 namespace kerf::test {
 namespace {

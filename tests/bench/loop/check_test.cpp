@@ -72,24 +72,23 @@ TEST_P(Blamed, IsWhoMissedMostDeadlines) {
   EXPECT_FALSE(verdict.passed);
   EXPECT_THAT(verdict.causes, ElementsAre(GetParam().cause));
 }
-INSTANTIATE_TEST_SUITE_P(By, Blamed,
-                         testing::Values(Blame{Stage::wake, 1000, Cause::machine},
-                                         Blame{Stage::read, 1000, Cause::device},
-                                         Blame{Stage::write, 1000, Cause::device},
-                                         Blame{Stage::record, 1000, Cause::machine},
-                                         Blame{Stage::compute, 1000, Cause::machine},
-                                         Blame{Stage::compute, 900'000, Cause::law}),
-                         [](const auto& tested) {
-                           return std::string(stage_names[static_cast<std::size_t>(tested.param.stage)]) +
-                                  (tested.param.cpu_ns > 1000 ? "_slow" : "");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    By, Blamed,
+    testing::Values(Blame{Stage::wake, 1000, Cause::machine}, Blame{Stage::read, 1000, Cause::device},
+                    Blame{Stage::write, 1000, Cause::device}, Blame{Stage::record, 1000, Cause::machine},
+                    Blame{Stage::compute, 1000, Cause::machine}, Blame{Stage::compute, 900'000, Cause::law}),
+    [](const auto& tested) {
+      return std::string(stage_names[static_cast<std::size_t>(tested.param.stage)]) +
+             (tested.param.cpu_ns > 1000 ? "_slow" : "");
+    });
 
 TEST(Verdict, SetsMissedDeadlinesBesideThoseOfAnEmptyLoop) {
   RunResult result = run_of(10'000);
   result.floor = HostFloor{.rate_hz = 1000.0, .ticks = 3000, .missed = 6};
-  EXPECT_THAT(judge(result).reasons,
-              ElementsAre("no deadline was missed in this run, but an empty loop missed 6 of 3000 here: expect "
-                          "120 in a minute"));
+  EXPECT_THAT(
+      judge(result).reasons,
+      ElementsAre("no deadline was missed in this run, but an empty loop missed 6 of 3000 here: expect "
+                  "120 in a minute"));
   result.report.charge(Stage::wake, 5);
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("these may all be the machine's own")));
   result.floor->missed = 0;
@@ -102,9 +101,9 @@ TEST(Verdict, SetsMissedDeadlinesBesideThoseOfAnEmptyLoop) {
 }
 
 TEST(Verdict, FailsOnFaultsOfLawAndDevice) {
-  for (const auto& [flag, cause] : {std::pair{schema::flag_law_fault, Cause::law},
-                                    std::pair{schema::flag_device_fault, Cause::device},
-                                    std::pair{schema::flag_position_jump, Cause::device}}) {
+  for (const auto& [flag, cause] :
+       {std::pair{schema::flag_law_fault, Cause::law}, std::pair{schema::flag_device_fault, Cause::device},
+        std::pair{schema::flag_position_jump, Cause::device}}) {
     RunResult result = run_of(10'000);
     result.report.count({}, flag);
     const Verdict verdict = judge(result);
@@ -115,8 +114,8 @@ TEST(Verdict, FailsOnFaultsOfLawAndDevice) {
 }
 
 TEST(Verdict, TellsOfEveryInterventionThatIsNoFault) {
-  for (const schema::Flag flag : {schema::flag_watchdog, schema::flag_force_limited, schema::flag_slew_limited,
-                                  schema::flag_passivity_control}) {
+  for (const schema::Flag flag : {schema::flag_watchdog, schema::flag_force_limited,
+                                  schema::flag_slew_limited, schema::flag_passivity_control}) {
     RunResult result = run_of(10'000);
     result.report.count({}, flag);
     EXPECT_TRUE(judge(result).passed);

@@ -39,9 +39,12 @@ class FaultyRun : public testing::TestWithParam<bool> {
 
   /// One second and a half, with a fault at 0.6 s.
   Outcome run(const std::string& fault) {
-    std::vector<std::string> command{"check",     folder_ / "spring.law.toml", "--device",
-                                     "sim:scissors?fault=" + fault, "--seconds", "1.5", "--record",
-                                     folder_ / "r.h5", "--floor", "0", "--json"};
+    std::vector<std::string> command{"check",     folder_ / "spring.law.toml",
+                                     "--device",  "sim:scissors?fault=" + fault,
+                                     "--seconds", "1.5",
+                                     "--record",  folder_ / "r.h5",
+                                     "--floor",   "0",
+                                     "--json"};
     if (GetParam()) command.emplace_back("--virtual");
     Outcome outcome = test::run_kerf(command);
     if (std::filesystem::exists(folder_ / "r.h5")) {
@@ -58,10 +61,11 @@ class FaultyRun : public testing::TestWithParam<bool> {
     return static_cast<std::size_t>(found - recording_.flags.begin());
   }
   [[nodiscard]] bool has_event(const std::string& kind) const {
-    return std::ranges::any_of(recording_.events, [&](const schema::Event& event) { return event.kind == kind; });
+    return std::ranges::any_of(recording_.events,
+                               [&](const schema::Event& event) { return event.kind == kind; });
   }
-  /// Zero in the row, and then a ramp of a quarter of a second up to the force of the spring: 2 N/rad over 60 deg
-  /// and 20 mm at the handle are less than 3.3 N.
+  /// Zero in the row, and then a ramp of a quarter of a second up to the force of the spring: 2 N/rad over 60
+  /// deg and 20 mm at the handle are less than 3.3 N.
   void expect_zero_and_soft_start_at(std::size_t row) {
     ASSERT_LT(row, recording_.rows());
     EXPECT_EQ(force(row), 0.0);
@@ -128,9 +132,8 @@ TEST_P(FaultyRun, UnpluggedEndsWithStatus3AndARecordingThatSaysWhy) {
   EXPECT_TRUE(has_event("device_fault"));
 }
 
-INSTANTIATE_TEST_SUITE_P(In, FaultyRun, testing::Bool(), [](const auto& tested) {
-  return tested.param ? "VirtualTime" : "WallTime";
-});
+INSTANTIATE_TEST_SUITE_P(In, FaultyRun, testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "VirtualTime" : "WallTime"; });
 
 TEST(SoftSwitch, IsRecordedAndMakesNoStep) {
   const test::TemporaryFolder folder;
@@ -149,7 +152,8 @@ TEST(SoftSwitch, IsRecordedAndMakesNoStep) {
     const double step = recording.force_commanded[2 * row] - recording.force_commanded[2 * (row - 1)];
     ASSERT_LT(std::abs(step), 0.1) << "row " << row;
   }
-  EXPECT_EQ(test::run_kerf({"record", "--law", folder / "a.law.toml", "--switch", "b.law.toml", "-o", folder / "s.h5"})
+  EXPECT_EQ(test::run_kerf(
+                {"record", "--law", folder / "a.law.toml", "--switch", "b.law.toml", "-o", folder / "s.h5"})
                 .exit_status,
             2)
       << "without a time";

@@ -249,7 +249,8 @@ TEST(Loop, GivesZeroForceWhereThePositionIsFartherThanAHandCanMoveIt) {
   EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0));
   EXPECT_EQ(bench.recorder.rows[3].flags, schema::flag_position_jump);
   EXPECT_EQ(report.ticks_with(schema::flag_position_jump), 1U);
-  EXPECT_NEAR(report.energy_j, -1.0 * 0.04 * 0.04, 1e-15) << "the jump itself is no work, the motion after it is";
+  EXPECT_NEAR(report.energy_j, -1.0 * 0.04 * 0.04, 1e-15)
+      << "the jump itself is no work, the motion after it is";
 }
 
 class SilentStage : public testing::TestWithParam<Stage> {};
@@ -260,9 +261,8 @@ TEST_P(SilentStage, GetsZeroForceForItsLateTickAndASoftStart) {
   bench.script.delay(GetParam(), 300, 10.5);  // the watchdog waits 10 ms
   const LoopReport report = bench.run(700, 0.25);
   EXPECT_EQ(report.ticks_with(schema::flag_watchdog), 1U);
-  const auto late = std::ranges::find_if(bench.recorder.rows, [](const schema::Row& row) {
-    return (row.flags & schema::flag_watchdog) != 0;
-  });
+  const auto late = std::ranges::find_if(
+      bench.recorder.rows, [](const schema::Row& row) { return (row.flags & schema::flag_watchdog) != 0; });
   ASSERT_NE(late, bench.recorder.rows.end());
   EXPECT_EQ(late->force_commanded[0], 0.0);
   const auto force_after = [&](std::uint64_t ticks) {
@@ -300,7 +300,8 @@ TEST(Loop, MeasuresTheProcessorTimeOfEverySecondTickInStepWithNoTurn) {
   const LoopReport report = bench.run(64);
   EXPECT_EQ(report.compute_cpu.count(), 32U);
   EXPECT_EQ(report.compute_cpu.max_ns(), 0.25e6);
-  EXPECT_EQ(report.compute_cpu.mean_ns(), 0.125e6) << "a law that works in every second tick is seen as it is";
+  EXPECT_EQ(report.compute_cpu.mean_ns(), 0.125e6)
+      << "a law that works in every second tick is seen as it is";
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ TEST_F(LoopProgram, RefusesWhatItCannotRun) {
   expect_refusal(record({"--scene", at("none.toml")}), 4, "none.toml");
   test::write_text(at("bad.toml"), "name = 3\n");
   expect_refusal(record({"--scene", at("bad.toml")}), 2, "[tissue]");
-  expect_refusal(check({"--device", "falcon:0"}), 3, "no device 'falcon:0'");
+  expect_refusal(check({"--device", "toaster:0"}), 3, "no device 'toaster:0'");
   expect_refusal(run_kerf({"check", at("none.law.toml")}), 4, "none.law.toml");
   expect_refusal(run_kerf({"record", "--virtual", "-o", at("no/folder/r.h5")}), 4, "no/folder");
 }

@@ -34,7 +34,8 @@ TEST(VirtualTime, GivesTheSameSamplesToTheLastBit) {
   const schema::Recording b = schema::read_recording(folder / "b.h5");
   ASSERT_EQ(a.rows(), 60'000U);
   const auto same = [](const auto& left, const auto& right) {
-    return left.size() == right.size() && std::memcmp(left.data(), right.data(), left.size() * sizeof left[0]) == 0;
+    return left.size() == right.size() &&
+           std::memcmp(left.data(), right.data(), left.size() * sizeof left[0]) == 0;
   };
   EXPECT_TRUE(same(a.time, b.time));
   EXPECT_TRUE(same(a.tick, b.tick));
@@ -47,7 +48,8 @@ TEST(VirtualTime, GivesTheSameSamplesToTheLastBit) {
   EXPECT_TRUE(same(a.flags, b.flags));
 }
 
-/// System calls by thread, between each thread's first and last clock_nanosleep, out of what `strace -f` wrote.
+/// System calls by thread, between each thread's first and last clock_nanosleep, out of what `strace -f`
+/// wrote.
 struct Calls {
   std::map<std::string, int> by_name;
   int all = 0;
@@ -76,7 +78,8 @@ Calls calls_of_the_busiest_sleeper(const std::string& trace) {
     thread.last_sleep = thread.calls.size();
   }
   Calls found;
-  const auto busiest = std::ranges::max_element(threads, {}, [](const auto& entry) { return entry.second.sleeps; });
+  const auto busiest =
+      std::ranges::max_element(threads, {}, [](const auto& entry) { return entry.second.sleeps; });
   if (busiest == threads.end()) return found;
   const Thread& thread = busiest->second;
   for (std::size_t i = thread.first_sleep; i < thread.last_sleep; ++i) {
@@ -93,15 +96,17 @@ TEST(Tick, MakesAtMostTwoSystemCalls) {
     GTEST_SKIP() << "strace is missing, or may not trace here";
   }
   // A leak sanitizer, where there is one, cannot work in a traced program.
-  const Outcome outcome = test::run({"env", "ASAN_OPTIONS=detect_leaks=0", "strace", "-f", "-o", trace, KERF_PROGRAM, "record", "--seconds", "2", "--rate",
-                                     "500", "-o", folder / "r.h5"});
+  const Outcome outcome =
+      test::run({"env", "ASAN_OPTIONS=detect_leaks=0", "strace", "-f", "-o", trace, KERF_PROGRAM, "record",
+                 "--seconds", "2", "--rate", "500", "-o", folder / "r.h5"});
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
   const Calls calls = calls_of_the_busiest_sleeper(test::read_text(trace));
   const auto ticks = static_cast<double>(schema::read_recording(folder / "r.h5").rows());
   const int sleeps = calls.by_name.at("clock_nanosleep");
   EXPECT_GE(sleeps, 0.9 * ticks);
   const int before_the_first_tick = 200 + 5;  // sleeps to learn from, and what starts a loop
-  EXPECT_LE(calls.all - before_the_first_tick, 2.0 * ticks) << "one sleep, and every second tick two looks at the processor's time";
+  EXPECT_LE(calls.all - before_the_first_tick, 2.0 * ticks)
+      << "one sleep, and every second tick two looks at the processor's time";
   for (const auto& [name, count] : calls.by_name) {
     if (name == "clock_nanosleep" || name == "clock_gettime") continue;
     EXPECT_LE(count, 10) << name;
@@ -116,7 +121,8 @@ pid_t start_kerf(std::vector<std::string> arguments) {
   words.push_back(nullptr);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  for (const int stream : {1, 2}) posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  for (const int stream : {1, 2})
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   posix_spawn(&child, words[0], &actions, nullptr, words.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -170,7 +176,8 @@ TEST(KilledRecording, HoldsEveryRowThatAFollowerHadSeen) {
   std::uint64_t seen = 0;
   while (seen < 500) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    if (std::filesystem::exists(folder / "r.h5.partial")) seen = schema::read_tail(folder / "r.h5.partial").rows;
+    if (std::filesystem::exists(folder / "r.h5.partial"))
+      seen = schema::read_tail(folder / "r.h5.partial").rows;
   }
   kill_and_wait(child);
   EXPECT_GE(expect_sound_and_repair(folder / "r.h5"), seen);
@@ -183,7 +190,8 @@ TEST(Recording, IsNeverMadeTwiceAtOnce) {
          !schema::find_recording(folder / "r.h5").being_written) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  const Outcome second = test::run_kerf({"record", "--virtual", "--seconds", "1", "-o", folder / "r.h5", "--force"});
+  const Outcome second =
+      test::run_kerf({"record", "--virtual", "--seconds", "1", "-o", folder / "r.h5", "--force"});
   EXPECT_EQ(second.exit_status, 2);
   EXPECT_THAT(second.errors, HasSubstr("is being recorded by another process"));
   const Outcome repair = test::run_kerf({"repair", folder / "r.h5"});

@@ -11,9 +11,9 @@
 #include "loop/watchdog.h"
 #include "support/program.h"
 
-// Everything that runs beside the loop, at once: the writer, the watchdog on a device that stalls, and a thread
-// that changes laws. Built and run with the thread sanitizer by scripts/test; without it, it shows that nothing
-// is lost.
+// Everything that runs beside the loop, at once: the writer, the watchdog on a device that stalls, and a
+// thread that changes laws. Built and run with the thread sanitizer by scripts/test; without it, it shows
+// that nothing is lost.
 
 namespace kerf::bench {
 namespace {
@@ -40,8 +40,8 @@ TEST(Race, IsNoneBetweenLoopWriterWatchdogAndWhoChangesLaws) {
     const Watchdog watchdog(*device, heartbeat, 1e-3);
     std::jthread loop([&] {
       WallClock clock;
-      run_loop(clock, *device, laws, recorder, {.ticks = 600}, {.stop = stop, .done = done, .heartbeat = heartbeat},
-               report);
+      run_loop(clock, *device, laws, recorder, {.ticks = 600},
+               {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
     });
     for (std::size_t turn = 0; done < 600; ++turn) {
       laws.select(turn % 2);

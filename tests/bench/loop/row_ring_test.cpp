@@ -25,7 +25,8 @@ TEST(RowRing, HandsEveryRowFromThreadToThreadUnchanged) {
   RowRing ring(64);
   std::jthread tick([&] {
     for (std::uint64_t i = 0; i < count; ++i) {
-      while (!ring.push({.tick = i, .time_s = static_cast<double>(i), .flags = static_cast<std::uint32_t>(i)})) {
+      while (
+          !ring.push({.tick = i, .time_s = static_cast<double>(i), .flags = static_cast<std::uint32_t>(i)})) {
         std::this_thread::yield();
       }
     }

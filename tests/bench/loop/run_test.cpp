@@ -139,15 +139,15 @@ TEST(Run, HasEveryTickOfItsRate) {
   }
 }
 
-/// A recorded run with two laws, over readings that are no numbers, a jump and a stall, in a thread that may not
-/// allocate.
+/// A recorded run with two laws, over readings that are no numbers, a jump and a stall, in a thread that may
+/// not allocate.
 template <typename Clock>
 LoopReport run_without_allocation(Clock& clock, std::uint64_t ticks, drivers::Surroundings surroundings,
                                   bool lossless) {
   const test::TemporaryFolder folder;
   surroundings.tissue = surroundings_of(default_scene(), drivers::open_device("sim:scissors")->info()).tissue;
-  const auto device = drivers::open_device("sim:scissors?fault=nan@0.05,jump@0.08:20mm,stall@0.1:20ms,late@0.15:3ms",
-                                           std::move(surroundings));
+  const auto device = drivers::open_device(
+      "sim:scissors?fault=nan@0.05,jump@0.08:20mm,stall@0.1:20ms,late@0.15:3ms", std::move(surroundings));
   Recorder recorder({folder / "r.h5",
                      schema::new_header("kerf test"),
                      {{.name = "theta"}, {.name = "x_s"}},

@@ -10,7 +10,12 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 const std::vector<drivers::AxisInfo> scissors{
-    {.name = "theta", .lever = 0.04, .resolution = 1e-3, .force_limit = 7.0, .slew_limit = 2000.0, .speed_limit = 50.0},
+    {.name = "theta",
+     .lever = 0.04,
+     .resolution = 1e-3,
+     .force_limit = 7.0,
+     .slew_limit = 2000.0,
+     .speed_limit = 50.0},
     {.name = "x_s", .lever = 1.0, .force_limit = 100.0, .slew_limit = 20000.0}};
 
 Command applied(Safety& safety, Command command, double time_s = 1.0) {
@@ -70,7 +75,8 @@ TEST(Safety, BelievesNoAnswerThatIsNone) {
   EXPECT_EQ(safety.judge(drivers::Status::fault, {}, 1e-3), schema::flag_device_fault);
   EXPECT_EQ(safety.judge(drivers::Status::lost, {}, 1e-3), schema::flag_device_fault);
   EXPECT_EQ(judged(safety, not_a_number), schema::flag_device_fault);
-  EXPECT_EQ(safety.judge(drivers::Status::ok, {.velocity = {0.0, not_a_number}}, 1e-3), schema::flag_device_fault);
+  EXPECT_EQ(safety.judge(drivers::Status::ok, {.velocity = {0.0, not_a_number}}, 1e-3),
+            schema::flag_device_fault);
   EXPECT_EQ(judged(safety, 0.3), 0U) << "anywhere at first";
 }
 

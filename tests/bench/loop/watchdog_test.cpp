@@ -10,7 +10,9 @@ namespace {
 class ReleasedDevice final : public drivers::Device {
  public:
   [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override { return drivers::Status::ok; }
+  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override {
+    return drivers::Status::ok;
+  }
   [[nodiscard]] drivers::Status write(const drivers::Axes&) noexcept override { return drivers::Status::ok; }
   void release(double at_s) noexcept override {
     released_at_s = at_s;

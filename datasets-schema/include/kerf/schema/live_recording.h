@@ -13,12 +13,13 @@ namespace kerf::schema {
 /// Where a recording is found: under its own name, or as the `NAME.partial` that a writer has not closed.
 struct Place {
   std::filesystem::path file;
-  bool partial = false;        ///< not closed
-  bool being_written = false;  ///< a living process is at work on it (never known on a file system without locks)
+  bool partial = false;  ///< not closed
+  bool being_written =
+      false;  ///< a living process is at work on it (never known on a file system without locks)
 };
 
-/// Looks for a recording by its name or by that of its partial file; the partial one comes first, as it is the
-/// newer. @throws std::invalid_argument if there is neither.
+/// Looks for a recording by its name or by that of its partial file; the partial one comes first, as it is
+/// the newer. @throws std::invalid_argument if there is neither.
 [[nodiscard]] Place find_recording(const std::filesystem::path& name);
 
 /// The end of a recording, to be looked at again and again while it is written.

@@ -153,7 +153,8 @@ struct Recording {
   [[nodiscard]] std::size_t dimensions() const noexcept { return axes.size(); }
 };
 
-/// One row as the tick hands it to a recorder: trivially copyable, axes and channels beyond the device's unused.
+/// One row as the tick hands it to a recorder: trivially copyable, axes and channels beyond the device's
+/// unused.
 struct Row {
   std::uint64_t tick = 0;
   double time_s = 0.0;

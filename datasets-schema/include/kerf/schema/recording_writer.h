@@ -46,9 +46,11 @@ class RecordingWriter {
   /// Hands everything to the operating system. @throws std::system_error.
   void flush();
 
-  /// Ends the recording with a status ("complete", "aborted: WHY") and further attributes of /device that were
-  /// not known before, brings it to the disk and renames it to its final name. Nothing may be appended after it.
-  /// @throws std::invalid_argument for another status, or an attribute's name that is the schema's own; std::system_error, and then the partial file stays.
+  /// Ends the recording with a status ("complete", "aborted: WHY") and further attributes of /device that
+  /// were not known before, brings it to the disk and renames it to its final name. Nothing may be appended
+  /// after it.
+  /// @throws std::invalid_argument for another status, or an attribute's name that is the schema's own;
+  /// std::system_error, and then the partial file stays.
   void close(std::string_view status, const Properties& device = {});
 
   /// Rows appended so far.

@@ -55,7 +55,7 @@ struct DeviceInfo {
   std::vector<ChannelInfo> channels;  ///< at most max_channels
   bool measures_force = false;
   bool simulated = false;
-  std::string configuration;  ///< the settings that it runs with, as TOML, for the recording
+  std::string configuration;       ///< the settings that it runs with, as TOML, for the recording
   std::vector<ForceMount> mounts;  ///< of a force sensor, beside axes of its own names
 };
 
@@ -138,9 +138,9 @@ struct Surroundings {
 struct AttachedDevice {
   std::string uri;
   std::string about;
-  std::string node;      ///< what must be readable and writable
+  std::string node;       ///< what must be readable and writable
   bool emulated = false;  ///< it hangs on a virtual bus
-  std::string problem;   ///< why it cannot be opened, and how to mend that; empty if it can
+  std::string problem;    ///< why it cannot be opened, and how to mend that; empty if it can
 };
 /// Those that are there now. Opens none of them.
 [[nodiscard]] std::vector<AttachedDevice> list_attached();

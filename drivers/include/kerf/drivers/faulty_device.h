@@ -25,8 +25,8 @@ struct Fault {
   double size = 0.0;
 };
 
-/// Reads "unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:20mm,late@5.0:3ms": KIND@SECONDS[:SIZE], sizes in s or ms,
-/// those of jumps in m or mm.
+/// Reads "unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:20mm,late@5.0:3ms": KIND@SECONDS[:SIZE], sizes in s or
+/// ms, those of jumps in m or mm.
 /// @throws DeviceError that says what was found and what was expected.
 [[nodiscard]] std::vector<Fault> parse_faults(std::string_view text);
 

@@ -7,8 +7,9 @@
 
 namespace kerf::drivers {
 
-/// The latest value that one thread has for another: three buffers that change hands by one atomic exchange. put() and
-/// take() wait for nobody, allocate nothing, and never let a half-written value through. One thread puts, one takes.
+/// The latest value that one thread has for another: three buffers that change hands by one atomic exchange.
+/// put() and take() wait for nobody, allocate nothing, and never let a half-written value through. One thread
+/// puts, one takes.
 template <typename T>
 class Latest {
   static_assert(std::is_trivially_copyable_v<T>);

@@ -18,9 +18,9 @@ namespace kerf::drivers {
 /// command, the tissue and the hand; encoders, a force sensor, limits, and the release that a watchdog asks
 /// for.
 ///
-/// The velocity is what a driver would give, by VelocityFilter. The force sensor reads what the tissue exerts, with white noise of 20 mN and
-/// a step of 2 mN (0.2 mN·m and 0.02 mN·m for a torque). With `truth`, the position before the encoder and
-/// the tissue's force before the sensor are further channels.
+/// The velocity is what a driver would give, by VelocityFilter. The force sensor reads what the tissue
+/// exerts, with white noise of 20 mN and a step of 2 mN (0.2 mN·m and 0.02 mN·m for a torque). With `truth`,
+/// the position before the encoder and the tissue's force before the sensor are further channels.
 class SimulatedMechanism {
  public:
   struct Options {

@@ -21,12 +21,14 @@ namespace kerf::drivers {
 
 /// `spacemouse:N`: a 3Dconnexion cap as a source of trajectories, six axes and no force, by hidapi on hidraw.
 ///
-/// The cap's deflection, about +-350 as sent, is scaled to `reach` (x, y, z) and `swing` (rx, ry, rz). Frame: x right,
-/// y away from the user, z up; rotations right-handed about them. The device sends y towards the user and z down.
+/// The cap's deflection, about +-350 as sent, is scaled to `reach` (x, y, z) and `swing` (rx, ry, rz). Frame:
+/// x right, y away from the user, z up; rotations right-handed about them. The device sends y towards the
+/// user and z down.
 ///
-/// It is not a 1 kHz device: a SpaceNavigator sends each axis 62.5 times a second. Between reports the last one is
-/// held, so that the velocity comes in spikes that the filter spreads; the channel `report_age` [s] says how old it is, and the
-/// channel `buttons` has a bit for each. What it reads is up to 16 ms old, and about 1 ms on the bus.
+/// It is not a 1 kHz device: a SpaceNavigator sends each axis 62.5 times a second. Between reports the last
+/// one is held, so that the velocity comes in spikes that the filter spreads; the channel `report_age` [s]
+/// says how old it is, and the channel `buttons` has a bit for each. What it reads is up to 16 ms old, and
+/// about 1 ms on the bus.
 class SpaceMouse final : public Device {
  public:
   struct Options {

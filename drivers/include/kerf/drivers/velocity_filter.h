@@ -9,8 +9,8 @@
 
 namespace kerf::drivers {
 
-/// Velocity from positions as a driver gives it: their difference over the time between two readings, low-passed at
-/// first order with a corner of 20 Hz, so that it lags by some 8 ms. Zero at the first reading.
+/// Velocity from positions as a driver gives it: their difference over the time between two readings,
+/// low-passed at first order with a corner of 20 Hz, so that it lags by some 8 ms. Zero at the first reading.
 class VelocityFilter {
  public:
   /// The velocity of an axis that stands at `position` at `now_s`; each axis once a reading, then advance().

@@ -11,11 +11,12 @@ namespace kerf::drivers::usb {
 /// The monotonic clock that the loop also runs by [ns].
 [[nodiscard]] std::int64_t now_ns() noexcept;
 
-/// A device's own thread, which speaks to the bus so that the tick never waits for it: libusb allocates and locks with
-/// every transfer that it submits, and a write to hidraw returns only when the device has taken it.
+/// A device's own thread, which speaks to the bus so that the tick never waits for it: libusb allocates and
+/// locks with every transfer that it submits, and a write to hidraw returns only when the device has taken
+/// it.
 ///
-/// More urgent than the loop where that is permitted, so that a loop that spins towards its deadline on the only
-/// processor does not hold up its own data. wake() is for the tick: one system call, no lock.
+/// More urgent than the loop where that is permitted, so that a loop that spins towards its deadline on the
+/// only processor does not hold up its own data. wake() is for the tick: one system call, no lock.
 class IoThread {
  public:
   IoThread();

@@ -27,9 +27,9 @@ struct Attached {
   std::string node;  ///< /dev/bus/usb/001/004 or /dev/hidraw0
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
-  std::string name;           ///< product string, if it has one
-  bool may_open = false;      ///< this user may read and write the node
-  bool emulated = false;      ///< it hangs on a virtual bus (USB/IP)
+  std::string name;       ///< product string, if it has one
+  bool may_open = false;  ///< this user may read and write the node
+  bool emulated = false;  ///< it hangs on a virtual bus (USB/IP)
 };
 
 /// How to obtain the permission to open a node, in half a sentence.
@@ -42,8 +42,8 @@ struct Attached {
 
 /// An open USB device with its interface 0 claimed, by libusb.
 ///
-/// The functions that wait are for set-up: they allocate, and throw DeviceError. While it runs, a device is spoken to by
-/// Transfers and one thread that calls handle_events().
+/// The functions that wait are for set-up: they allocate, and throw DeviceError. While it runs, a device is
+/// spoken to by Transfers and one thread that calls handle_events().
 class UsbDevice {
  public:
   /// Opens the `index`-th device of an identity.
@@ -60,8 +60,8 @@ class UsbDevice {
   /// Receives up to buffer.size() bytes; 0 if none came in time. @throws DeviceError
   std::size_t bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms = 1000);
 
-  /// Waits until a transfer has ended, `wake_descriptor` (if not -1) is readable or the time is over, and calls the
-  /// handlers of what has ended. From one thread. @returns whether `wake_descriptor` is readable.
+  /// Waits until a transfer has ended, `wake_descriptor` (if not -1) is readable or the time is over, and
+  /// calls the handlers of what has ended. From one thread. @returns whether `wake_descriptor` is readable.
   bool handle_events(std::int64_t most_ns, int wake_descriptor = -1) noexcept;
 
   /// Ends the halt of an endpoint that has stalled; false if that could not be done. Waits for the device.
