@@ -19,7 +19,7 @@ namespace kerf::drivers {
 /// Every 3Dconnexion device that is attached, in one order.
 [[nodiscard]] std::vector<usb::Attached> find_spacemice();
 
-/// `spacemouse:N`: a 3Dconnexion cap as a source of trajectories, six axes and no force, by hidapi on hidraw.
+/// `spacemouse:N`: a 3Dconnexion cap as a source of trajectories, six axes and no force, on hidraw.
 ///
 /// The cap's deflection, about +-350 as sent, is scaled to `reach` (x, y, z) and `swing` (rx, ry, rz). Frame:
 /// x right, y away from the user, z up; rotations right-handed about them. The device sends y towards the
