@@ -6,6 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <kerf/models/lattice.h>
 #include <kerf/models/law.h>
 
 #include "support/example_laws.h"
