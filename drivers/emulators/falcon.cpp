@@ -9,6 +9,8 @@
 #include <kerf/drivers/device.h>
 #include <kerf/mechanisms/falcon.h>
 
+#include "trace.h"
+
 namespace kerf::emulators {
 namespace {
 
@@ -67,13 +69,11 @@ EmulatedFalcon::EmulatedFalcon(const Options& options)
       boot_(options.loaded ? Boot::running : Boot::silent),
       // A cube of 8 cm that the arms reach in every corner.
       tip_({.centre_m = {0.0, 0.0, 0.12}, .sway_m = options.sway_m, .most_travel_m = 0.04}),
-      homed_(options.homed) {
+      homed_(options.homed),
+      trace_(open_trace(options.trace,
+                        "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,"
+                        "x_m,y_m,z_m,homing,led")) {
   at_power_on_ = counts();
-  if (options.trace.empty()) return;
-  trace_.open(options.trace);
-  if (!trace_) throw drivers::DeviceError(options.trace + " cannot be written; give another trace=FILE");
-  trace_ << "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,x_m,y_m,z_m,homing,"
-            "led\n";
 }
 
 const Description& EmulatedFalcon::description() const { return falcon(); }

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <numbers>
 
+#include <kerf/drivers/simulated_mechanism.h>
+
 namespace kerf::emulators {
 namespace {
 
-constexpr double step_s = 50e-6;
+constexpr double step_s = drivers::SimulatedMechanism::sub_step_s;
 constexpr std::array sway_hz{0.31, 0.43, 0.59};
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace kerf::emulators {
 
 /// The tip of an emulated device in a hand that sways about: three axes of the simulated devices' own
-/// physics, in steps of 50 us under the force of the motors. The hand's wish is x_i(t) = c_i + a sin(2 pi f_i
-/// t), f = 0.31, 0.43, 0.59 Hz.
+/// physics, in steps of theirs under the force of the motors. The hand's wish is x_i(t) = c_i + a sin(2 pi
+/// f_i t), f = 0.31, 0.43, 0.59 Hz.
 class HeldTip {
  public:
   struct Options {

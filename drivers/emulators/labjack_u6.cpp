@@ -10,6 +10,9 @@
 
 #include <kerf/drivers/device.h>
 
+#include "example_transducer.h"
+#include "trace.h"
+
 namespace kerf::emulators {
 namespace {
 
@@ -32,9 +35,7 @@ constexpr std::uint8_t error_not_running = 52;
 constexpr std::uint8_t error_overlap = 55;
 constexpr std::uint8_t error_rate = 58;
 
-constexpr std::uint8_t differential_bit = 0x80;
 constexpr std::uint8_t temperature_channel = 14;
-constexpr std::uint8_t ground_channel = 15;
 constexpr double room_k = 295.15;
 
 const Description& labjack() {
@@ -58,17 +59,8 @@ double number_from(std::span<const std::uint8_t> bytes) { return bytes[0] | byte
 }  // namespace
 
 const drivers::ForceCalibration& example_transducer() {
-  static const drivers::ForceCalibration transducer = [] {
-    drivers::ForceCalibration one;
-    one.matrix << 4.02, 0.05, -0.11, 0.08, -0.06, 0.03,  //
-        -0.07, 3.97, 0.09, -0.05, 0.10, 0.06,            //
-        0.15, -0.12, 11.90, 0.20, 0.14, -0.18,           //
-        0.002, 0.004, -0.003, 0.198, 0.001, -0.002,      //
-        -0.003, 0.001, 0.005, 0.002, 0.203, 0.003,       //
-        0.001, -0.002, 0.002, -0.001, 0.004, 0.196;
-    one.bias_v << 0.112, -0.087, 0.204, -0.031, 0.058, 0.019;
-    return one;
-  }();
+  static const drivers::ForceCalibration transducer =
+      drivers::parse_force_calibration(example_transducer_toml, "examples/u6.calibration.toml");
   return transducer;
 }
 
@@ -90,12 +82,9 @@ EmulatedU6::Options EmulatedU6::parse_options(drivers::Uri uri) {
 }
 
 EmulatedU6::EmulatedU6(const Options& options)
-    : options_(options), to_volts_(options.transducer.matrix.inverse()) {
-  if (options.trace.empty()) return;
-  trace_.open(options.trace);
-  if (!trace_) throw drivers::DeviceError("trace " + options.trace + " cannot be written");
-  trace_ << "scan,t_device_s,t_host_s,fx,fy,fz,tx,ty,tz\n";
-}
+    : options_(options),
+      to_volts_(options.transducer.matrix.inverse()),
+      trace_(open_trace(options.trace, "scan,t_device_s,t_host_s,fx,fy,fz,tx,ty,tz")) {}
 
 const Description& EmulatedU6::description() const { return labjack(); }
 
@@ -150,11 +139,10 @@ Axes EmulatedU6::inputs(double time_s) const noexcept {
   return inputs;
 }
 
-double EmulatedU6::volts(std::uint8_t channel, bool differential, const Axes& inputs) const noexcept {
+double EmulatedU6::volts(std::uint8_t channel, const Axes& inputs) noexcept {
   if (channel == temperature_channel) return (room_k - 465.129) / -92.379;
-  // The transducer's negative wires lie on ground, so an even channel is the same by itself.
-  if (channel >= 12 || channel % 2 != 0 || channel == ground_channel) return 0.0;
-  static_cast<void>(differential);
+  // The transducer's negative wires lie on ground, so an even channel is the same by itself and as a pair.
+  if (channel >= 12 || channel % 2 != 0) return 0.0;
   return inputs[channel / 2U];
 }
 
@@ -166,8 +154,7 @@ double EmulatedU6::code(double volts, unsigned gain) const noexcept {
 }
 
 std::uint16_t EmulatedU6::sample(const StreamChannel& channel, const Axes& inputs) noexcept {
-  const bool differential = (channel.options & differential_bit) != 0;
-  const double exact = code(volts(channel.number, differential, inputs), channel.options >> 4U & 3U);
+  const double exact = code(volts(channel.number, inputs), channel.options >> 4U & 3U);
   const double noisy = exact + (options_.noise_codes > 0.0 ? options_.noise_codes * noise_() : 0.0);
   return static_cast<std::uint16_t>(std::lround(std::clamp(noisy, 0.0, 65535.0)));
 }
@@ -273,7 +260,7 @@ void EmulatedU6::take_scan(std::uint64_t scan) {
                         }());
 }
 
-void EmulatedU6::end_recovery(std::int64_t) {
+void EmulatedU6::end_recovery() {
   if (!recovering_ || fifo_.size() >= samples_per_packet_) return;
   dummy_after_ = fifo_.size();
   dummy_stands_for_ = static_cast<std::uint32_t>(next_scan_ - missing_from_);
@@ -316,11 +303,11 @@ std::optional<std::size_t> EmulatedU6::send_stream(std::span<std::uint8_t> buffe
     return size;
   }
   if (!streaming_ || is_blocked(now_ns)) return std::nullopt;
-  end_recovery(now_ns);
+  end_recovery();
   if (next == Disturbance::drop && has_packet()) {
     (void)next_packet();
     next = Disturbance::none;
-    end_recovery(now_ns);
+    end_recovery();
   }
   // Packets of 64 bytes do not end a transfer: a full one fills it. Shorter ones end it each.
   const bool fills = samples_per_packet_ == wire::most_samples;
@@ -329,7 +316,7 @@ std::optional<std::size_t> EmulatedU6::send_stream(std::span<std::uint8_t> buffe
   std::size_t filled = 0;
   for (std::size_t i = 0; i < wanted; ++i) {
     auto packet = next_packet();
-    end_recovery(now_ns);
+    end_recovery();
     if (next == Disturbance::corrupt) packet.bytes[packet.size / 2] ^= 0x10U;
     const std::size_t room = std::min(packet.size, buffer.size() - filled);
     const std::size_t size = next == Disturbance::split ? room / 2 : room;

@@ -93,8 +93,7 @@ class EmulatedU6 final : public EmulatedDevice {
   [[nodiscard]] std::uint8_t stop_stream();
 
   // Signals.
-  [[nodiscard]] double volts(std::uint8_t channel, bool differential,
-                             const drivers::Axes& inputs) const noexcept;
+  [[nodiscard]] static double volts(std::uint8_t channel, const drivers::Axes& inputs) noexcept;
   /// Code of a voltage, 0 to 65535, not yet rounded.
   [[nodiscard]] double code(double volts, unsigned gain) const noexcept;
   [[nodiscard]] drivers::Axes inputs(double time_s) const noexcept;
@@ -106,7 +105,7 @@ class EmulatedU6 final : public EmulatedDevice {
   [[nodiscard]] std::uint64_t scans_due(std::int64_t now_ns) const noexcept;
   void run_until(std::int64_t now_ns);
   void take_scan(std::uint64_t scan);
-  void end_recovery(std::int64_t now_ns);
+  void end_recovery();
   [[nodiscard]] bool is_blocked(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool has_packet() const noexcept;
   [[nodiscard]] drivers::labjack_u6::Message next_packet();

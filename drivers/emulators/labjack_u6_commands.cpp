@@ -190,7 +190,7 @@ bool EmulatedU6::feed_back(std::span<const std::uint8_t> io, Bytes& data, std::i
   };
   switch (type) {
     case 1: {  // AIN
-      const double exact = code(volts(io[1], false, inputs(world_s(now_ns))), 0);
+      const double exact = code(volts(io[1], inputs(world_s(now_ns))), 0);
       const auto number = static_cast<std::uint16_t>(std::lround(std::clamp(exact, 0.0, 65535.0)));
       data.push_back(static_cast<std::uint8_t>(number));
       data.push_back(static_cast<std::uint8_t>(number >> 8U));
@@ -200,7 +200,7 @@ bool EmulatedU6::feed_back(std::span<const std::uint8_t> io, Bytes& data, std::i
     case 3: {  // AIN24AR, which tells its range and a status
       const unsigned gain = type == 3 && io[2] >> 4U == 15U ? 0U : io[2] >> 4U;
       if (gain > 3) return false;
-      const double exact = code(volts(io[1], (io[3] & 0x80U) != 0, inputs(world_s(now_ns))), gain);
+      const double exact = code(volts(io[1], inputs(world_s(now_ns))), gain);
       append24(data, static_cast<std::uint32_t>(std::lround(256.0 * std::clamp(exact, 0.0, 65535.0))));
       if (type == 3) data.insert(data.end(), {static_cast<std::uint8_t>((io[2] & 0x0FU) | gain << 4U), 0});
       return true;

@@ -96,31 +96,14 @@ std::optional<std::size_t> EmulatedSpaceMouse::send(std::uint8_t endpoint, std::
                                                     std::int64_t, std::int64_t now_ns, Disturbance& next) {
   if (endpoint != 1) return std::nullopt;
   if (start_ns_ < 0) start_ns_ = due_ns_ = now_ns;
-  Bytes report = std::exchange(rest_of_split_, {});
-  if (report.empty()) {
-    if (now_ns < due_ns_) return std::nullopt;
-    due_ns_ += interval_ns;
-    if (due_ns_ <= now_ns) due_ns_ = now_ns + interval_ns;
-    report = next_report(1e-9 * static_cast<double>(now_ns - start_ns_));
-    if (report.empty()) return std::nullopt;
-    ++reports_;
-    switch (std::exchange(next, Disturbance::none)) {
-      case Disturbance::drop:
-        return std::nullopt;
-      case Disturbance::split:
-        rest_of_split_.assign(report.begin() + 3, report.end());
-        report.resize(3);
-        break;
-      case Disturbance::corrupt:
-        report[0] ^= 0x40U;
-        break;
-      default:
-        break;
-    }
-  }
-  const std::size_t size = std::min(report.size(), buffer.size());
-  std::copy_n(report.begin(), size, buffer.begin());
-  return size;
+  if (const auto size = wire_.send_rest(buffer)) return size;
+  if (now_ns < due_ns_) return std::nullopt;
+  due_ns_ += interval_ns;
+  if (due_ns_ <= now_ns) due_ns_ = now_ns + interval_ns;
+  Bytes report = next_report(1e-9 * static_cast<double>(now_ns - start_ns_));
+  if (report.empty()) return std::nullopt;
+  ++reports_;
+  return wire_.send(std::move(report), buffer, next);
 }
 
 std::optional<std::int64_t> EmulatedSpaceMouse::next_event_ns(std::int64_t) const {

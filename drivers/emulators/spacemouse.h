@@ -7,6 +7,7 @@
 #include <kerf/drivers/uri.h>
 
 #include "emulated_device.h"
+#include "report_wire.h"
 
 namespace kerf::emulators {
 
@@ -45,7 +46,7 @@ class EmulatedSpaceMouse final : public EmulatedDevice {
   unsigned zeros_ = 0;
   bool pressed_ = false;
   bool lit_ = false;
-  Bytes rest_of_split_;
+  ReportWire wire_{0};  ///< the number of a report is what may be turned
 };
 
 }  // namespace kerf::emulators

@@ -6,16 +6,18 @@
 
 #include <kerf/drivers/device.h>
 
+#include "trace.h"
+
 namespace kerf::emulators {
 namespace {
+
+namespace wire = drivers::woodenhaptics;
 
 constexpr std::int64_t frame_ns = 1'000'000;
 constexpr std::int64_t watchdog_ns = 500'000'000;
 constexpr std::int64_t push_ns = 250'000;   // so often the force follows the pose at a constant current
 constexpr std::size_t hardware_orders = 2;  // the endpoint of V1 is buffered twice
-constexpr std::size_t told_bytes = 14;      // of V2 and V3
-constexpr std::size_t split_at = 3;
-constexpr double most_travel_m = 0.04;  // all models reach every corner of it
+constexpr double most_travel_m = 0.04;      // all models reach every corner of it
 
 Description mbed(std::uint8_t size) {
   return {
@@ -56,12 +58,6 @@ Endpoints endpoints_of(EmulatedWoody::Generation generation) {
   return generation == EmulatedWoody::Generation::v3 ? Endpoints{3, 4} : Endpoints{1, 1};
 }
 
-void put_number(Bytes& bytes, int number) {
-  const auto bits = static_cast<std::uint16_t>(number);
-  bytes.push_back(static_cast<std::uint8_t>(bits & 0xFFU));
-  bytes.push_back(static_cast<std::uint8_t>(bits >> 8U));
-}
-
 HeldTip::Options held(const EmulatedWoody::Options& options) {
   const mechanisms::WoodenHaptics mechanism(*options.model);
   return {.centre_m = mechanism.tip(mechanism.angles({0, 0, 0})),
@@ -98,13 +94,12 @@ EmulatedWoody::Options EmulatedWoody::parse_options(drivers::Uri uri) {
 }
 
 EmulatedWoody::EmulatedWoody(const Options& options)
-    : options_(options), mechanism_(*options.model), tip_(held(options)) {
+    : options_(options),
+      mechanism_(*options.model),
+      tip_(held(options)),
+      trace_(open_trace(options.trace, "t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog")) {
   counter_zero_.fill(options.counter_offset);
   std::fill(counter_zero_.begin() + 3, counter_zero_.end(), 0);
-  if (options.trace.empty()) return;
-  trace_.open(options.trace);
-  if (!trace_) throw drivers::DeviceError("woody: the trace '" + options.trace + "' cannot be written");
-  trace_ << "t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog\n";
   trace_.precision(9);
 }
 
@@ -172,21 +167,8 @@ std::array<int, 6> EmulatedWoody::counters() const {
   std::array<int, 6> all = counter_zero_;
   const auto motors = motor_counts();
   for (std::size_t i = 0; i < 3; ++i) all[i] += motors[i];
-  for (int& one : all) one = drivers::woodenhaptics::wrapped_difference(one, 0);
+  for (int& one : all) one = wire::wrapped_difference(one, 0);
   return all;
-}
-
-std::optional<EmulatedWoody::Order> EmulatedWoody::parse(std::span<const std::uint8_t> bytes) const {
-  const auto number = [&](std::size_t word) {
-    return static_cast<int>(
-        static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[2 * word] | bytes[2 * word + 1] << 8U)));
-  };
-  if (bytes.size() < (streams() ? 8U : told_bytes)) return std::nullopt;
-  Order order{.current_ma = {number(0), number(1), number(2)}};
-  if (streams() || number(3) != 1) return order;
-  order.preset = true;
-  order.counts = {number(4), number(5), number(6), number(0), number(1), number(2)};
-  return order;
 }
 
 void EmulatedWoody::set_currents(const Currents& current_ma) {
@@ -199,7 +181,7 @@ void EmulatedWoody::apply(const Order& order, std::int64_t now_ns) {
   ++taken_;
   last_order_ns_ = now_ns;
   watchdog_ = false;
-  set_currents(order.preset ? Currents{} : order.current_ma);
+  set_currents(order.current_ma);
   if (order.preset) {
     const auto motors = motor_counts();
     counter_zero_ = order.counts;
@@ -212,7 +194,7 @@ void EmulatedWoody::apply(const Order& order, std::int64_t now_ns) {
 void EmulatedWoody::receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
   if (endpoint != endpoints_of(options_.generation).out) return;
   run_until(now_ns);
-  const auto order = parse(bytes);
+  const auto order = wire::parse_order(bytes, options_.generation);
   if (!order) return;
   if (streams()) {
     // A third one would have to wait on the bus, and the host would send its newest then.
@@ -230,13 +212,13 @@ void EmulatedWoody::receive(std::uint8_t endpoint, std::span<const std::uint8_t>
 }
 
 void EmulatedWoody::build_report(std::int64_t now_ns) {
-  const auto counts = counters();
-  report_.clear();
-  for (std::size_t i = 0; i < (streams() ? 3U : 6U); ++i) put_number(report_, counts[i]);
-  put_number(report_, streams() ? counter_++ : (button_latched_ ? 1 : 0));
-  while (options_.generation == Generation::v3 && report_.size() < drivers::woodenhaptics::most_report_size) {
+  const auto input =
+      wire::encode({.encoder = counters(), .button = button_latched_, .counter = streams() ? counter_++ : 0},
+                   options_.generation);
+  report_.assign(input.bytes.begin(), input.bytes.begin() + static_cast<std::ptrdiff_t>(input.size));
+  for (std::size_t at = wire::report_size(Generation::v2); at < report_.size(); ++at) {
     noise_ = noise_ * 1664525U + 1013904223U;
-    report_.push_back(static_cast<std::uint8_t>(noise_ >> 24U));
+    report_[at] = static_cast<std::uint8_t>(noise_ >> 24U);
   }
   reached_ns_ = std::max(reached_ns_, now_ns);
   note("report");
@@ -246,41 +228,24 @@ std::optional<std::size_t> EmulatedWoody::send(std::uint8_t endpoint, std::span<
                                                std::int64_t, std::int64_t now_ns, Disturbance& next) {
   if (endpoint != endpoints_of(options_.generation).in) return std::nullopt;
   run_until(now_ns);
-  Bytes report = std::exchange(rest_of_split_, {});
-  if (report.empty()) {
-    if ((!streams() && report_.empty()) || now_ns < start_ns_ + frame_ * frame_ns) return std::nullopt;
-    frame_ = (now_ns - start_ns_) / frame_ns + 1;
-    if (streams()) {
-      if (!orders_.empty()) {
-        apply(orders_.front(), now_ns);
-        orders_.pop_front();
-      }
-      build_report(now_ns);
+  if (const auto size = wire_.send_rest(buffer)) return size;
+  if ((!streams() && report_.empty()) || now_ns < start_ns_ + frame_ * frame_ns) return std::nullopt;
+  frame_ = (now_ns - start_ns_) / frame_ns + 1;
+  if (streams()) {
+    if (!orders_.empty()) {
+      apply(orders_.front(), now_ns);
+      orders_.pop_front();
     }
-    report = std::exchange(report_, {});
-    ++reports_;
-    if (!streams() && !orders_.empty()) {
-      apply(orders_.back(), now_ns);
-      orders_.clear();
-      build_report(now_ns);
-    }
-    switch (std::exchange(next, Disturbance::none)) {
-      case Disturbance::drop:
-        return std::nullopt;
-      case Disturbance::split:
-        rest_of_split_.assign(report.begin() + split_at, report.end());
-        report.resize(split_at);
-        break;
-      case Disturbance::corrupt:
-        report[1] ^= 0x40U;
-        break;
-      default:
-        break;
-    }
+    build_report(now_ns);
   }
-  const std::size_t size = std::min(report.size(), buffer.size());
-  std::copy_n(report.begin(), size, buffer.begin());
-  return size;
+  Bytes report = std::exchange(report_, {});
+  ++reports_;
+  if (!streams() && !orders_.empty()) {
+    apply(orders_.back(), now_ns);
+    orders_.clear();
+    build_report(now_ns);
+  }
+  return wire_.send(std::move(report), buffer, next);
 }
 
 std::optional<std::int64_t> EmulatedWoody::next_event_ns(std::int64_t) const {

@@ -14,6 +14,7 @@
 
 #include "emulated_device.h"
 #include "held_tip.h"
+#include "report_wire.h"
 
 namespace kerf::emulators {
 
@@ -65,16 +66,11 @@ class EmulatedWoody final : public EmulatedDevice {
   [[nodiscard]] std::uint64_t watchdog_trips() const noexcept { return watchdog_trips_; }
 
  private:
-  struct Order {
-    Currents current_ma{};
-    bool preset = false;
-    std::array<int, 6> counts{};
-  };
+  using Order = drivers::woodenhaptics::Order;
 
   void begin(std::int64_t now_ns) noexcept;
   [[nodiscard]] double seconds_at(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool streams() const noexcept { return options_.generation == Generation::v1; }
-  [[nodiscard]] std::optional<Order> parse(std::span<const std::uint8_t> bytes) const;
   void run_until(std::int64_t now_ns);
   void push_for(std::int64_t span_ns);
   void apply(const Order& order, std::int64_t now_ns);
@@ -98,8 +94,8 @@ class EmulatedWoody final : public EmulatedDevice {
   bool button_latched_ = false;
   bool button_pressed_ = false;
   std::deque<Order> orders_;
-  Bytes report_;  ///< ready to be sent; empty: V2 and V3 wait for an order
-  Bytes rest_of_split_;
+  Bytes report_;        ///< ready to be sent; empty: V2 and V3 wait for an order
+  ReportWire wire_{1};  ///< the higher byte of an encoder is what may be turned
   std::uint16_t counter_ = 0;
   std::uint32_t noise_ = 1;
 

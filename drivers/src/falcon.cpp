@@ -9,16 +9,16 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "ages.h"
 #include "falcon_link.h"
 #include "falcon_setup.h"
+#include "interruption.h"
 #include "kerf/drivers/protocols/falcon.h"
 #include "kerf/mechanisms/falcon.h"
 
 namespace kerf::drivers {
 namespace {
 
-constexpr std::int64_t stale_ns = 20'000'000;
-constexpr std::int64_t silent_ns = 1'000'000'000;
 constexpr std::size_t axes = 3;
 constexpr std::chrono::milliseconds pause(2);
 constexpr std::array<std::pair<std::string_view, Falcon::Led>, 4> leds{{{"off", Falcon::Led::off},
@@ -57,7 +57,7 @@ std::string configuration_of(const Falcon::Options& options) {
 DeviceInfo describe(std::string_view uri, const Falcon::Options& options) {
   return {.uri = std::string(uri),
           .model = "Novint Falcon",
-          .about = "3 axes with force; needs its firmware",
+          .about = std::string(Falcon::about),
           .axes = {axis("x", -0.05, 0.05), axis("y", -0.05, 0.05), axis("z", 0.075, 0.175)},
           .channels = {{.name = "buttons", .unit = "1"},
                        {.name = "motor_1", .unit = "1"},
@@ -104,9 +104,9 @@ Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options,
 Falcon::~Falcon() = default;
 
 void Falcon::wait_for_report(const std::atomic<bool>* stop) {
-  const std::int64_t until_ns = usb::now_ns() + silent_ns;
+  const std::int64_t until_ns = usb::now_ns() + gone_ns;
   while (link_->take().at_ns == 0) {
-    refuse_if_stopped(stop);
+    refuse_if_stopped(falcon_identity.what, stop);
     if (link_->lost() || usb::now_ns() > until_ns) {
       throw DeviceError(fmt::format("{}: it answered and then fell silent; unplug it and plug it in again",
                                     falcon_identity.what));
@@ -118,7 +118,7 @@ void Falcon::wait_for_report(const std::atomic<bool>* stop) {
 void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
   const std::int64_t until_ns = usb::now_ns() + static_cast<std::int64_t>(1e9 * options_.homing_timeout_s);
   while (!link_->homed()) {
-    refuse_if_stopped(stop);
+    refuse_if_stopped(falcon_identity.what, stop);
     if (link_->lost()) {
       throw DeviceError(
           fmt::format("{}: it was unplugged before it was homed; plug it in again", falcon_identity.what));
@@ -141,7 +141,7 @@ void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
 Status Falcon::read(double now_s, Sample& sample) noexcept {
   const FalconLink::Reading& reading = link_->take();
   const std::int64_t age_ns = usb::now_ns() - reading.at_ns;
-  if (link_->lost() || age_ns > silent_ns) return Status::lost;
+  if (link_->lost() || age_ns > gone_ns) return Status::lost;
   for (std::size_t at = 0; at < axes; ++at) {
     sample.position[at] = reading.knob[at];
     sample.velocity[at] = velocity_.update(at, reading.knob[at], now_s);

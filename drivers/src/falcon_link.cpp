@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "ages.h"
 #include "falcon_setup.h"
 #include "kerf/mechanisms/falcon.h"
 
@@ -16,7 +17,6 @@ using End = usb::Transfer::End;
 constexpr std::int64_t millisecond = 1'000'000;
 constexpr std::int64_t answer_ns = 5 * millisecond;   // it takes at most 1.3
 constexpr std::int64_t unasked_ns = 2 * millisecond;  // a tick of 1 kHz, and as much again
-constexpr std::int64_t order_ns = 100 * millisecond;  // nobody stands behind an older one
 constexpr std::int64_t farewell_ns = 50 * millisecond;
 constexpr unsigned most_bad = 20;
 constexpr std::array<int, 3> zero{};
@@ -130,7 +130,7 @@ void FalconLink::send_if_due() noexcept {
   (void)orders_.take(order_);
   if (out_.pending() || lost()) return;
   const std::int64_t now = now_ns();
-  const bool holds = order_.number > released_.load() && now - order_.at_ns < order_ns;
+  const bool holds = order_.number > released_.load() && now - order_.at_ns <= most_command_age_ns;
   const auto& motor = holds ? order_.motor : zero;
   const bool lets_go = !holds && sent_motor_ != zero;  // waits for no answer
   if (unanswered_ > 0 && !lets_go) {

@@ -33,7 +33,7 @@ class FalconLink {
 
   FalconLink(usb::UsbDevice& device, usb::IoThread& thread, bool homing, Falcon::Led led);
 
-  /// Motor values that hold until the next, at most for 100 ms.
+  /// Motor values that hold until the next, at most for 50 ms.
   void command(const std::array<int, 3>& motor) noexcept;
   /// Takes the newest reading, if there is one since the last time, and gives the last one taken; at_ns is 0
   /// before the first.

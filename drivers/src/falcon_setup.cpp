@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "interruption.h"
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/protocols/c2000_image.h"
 #include "kerf/drivers/protocols/falcon.h"
@@ -77,7 +78,7 @@ bool read_until(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup&
   std::array<std::uint8_t, 64> buffer{};
   const std::int64_t until_ns = now_ns() + most_ns;
   while (now_ns() < until_ns) {
-    refuse_if_stopped(setup.stop);
+    refuse_if_stopped(falcon_identity.what, setup.stop);
     const std::size_t size = device.bulk_in(falcon_in, buffer, read_timeout_ms);
     bool done = false;
     falcon::for_each_data_byte(std::span(buffer).first(size),
@@ -181,10 +182,6 @@ void load(usb::UsbDevice& device, std::span<const std::uint8_t> image, const Fal
 }
 
 }  // namespace
-
-void refuse_if_stopped(const std::atomic<bool>* stop) {
-  if (stop != nullptr && stop->load()) fail("interrupted while it was set up");
-}
 
 void set_up_falcon(usb::UsbDevice& device, const FalconSetup& setup) {
   // A file that is none is told at once, also where none is needed this time.

@@ -23,7 +23,4 @@ struct FalconSetup {
 /// @throws DeviceError
 void set_up_falcon(usb::UsbDevice& device, const FalconSetup& setup);
 
-/// @throws DeviceError("... interrupted") if `stop` is set.
-void refuse_if_stopped(const std::atomic<bool>* stop);
-
 }  // namespace kerf::drivers

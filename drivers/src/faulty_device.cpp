@@ -6,15 +6,13 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <time.h>
 
+#include "kerf/drivers/velocity_filter.h"
+
 namespace kerf::drivers {
 namespace {
-
-constexpr double velocity_corner_rad_s =
-    2.0 * std::numbers::pi * 20.0;  // as the simulated encoders' velocity
 
 struct KindInfo {
   Fault::Kind kind;
@@ -103,7 +101,8 @@ void FaultyDevice::spoil(Sample& sample) noexcept {
     if (fault.kind == Fault::Kind::jump) {
       const double offset = fault.size / device_->info().axes[0].lever;
       sample.position[0] += offset;
-      sample.velocity[0] += offset * velocity_corner_rad_s * std::exp(-velocity_corner_rad_s * since_s);
+      constexpr double corner_rad_s = VelocityFilter::corner_rad_s;  // of the simulated encoders' velocity
+      sample.velocity[0] += offset * corner_rad_s * std::exp(-corner_rad_s * since_s);
     } else if (fault.kind == Fault::Kind::nan && (!done || since_s < fault.size)) {
       sample.position[0] = std::numeric_limits<double>::quiet_NaN();
       done = true;

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <libusb.h>
 
+#include "ages.h"
+
 namespace kerf::drivers {
 namespace {
 
@@ -21,8 +23,6 @@ constexpr std::size_t transfer_count =
 constexpr std::size_t fifo_packets = 984 / channel_count;  // what an earlier program may have left in it
 constexpr std::int64_t wait_ns = 20'000'000;
 constexpr std::int64_t silent_ns = 230'000'000;  // below the 256 packets after which their counter wraps
-constexpr std::int64_t stale_ns = 20'000'000;
-constexpr std::int64_t given_up_ns = 1'000'000'000;
 constexpr int drain_timeout_ms = 5;
 constexpr usb::Identity labjack{labjack_u6::vendor, labjack_u6::product, "LabJack U6"};
 
@@ -80,7 +80,7 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
   info_ = {
       .uri = uri_,
       .model = fmt::format("LabJack U6{}", identification_.pro ? "-Pro" : ""),
-      .about = "force/torque transducer on six channels; 1000 Hz",
+      .about = std::string(about),
       .axes = {axis("x", false), axis("y", false), axis("z", false), axis("rx", true), axis("ry", true),
                axis("rz", true)},
       .channels = {{.name = "force_age", .unit = "s"}, {.name = "force_scan", .unit = "1"}},
@@ -221,7 +221,7 @@ void ForceSensorU6::stream(const std::stop_token& stop) noexcept {
       last_scans = scans_.load(std::memory_order_relaxed);
       last_scan_ns = now;
     }
-    if (now - last_scan_ns > given_up_ns) lost_.store(true);
+    if (now - last_scan_ns > gone_ns) lost_.store(true);
     const bool silent = now - last_packet_ns_ > silent_ns;
     if (!lost_.load(std::memory_order_relaxed) && (broken_ || silent) && !restart()) lost_.store(true);
   }
@@ -317,7 +317,7 @@ Status ForceSensorU6::read(double now_s, Sample& sample) noexcept {
   sample.channels[0] = has_scan_ ? 1e-9 * static_cast<double>(age_ns) : nothing;
   sample.channels[1] = has_scan_ ? static_cast<double>(scan_.number) : nothing;
   if (fresh) return Status::ok;
-  return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > given_up_ns ? Status::lost : Status::fault;
+  return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > gone_ns ? Status::lost : Status::fault;
 }
 
 Status ForceSensorU6::write(const Axes& force) noexcept {

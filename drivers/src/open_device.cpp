@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <charconv>
 #include <optional>
 #include <utility>
@@ -19,6 +21,10 @@ namespace kerf::drivers {
 
 namespace {
 
+[[noreturn]] void refuse_name(std::string_view name) {
+  throw DeviceError("no device '" + std::string(name) + "'; 'kerf devices' lists those that there are");
+}
+
 std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroundings surroundings) {
   if (parsed.name == "sim:scissors") {
     return std::make_unique<SimulatedScissors>(uri, SimulatedScissors::parse_options(std::move(parsed)),
@@ -32,55 +38,74 @@ std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroun
     return std::make_unique<SimulatedPremium>(uri, SimulatedPremium::parse_options(std::move(parsed)),
                                               std::move(surroundings));
   }
-  throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
+  refuse_name(parsed.name);
 }
 
-/// "falcon:1" has the scheme "falcon" and the number 1.
-struct Numbered {
-  std::string_view scheme;
-  std::size_t number = 0;
+/// What a URI of an attached device says, and what ends the wait for it.
+struct Wanted {
+  std::string_view uri;
+  Uri parsed;
+  std::size_t number = 0;  ///< 1 of "falcon:1"
+  const std::atomic<bool>* stop = nullptr;
 };
-std::optional<Numbered> numbered(std::string_view name) {
-  const auto colon = name.find(':');
-  if (colon == std::string_view::npos) return std::nullopt;
-  Numbered found{.scheme = name.substr(0, colon)};
-  const std::string_view digits = name.substr(colon + 1);
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), found.number);
+
+std::unique_ptr<Device> open_falcon(const Wanted& wanted) {
+  return std::make_unique<Falcon>(wanted.uri, wanted.number, Falcon::parse_options(wanted.parsed),
+                                  wanted.stop);
+}
+std::unique_ptr<Device> open_spacemouse(const Wanted& wanted) {
+  return std::make_unique<SpaceMouse>(wanted.uri, wanted.number, SpaceMouse::parse_options(wanted.parsed));
+}
+std::unique_ptr<Device> open_hid(const Wanted& wanted) {
+  const auto& product = WoodenHaptics::product(wanted.parsed.name);
+  return std::make_unique<WoodenHaptics>(wanted.uri, product,
+                                         WoodenHaptics::parse_options(wanted.parsed, product), wanted.stop);
+}
+std::unique_ptr<Device> open_u6(const Wanted& wanted) {
+  return std::make_unique<ForceSensorU6>(wanted.uri, wanted.number,
+                                         ForceSensorU6::parse_options(wanted.uri, wanted.parsed));
+}
+
+struct Scheme {
+  std::string_view name;
+  bool numbered;  ///< a number follows the colon
+  std::unique_ptr<Device> (*open)(const Wanted&);
+};
+constexpr std::array<Scheme, 4> schemes{{{"falcon", true, open_falcon},
+                                         {"spacemouse", true, open_spacemouse},
+                                         {"hid", false, open_hid},
+                                         {"u6", true, open_u6}}};
+
+std::optional<std::size_t> number_in(std::string_view digits) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error != std::errc{} || end != digits.data() + digits.size()) return std::nullopt;
-  return found;
+  return number;
+}
+
+void refuse_surroundings(std::string_view uri, const Surroundings& surroundings) {
+  const bool meets_tissue =
+      surroundings.tissue_of_axes || std::ranges::any_of(surroundings.tissue, [](const Tissue& tissue) {
+        return static_cast<bool>(tissue);
+      });
+  if (meets_tissue) {
+    throw DeviceError(std::string(uri) + ": a scene's tissue is for simulated devices alone");
+  }
+  if (surroundings.pass_time) {
+    throw DeviceError(std::string(uri) + ": hardware runs by the clock on the wall; leave out --virtual");
+  }
 }
 
 std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed,
                                       const Surroundings& surroundings) {
-  const auto found = numbered(parsed.name);
-  const auto refuse_surroundings = [&] {
-    const bool meets_tissue = std::ranges::any_of(
-        surroundings.tissue, [](const Tissue& tissue) { return static_cast<bool>(tissue); });
-    if (meets_tissue)
-      throw DeviceError(std::string(uri) + ": a scene's tissue is for simulated devices alone");
-    if (surroundings.pass_time) {
-      throw DeviceError(std::string(uri) + ": hardware runs by the clock on the wall; leave out --virtual");
-    }
-  };
-  if (found && found->scheme == "falcon") {
-    refuse_surroundings();
-    return std::make_unique<Falcon>(uri, found->number, Falcon::parse_options(parsed), surroundings.stop);
-  }
-  if (found && found->scheme == "spacemouse") {
-    refuse_surroundings();
-    return std::make_unique<SpaceMouse>(uri, found->number, SpaceMouse::parse_options(parsed));
-  }
-  if (parsed.name.starts_with("hid:")) {
-    const auto& product = WoodenHaptics::product(parsed.name);
-    refuse_surroundings();
-    return std::make_unique<WoodenHaptics>(uri, product, WoodenHaptics::parse_options(parsed, product),
-                                           surroundings.stop);
-  }
-  if (found && found->scheme == "u6") {
-    refuse_surroundings();
-    return std::make_unique<ForceSensorU6>(uri, found->number, ForceSensorU6::parse_options(uri, parsed));
-  }
-  throw DeviceError("no device '" + parsed.name + "'; 'kerf devices' lists those that there are");
+  const std::string_view name = parsed.name;
+  const auto colon = std::min(name.find(':'), name.size());
+  const auto* scheme = std::ranges::find(schemes, name.substr(0, colon), &Scheme::name);
+  const auto number = number_in(name.substr(std::min(colon + 1, name.size())));
+  if (scheme == schemes.end() || colon == name.size() || (scheme->numbered && !number)) refuse_name(name);
+  refuse_surroundings(uri, surroundings);
+  return scheme->open(
+      {.uri = uri, .parsed = parsed, .number = number.value_or(0), .stop = surroundings.stop});
 }
 
 /// "falcon:" and 1 make "falcon:1"; a HID product is its own name, and its others have an option.
@@ -128,13 +153,12 @@ std::vector<AttachedDevice> list_attached() {
            .problem = one.may_open ? "" : "no permission for " + one.node + "; " + usb::permission_mend()});
     }
   };
-  add("falcon:", "Novint Falcon, 3 axes with force; needs its firmware", find_falcons());
-  add("spacemouse:", "6-DOF input, no force; 62.5 Hz", find_spacemice());
+  add("falcon:", Falcon::about, find_falcons());
+  add("spacemouse:", SpaceMouse::about, find_spacemice());
   for (const auto& product : WoodenHaptics::products()) {
     add(product.scheme, product.about, WoodenHaptics::find(product));
   }
-  add("u6:", "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml",
-      find_labjack_u6());
+  add("u6:", ForceSensorU6::about, find_labjack_u6());
   return all;
 }
 

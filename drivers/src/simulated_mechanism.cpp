@@ -38,6 +38,7 @@ SimulatedMechanism::SimulatedMechanism(DeviceInfo info, const Options& options, 
       count_(info_.axes.size()),
       first_truth_(info_.channels.size()),
       tissue_(std::move(surroundings.tissue)),
+      tissue_of_axes_(std::move(surroundings.tissue_of_axes)),
       noise_(options.seed) {
   for (std::size_t at = 0; at < count_; ++at) {
     const AxisInfo& about = info_.axes[at];
@@ -67,6 +68,16 @@ void SimulatedMechanism::step(States& states, const Axes& force) noexcept {
 }
 
 void SimulatedMechanism::touch_tissue() noexcept {
+  if (tissue_of_axes_) {
+    Axes position{};
+    Axes velocity{};
+    for (std::size_t at = 0; at < count_; ++at) {
+      position[at] = states_[at].travel_m / lever_[at];
+      velocity[at] = states_[at].speed_m_s / lever_[at];
+    }
+    tissue_force_ = tissue_of_axes_(position, velocity, sub_step_s);
+    return;
+  }
   for (std::size_t at = 0; at < count_; ++at) {
     const SimulatedAxis::State& state = states_[at];
     if (const Tissue& tissue = tissue_[at]) {

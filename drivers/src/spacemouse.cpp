@@ -52,7 +52,7 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
   const double swing = options.swing_rad;
   return {.uri = std::string(uri),
           .model = name,
-          .about = "6-DOF input, no force; 62.5 Hz",
+          .about = std::string(SpaceMouse::about),
           .axes = {axis("x", false, reach), axis("y", false, reach), axis("z", false, reach),
                    axis("rx", true, swing), axis("ry", true, swing), axis("rz", true, swing)},
           .channels = {{.name = "report_age", .unit = "s"}, {.name = "buttons", .unit = "1"}},

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "ages.h"
+#include "interruption.h"
+
 namespace kerf::drivers {
 namespace {
 
@@ -17,17 +20,13 @@ using Configuration = mechanisms::WoodenHaptics::Configuration;
 using Vector = mechanisms::WoodenHaptics::Vector;
 
 constexpr std::int64_t ms_ns = 1'000'000;
-constexpr std::int64_t most_command_age_ns = 50 * ms_ns;  // five periods of the slowest loop
-constexpr std::int64_t keep_alive_ns = 50 * ms_ns;        // a tenth of the device's own watchdog
+constexpr std::int64_t keep_alive_ns = 50 * ms_ns;  // a tenth of the device's own watchdog
 constexpr std::int64_t answer_wait_ns = 10 * ms_ns;
 constexpr std::int64_t idle_ns = 2 * ms_ns;  // V2 and V3 without a tick: so often a position nevertheless
 constexpr std::int64_t most_goodbye_ns = 20 * ms_ns;
-constexpr unsigned goodbye_reports = 3;  // the order that waits, this one, and the turn that applies it
-constexpr std::int64_t stale_ns = 20 * ms_ns;
-constexpr std::int64_t gone_ns = 1000 * ms_ns;
-constexpr std::uint16_t usage_page =
-    0xFFAB;                             // a Teensy has an interface for its own debugging beside this one
-constexpr int most_preset_error = 200;  // counts: a hand holds the tip
+constexpr unsigned goodbye_reports = 3;       // the order that waits, this one, and the turn that applies it
+constexpr std::uint16_t usage_page = 0xFFAB;  // a Teensy has another interface, for its own debugging
+constexpr int most_preset_error = 200;        // counts: a hand holds the tip
 constexpr unsigned many_refusals = 3;
 // Of a stylus with a switch, which its firmware adds to the counter of the first gimbal encoder.
 constexpr int switch_threshold = 5000;
@@ -69,11 +68,6 @@ Configuration with_most_current(const WoodenHaptics::Options& options) {
   Configuration made = *options.model;
   made.most_current_a = options.most_current_a;
   return made;
-}
-
-void refuse_if_stopped(const WoodenHaptics::Product& product, const std::atomic<bool>* stop) {
-  if (stop != nullptr && stop->load())
-    throw DeviceError(fmt::format("{}: opening it was interrupted", product.what));
 }
 
 }  // namespace
@@ -159,7 +153,7 @@ Report WoodenHaptics::first_report(const Product& product, const std::atomic<boo
   int wanted = streams() ? 1 : 3;
   std::optional<Report> newest;
   while (usb::now_ns() < until_ns) {
-    refuse_if_stopped(product, stop);
+    refuse_if_stopped(product.what, stop);
     if (!streams()) send({});
     int size = device_.read(bytes, 10);
     bool came = false;

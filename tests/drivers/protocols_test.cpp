@@ -164,6 +164,37 @@ TEST(WoodenHapticsProtocol, WritesCurrentsAndCounters) {
   EXPECT_EQ(woodenhaptics::wrapped_difference(-32760, 32760), 16) << "over the end of 16 bits";
 }
 
+TEST(WoodenHapticsProtocol, ADeviceReadsWhatTheHostWrites) {
+  using woodenhaptics::Generation;
+  using woodenhaptics::Order;
+  for (const auto generation : {Generation::v1, Generation::v2, Generation::v3}) {
+    const auto currents = woodenhaptics::set_currents({1000, -1000, 5999}, generation);
+    const auto bytes = std::span(currents.bytes).subspan(1, currents.size - 1);
+    EXPECT_EQ(woodenhaptics::parse_order(bytes, generation), (Order{.current_ma = {1000, -1000, 5999}}));
+    const std::size_t told = generation == Generation::v1 ? 8 : 14;
+    EXPECT_TRUE(woodenhaptics::parse_order(bytes.first(told), generation));
+    EXPECT_FALSE(woodenhaptics::parse_order(bytes.first(told - 1), generation));
+  }
+  for (const auto generation : {Generation::v2, Generation::v3}) {
+    const auto preset = woodenhaptics::preset_counters({1, -2, 3, -4, 5, -6}, generation);
+    EXPECT_EQ(woodenhaptics::parse_order(std::span(preset->bytes).subspan(1), generation),
+              (Order{.preset = true, .counts = {1, -2, 3, -4, 5, -6}}));
+  }
+}
+
+TEST(WoodenHapticsProtocol, TheHostReadsWhatADeviceWrites) {
+  using woodenhaptics::Generation;
+  for (const auto generation : {Generation::v1, Generation::v2, Generation::v3}) {
+    const bool v1 = generation == Generation::v1;
+    const woodenhaptics::Report report{.encoder = {1, -2, 32767, v1 ? 0 : -32768, v1 ? 0 : 5, v1 ? 0 : -6},
+                                       .button = !v1,
+                                       .counter = v1 ? 0xFFFE : 0};
+    const auto input = woodenhaptics::encode(report, generation);
+    EXPECT_EQ(input.size, woodenhaptics::report_size(generation));
+    EXPECT_EQ(woodenhaptics::parse_report(std::span(input.bytes).first(input.size), generation), report);
+  }
+}
+
 TEST(WoodenHapticsProtocol, FollowsCountersBeyondSixteenBitsAndBelievesNoLeap) {
   woodenhaptics::Counters counters;
   counters.start({32000, -5, 0, 0, 0, 0});

@@ -15,7 +15,7 @@
 
 #include <kerf/drivers/device.h>
 
-namespace kerf::tests {
+namespace kerf::test {
 
 /// A device of kerf-emulate, plugged into this machine's kernel while the object lives.
 class Emulator {
@@ -91,4 +91,4 @@ void loop(drivers::Device& device, int ticks, F each) {
   }
 }
 
-}  // namespace kerf::tests
+}  // namespace kerf::test

@@ -16,52 +16,33 @@
 #include "emulator.h"
 #include "falcon_bench.h"
 #include "support/program.h"
+#include "wall.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* trace = "/tmp/wall-trace.csv";
-
-/// A wall of 400 N/m at z = 0.12 m that is pressed inwards, with a viscous arm beside the spring.
-std::string wall_file() {
-  const std::string path = "/tmp/wall.law.toml";
-  test::write_text(path, R"(model = "kelvin"
-axis = "z"
-position_unit = "m"
-force_unit = "N"
-
-[contact]
-position = { value = 0.12, unit = "m" }
-direction = "decreasing"
-
-[parameters]
-parallel_stiffness = { value = 400, unit = "N/m" }
-series_stiffness = { value = 100, unit = "N/m" }
-damping = { value = 2, unit = "N·s/m" }
-)");
-  return path;
-}
-
-/// Records the wall; the recording stays in `file`.
-test::Outcome record(const std::string& file, const std::string& emulated, double seconds,
-                     const std::vector<std::string>& emulator_arguments = {}) {
+/// Records a wall at z = 0.12 m; the recording stays in the folder as wall.h5.
+Outcome record(const TemporaryFolder& folder, const std::string& emulated, double seconds,
+               const std::vector<std::string>& emulator_arguments = {}) {
+  write_text(folder / "wall.law.toml", wall_below(0.12, "2"));
   Emulator emulator(emulated, emulator_arguments);
   EXPECT_TRUE(becomes_attached("falcon:0"));
-  auto outcome = test::run_kerf({"record", "--device", "falcon:0?firmware=" + firmware_file(), "--law",
-                                 wall_file(), "--seconds", std::to_string(seconds), "--force", "-o", file});
+  auto outcome = run_kerf({"record", "--device", "falcon:0?firmware=" + firmware_file(folder), "--law",
+                           folder / "wall.law.toml", "--seconds", std::to_string(seconds), "--force", "-o",
+                           folder / "wall.h5"});
   emulator.unplug();
   EXPECT_TRUE(becomes_attached("falcon:", false));
   return outcome;
 }
 
 TEST(Falcon, AWallOfTenSecondsIsRecordedAndSentAsItsTorques) {
-  const std::string file = "/tmp/wall.h5";
-  const auto outcome = record(file, std::string("falcon?trace=") + trace, 10.0);
+  const TemporaryFolder folder;
+  const auto outcome = record(folder, "falcon?trace=" + (folder / "trace.csv").string(), 10.0);
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
-  EXPECT_EQ(test::run_kerf({"validate", file}).exit_status, 0);
-  const schema::Recording wall = schema::read_recording(file);
+  EXPECT_EQ(run_kerf({"validate", folder / "wall.h5"}).exit_status, 0);
+  const schema::Recording wall = schema::read_recording(folder / "wall.h5");
   EXPECT_EQ(wall.rows(), 10000U);
   ASSERT_EQ(wall.axes.size(), 3U);
   double deepest = 0.0;
@@ -79,7 +60,7 @@ TEST(Falcon, AWallOfTenSecondsIsRecordedAndSentAsItsTorques) {
   EXPECT_NEAR(strongest, 400.0 * deepest, 0.5);
 
   // What went over the wire are the torques of the recorded forces, in their order from the first touch on.
-  const auto frames = read_trace(trace);
+  const auto frames = read_trace(folder / "trace.csv");
   const auto touch = std::ranges::find_if(frames, [](const TraceRow& one) {
     return one.raw != std::array{0, 0, 0};
   });
@@ -108,13 +89,13 @@ TEST(Falcon, AWallOfTenSecondsIsRecordedAndSentAsItsTorques) {
 }
 
 TEST(Falcon, UnpluggedWhileItIsRecordedTheRecordingIsClosedAndValid) {
-  const std::string file = "/tmp/unplugged.h5";
-  const auto outcome = record(file, "falcon?firmware=loaded&homed=on", 10.0, {"--fault", "unplug@1.8"});
+  const TemporaryFolder folder;
+  const auto outcome = record(folder, "falcon?firmware=loaded&homed=on", 10.0, {"--fault", "unplug@1.8"});
   EXPECT_EQ(outcome.exit_status, 3);
   EXPECT_THAT(outcome.errors, HasSubstr("falcon:0"));
   EXPECT_THAT(outcome.errors, HasSubstr("the device was lost after"));
-  EXPECT_EQ(test::run_kerf({"validate", file}).exit_status, 0);
-  const auto recording = schema::read_recording(file);
+  EXPECT_EQ(run_kerf({"validate", folder / "wall.h5"}).exit_status, 0);
+  const auto recording = schema::read_recording(folder / "wall.h5");
   EXPECT_THAT(recording.header.status, HasSubstr("aborted: the device was lost"));
   ASSERT_GT(recording.rows(), 1000U);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -123,10 +104,11 @@ TEST(Falcon, UnpluggedWhileItIsRecordedTheRecordingIsClosedAndValid) {
 }
 
 TEST(Falcon, AtTheEndOfARecordingTheMotorsAreLetGo) {
+  const TemporaryFolder folder;
   const auto outcome =
-      record("/tmp/short.h5", std::string("falcon?firmware=loaded&homed=on&trace=") + trace, 1.0);
+      record(folder, "falcon?firmware=loaded&homed=on&trace=" + (folder / "trace.csv").string(), 1.0);
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
-  const auto frames = read_trace(trace);
+  const auto frames = read_trace(folder / "trace.csv");
   ASSERT_FALSE(frames.empty());
   EXPECT_THAT(frames.back().raw, testing::ElementsAre(0, 0, 0));
   EXPECT_TRUE(std::ranges::any_of(frames, [](const TraceRow& row) { return row.raw[0] < -100; }));
@@ -146,11 +128,11 @@ void append(std::string& text, const char* name, const std::vector<T>& values) {
 
 // tests/usb/same-twice runs it in two guests: what it writes must be the same to the last bit.
 TEST(FalconTwice, WritesTheSameRecordingInEachGuest) {
-  const char* folder = std::getenv("KERF_TWICE");
-  if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
-  const std::string file = "/tmp/twice.h5";
-  ASSERT_EQ(record(file, "falcon", 1.0).exit_status, 0);
-  const auto recording = schema::read_recording(file);
+  const char* kept = std::getenv("KERF_TWICE");
+  if (kept == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
+  const TemporaryFolder folder;
+  ASSERT_EQ(record(folder, "falcon", 1.0).exit_status, 0);
+  const auto recording = schema::read_recording(folder / "wall.h5");
   EXPECT_EQ(recording.rows(), 1000U);
   std::string text = recording.header.device_toml;
   append(text, "time", recording.time);
@@ -164,7 +146,7 @@ TEST(FalconTwice, WritesTheSameRecordingInEachGuest) {
   append(text, "write_time", recording.write_time);
   append(text, "flags", recording.flags);
   for (const auto& channel : recording.channels) append(text, channel.name.c_str(), channel.values);
-  test::write_text(std::string(folder) + "/recording", text);
+  write_text(std::string(kept) + "/recording", text);
 }
 
 /// The share of a fifth of a second in which this program, doing nothing but look at the clock, did not get
@@ -207,4 +189,4 @@ TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

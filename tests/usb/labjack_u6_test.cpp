@@ -2,11 +2,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <ios>
 #include <iostream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,145 +13,18 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/sensed_device.h>
-#include <kerf/schema/recording.h>
-#include <kerf/schema/validate.h>
 
 #include "emulator.h"
-#include "support/allocation_counter.h"
+#include "opening.h"
 #include "support/program.h"
+#include "u6_bench.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 using drivers::Status;
 using testing::AllOf;
 using testing::HasSubstr;
-
-const std::string calibration = KERF_SOURCE_DIR "/examples/u6.calibration.toml";
-const std::string sensor = "u6:0?calibration=" + calibration;
-constexpr const char* trace_file = "/tmp/u6-trace.csv";
-
-// Half a code of 0.316 mV on each input, through the rows of the example's matrix.
-constexpr std::array resolution{6.9e-4, 6.8e-4, 2.1e-3, 3.4e-5, 3.5e-5, 3.3e-5};
-
-/// What the emulator says that acted, by the host's clock.
-class Trace {
- public:
-  Trace() {
-    std::ifstream in(trace_file);
-    std::string line;
-    std::getline(in, line);
-    while (std::getline(in, line)) {
-      std::ranges::replace(line, ',', ' ');
-      std::istringstream words(line);
-      Row row;
-      double scan = 0.0;
-      double device_s = 0.0;
-      words >> scan >> device_s >> row.time_s;
-      for (double& one : row.wrench) words >> one;
-      if (words) rows_.push_back(row);
-    }
-  }
-  struct Row {
-    double time_s = 0.0;
-    drivers::Axes wrench{};
-  };
-  /// Linearly between the scans: sines of 2.3 Hz bend by 2 parts in a million within a millisecond.
-  [[nodiscard]] drivers::Axes at(double time_s) const {
-    const auto after = std::ranges::lower_bound(rows_, time_s, {}, &Row::time_s);
-    if (after == rows_.begin()) return after->wrench;
-    if (after == rows_.end()) return rows_.back().wrench;
-    const auto before = after - 1;
-    const double share = (time_s - before->time_s) / (after->time_s - before->time_s);
-    drivers::Axes wrench{};
-    for (std::size_t i = 0; i < wrench.size(); ++i) {
-      wrench[i] = before->wrench[i] + share * (after->wrench[i] - before->wrench[i]);
-    }
-    return wrench;
-  }
-  [[nodiscard]] std::size_t size() const { return rows_.size(); }
-
- private:
-  std::vector<Row> rows_;
-};
-
-struct Seen {
-  double taken_s = 0.0;  ///< on the host's clock: start of the loop + time - force_age
-  drivers::Axes wrench{};
-  double scan = 0.0;
-  double age_s = 0.0;
-  Status status = Status::ok;
-};
-
-/// Reads a sensor for so many ticks of a millisecond.
-std::vector<Seen> watch(drivers::Device& device, int ticks, const std::function<void(int)>& each = {}) {
-  const auto start = std::chrono::steady_clock::now();
-  const double start_s =
-      1e-9 * static_cast<double>(
-                 std::chrono::duration_cast<std::chrono::nanoseconds>(start.time_since_epoch()).count());
-  std::vector<Seen> seen(static_cast<std::size_t>(ticks));
-  for (int tick = 0; tick < ticks; ++tick) {
-    if (each) each(tick);
-    std::this_thread::sleep_until(start + std::chrono::milliseconds(tick));
-    drivers::Sample sample;
-    Seen& one = seen[static_cast<std::size_t>(tick)];
-    {
-      const test::NoAllocation guard;
-      one.status = device.read(1e-3 * tick, sample);
-      (void)device.write({});
-    }
-    one.wrench = sample.force_measured;
-    one.age_s = sample.channels[0];
-    one.scan = sample.channels[1];
-    one.taken_s = start_s + 1e-3 * tick - one.age_s;
-  }
-  return seen;
-}
-
-std::size_t measured(const std::vector<Seen>& seen) {
-  return static_cast<std::size_t>(std::ranges::count(seen, Status::ok, &Seen::status));
-}
-
-/// Every wrench that was seen is what acted at the time that it was given, on every axis; up to 0.1 ms of
-/// misalignment.
-void expect_what_acted(const std::vector<Seen>& seen) {
-  constexpr double two_pi = 6.283185307179586;
-  constexpr std::array steepest{8.0 * two_pi * 0.7, 8.0 * two_pi * 1.1, 8.0 * two_pi * 1.3,
-                                0.4 * two_pi * 1.7, 0.4 * two_pi * 1.9, 0.4 * two_pi * 2.3};
-  const Trace trace;
-  ASSERT_GT(trace.size(), 100U);
-  unsigned wrong = 0;
-  for (const Seen& one : seen) {
-    if (one.status != Status::ok) continue;
-    const drivers::Axes acted = trace.at(one.taken_s);
-    for (std::size_t i = 0; i < acted.size(); ++i) {
-      const double most = 1.01 * resolution[i] + 1e-4 * steepest[i];
-      if (std::abs(one.wrench[i] - acted[i]) > most && ++wrong < 5) {
-        ADD_FAILURE() << "axis " << i << ", scan " << one.scan << ": " << one.wrench[i] << " for "
-                      << acted[i];
-      }
-    }
-  }
-  EXPECT_EQ(wrong, 0U);
-}
-
-/// The largest step of the scans' numbers from one tick to the next.
-double largest_jump(const std::vector<Seen>& seen) {
-  double largest = 0.0;
-  for (std::size_t i = 1; i < seen.size(); ++i) {
-    if (seen[i - 1].scan >= 0.0) largest = std::max(largest, seen[i].scan - seen[i - 1].scan);
-  }
-  return largest;
-}
-
-std::string refusal(const std::string& uri) {
-  try {
-    (void)drivers::open_device(uri);
-  } catch (const drivers::DeviceError& error) {
-    return error.what();
-  }
-  return "opened";
-}
 
 TEST(U6, SaysWhoItIsAndWhatMadeItsNumbers) {
   const Emulator emulator("u6?serial=360001234");
@@ -174,11 +45,11 @@ TEST(U6, IsNoForceSensorWithoutACalibration) {
 }
 
 TEST(U6, RefusesTheTransducerOfAnotherLabJack) {
+  const TemporaryFolder folder;
   const Emulator emulator("u6?serial=7");
   ASSERT_TRUE(becomes_attached("u6:0"));
-  std::ifstream in(calibration);
-  std::ofstream("/tmp/other.toml") << "serial = 8\n" << in.rdbuf();
-  EXPECT_THAT(refusal("u6:0?calibration=/tmp/other.toml"),
+  write_text(folder / "other.toml", "serial = 8\n" + read_text(calibration));
+  EXPECT_THAT(refusal("u6:0?calibration=" + (folder / "other.toml").string()),
               AllOf(HasSubstr("serial number 8"), HasSubstr("this one has 7")));
 }
 
@@ -203,8 +74,9 @@ TEST(U6, LosesNothingInAMinuteAndKnowsTheDriftOfItsClock) {
 }
 
 TEST(U6, MeasuresTheWrenchThatActed) {
+  const TemporaryFolder folder;
   // Constants 2 % off the nominal ones: those of the device's memory are what counts.
-  Emulator emulator(std::string("u6?trim=20000ppm&drift=-80ppm&trace=") + trace_file);
+  Emulator emulator("u6?trim=20000ppm&drift=-80ppm&trace=" + (folder / "trace.csv").string());
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 2000);
@@ -214,22 +86,24 @@ TEST(U6, MeasuresTheWrenchThatActed) {
   for (const Seen& one : seen)
     largest = std::max(largest, one.status == Status::ok ? std::abs(one.wrench[2]) : 0.0);
   EXPECT_NEAR(largest, 8.0, 0.01);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, MakesAGapOfPacketsThatAreMissing) {
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.0:7"});
+  const TemporaryFolder folder;
+  Emulator emulator("u6?trace=" + (folder / "trace.csv").string(), {"--fault", "drop@1.0:7"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 1500);
   emulator.unplug();
   EXPECT_EQ(figure(*device, "scans_lost"), 7.0);
   EXPECT_EQ(largest_jump(seen), 8.0);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, MakesAGapOfPacketsThatWereTurnedOrTorn) {
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "corrupt@0.8:3,split@1.1:2"});
+  const TemporaryFolder folder;
+  Emulator emulator("u6?trace=" + (folder / "trace.csv").string(), {"--fault", "corrupt@0.8:3,split@1.1:2"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 1500);
@@ -237,11 +111,12 @@ TEST(U6, MakesAGapOfPacketsThatWereTurnedOrTorn) {
   EXPECT_EQ(figure(*device, "checksum_errors"), 3.0 + 2.0 * 2.0);
   EXPECT_EQ(figure(*device, "scans_lost"), 5.0);
   EXPECT_EQ(largest_jump(seen), 4.0);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, MakesAGapOfScansThatFoundNoRoom) {
-  Emulator emulator(std::string("u6?overflow=0.5s&trace=") + trace_file);
+  const TemporaryFolder folder;
+  Emulator emulator("u6?overflow=0.5s&trace=" + (folder / "trace.csv").string());
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 1500);
@@ -253,11 +128,12 @@ TEST(U6, MakesAGapOfScansThatFoundNoRoom) {
   // From 20 ms after the last scan there is nothing to say for 170 ms.
   EXPECT_NEAR(static_cast<double>(seen.size() - measured(seen)), 170.0, 10.0);
   EXPECT_EQ(seen.back().status, Status::ok);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, StartsAStalledStreamAnew) {
-  Emulator emulator(std::string("u6?drift=80ppm&trace=") + trace_file, {"--fault", "stall@1.8:1"});
+  const TemporaryFolder folder;
+  Emulator emulator("u6?drift=80ppm&trace=" + (folder / "trace.csv").string(), {"--fault", "stall@1.8:1"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 2500);
@@ -268,12 +144,13 @@ TEST(U6, StartsAStalledStreamAnew) {
   // The numbers go on as if it had not stopped: as many as milliseconds have passed.
   EXPECT_NEAR(seen.back().scan - seen[100].scan, 2399.0, 2.0);
   EXPECT_NEAR(figure(*device, "scans") + figure(*device, "scans_lost"), seen.back().scan + 1.0, 2.0);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, StartsASilentStreamAnew) {
+  const TemporaryFolder folder;
   // 400 packets: more than their counter counts.
-  Emulator emulator(std::string("u6?trace=") + trace_file, {"--fault", "drop@1.0:400"});
+  Emulator emulator("u6?trace=" + (folder / "trace.csv").string(), {"--fault", "drop@1.0:400"});
   ASSERT_TRUE(becomes_attached("u6:0"));
   const auto device = drivers::open_device(sensor);
   const auto seen = watch(*device, 2000);
@@ -281,7 +158,7 @@ TEST(U6, StartsASilentStreamAnew) {
   EXPECT_GE(figure(*device, "restarts"), 1.0);
   EXPECT_EQ(seen.back().status, Status::ok);
   EXPECT_NEAR(seen.back().scan - seen[100].scan, 1899.0, 2.0);
-  expect_what_acted(seen);
+  expect_what_acted(seen, folder / "trace.csv");
 }
 
 TEST(U6, IsLostWhenItIsUnpluggedAndComesBack) {
@@ -301,14 +178,8 @@ TEST(U6, IsLostWhenItIsUnpluggedAndComesBack) {
   EXPECT_EQ(watch(*drivers::open_device(sensor), 100).back().status, Status::ok);
 }
 
-std::size_t entries(const char* folder) {
-  std::size_t count = 0;
-  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder)) ++count;
-  return count;
-}
-
 TEST(U6, LeavesNothingBehindTwentyTimes) {
-  std::size_t descriptors = 0;
+  Held at_first;
   for (int time = 0; time < 20; ++time) {
     Emulator emulator("u6");
     ASSERT_TRUE(becomes_attached("u6:0"));
@@ -320,24 +191,9 @@ TEST(U6, LeavesNothingBehindTwentyTimes) {
       });
       EXPECT_EQ(seen[39].status, Status::ok) << time;
     }
-    if (time == 0) descriptors = entries("/proc/self/fd");
+    if (time == 0) at_first = held();
   }
-  EXPECT_EQ(entries("/proc/self/fd"), descriptors);
-  EXPECT_EQ(entries("/proc/self/task"), 1U);
-}
-
-TEST(U6, TakesOverAStreamThatAnotherProgramLeftRunning) {
-  const Emulator emulator("u6");
-  ASSERT_TRUE(becomes_attached("u6:0"));
-  // Killed at work, it stops nothing.
-  const auto killed = test::run({"timeout", "-s", "KILL", "1.5", KERF_PROGRAM, "record", "--device",
-                                 "sim:pose6", "--sensor", sensor, "--seconds", "20", "-o", "/tmp/killed.h5"});
-  EXPECT_NE(killed.exit_status, 0);
-  const auto device = drivers::open_device(sensor);
-  const auto seen = watch(*device, 500);
-  EXPECT_GT(measured(seen), 490U);
-  EXPECT_EQ(figure(*device, "scans_lost"), 0.0);
-  EXPECT_EQ(figure(*device, "checksum_errors"), 0.0);
+  EXPECT_EQ(held(), at_first);
 }
 
 TEST(U6, OfTwoProgramsOnlyOneHasIt) {
@@ -350,59 +206,9 @@ TEST(U6, OfTwoProgramsOnlyOneHasIt) {
 TEST(U6, SaysHowToObtainThePermission) {
   const Emulator emulator("u6");
   ASSERT_TRUE(becomes_attached("u6:0"));
-  ASSERT_EQ(seteuid(65534), 0);
-  const std::string why = refusal(sensor);
-  ASSERT_EQ(seteuid(0), 0);
-  EXPECT_THAT(why, AllOf(HasSubstr("no permission for /dev/bus/usb"), HasSubstr("70-kerf.rules")));
-}
-
-TEST(U6, JoinsARecordingOnItsClock) {
-  const Emulator emulator("u6?drift=80ppm");
-  ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor,
-                                  "--seconds", "3", "--json", "-o", "/tmp/joined.h5"});
-  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("\"device_figures\""), HasSubstr("\"clock_drift\"")));
-  EXPECT_TRUE(schema::validate("/tmp/joined.h5").empty());
-  const auto recording = schema::read_recording("/tmp/joined.h5");
-  ASSERT_EQ(recording.force_measured.size(), 2 * recording.rows());
-  EXPECT_NEAR(std::get<double>(recording.header.device_properties.at("clock_drift_ppm")), 80.0, 5.0);
-  EXPECT_EQ(std::get<double>(recording.header.device_properties.at("scans_lost")), 0.0);
-  EXPECT_THAT(recording.header.device_toml, HasSubstr("[sensor]"));
-  const auto drift = std::ranges::find_if(
-      recording.events, [](const auto& event) { return event.text.starts_with("clock_drift 8"); });
-  ASSERT_NE(drift, recording.events.end());
-  EXPECT_EQ(drift->kind, "device");
-  ASSERT_EQ(recording.channels.size(), 2U);
-  double largest = 0.0;
-  for (std::size_t row = 50; row < recording.rows(); ++row) {
-    ASSERT_TRUE(std::isfinite(recording.force_measured[2 * row])) << row;
-    // tz of 0.4 N·m on a lever of 36.94 mm.
-    largest = std::max(largest, std::abs(recording.force_measured[2 * row]));
-  }
-  EXPECT_NEAR(largest, 0.4 / 0.03694, 0.01);
-  for (const auto& channel : recording.channels) {
-    if (channel.name == "force_age") {
-      for (std::size_t row = 50; row < recording.rows(); ++row) ASSERT_LE(channel.values[row], 0.0021) << row;
-    } else {
-      EXPECT_EQ(channel.name, "force_scan");
-      EXPECT_NEAR(channel.values.back() - channel.values[100], static_cast<double>(recording.rows() - 101),
-                  2.0);
-    }
-  }
-}
-
-TEST(U6, ThatIsUnpluggedEndsARecordingThatIsKept) {
-  const Emulator emulator("u6", {"--seconds", "2"});
-  ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome = test::run({KERF_PROGRAM, "record", "--device", "sim:scissors", "--sensor", sensor,
-                                  "--seconds", "20", "-o", "/tmp/cut-off.h5"});
-  EXPECT_EQ(outcome.exit_status, 3) << outcome.errors;
-  EXPECT_THAT(outcome.errors, HasSubstr("the device was lost"));
-  EXPECT_TRUE(schema::validate("/tmp/cut-off.h5").empty());
-  const auto recording = schema::read_recording("/tmp/cut-off.h5");
-  EXPECT_EQ(recording.header.status, "aborted: the device was lost");
-  EXPECT_GT(recording.rows(), 500U);
+  const AsNobody guard;
+  EXPECT_THAT(refusal(sensor),
+              AllOf(HasSubstr("no permission for /dev/bus/usb"), HasSubstr("70-kerf.rules")));
 }
 
 TEST(U6, MeasuresBesideADeviceThatMeasuresNothing) {
@@ -441,30 +247,6 @@ TEST(U6Twice, SeesTheSameEachTime) {
   }
 }
 
-TEST(U6, ThatPausesIsAGapAndNoFaultOfTheDevice) {
-  const Emulator emulator("u6?overflow=1s");
-  ASSERT_TRUE(becomes_attached("u6:0"));
-  const auto outcome = test::run({KERF_PROGRAM, "check", KERF_SOURCE_DIR "/examples/kelvin.law.toml",
-                                  "--device", "sim:scissors", "--sensor", sensor, "--seconds", "2", "--floor",
-                                  "0", "--record", "/tmp/gap.h5", "--json"});
-  EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("\"device_fault\": 0"), HasSubstr("\"overflows\"")));
-  EXPECT_TRUE(schema::validate("/tmp/gap.h5").empty());
-  const auto recording = schema::read_recording("/tmp/gap.h5");
-  std::size_t gap = 0;
-  std::size_t rendered = 0;
-  for (std::size_t row = 500; row < recording.rows(); ++row) {
-    if (std::isfinite(recording.force_measured[2 * row])) continue;
-    ++gap;
-    rendered += recording.force_commanded[2 * row] != 0.0 ? 1U : 0U;
-  }
-  EXPECT_NEAR(static_cast<double>(gap), 170.0, 10.0);
-  const auto fitted = test::run({KERF_PROGRAM, "fit", "/tmp/gap.h5", "--models", "kelvin", "--contact", "0.5",
-                                 "--direction", "decreasing", "-o", "/tmp/fits"});
-  EXPECT_THAT(fitted.errors + fitted.output, HasSubstr("rows are not finite and are left out"));
-  std::cout << rendered << " of " << gap << " ticks without a measurement were rendered\n";
-}
-
 // By the clock on the wall.
 
 TEST(U6Rate, LosesNothingInTenSeconds) {
@@ -482,7 +264,8 @@ TEST(U6Rate, LosesNothingInTenSeconds) {
             << "; the machine stood still for up to " << longest_s << " s\n";
   if (longest_s > 0.15) GTEST_SKIP() << "too long for the emulator's buffer of 0.164 s";
   EXPECT_EQ(figure(*device, "scans_lost"), 0.0);
-  EXPECT_NEAR(figure(*device, "scan_rate"), 1000.0 / (1.0 + 80e-6), 0.5);
+  // By when the first and the last arrived in these ten seconds, each as late as the machine stood still.
+  EXPECT_NEAR(figure(*device, "scan_rate"), 1000.0 / (1.0 + 80e-6), 0.5 + 100.0 * longest_s);
   // A guest on a busy machine wakes late by tenths of a millisecond; it knows by itself how well it knows.
   EXPECT_NEAR(figure(*device, "clock_drift"), 80.0,
               std::max(5.0, 2.0 * figure(*device, "clock_drift_error")));
@@ -498,4 +281,4 @@ TEST(U6Rate, LosesNothingInTenSeconds) {
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

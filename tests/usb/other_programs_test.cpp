@@ -8,7 +8,7 @@
 
 #include "emulator.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 /// What a program says, on both of its outputs.
@@ -55,4 +55,4 @@ TEST(OtherPrograms, SpacenavdUsesTheSpaceNavigator) {
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

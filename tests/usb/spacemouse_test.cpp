@@ -6,8 +6,9 @@
 #include <kerf/drivers/device.h>
 
 #include "emulator.h"
+#include "opening.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 using drivers::Status;
@@ -74,30 +75,16 @@ TEST(SpaceMouse, OfTwoProgramsOnlyOneHasIt) {
   const Emulator emulator("spacemouse");
   ASSERT_TRUE(becomes_attached("spacemouse:0"));
   const auto device = drivers::open_device("spacemouse:0");
-  try {
-    (void)drivers::open_device("spacemouse:0");
-    FAIL() << "opened twice";
-  } catch (const drivers::DeviceError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("in use by another program"));
-  }
+  EXPECT_THAT(refusal("spacemouse:0"), testing::HasSubstr("in use by another program"));
 }
 
 TEST(SpaceMouse, SaysHowToObtainThePermission) {
   const Emulator emulator("spacemouse");
   ASSERT_TRUE(becomes_attached("spacemouse:0"));
-  // As a user without rights; the children of this process are not asked.
-  ASSERT_EQ(seteuid(65534), 0);
-  std::string problem;
-  std::string refusal;
-  try {
-    (void)drivers::open_device("spacemouse:0");
-  } catch (const drivers::DeviceError& error) {
-    refusal = error.what();
-  }
-  ASSERT_EQ(seteuid(0), 0);
-  EXPECT_THAT(refusal, testing::AllOf(testing::HasSubstr("no permission for /dev/hidraw"),
-                                      testing::HasSubstr("70-kerf.rules")));
+  const AsNobody guard;
+  EXPECT_THAT(refusal("spacemouse:0"), testing::AllOf(testing::HasSubstr("no permission for /dev/hidraw"),
+                                                      testing::HasSubstr("70-kerf.rules")));
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

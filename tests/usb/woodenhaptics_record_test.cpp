@@ -14,35 +14,21 @@
 
 #include "emulator.h"
 #include "support/program.h"
-#include "woody_trace.h"
+#include "wall.h"
+#include "woody_bench.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 using mechanisms::WoodenHaptics;
 using testing::HasSubstr;
 
-struct Generation {
-  std::string emulator;
-  std::string uri;
-  std::string model;
-  std::size_t
-      seconds;  ///< of the wall: ten for one of them, fewer for the others, because a guest takes its time
-};
-const std::array generations{Generation{"woody?generation=v1", "hid:1234:0006", "woody-2019", 2},
-                             Generation{"woody?generation=v2", "hid:1234:0006", "woody-2019", 10},
-                             Generation{"woody?generation=v3", "hid:16c0:0486", "polhem-v3", 2}};
+/// Of the wall: ten for one of them, fewer for the others, because a guest takes its time.
+std::size_t seconds_of(const Generation& one) { return one.emulator.ends_with("v2") ? 10 : 2; }
 
-/// A wall below the home of a model: 400 N/m, and a little damping.
-std::string wall_below(const WoodenHaptics& mechanism) {
-  const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
-  return "model = \"kelvin\"\naxis = \"z\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n\n[contact]\nposition "
-         "= { value = " +
-         std::to_string(height) +
-         ", unit = \"m\" }\ndirection = \"decreasing\"\n\n[parameters]\n"
-         "parallel_stiffness = { value = 400, unit = \"N/m\" }\nseries_stiffness = { value = 100, unit = "
-         "\"N/m\" }\n"
-         "damping = { value = 1, unit = \"N·s/m\" }\n";
+/// The law of a wall below the home of a model.
+std::string wall_below_home(const WoodenHaptics& mechanism) {
+  return wall_below(mechanism.tip(mechanism.angles({0, 0, 0}))[2], "1");
 }
 
 std::array<double, 3> row_of(const std::vector<double>& values, std::size_t row) {
@@ -68,20 +54,20 @@ bool has_currents(const schema::Recording& recording, std::size_t row, const std
 TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
-    const test::TemporaryFolder folder;
+    const std::size_t seconds = seconds_of(one);
+    const TemporaryFolder folder;
     const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
-    test::write_text(folder / "wall.law.toml", wall_below(mechanism));
+    write_text(folder / "wall.law.toml", wall_below_home(mechanism));
     {
       const Emulator emulator(one.emulator + "&trace=" + (folder / "trace.csv").string());
       ASSERT_TRUE(becomes_attached(one.uri));
-      const auto outcome =
-          test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml", "--seconds",
-                          std::to_string(one.seconds), "-o", folder / "wall.h5"});
+      const auto outcome = run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
+                                     "--seconds", std::to_string(seconds), "-o", folder / "wall.h5"});
       ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
     }
     EXPECT_TRUE(schema::validate(folder / "wall.h5").empty());
     const auto recording = schema::read_recording(folder / "wall.h5");
-    ASSERT_EQ(recording.rows(), 1000 * one.seconds) << "no tick was missed";
+    ASSERT_EQ(recording.rows(), 1000 * seconds) << "no tick was missed";
     EXPECT_THAT(recording.header.device_toml, HasSubstr("model = \"" + one.model + "\""));
 
     // The wall has pushed back as stiff as it is, and the force has moved the hand: 10 mm of sway at 300 N/m
@@ -108,14 +94,14 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
     EXPECT_EQ(unsent, 0U);
 
     // And all of it arrived, in its order, within a milliampere.
-    const auto orders = test::read_orders(folder / "trace.csv");
+    const auto orders = read_orders(folder / "trace.csv");
     std::size_t at = 0;
     std::size_t found = 0;
     for (const auto& current : sent) {
       while (at < orders.size() && orders[at].current_ma != current) ++at;
       found += at < orders.size();
     }
-    EXPECT_GT(sent.size(), 100 * one.seconds);
+    EXPECT_GT(sent.size(), 100 * seconds);
     EXPECT_EQ(found, sent.size());
     EXPECT_EQ(orders.back().current_ma, (std::array{0, 0, 0})) << "zero force at the end";
   }
@@ -124,13 +110,13 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
 TEST(WoodyLoop, ARecordingOutlivesTheDevice) {
   for (const Generation& one : {generations[0], generations[1]}) {
     SCOPED_TRACE(one.emulator);
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
-    test::write_text(folder / "wall.law.toml", wall_below(mechanism));
+    write_text(folder / "wall.law.toml", wall_below_home(mechanism));
     const Emulator emulator(one.emulator, {"--fault", "unplug@1.2"});
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
-                                         "--seconds", "10", "-o", folder / "short.h5"});
+    const auto outcome = run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
+                                   "--seconds", "10", "-o", folder / "short.h5"});
     EXPECT_EQ(outcome.exit_status, 3);
     EXPECT_THAT(outcome.errors, HasSubstr("the device was lost"));
     EXPECT_TRUE(schema::validate(folder / "short.h5").empty());
@@ -148,12 +134,12 @@ TEST(WoodyTwice, WritesTheSameRecordingInEachGuest) {
   if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
   for (const Generation& one : generations) {
     const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
-    const test::TemporaryFolder own;
-    test::write_text(own / "wall.law.toml", wall_below(mechanism));
+    const TemporaryFolder own;
+    write_text(own / "wall.law.toml", wall_below_home(mechanism));
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
-    const auto outcome = test::run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml",
-                                         "--seconds", "0.5", "-o", own / "wall.h5"});
+    const auto outcome = run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml", "--seconds",
+                                   "0.5", "-o", own / "wall.h5"});
     ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
     const auto recording = schema::read_recording(own / "wall.h5");
     std::string text;
@@ -165,9 +151,9 @@ TEST(WoodyTwice, WritesTheSameRecordingInEachGuest) {
                     recording.channels[0].values[row], recording.flags[row]);
       text += line.data();
     }
-    test::write_text(std::string(folder) + "/" + one.emulator.substr(one.emulator.size() - 2), text);
+    write_text(std::string(folder) + "/" + one.emulator.substr(one.emulator.size() - 2), text);
   }
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,11 +12,12 @@
 #include <kerf/mechanisms/woodenhaptics.h>
 
 #include "emulator.h"
+#include "opening.h"
 #include "support/allocation_counter.h"
 #include "support/program.h"
-#include "woody_trace.h"
+#include "woody_bench.h"
 
-namespace kerf::tests {
+namespace kerf::test {
 namespace {
 
 using drivers::Axes;
@@ -27,28 +27,8 @@ using drivers::Status;
 using testing::AllOf;
 using testing::HasSubstr;
 
-struct Generation {
-  std::string emulator;
-  std::string uri;
-  std::string model;
-  std::size_t channels;
-};
-const std::array generations{
-    Generation{"woody?generation=v1", "hid:1234:0006", "WoodenHaptics woody-2019 (V1)", 4},
-    Generation{"woody?generation=v2", "hid:1234:0006", "WoodenHaptics woody-2019 (V2)", 8},
-    Generation{"woody?generation=v3", "hid:16c0:0486", "Polhem polhem-v3 (V3)", 8}};
-
 constexpr std::size_t age_channel = 3;
 constexpr std::size_t button_channel = 4;
-
-std::string refusal(const std::string& uri) {
-  try {
-    (void)drivers::open_device(uri);
-  } catch (const drivers::DeviceError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 double home_of(const Device& device, std::size_t axis) {
   return 0.5 * (device.info().axes[axis].lower + device.info().axes[axis].upper);
@@ -72,7 +52,7 @@ TEST(Woody, EachGenerationIsKnownAndFollowsItsTip) {
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
     const auto device = drivers::open_device(one.uri);
-    EXPECT_EQ(device->info().model, one.model);
+    EXPECT_EQ(device->info().model, one.name);
     EXPECT_EQ(device->info().channels.size(), one.channels);
     EXPECT_THAT(device->info().configuration, HasSubstr("provenance"));
     std::array<double, 3> most{-1.0, -1.0, -1.0};
@@ -100,7 +80,7 @@ TEST(Woody, TheTickAllocatesNothing) {
   const auto device = drivers::open_device("hid:1234:0006");
   for (int tick = 0; tick < 200; ++tick) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    const test::NoAllocation guard;
+    const NoAllocation guard;
     Sample sample;
     EXPECT_EQ(device->read(1e-3 * tick, sample), Status::ok);
     EXPECT_EQ(device->write({0.1, 0.2, 9.0}), Status::ok);
@@ -111,7 +91,7 @@ TEST(Woody, TheTickAllocatesNothing) {
 TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
   for (const char* generation : {"v1", "v2"}) {
     SCOPED_TRACE(generation);
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const std::string file = folder / "trace.csv";
     {
       const Emulator emulator(std::string("woody?sway=0m&generation=") + generation + "&trace=" + file);
@@ -125,7 +105,7 @@ TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
       });
       EXPECT_EQ(last.channels[1], 0.0);
     }
-    const auto orders = test::read_orders(file);
+    const auto orders = read_orders(file);
     double last_nonzero_s = 0.0;
     double first_held_s = 0.0;
     double zero_s = 0.0;
@@ -141,7 +121,7 @@ TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
     EXPECT_GT(last_nonzero_s, 0.0);
     EXPECT_GT(zero_s, first_held_s + 0.199);
     EXPECT_LE(zero_s, first_held_s + 0.2 + 0.1);
-    EXPECT_EQ(test::count_watchdog_trips(file), 0) << "it has orders all the time";
+    EXPECT_EQ(count_watchdog_trips(file), 0) << "it has orders all the time";
   }
 }
 
@@ -261,12 +241,7 @@ TEST(Woody, TornTurnedLostAndRefusedReportsDoNoHarm) {
 }
 
 TEST(Woody, IsLostWhenItIsUnpluggedAndComesBackTwentyTimes) {
-  const auto count_in = [](const char* folder) {
-    const std::filesystem::directory_iterator all(folder);
-    return std::distance(begin(all), end(all));
-  };
-  std::ptrdiff_t descriptors = 0;
-  std::ptrdiff_t threads = 0;
+  Held at_first;
   for (int times = 0; times < 20; ++times) {
     Emulator emulator(times % 2 == 0 ? "woody?generation=v1" : "woody?generation=v2");
     ASSERT_TRUE(becomes_attached("hid:1234:0006"));
@@ -279,13 +254,9 @@ TEST(Woody, IsLostWhenItIsUnpluggedAndComesBackTwentyTimes) {
       EXPECT_EQ(device->write({}), Status::lost);
     }
     ASSERT_TRUE(becomes_attached("hid:", false));
-    if (times == 0) {
-      descriptors = count_in("/proc/self/fd");
-      threads = count_in("/proc/self/task");
-    }
+    if (times == 0) at_first = held();
   }
-  EXPECT_EQ(count_in("/proc/self/fd"), descriptors);
-  EXPECT_EQ(count_in("/proc/self/task"), threads);
+  EXPECT_EQ(held(), at_first);
   EXPECT_THAT(refusal("hid:1234:0006"), HasSubstr("is not attached (0 of 1234:0006 found); plug it in"));
 }
 
@@ -316,12 +287,10 @@ TEST(Woody, SaysWhatIsWrongAndHowToMendIt) {
   const Emulator emulator("woody?generation=v1");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   EXPECT_THAT(refusal("hid:1234:0006?preset=home"), HasSubstr("is a V1, whose counters cannot be preset"));
-  // As a user without rights; the children of this process are not asked.
-  ASSERT_EQ(seteuid(65534), 0);
-  const std::string permission = refusal("hid:1234:0006");
+  const AsNobody guard;
+  EXPECT_THAT(refusal("hid:1234:0006"),
+              AllOf(HasSubstr("no permission for /dev/hidraw"), HasSubstr("70-kerf.rules")));
   const auto attached = drivers::list_attached();
-  ASSERT_EQ(seteuid(0), 0);
-  EXPECT_THAT(permission, AllOf(HasSubstr("no permission for /dev/hidraw"), HasSubstr("70-kerf.rules")));
   ASSERT_EQ(attached.size(), 1U);
   EXPECT_THAT(attached[0].about, HasSubstr("WoodenHaptics"));
   EXPECT_TRUE(attached[0].emulated);
@@ -343,4 +312,4 @@ TEST(WoodyRate, IsAboutAThousandReportsASecondByTheClock) {
 }
 
 }  // namespace
-}  // namespace kerf::tests
+}  // namespace kerf::test

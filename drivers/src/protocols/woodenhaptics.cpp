@@ -5,16 +5,22 @@
 namespace kerf::drivers::woodenhaptics {
 namespace {
 
-constexpr std::size_t v2_size = 14;
+constexpr int preset_word = 1;
+
+/// Bytes that say something; a V3's others do not.
+std::size_t told_size(Generation generation) noexcept {
+  return std::min(report_size(generation), report_size(Generation::v2));
+}
 
 int number_at(std::span<const std::uint8_t> bytes, std::size_t word) noexcept {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[2 * word] | (bytes[2 * word + 1] << 8U)));
 }
-void put_number(Output& output, std::size_t word, int number) noexcept {
+void put_number(std::span<std::uint8_t> bytes, std::size_t word, int number) noexcept {
   const auto bits = static_cast<std::uint16_t>(number);
-  output.bytes[1 + 2 * word] = static_cast<std::uint8_t>(bits & 0xFFU);
-  output.bytes[2 + 2 * word] = static_cast<std::uint8_t>(bits >> 8U);
+  bytes[2 * word] = static_cast<std::uint8_t>(bits & 0xFFU);
+  bytes[2 * word + 1] = static_cast<std::uint8_t>(bits >> 8U);
 }
+std::size_t encoders_of(Generation generation) noexcept { return generation == Generation::v1 ? 3 : 6; }
 
 }  // namespace
 
@@ -28,21 +34,46 @@ std::optional<Generation> generation_of(std::size_t size) noexcept {
 std::optional<Report> parse_report(std::span<const std::uint8_t> bytes, Generation generation) noexcept {
   if (bytes.size() < report_size(generation)) return std::nullopt;
   Report report;
-  const std::size_t encoders = generation == Generation::v1 ? 3 : 6;
-  for (std::size_t i = 0; i < encoders; ++i) report.encoder[i] = number_at(bytes, i);
+  for (std::size_t i = 0; i < encoders_of(generation); ++i) report.encoder[i] = number_at(bytes, i);
   if (generation == Generation::v1) {
     report.counter = static_cast<std::uint16_t>(number_at(bytes, 3));
   } else {
-    report.button = number_at(bytes.first(v2_size), 6) != 0;
+    report.button = number_at(bytes, 6) != 0;
   }
   return report;
+}
+
+Input encode(const Report& report, Generation generation) noexcept {
+  Input input;
+  input.size = report_size(generation);
+  const std::size_t encoders = encoders_of(generation);
+  for (std::size_t i = 0; i < encoders; ++i) put_number(input.bytes, i, report.encoder[i]);
+  put_number(input.bytes, encoders, generation == Generation::v1 ? report.counter : report.button ? 1 : 0);
+  return input;
+}
+
+std::optional<Order> parse_order(std::span<const std::uint8_t> bytes, Generation generation) noexcept {
+  if (bytes.size() < told_size(generation)) return std::nullopt;
+  Order order;
+  order.preset = generation != Generation::v1 && number_at(bytes, 3) == preset_word;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int number = number_at(bytes, i);
+    if (!order.preset) {
+      order.current_ma[i] = number;
+    } else {
+      order.counts[i] = number_at(bytes, 4 + i);
+      order.counts[3 + i] = number;  // d, e, f stand where the currents do
+    }
+  }
+  return order;
 }
 
 Output set_currents(const std::array<int, 3>& current_ma, Generation generation) noexcept {
   Output output;
   output.size = report_size(generation) + 1;
+  const auto words = std::span(output.bytes).subspan(1);
   for (std::size_t i = 0; i < 3; ++i) {
-    put_number(output, i, std::clamp(current_ma[i], -most_current_ma, most_current_ma));
+    put_number(words, i, std::clamp(current_ma[i], -most_current_ma, most_current_ma));
   }
   return output;
 }
@@ -51,12 +82,12 @@ std::optional<Output> preset_counters(const std::array<int, 6>& counts, Generati
   if (generation == Generation::v1) return std::nullopt;
   Output output;
   output.size = report_size(generation) + 1;
-  constexpr int preset = 1;
+  const auto words = std::span(output.bytes).subspan(1);
   for (std::size_t i = 0; i < 3; ++i) {
-    put_number(output, i, counts[3 + i]);  // d, e, f stand where the currents do
-    put_number(output, 4 + i, counts[i]);
+    put_number(words, i, counts[3 + i]);  // as parse_order() has them
+    put_number(words, 4 + i, counts[i]);
   }
-  put_number(output, 3, preset);
+  put_number(words, 3, preset_word);
   return output;
 }
 

@@ -115,9 +115,13 @@ class Device {
 /// position up. Called in sub-steps of the physics with a fixed period; must not allocate or throw.
 using Tissue = std::function<double(double position, double velocity, double period_s)>;
 
+/// The same for a tissue that one tool meets with all its axes.
+using TissueOfAxes = std::function<Axes(const Axes& position, const Axes& velocity, double period_s)>;
+
 /// What exists around a simulated device. Real devices refuse it.
 struct Surroundings {
   std::array<Tissue, max_axes> tissue;  ///< one per axis; empty: none
+  TissueOfAxes tissue_of_axes;          ///< of all axes together, in place of those; empty: none
   /// Lets so many seconds pass where a simulated device is slow; empty: the calling thread sleeps. A loop in
   /// virtual time moves its clock.
   std::function<void(double seconds)> pass_time;

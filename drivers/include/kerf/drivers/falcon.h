@@ -40,7 +40,7 @@ class FalconLink;
 /// gives is at most 1.3 ms old, 3.3 ms where ticks are rarer. A force is on its way at once if no answer is
 /// outstanding, and reaches the motors within 0.3 ms; else with the next answer, within 1.3 ms. One command
 /// is under way at a time; one whose answer does not come within 5 ms is sent again. Without a command for
-/// 100 ms the motors are let go.
+/// 50 ms the motors are let go.
 class Falcon final : public Device {
  public:
   enum class Led : std::uint8_t { off, red, green, blue };
@@ -53,6 +53,8 @@ class Falcon final : public Device {
     double units_per_n_m = 10000.0;  ///< K, torque_scale, 1000 to 30000
   };
   static Options parse_options(Uri uri);
+
+  static constexpr std::string_view about = "Novint Falcon, 3 axes with force; needs its firmware";
 
   /// Bits of Sample::faults.
   static constexpr std::uint32_t force_was_limited =

@@ -54,6 +54,9 @@ class ForceSensorU6 final : public Device {
   /// @throws DeviceError, also if no calibration is named: volts are no force.
   static Options parse_options(std::string_view text, Uri uri);
 
+  static constexpr std::string_view about =
+      "force/torque transducer on a LabJack U6; 1000 Hz; needs calibration=FILE.toml";
+
   /// @throws DeviceError
   ForceSensorU6(std::string_view uri, std::size_t number, const Options& options);
   ForceSensorU6(const ForceSensorU6&) = delete;

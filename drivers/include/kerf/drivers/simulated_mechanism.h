@@ -88,6 +88,7 @@ class SimulatedMechanism {
   std::size_t count_;
   std::size_t first_truth_;  ///< channel; before it stand those of the device itself
   std::array<Tissue, max_axes> tissue_;
+  TissueOfAxes tissue_of_axes_;
   Gaussian noise_;
   std::array<SimulatedAxis, max_axes> axes_;
   States states_{};

@@ -37,6 +37,8 @@ class SpaceMouse final : public Device {
   };
   static Options parse_options(Uri uri);
 
+  static constexpr std::string_view about = "6-DOF input, no force; 62.5 Hz";
+
   /// @throws DeviceError
   SpaceMouse(std::string_view uri, std::size_t number, const Options& options);
 

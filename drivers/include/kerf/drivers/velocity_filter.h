@@ -13,6 +13,8 @@ namespace kerf::drivers {
 /// low-passed at first order with a corner of 20 Hz, so that it lags by some 8 ms. Zero at the first reading.
 class VelocityFilter {
  public:
+  static constexpr double corner_rad_s = 2.0 * std::numbers::pi * 20.0;
+
   /// The velocity of an axis that stands at `position` at `now_s`; each axis once a reading, then advance().
   double update(std::size_t axis, double position, double now_s) noexcept {
     const double elapsed_s = now_s - last_s_;
@@ -29,8 +31,6 @@ class VelocityFilter {
   }
 
  private:
-  static constexpr double corner_rad_s = 2.0 * std::numbers::pi * 20.0;
-
   Axes last_position_{};
   Axes velocity_{};
   double last_s_ = 0.0;

@@ -38,6 +38,13 @@ struct Report {
 [[nodiscard]] std::optional<Report> parse_report(std::span<const std::uint8_t> bytes,
                                                  Generation generation) noexcept;
 
+/// A report as a device sends it; what a V3 fills with noise is zero.
+struct Input {
+  std::array<std::uint8_t, most_report_size> bytes{};
+  std::size_t size = 0;
+};
+[[nodiscard]] Input encode(const Report& report, Generation generation) noexcept;
+
 /// A report to the device with hidapi's leading number 0, and how many of its bytes to write.
 struct Output {
   std::array<std::uint8_t, most_report_size + 1> bytes{};
@@ -48,6 +55,18 @@ struct Output {
 /// Presets the six counters; motors get zero for that cycle (V2 and V3 only, else nothing).
 [[nodiscard]] std::optional<Output> preset_counters(const std::array<int, 6>& counts,
                                                     Generation generation) noexcept;
+
+/// What a report to the device asks for.
+struct Order {
+  std::array<int, 3> current_ma{};  ///< zero with a preset
+  bool preset = false;
+  std::array<int, 6> counts{};  ///< of a preset
+
+  friend bool operator==(const Order&, const Order&) = default;
+};
+/// Reads one without its leading number. Nothing if the bytes are fewer than the generation reads.
+[[nodiscard]] std::optional<Order> parse_order(std::span<const std::uint8_t> bytes,
+                                               Generation generation) noexcept;
 
 /// The difference of two counters that wrap at 16 bits.
 [[nodiscard]] constexpr int wrapped_difference(int now, int before) noexcept {

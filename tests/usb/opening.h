@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+#include <unistd.h>
+
+#include <kerf/drivers/device.h>
+
+namespace kerf::test {
+
+/// Why a device cannot be opened; "it was opened" if it can.
+inline std::string refusal(const std::string& uri, const std::atomic<bool>* stop = nullptr) {
+  try {
+    drivers::Surroundings surroundings;
+    surroundings.stop = stop;
+    (void)drivers::open_device(uri, std::move(surroundings));
+  } catch (const drivers::DeviceError& error) {
+    return error.what();
+  }
+  return "it was opened";
+}
+
+/// While it lives, this process is a user without rights.
+class AsNobody {
+ public:
+  AsNobody() {
+    if (seteuid(65534) != 0) throw std::runtime_error("only root can become nobody");
+  }
+  AsNobody(const AsNobody&) = delete;
+  AsNobody& operator=(const AsNobody&) = delete;
+  ~AsNobody() {
+    if (seteuid(0) != 0) std::terminate();
+  }
+};
+
+/// What this process holds, and a device that was closed does not leave behind.
+struct Held {
+  std::size_t descriptors = 0;
+  std::size_t threads = 0;
+
+  friend bool operator==(const Held&, const Held&) = default;
+};
+inline Held held() {
+  const auto entries_of = [](const char* folder) {
+    const std::filesystem::directory_iterator all(folder);
+    return static_cast<std::size_t>(std::distance(begin(all), end(all)));
+  };
+  return {.descriptors = entries_of("/proc/self/fd"), .threads = entries_of("/proc/self/task")};
+}
+
+}  // namespace kerf::test
