@@ -1,6 +1,7 @@
 #include "build.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <type_traits>
@@ -42,7 +43,11 @@ void write_attribute(hid_t object, const layout::Attribute& rule, const Sources&
                    }
                  },
                  [&](std::string Axis::*text) { h5::write_attribute(object, name, gather(from.axes, text)); },
-                 [&](double Axis::*number) { list(gather(from.axes, number)); },
+                 [&](double Axis::*number) {
+                   const auto numbers = gather(from.axes, number);
+                   const auto known = [](double value) { return !std::isnan(value); };
+                   if (rule.required || std::ranges::any_of(numbers, known)) list(numbers);
+                 },
                  [&](double Cycles::*number) { one(from.cycles->*number); },
                  [&](std::size_t Cycles::*number) { one(std::uint64_t{from.cycles->*number}); }},
       rule.value);

@@ -29,6 +29,7 @@ inline void expect_same_header(const schema::Header& found, const schema::Header
   EXPECT_EQ(found.status, expected.status);
   EXPECT_EQ(found.velocity_derived, expected.velocity_derived);
   EXPECT_EQ(found.source, expected.source);
+  EXPECT_EQ(found.history, expected.history);
   EXPECT_EQ(found.device_uri, expected.device_uri);
   EXPECT_EQ(found.device_toml, expected.device_toml);
   EXPECT_EQ(found.scene_toml, expected.scene_toml);
@@ -54,6 +55,10 @@ inline void expect_same_samples(const schema::Recording& found, const schema::Re
     EXPECT_EQ(found.axes[i].position_unit, expected.axes[i].position_unit);
     EXPECT_EQ(found.axes[i].force_unit, expected.axes[i].force_unit);
     EXPECT_EQ(found.axes[i].lever, expected.axes[i].lever);
+    const auto contact = [](const schema::Axis& axis) {
+      return bits(std::vector<double>{axis.contact_position, axis.contact_direction});
+    };
+    EXPECT_EQ(contact(found.axes[i]), contact(expected.axes[i]));
   }
   ASSERT_EQ(found.channels.size(), expected.channels.size());
   for (std::size_t i = 0; i < found.channels.size(); ++i) {

@@ -16,12 +16,18 @@ inline schema::Recording sample_recording(std::size_t rows = 5) {
   header.uuid = "0b5f1e0a-54bb-4c5e-9d55-6cf3f4d33c11";
   header.velocity_derived = "quadratic over 20 ms";
   header.source = "cut.txt, SHA-256 00ff";
+  header.history = "2026-02-01T08:00:00Z kerf 0.1.0: bias removed\n2026-02-01T08:01:00Z µ\n";
   header.device_uri = "sim:scissors?seed=3";
   header.device_toml = "gain = 1.0\n";
   header.scene_toml = "tissue = \"Gewebe µ\"\n";
   header.device_properties = {{"resolution_rad", 0.00098}, {"maker", "Schärfe"}};
   header.scene_properties = {{"contact_position", 0.1}};
-  recording.axes = {{.name = "theta", .position_unit = "rad", .force_unit = "N·m", .lever = 0.0369},
+  recording.axes = {{.name = "theta",
+                     .position_unit = "rad",
+                     .force_unit = "N·m",
+                     .lever = 0.0369,
+                     .contact_position = 0.25,
+                     .contact_direction = -1.0},
                     {.name = "x_s", .position_unit = "m", .force_unit = "N", .lever = 1.0}};
   schema::Channel channel{.name = "µ temperature", .unit = "K", .values = {}};
   schema::Channel second{.name = "a", .unit = "1", .values = {}};

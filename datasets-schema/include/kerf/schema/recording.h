@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -30,6 +31,8 @@ struct Axis {
   std::string position_unit = "m";  ///< "m" or "rad"
   std::string force_unit = "N";     ///< "N" or "N·m"
   double lever = 1.0;               ///< travel of the point where the force acts, per unit of position
+  double contact_position = std::numeric_limits<double>::quiet_NaN();  ///< where contact begins; NaN: unknown
+  double contact_direction = std::numeric_limits<double>::quiet_NaN();  ///< +1 or -1: into the tissue
 };
 
 /// Something that happened during a recording.
@@ -96,6 +99,7 @@ struct Header {
   std::string status = "complete";  ///< "recording", "complete" or "aborted: WHY"
   std::string velocity_derived;     ///< how the velocity was derived from the position; empty if measured
   std::string source;               ///< file name and SHA-256 of the imported data; empty if recorded
+  std::string history;              ///< what was done to it since, one line a step; empty if nothing was
   std::string device_uri;           ///< empty if imported
   std::string device_toml;          ///< the device's configuration
   std::string scene_toml;           ///< what was simulated or cut, and with which known parameters
