@@ -155,6 +155,10 @@ const auto registered = [] {
   };
   scalar("kelvin", test::example("kelvin"), 0.4);
   scalar("exponential", test::example("exponential"), 0.4);
+  scalar("maxwell_2_arms", test::example("maxwell"), 0.4);
+  scalar("springpot", test::example("springpot"), 0.4);
+  scalar("hunt_crossley", test::example("hunt_crossley"), 0.4);
+  scalar("friction", test::example("friction"), 0.4);
   scalar("precontact", test::example("precontact"), 0.02);
   scalar("fracture", test::example("fracture"),
          0.07);  // short of the yield point, where each tick has its exponential

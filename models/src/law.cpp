@@ -14,10 +14,13 @@
 #include "kerf/models/blade.h"
 #include "kerf/models/exponential.h"
 #include "kerf/models/fracture.h"
+#include "kerf/models/friction.h"
 #include "kerf/models/fuzzy_kelvin.h"
 #include "kerf/models/fuzzy_kelvin_3d.h"
 #include "kerf/models/fuzzy_rupture.h"
+#include "kerf/models/hunt_crossley.h"
 #include "kerf/models/kelvin.h"
+#include "kerf/models/maxwell.h"
 #include "kerf/models/orthogonal.h"
 #include "kerf/models/piecewise.h"
 #include "kerf/models/precontact.h"
@@ -25,6 +28,7 @@
 #include "kerf/models/scissors_analytic.h"
 #include "kerf/models/scissors_free.h"
 #include "kerf/models/scissors_mesh.h"
+#include "kerf/models/springpot.h"
 
 namespace kerf::models {
 
@@ -64,9 +68,10 @@ namespace {
 /// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
 /// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
 using Registry =
-    std::tuple<Kelvin<double>, Exponential<double>, Piecewise<double>, Recording<double>,
-               ScissorsAnalytic<double>, Precontact<double>, Fracture<double>, FuzzyRupture<double>,
-               FuzzyKelvin<double>, FuzzyKelvin3d, Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
+    std::tuple<Kelvin<double>, Maxwell<double>, Springpot<double>, Exponential<double>, HuntCrossley<double>,
+               Friction<double>, Piecewise<double>, Recording<double>, ScissorsAnalytic<double>,
+               Precontact<double>, Fracture<double>, FuzzyRupture<double>, FuzzyKelvin<double>, FuzzyKelvin3d,
+               Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
 
 constexpr std::size_t law_count = std::tuple_size_v<Registry>;
 template <Place I>

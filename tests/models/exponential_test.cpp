@@ -1,4 +1,5 @@
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -42,6 +43,25 @@ TEST(Exponential, MayBeginAtZero) {
   EXPECT_NEAR(still(law, 1e-9), 0.0, 1e-12);
   EXPECT_NEAR(still(law, 0.1), still(intestine, 0.1) - 4.3e-7, 1e-16);
   EXPECT_NEAR(law.stored_energy(0.1), intestine.stored_energy(0.1) - 4.3e-7 * 0.1, 1e-16);
+}
+
+TEST(Exponential, WithAnOffsetIsShiftedInContactAndBefore) {
+  const auto law = Exponential<double>::make(std::vector{4.3e-7, 13.0, 20.0, -0.3}, {{"offset", true}});
+  EXPECT_NEAR(still(law, 0.1), 0.190237758564 - 0.3, 1e-12);
+  EXPECT_EQ(still(law, -0.05), -0.3);
+  EXPECT_EQ(law.stored_energy(0.1), intestine.stored_energy(0.1)) << "the tissue's energy, not the sensor's";
+}
+
+TEST(Exponential, WithoutViscosityHasOneParameterLess) {
+  const Options options{{"viscous", false}, {"offset", true}};
+  const auto parameters = Exponential<double>::parameters(options);
+  ASSERT_EQ(parameters.size(), 3u);
+  EXPECT_EQ(parameters[2].name, "offset");
+  const auto law = Exponential<double>::make(std::vector{4.3e-7, 13.0, -0.3}, options);
+  Exponential<double>::State state;
+  EXPECT_EQ(law.step(state, {.penetration = 0.1, .velocity = 5.0}, 1e-3), still(law, 0.1));
+  EXPECT_EQ(law.offset, -0.3);
+  EXPECT_EQ(Exponential<double>::parameters({{"viscous", false}}).size(), 2u);
 }
 
 TEST(Exponential, StiffnessIsTheSlopeOfTheForce) {

@@ -204,12 +204,13 @@ TEST_P(EveryLaw, RefusesUnknownOptionsAndAWrongNumberOfValues) {
 
 TEST(Law, AnUnknownNameIsAnsweredWithThoseThatExist) {
   try {
-    (void)Law::make("maxwell", std::vector{1.0});
+    (void)Law::make("burgers", std::vector{1.0});
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(
         error.what(),
-        "unknown law 'maxwell'; the laws are kelvin, exponential, piecewise, recording, scissors_analytic, "
+        "unknown law 'burgers'; the laws are kelvin, maxwell, springpot, exponential, hunt_crossley, "
+        "friction, piecewise, recording, scissors_analytic, "
         "precontact, fracture, fuzzy_rupture, fuzzy_kelvin, fuzzy_kelvin_3d, blade, scissors, "
         "scissors_mesh, orthogonal");
   }

@@ -76,6 +76,10 @@ std::vector<Law> passive_laws() {
   std::vector<Law> laws;
   laws.push_back(Law::make("kelvin", std::vector{8.0, 7.0, 130.0}));
   laws.push_back(Law::make("kelvin", std::vector{400.0, 300.0, 0.5}));
+  laws.push_back(Law::make("maxwell", std::vector{8.0, 300.0, 20.0, 7.0, 0.003, 0.1, 2.0}, {{"arms", 3.0}}));
+  laws.push_back(Law::make("springpot", std::vector{8.0, 20.0, 0.3}));
+  laws.push_back(Law::make("hunt_crossley", std::vector{0.5, 0.4, 1.5}));
+  laws.push_back(Law::make("friction", std::vector{0.0, 0.0, 0.5, 0.8, 5e-4}));
   laws.push_back(Law::make("exponential", std::vector{0.02, 3.0, 0.4}, {{"thickness", 0.03}}));
   laws.push_back(Law::make("precontact", std::vector{300.0, 0.002}));
   laws.push_back(Law::make("exponential", std::vector{0.02, 3.0, 0.0},

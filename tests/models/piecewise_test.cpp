@@ -48,7 +48,7 @@ TEST(Piecewise, NamesItsParameters) {
   EXPECT_EQ(parameters[1].name, "knot[1]");
   EXPECT_EQ(parameters[5].name, "closing[2]");
   EXPECT_EQ(parameters[6].name, "opening[0]");
-  EXPECT_THROW(Piecewise<double>::parameters({{"segments", 13.0}}), std::invalid_argument);
+  EXPECT_THROW(Piecewise<double>::parameters({{"segments", 17.0}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -20,6 +20,12 @@ inline std::vector<double> fuzzy_values() {
 /// it.
 inline models::Law example(std::string_view model) {
   if (model == "kelvin") return models::Law::make(model, std::vector{8.0, 7.0, 130.0});
+  if (model == "maxwell") return models::Law::make(model, std::vector{8.0, 20.0, 7.0, 0.5, 20.0});
+  if (model == "springpot") {
+    return models::Law::make(model, std::vector{5.0, 8.0, 0.3}, {{"reference_time", 2.0}});
+  }
+  if (model == "hunt_crossley") return models::Law::make(model, std::vector{0.05, 0.02, 1.5});
+  if (model == "friction") return models::Law::make(model, std::vector{-0.1, 2.0, 0.3, 0.8, 0.005});
   if (model == "exponential")
     return models::Law::make(model, std::vector{0.02, 3.0, 0.4}, {{"thickness", 0.3}});
   if (model == "piecewise") {

@@ -132,7 +132,7 @@ struct Blade {
 
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;
 
- private:
+  /// Whether any point of the blade is under the plane.
   [[nodiscard]] bool touches(const Pose& pose) const noexcept;
 };
 

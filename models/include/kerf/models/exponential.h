@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -12,14 +13,17 @@ namespace kerf::models {
 
 /// Exponentially stiffening tissue with viscosity.
 ///
-///     F = alpha exp(beta x / L0) + B0 v   for x > 0, else 0
+///     F = F0 + alpha exp(beta x / L0) + B0 v   for x > 0, else F0
 ///
 /// With the option `zero_at_contact` the elastic part is alpha (exp(beta x / L0) - 1). L0 is the sample's
 /// thickness: it only scales beta, so it is a setting and not fitted. B0 is signed, since some tissue
-/// resists less when it is cut faster. The stiffness beta F / L0 grows with the force: past some depth no
-/// sampled loop renders it passively.
+/// resists less when it is cut faster; without the option `viscous` there is none. The option `offset` adds
+/// F0 [N], of either sign, in contact and before it: the bias of a force sensor. The stiffness, beta / L0
+/// times the exponential part, grows with the force: past some depth no sampled loop renders it passively.
+/// Passive for B0 >= 0; the offset gives back over a closed path what it took.
 ///
-/// Source: 001, eqs. 11-13, whose B0 enters the closed loop as an acceleration term; here it is N·s/m.
+/// Source: 001, eqs. 11-13, whose B0 enters the closed loop as an acceleration term; here it is N·s/m. The
+/// offset is not in the paper.
 template <typename T>
 struct Exponential {
   static constexpr std::string_view name = "exponential";
@@ -30,23 +34,41 @@ struct Exponential {
   T viscosity{};           ///< B0 [N·s/m]
   double thickness = 0.1;  ///< L0 [m or rad], > 0
   bool zero_at_contact = false;
+  T offset{};  ///< F0 [N]
 
   struct State {};
 
-  static std::vector<ParameterInfo> parameters(const Options&) {
-    return {{"amplitude", Quantity::force, 1e-15, 1e6, Scale::logarithmic, "alpha, force at contact"},
-            {"exponent", Quantity::ratio, 1e-6, 1e3, Scale::logarithmic,
-             "beta, stiffening over the thickness L0"},
-            {"viscosity", Quantity::damping, -1e6, 1e6, Scale::linear, "B0, force per speed"}};
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    const OptionReader reader(name, options(), given);
+    std::vector<ParameterInfo> all{
+        {"amplitude", Quantity::force, 1e-15, 1e6, Scale::logarithmic, "alpha, force at contact"},
+        {"exponent", Quantity::ratio, 1e-6, 1e3, Scale::logarithmic,
+         "beta, stiffening over the thickness L0"}};
+    if (reader.flag("viscous")) {
+      all.push_back({"viscosity", Quantity::damping, -1e6, 1e6, Scale::linear, "B0, force per speed"});
+    }
+    if (reader.flag("offset")) {
+      all.push_back(
+          {"offset", Quantity::force, -1e6, 1e6, Scale::linear, "F0, force that is there without contact"});
+    }
+    return all;
   }
   static std::vector<OptionInfo> options() {
     return {{"thickness", 0.1, "L0, thickness of the sample in the unit of position"},
-            {"zero_at_contact", false, "subtract alpha, so that the force begins at zero"}};
+            {"zero_at_contact", false, "subtract alpha, so that the force begins at zero"},
+            {"viscous", true, "a force per speed"},
+            {"offset", false, "a constant force, in contact and before it"}};
   }
   static Exponential make(std::span<const T> values, const Options& given) {
     const OptionReader reader(name, options(), given);
-    return {values[0], values[1], values[2], reader.number("thickness", 1e-9, 1e9),
-            reader.flag("zero_at_contact")};
+    Exponential law{.amplitude = values[0],
+                    .exponent = values[1],
+                    .thickness = reader.number("thickness", 1e-9, 1e9),
+                    .zero_at_contact = reader.flag("zero_at_contact")};
+    std::size_t next = 2;
+    if (reader.flag("viscous")) law.viscosity = values[next++];
+    if (reader.flag("offset")) law.offset = values[next];
+    return law;
   }
 
   /// Elastic part of the force [N].
@@ -77,8 +99,8 @@ struct Exponential {
   }
 
   T step(State&, const Motion& motion, double) const noexcept {
-    if (motion.penetration <= 0.0) return T(0.0);
-    return elastic_force(motion.penetration) + viscosity * motion.velocity;
+    if (motion.penetration <= 0.0) return offset;
+    return offset + (elastic_force(motion.penetration) + viscosity * motion.velocity);
   }
 };
 

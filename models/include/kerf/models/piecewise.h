@@ -28,7 +28,7 @@ template <typename T>
 struct Piecewise {
   static constexpr std::string_view name = "piecewise";
   static constexpr std::string_view equation = "F linear between knots, closing and opening branch";
-  static constexpr std::size_t max_segments = 12;
+  static constexpr std::size_t max_segments = 16;
 
   std::size_t knots = 2;
   std::array<T, max_segments + 1> knot{};
@@ -41,7 +41,7 @@ struct Piecewise {
 
   static std::vector<OptionInfo> options() {
     auto all = BranchSelector::options();
-    all.insert(all.begin(), {{"segments", 5.0, "number of linear segments, 1 to 12"},
+    all.insert(all.begin(), {{"segments", 5.0, "number of linear segments, 1 to 16"},
                              {"loop", false, "opening has forces of its own"}});
     return all;
   }

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Spring and viscosity with dry friction, for mechanisms and for loops that do not close with speed.
+///
+///     F = F0 + k x + b v + Fc z,   dz/dt = (v / xd) (1 - z sgn v)
+///
+/// F0 [N] and k [N/m] an offset and a spring of either sign, b [N·s/m] viscosity of either sign, Fc >= 0 [N]
+/// the Coulomb friction, xd > 0 [m] the presliding displacement, z in [-1, 1] Dahl's state. A reversal takes
+/// the friction from Fc to -Fc within a few xd; as xd goes to zero it becomes Fc sgn v. It acts on both sides
+/// of zero and pulls as it pushes: nothing here is a contact.
+///
+/// Exact for a path without a reversal within a tick, at any speed and so at any period:
+///
+///     z[n+1] = s + (z[n] - s) exp(-|dx| / xd),   s = sgn dx
+///
+/// Dahl's friction needs no threshold of speed, which Karnopp's has: at a small sampled speed, noisy as it
+/// is, a threshold decides at random, and a force that jumps there has no derivative for a fit. Between -X
+/// and X a cycle takes 4 Fc (X - xd tanh(X / xd)), at any speed. Passive for b >= 0; a spring and an offset
+/// give back what they took, over a closed path, whatever their sign.
+///
+/// Source: Dahl, A Solid Friction Model (1968), with the exponent 1; Karnopp, Journal of Dynamic Systems,
+/// Measurement, and Control 107 (1985), is the alternative not taken.
+template <typename T>
+struct Friction {
+  static constexpr std::string_view name = "friction";
+  static constexpr std::string_view equation = "F = F0 + k x + b v + Fc z, dz/dt = (v / xd) (1 - z sgn v)";
+
+  T offset{};      ///< F0 [N]
+  T stiffness{};   ///< k [N/m]
+  T viscosity{};   ///< b [N·s/m]
+  T coulomb{};     ///< Fc [N], >= 0
+  T presliding{};  ///< xd [m], > 0
+
+  struct State {
+    T slip{0.0};  ///< z
+    double penetration = 0.0;
+    bool started = false;
+  };
+
+  static std::vector<ParameterInfo> parameters(const Options&) {
+    return {{"offset", Quantity::force, -1e6, 1e6, Scale::linear, "F0, force at zero and at rest"},
+            {"stiffness", Quantity::stiffness, -1e9, 1e9, Scale::linear, "k, force per position"},
+            {"viscosity", Quantity::damping, -1e6, 1e6, Scale::linear, "b, force per speed"},
+            {"coulomb", Quantity::force, 0.0, 1e6, Scale::linear, "Fc, dry friction"},
+            {"presliding", Quantity::position, 1e-9, 1e3, Scale::logarithmic,
+             "xd, travel in which the friction builds up"}};
+  }
+  static std::vector<OptionInfo> options() { return {}; }
+  static Friction make(std::span<const T> values, const Options& given) {
+    const OptionReader refuses_unknown(name, options(), given);
+    return {values[0], values[1], values[2], values[3], values[4]};
+  }
+
+  /// Most energy that can be had back from the friction, Fc xd (|z| - log(1 + |z|)) [J].
+  [[nodiscard]] T recoverable_energy(const State& state) const {
+    using std::abs;
+    using std::log1p;
+    const T bent = abs(state.slip);
+    return coulomb * presliding * (bent - log1p(bent));
+  }
+
+  T step(State& state, const Motion& motion, double) const noexcept {
+    using std::exp;
+    if (!state.started) {
+      state.started = true;
+      state.penetration = motion.penetration;
+    }
+    const double travel = motion.penetration - state.penetration;
+    state.penetration = motion.penetration;
+    if (travel != 0.0) {
+      const double sign = travel > 0.0 ? 1.0 : -1.0;
+      state.slip = sign + (state.slip - sign) * exp(-std::abs(travel) / presliding);
+    }
+    return offset + stiffness * motion.penetration + viscosity * motion.velocity + coulomb * state.slip;
+  }
+};
+
+}  // namespace kerf::models

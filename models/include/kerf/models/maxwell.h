@@ -1,0 +1,146 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include <kerf/models/motion.h>
+#include <kerf/models/parameter.h>
+
+namespace kerf::models {
+
+/// Generalised Maxwell model (a Prony series): a spring beside n arms of a spring and a dashpot in series.
+///
+///     F = k0 x + f_1 + ... + f_n,   df_i/dt = k_i v - f_i / tau_i
+///
+/// k0 [N/m], k_i [N/m] and the relaxation times tau_i [s] of the arms; the dashpots are b_i = k_i tau_i. The
+/// times are the parameters and not the dashpots, since it is times that a relaxation shows, and since the
+/// force is linear in the stiffnesses once they are given. Their order means nothing. With one arm it is the
+/// Kelvin law; a fluid has k0 at its lower bound.
+///
+/// Exact for penetration that is linear in time within a tick (first-order hold), with a_i = exp(-T/tau_i):
+///
+///     f_i[n+1] = a_i f_i[n] + (k_i tau_i / T) (1 - a_i) (x[n+1] - x[n])
+///
+/// Contact is unilateral as in Kelvin: no force below zero, while the arms keep relaxing, and the first tick
+/// takes them as relaxed. Passive at every period: springs and dashpots, all positive.
+///
+/// Source: Maxwell's arms in parallel as in Ferry, Viscoelastic Properties of Polymers (1980), chapter 1; 002
+/// uses one of them.
+template <typename T>
+struct Maxwell {
+  static constexpr std::string_view name = "maxwell";
+  static constexpr std::string_view equation = "F = k0 x + sum f_i, df_i/dt = k_i v - f_i / tau_i";
+  static constexpr std::size_t max_arms = 6;
+
+  std::size_t arms = 1;
+  T parallel_stiffness{};                     ///< k0 [N/m], > 0
+  std::array<T, max_arms> stiffness{};        ///< k_i [N/m], > 0
+  std::array<T, max_arms> relaxation_time{};  ///< tau_i [s], > 0
+
+  struct State {
+    std::array<T, max_arms> arm_force{};
+    std::array<T, max_arms> decay{};  ///< a_i of `period_s`
+    std::array<T, max_arms> gain{};   ///< force of an arm per travel in a tick of `period_s`
+    double penetration = 0.0;
+    double period_s = 0.0;
+    bool started = false;
+  };
+
+  static std::vector<OptionInfo> options() {
+    return {{"arms", 2.0, "number of arms, each with a relaxation time of its own, 1 to 6"}};
+  }
+  static std::vector<ParameterInfo> parameters(const Options& given) {
+    const std::size_t count = arm_count(given);
+    std::vector<ParameterInfo> all{{"parallel_stiffness", Quantity::stiffness, 1e-9, 1e9, Scale::logarithmic,
+                                    "k0, spring beside the arms"}};
+    const auto add = [&](const char* what, Quantity quantity, double bound, const char* meaning) {
+      for (std::size_t i = 0; i < count; ++i) {
+        all.push_back({std::string(what) + "[" + std::to_string(i) + "]", quantity, 1.0 / bound, bound,
+                       Scale::logarithmic, meaning});
+      }
+    };
+    add("stiffness", Quantity::stiffness, 1e9, "k_i, spring of an arm");
+    add("relaxation_time", Quantity::time, 1e6, "tau_i, in which the force of an arm falls to 1/e");
+    return all;
+  }
+  static Maxwell make(std::span<const T> values, const Options& given) {
+    Maxwell law;
+    law.arms = arm_count(given);
+    law.parallel_stiffness = values[0];
+    for (std::size_t i = 0; i < law.arms; ++i) {
+      law.stiffness[i] = values[1 + i];
+      law.relaxation_time[i] = values[1 + law.arms + i];
+    }
+    return law;
+  }
+
+  /// Force over penetration for a sinusoidal motion, k0 + sum k_i i w tau_i / (1 + i w tau_i) [N/m], at w
+  /// [rad/s].
+  [[nodiscard]] std::complex<double> dynamic_stiffness(
+      double frequency_rad_s) const requires std::is_floating_point_v<T> {
+    std::complex<double> sum = parallel_stiffness;
+    for (std::size_t i = 0; i < arms; ++i) {
+      const std::complex<double> lag(0.0, frequency_rad_s * relaxation_time[i]);
+      sum += stiffness[i] * lag / (1.0 + lag);
+    }
+    return sum;
+  }
+
+  /// Energy held by the springs [J], for a penetration in metres.
+  [[nodiscard]] T stored_energy(const State& state) const {
+    T energy = 0.5 * parallel_stiffness * state.penetration * state.penetration;
+    for (std::size_t i = 0; i < arms; ++i) {
+      energy = energy + 0.5 * state.arm_force[i] * state.arm_force[i] / stiffness[i];
+    }
+    return energy;
+  }
+
+  /// Force of a contact: none before it, and never pulling.
+  T step(State& state, const Motion& motion, double period_s) const noexcept {
+    const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
+    return force < T(0.0) ? T(0.0) : force;
+  }
+
+  /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
+  T bilateral_step(State& state, double x, double period_s) const noexcept {
+    if (!state.started) {
+      state.started = true;
+      state.penetration = x;
+    }
+    if (period_s != state.period_s) hold(state, period_s);
+    const double travel = x - state.penetration;
+    state.penetration = x;
+    T force = parallel_stiffness * x;
+    for (std::size_t i = 0; i < arms; ++i) {
+      T& arm = state.arm_force[i];
+      arm = state.decay[i] * arm + state.gain[i] * travel;
+      // What a long hold leaves would soon be denormal, and slow to reckon with.
+      if (arm < 1e-100 && arm > -1e-100) arm = T(0.0);
+      force = force + arm;
+    }
+    return force;
+  }
+
+ private:
+  static std::size_t arm_count(const Options& given) {
+    return OptionReader(name, options(), given).count("arms", 1, max_arms);
+  }
+  void hold(State& state, double period_s) const noexcept {
+    using std::expm1;
+    state.period_s = period_s;
+    for (std::size_t i = 0; i < arms; ++i) {
+      const T relaxed = expm1(-period_s / relaxation_time[i]);
+      state.decay[i] = 1.0 + relaxed;
+      state.gain[i] = stiffness[i] * relaxation_time[i] / period_s * -relaxed;
+    }
+  }
+};
+
+}  // namespace kerf::models
