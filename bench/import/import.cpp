@@ -236,6 +236,11 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   recording.header = schema::new_header(software());
   recording.header.velocity_derived = derived;
   recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
+  add_history(
+      recording.header,
+      fmt::format("import: {} rows of {}{}", recording.rows(), file.filename().string(),
+                  options.resample_hz > 0.0 ? fmt::format(", resampled to {:g} Hz", options.resample_hz)
+                                            : std::string()));
   return imported;
 }
 

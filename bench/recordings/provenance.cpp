@@ -1,5 +1,6 @@
 #include "recordings/provenance.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -11,6 +12,13 @@
 namespace kerf::bench {
 
 std::string software() { return "kerf " KERF_VERSION; }
+
+void add_history(schema::Header& header, std::string_view step) {
+  std::string line(step);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  if (!header.history.empty() && !header.history.ends_with('\n')) header.history += '\n';
+  header.history += fmt::format("{} {}: {}\n", schema::new_header("").created, software(), line);
+}
 
 std::string sha256_of(std::string_view content) {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};

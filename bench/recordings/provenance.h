@@ -4,10 +4,16 @@
 #include <string>
 #include <string_view>
 
+#include <kerf/schema/recording.h>
+
 namespace kerf::bench {
 
 /// "kerf 0.1.0", as recordings and law files name the program that wrote them.
 [[nodiscard]] std::string software();
+
+/// Appends one line to a recording's history: time (UTC), program and what was done; line breaks in it become
+/// blanks.
+void add_history(schema::Header& header, std::string_view step);
 
 /// SHA-256 in lower-case hexadecimal.
 [[nodiscard]] std::string sha256_of(std::string_view content);

@@ -93,6 +93,16 @@ void add_time_warnings(nlohmann::ordered_json& summary, const std::vector<double
   if (backward > 0) warnings.push_back(fmt::format("time goes back at {} rows", backward));
 }
 
+nlohmann::ordered_json lines_of(const std::string& text) {
+  nlohmann::ordered_json lines = nlohmann::ordered_json::array();
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (end > begin) lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
 void add_header(nlohmann::ordered_json& summary, const schema::Recording& recording) {
   const schema::Header& header = recording.header;
   summary["schema"] = schema::schema_name;
@@ -102,6 +112,7 @@ void add_header(nlohmann::ordered_json& summary, const schema::Recording& record
   summary["software"] = header.software;
   summary["uuid"] = header.uuid;
   if (!header.source.empty()) summary["source"] = header.source;
+  if (!header.history.empty()) summary["history"] = lines_of(header.history);
   if (!header.device_uri.empty()) summary["device"] = header.device_uri;
   if (!header.velocity_derived.empty()) summary["velocity_derived"] = header.velocity_derived;
   summary["axes"] = nlohmann::ordered_json::array();
@@ -110,6 +121,9 @@ void add_header(nlohmann::ordered_json& summary, const schema::Recording& record
                                {"position_unit", axis.position_unit},
                                {"force_unit", axis.force_unit},
                                {"lever", axis.lever}});
+    if (std::isnan(axis.contact_position)) continue;
+    summary["axes"].back()["contact"] = {{"position", axis.contact_position},
+                                         {"direction", axis.contact_direction}};
   }
   summary["events"] = recording.events.size();
 }
@@ -179,6 +193,9 @@ std::string summary_table(const nlohmann::ordered_json& summary) {
     const auto& cycles = summary["cycles"];
     line("cycles",
          fmt::format("{} along {}", cycles["count"].get<std::size_t>(), cycles["axis"].get<std::string>()));
+  }
+  if (summary.contains("history")) {
+    for (const auto& step : summary["history"]) line("history", step.get<std::string>());
   }
   table += fmt::format("\n{:<28}{:>14}{:>14}  {}\n", "channel", "least", "most", "unit");
   const auto number = [](const nlohmann::ordered_json& value) {

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "signal/signal.h"
+#include "signal/uniform_samples.h"
 
 namespace kerf::bench {
 namespace {
@@ -34,31 +35,6 @@ std::vector<double> axis_of(const std::vector<double>& values, const schema::Rec
   for (std::size_t i = axis; i < values.size(); i += recording.dimensions()) one.push_back(values[i]);
   return one;
 }
-
-/// Low-pass of samples at any times: on a uniform grid of the median rate, and back.
-class Smoother {
- public:
-  Smoother(const std::vector<double>& time, double corner_hz) : time_(time) {
-    const double period_s = median_period(time);
-    rate_hz_ = 1.0 / period_s;
-    corner_hz_ = std::min(corner_hz, 0.2 * rate_hz_);
-    const double span_s = time.back() - time.front();
-    for (std::size_t i = 0; static_cast<double>(i) * period_s <= span_s; ++i) {
-      grid_.push_back(time.front() + static_cast<double>(i) * period_s);
-    }
-  }
-  [[nodiscard]] double corner_hz() const { return corner_hz_; }
-  [[nodiscard]] std::vector<double> smooth(const std::vector<double>& values) const {
-    const auto uniform = interpolate(time_, values, grid_);
-    return interpolate(grid_, low_pass_zero_phase(uniform, rate_hz_, corner_hz_), time_);
-  }
-
- private:
-  const std::vector<double>& time_;
-  std::vector<double> grid_;
-  double rate_hz_ = 0.0;
-  double corner_hz_ = 0.0;
-};
 
 /// Turning points whose prominence is at least `height`, alternately closed and open.
 std::vector<Turn> find_turns(const std::vector<double>& position, double height) {
@@ -177,7 +153,7 @@ void check(const schema::Recording& recording, const SegmentOptions& options,
   for (std::size_t row = 0; row < position.size(); ++row) {
     if (!std::isfinite(position[row]) || !std::isfinite(force[row])) {
       throw std::invalid_argument(
-          fmt::format("row {} is not finite; cut it out before looking for cycles", row));
+          fmt::format("row {} is not finite; 'kerf prepare --drop-gaps' leaves such rows out", row));
     }
   }
 }
@@ -227,8 +203,12 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
       axis_of(recording.force_measured.empty() ? recording.force_commanded : recording.force_measured,
               recording, options.axis);
   check(recording, options, position, force);
-  const Smoother smoother(recording.time, options.corner_hz);
-  Motion motion{.position = smoother.smooth(position), .force = smoother.smooth(force)};
+  const UniformSamples samples(recording.time);
+  const double corner_hz = std::min(options.corner_hz, 0.2 * samples.rate_hz());
+  const auto smooth = [&](const std::vector<double>& uniform) {
+    return low_pass_zero_phase(uniform, samples.rate_hz(), corner_hz);
+  };
+  Motion motion{.position = samples.filtered(position, smooth), .force = samples.filtered(force, smooth)};
   const auto [least, most] = std::minmax_element(motion.position.begin(), motion.position.end());
   const double height = options.prominence * (*most - *least);
   // A filter leaves rounding on a constant, which turns often.
@@ -237,7 +217,7 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
 
   schema::Cycles cycles;
   cycles.axis = options.axis;
-  cycles.filter_corner_hz = smoother.corner_hz();
+  cycles.filter_corner_hz = corner_hz;
   cycles.closing_direction =
       options.closing_direction.value_or(work_of_rising(motion, turns) >= 0.0 ? 1.0 : -1.0);
   for (double& p : motion.position) p *= cycles.closing_direction;

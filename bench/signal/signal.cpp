@@ -4,51 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <stdexcept>
 #include <thread>
 
-#include <fmt/core.h>
+#include "signal/filters.h"
 
 namespace kerf::bench {
 namespace {
-
-/// A second-order low-pass by the bilinear transform, in transposed direct form II.
-class Butterworth {
- public:
-  Butterworth(double rate_hz, double corner_hz) {
-    const double warped = std::tan(std::numbers::pi * corner_hz / rate_hz);
-    const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * warped + warped * warped);
-    b0_ = warped * warped * norm;
-    a1_ = 2.0 * (warped * warped - 1.0) * norm;
-    a2_ = (1.0 - std::numbers::sqrt2 * warped + warped * warped) * norm;
-  }
-
-  /// Takes the filter to be settled at `value`.
-  void settle(double value) noexcept {
-    second_ = (b0_ - a2_) * value;
-    first_ = (2.0 * b0_ - a1_) * value + second_;
-  }
-
-  double step(double in) noexcept {
-    const double out = b0_ * in + first_;
-    first_ = 2.0 * b0_ * in - a1_ * out + second_;
-    second_ = b0_ * in - a2_ * out;
-    return out;
-  }
-
- private:
-  double b0_ = 0.0;
-  double a1_ = 0.0;
-  double a2_ = 0.0;
-  double first_ = 0.0;
-  double second_ = 0.0;
-};
-
-void run_once(std::vector<double>& values, Butterworth filter) {
-  filter.settle(values.front());
-  for (double& value : values) value = filter.step(value);
-}
 
 /// Slope at the origin of the parabola fitted to the points (time, value) around it, a straight line for two.
 class SlopeFit {
@@ -150,27 +112,7 @@ void convolve_slopes(std::span<const double> time_s, std::span<const double> val
 }  // namespace
 
 std::vector<double> low_pass_zero_phase(std::span<const double> values, double rate_hz, double corner_hz) {
-  if (!(corner_hz > 0.0 && corner_hz < 0.5 * rate_hz)) {
-    throw std::invalid_argument(
-        fmt::format("a corner of {} Hz is not between zero and half the rate of {} Hz; choose a lower one",
-                    corner_hz, rate_hz));
-  }
-  if (values.size() < 2) throw std::invalid_argument("a filter needs at least two samples");
-  const std::size_t count = values.size();
-  const auto reach = std::min(count - 1, static_cast<std::size_t>(5.0 * rate_hz / corner_hz) + 1);
-  std::vector<double> extended;
-  extended.reserve(count + 2 * reach);
-  for (std::size_t i = reach; i > 0; --i) extended.push_back(2.0 * values.front() - values[i]);
-  extended.insert(extended.end(), values.begin(), values.end());
-  for (std::size_t i = 1; i <= reach; ++i) extended.push_back(2.0 * values.back() - values[count - 1 - i]);
-
-  const Butterworth filter(rate_hz, corner_hz);
-  run_once(extended, filter);
-  std::reverse(extended.begin(), extended.end());
-  run_once(extended, filter);
-  std::reverse(extended.begin(), extended.end());
-  const auto begin = extended.begin() + static_cast<std::ptrdiff_t>(reach);
-  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+  return SampledFilter({.kind = FilterKind::butterworth2, .corner_hz = corner_hz}, rate_hz).run(values);
 }
 
 std::vector<double> differentiate(std::span<const double> time_s, std::span<const double> values,

@@ -124,7 +124,7 @@ TEST(Segment, RefusesWhatHasNoCycles) {
   EXPECT_THAT(refusal(still), HasSubstr("no cycle"));
   schema::Recording gap = Cutting{}.recording();
   gap.force_measured[7] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal(gap), HasSubstr("row 7 is not finite"));
+  EXPECT_THAT(refusal(gap), HasSubstr("row 7 is not finite; 'kerf prepare --drop-gaps'"));
   schema::Recording forceless = Cutting{}.recording();
   forceless.force_measured.clear();
   EXPECT_THAT(refusal(forceless), HasSubstr("no force"));

@@ -1,0 +1,138 @@
+#include "prepare/onset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "prepare/hinge.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// A tool that moves at 10 mm/s into a spring from x0 = 10.0037 mm on, at 1 kHz, and holds at 20 times the
+/// noise.
+ContactSignal pressed(double noise, unsigned seed, int rise_rows) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, noise);
+  ContactSignal signal{.components = {{}}, .name = "x"};
+  for (int i = 0; i < 2000; ++i) {
+    const double x = 1e-5 * std::min(i, 1000 + rise_rows);
+    signal.time_s.push_back(1e-3 * i);
+    signal.position.push_back(x);
+    signal.components[0].push_back(std::max(0.0, (x - 10.0037e-3) / (1e-5 * rise_rows)) + normal(random));
+  }
+  return signal;
+}
+
+TEST(Hinge, IsFoundExactlyBetweenSamples) {
+  std::vector<double> u;
+  std::vector<double> y;
+  for (int i = 0; i < 40; ++i) {
+    u.push_back(100.0 + 0.1 * i);
+    y.push_back(0.5 + 3.0 * std::max(0.0, u.back() - 102.037));
+  }
+  const Hinge hinge = fit_hinge(u, y);
+  ASSERT_TRUE(hinge.found);
+  EXPECT_NEAR(hinge.corner, 102.037, 1e-9);
+  EXPECT_NEAR(hinge.level, 0.5, 1e-9);
+  EXPECT_NEAR(hinge.slope, 3.0, 1e-9);
+  EXPECT_FALSE(fit_hinge(std::vector<double>{1, 2, 3, 4, 5, 6}, std::vector<double>{6, 5, 4, 3, 2, 1}).found);
+}
+
+TEST(Onset, IsExactWithoutNoise) {
+  const auto found = find_contacts(pressed(0.0, 1, 60), {});
+  ASSERT_EQ(found.contacts.size(), 1U);
+  EXPECT_TRUE(found.contacts[0].refined);
+  EXPECT_NEAR(found.contacts[0].onset_position, 10.0037e-3, 1e-9);
+  EXPECT_NEAR(found.contacts[0].onset_s, 1.00037, 1e-6);
+  EXPECT_GT(found.contacts[0].travel, 0.0);
+}
+
+TEST(Onset, IsWithinASampleOfTheTruthAndUnbiasedAtASignalToNoiseRatioOf20) {
+  double sum = 0.0;
+  double squares = 0.0;
+  int covered = 0;
+  constexpr unsigned seeds = 400;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const auto found = find_contacts(pressed(0.05, seed, 40), {});
+    ASSERT_EQ(found.contacts.size(), 1U) << seed;
+    const double samples = (found.contacts[0].onset_position - 10.0037e-3) / 1e-5;
+    sum += samples;
+    squares += samples * samples;
+    covered += std::abs(samples) * 1e-5 < 1.96 * found.contacts[0].onset_position_error ? 1 : 0;
+  }
+  const double rms = std::sqrt(squares / seeds);
+  RecordProperty("rms_samples", std::to_string(rms));
+  RecordProperty("mean_samples", std::to_string(sum / seeds));
+  EXPECT_LT(rms, 1.0);
+  EXPECT_NEAR(static_cast<double>(covered) / seeds, 0.95, 0.06);
+  EXPECT_LT(std::abs(sum / seeds), 3.0 * rms / std::sqrt(seeds)) << "as the mean of so many scatters";
+}
+
+TEST(Onset, OfEachContactIsFoundOverADriftOfThirtySigmas) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal(0.0, 0.02);
+  ContactSignal signal{.components = {{}}, .name = "f"};
+  for (int i = 0; i < 60'000; ++i) {
+    const double t = 1e-3 * i;
+    const double in_period = std::fmod(t, 6.0);
+    const double force = in_period < 3.0   ? 0.0
+                         : in_period < 3.5 ? 4.0 * (in_period - 3.0)
+                         : in_period < 4.5 ? 2.0
+                                           : 0.0;
+    signal.time_s.push_back(t);
+    signal.components[0].push_back(0.7 + 0.01 * t + force + normal(random));
+  }
+  const auto found = find_contacts(signal, {});
+  ASSERT_EQ(found.contacts.size(), 10U);
+  EXPECT_NEAR(found.noise, 0.02, 0.002);
+  for (std::size_t i = 0; i < 10; ++i) {
+    EXPECT_NEAR(found.contacts[i].onset_s, 6.0 * static_cast<double>(i) + 3.0, 0.01);
+    EXPECT_NEAR(signal.time_s[found.contacts[i].rows.end - 1], 6.0 * static_cast<double>(i) + 4.5, 0.005);
+  }
+}
+
+TEST(Onset, IsNotFoundInNoiseAlone) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  ContactSignal signal{.components = {{}, {}, {}}, .name = "f"};
+  for (int i = 0; i < 60'000; ++i) {
+    signal.time_s.push_back(1e-3 * i);
+    for (auto& component : signal.components) component.push_back(normal(random));
+  }
+  EXPECT_TRUE(find_contacts(signal, {}).contacts.empty());
+}
+
+TEST(Onset, AsksForFiniteRowsAndFreeSpansThatHoldRows) {
+  ContactSignal signal = pressed(0.01, 1, 60);
+  EXPECT_THAT([&] { (void)find_contacts(signal, {.free = {{.begin_s = 50.0, .end_s = 60.0}}}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("holds no row")));
+  signal.components[0][7] = std::nan("");
+  EXPECT_THAT([&] { (void)find_contacts(signal, {}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("row 7 of x is not finite")));
+  EXPECT_THAT(
+      [&] {
+        (void)find_contacts({.time_s = {0, 1}, .components = {{0, 1}}}, {});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("too few")));
+}
+
+TEST(FreeRows, KeepAMarginFromEveryContact) {
+  const ContactSignal signal = pressed(0.01, 2, 60);
+  const auto found = find_contacts(signal, {});
+  const auto free = free_rows(signal.time_s, found, {});
+  EXPECT_TRUE(free[900]);
+  EXPECT_FALSE(free[980]);
+  EXPECT_FALSE(free[1999]);
+}
+
+}  // namespace
+}  // namespace kerf::bench
