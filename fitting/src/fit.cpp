@@ -1,166 +1,214 @@
 #include "kerf/fitting/fit.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
-#include <Eigen/Eigenvalues>
-
+#include "estimates.h"
 #include "least_squares.h"
 #include "samples.h"
 #include "search.h"
-#include "statistics.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
+constexpr double deviation_of_mad = 1.4826;
+constexpr std::size_t most_arms = 4;
+constexpr double white_below = 3.0;    ///< samples of correlation time
+constexpr double worth_an_arm = 0.95;  ///< share of the held-out error that a further arm has to reach
 
-std::vector<double> residuals_of(const models::Law& law, const Samples& samples) {
-  std::vector<double> residuals = rendered(law, samples);
+std::vector<double> residuals_of(const Problem& problem, const Values& values, const Samples& samples) {
+  std::vector<double> residuals = rendered(problem, values, samples);
   for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
   return residuals;
 }
 
-double sum_of_squares(const std::vector<double>& values) {
-  return std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+/// Root mean square of the residuals that are chosen; NaN if none is.
+template <typename Chosen>
+double rms_of(const std::vector<double>& residuals, Chosen&& chosen) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (!chosen(i)) continue;
+    squares += residuals[i] * residuals[i];
+    count += 1.0;
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : nothing;
 }
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const ForceJnd& jnd) {
-  const auto n = static_cast<double>(samples.size());
-  const double squares = sum_of_squares(residuals);
-  const double mean = std::accumulate(samples.force.begin(), samples.force.end(), 0.0) / n;
-  double total = 0.0;
-  std::size_t felt = 0;
+  double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    total += (samples.force[i] - mean) * (samples.force[i] - mean);
+    if (samples.fold[i] == Samples::test) continue;
+    n += 1.0;
+    squares += residuals[i] * residuals[i];
+    sum += samples.force[i];
+    sum_of_squares += samples.force[i] * samples.force[i];
     result.max_abs = std::max(result.max_abs, std::abs(residuals[i]));
-    felt += std::abs(residuals[i]) > jnd.at(samples.force[i]) ? 1 : 0;
+    felt += std::abs(residuals[i]) > jnd.at(samples.force[i]) ? 1.0 : 0.0;
   }
+  const double total = sum_of_squares - sum * sum / n;
   result.rmse = std::sqrt(squares / n);
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
-  result.jnd_fraction = static_cast<double>(felt) / n;
+  result.jnd_fraction = felt / n;
   const double likelihood = n * std::log(std::max(squares / n, std::numeric_limits<double>::min()));
   const auto p = static_cast<double>(result.free_parameters + 1);  // the noise is one more
   result.aic = likelihood + 2.0 * p;
   result.bic = likelihood + p * std::log(n);
-}
-
-/// Inverse of J^T J, with the directions that the data do not determine left out and told of.
-struct Inverse {
-  Eigen::MatrixXd matrix;
-  std::vector<bool> undetermined;
-};
-
-Inverse inverse_of(const Eigen::MatrixXd& normal) {
-  const Eigen::VectorXd diagonal = normal.diagonal().cwiseSqrt();
-  const Eigen::VectorXd scale = (diagonal.array() > 0.0).select(diagonal.cwiseInverse(), 0.0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(scale.asDiagonal() * normal *
-                                                                scale.asDiagonal());
-  const double threshold = 1e-12 * spectrum.eigenvalues().maxCoeff();
-  const Eigen::VectorXd inverted =
-      (spectrum.eigenvalues().array() > threshold).select(spectrum.eigenvalues().cwiseInverse(), 0.0);
-  const Eigen::MatrixXd basis = scale.asDiagonal() * spectrum.eigenvectors();
-  Inverse inverse{.matrix = basis * inverted.asDiagonal() * basis.transpose(), .undetermined = {}};
-  for (Eigen::Index k = 0; k < scale.size(); ++k) {
-    double lost = 0.0;
-    for (Eigen::Index j = 0; j < scale.size(); ++j) {
-      if (spectrum.eigenvalues()[j] <= threshold) lost += std::pow(spectrum.eigenvectors()(k, j), 2);
-    }
-    inverse.undetermined.push_back(lost > 1e-6 || scale[k] == 0.0);
-  }
-  return inverse;
-}
-
-/// Half the width of each free parameter's interval is `quantile * deviation`, on its search scale.
-struct Spread {
-  double deviation;
-  double quantile;
-};
-
-/// Standard deviations by the delete-a-group jackknife, one Newton step for each stretch of time that is left
-/// out.
-Eigen::VectorXd jackknife(const Solution& solution) {
-  Eigen::VectorXd squares = Eigen::VectorXd::Zero(solution.normal.rows());
-  for (const Stretch& stretch : solution.stretches) {
-    const Eigen::VectorXd shift = inverse_of(solution.normal - stretch.normal).matrix * stretch.score;
-    squares += shift.cwiseAbs2();
-  }
-  const auto groups = static_cast<double>(stretch_count);
-  return ((groups - 1.0) / groups * squares).cwiseSqrt();
-}
-
-/// The larger of two deviations: that of the residuals, stretched by their correlation time, and the
-/// jackknife's, which also sees errors that stay while the tool stands still (encoder steps).
-std::vector<Spread> spreads(const Solution& solution, double noise_variance, double effective_samples,
-                            double confidence) {
-  const Inverse inverse = inverse_of(solution.normal);
-  const Eigen::VectorXd by_groups = jackknife(solution);
-  const double t_of_samples =
-      student_t(confidence, effective_samples - static_cast<double>(solution.normal.rows()));
-  const double t_of_groups = student_t(confidence, static_cast<double>(stretch_count) - 1.0);
-  std::vector<Spread> all;
-  for (Eigen::Index k = 0; k < solution.normal.rows(); ++k) {
-    if (inverse.undetermined[static_cast<std::size_t>(k)]) {
-      all.push_back({.deviation = infinite, .quantile = t_of_samples});
-      continue;
-    }
-    const double by_samples = std::sqrt(noise_variance * inverse.matrix(k, k));
-    all.push_back(by_samples >= by_groups[k] ? Spread{by_samples, t_of_samples}
-                                             : Spread{by_groups[k], t_of_groups});
-  }
-  return all;
-}
-
-void estimate_parameters(FitResult& result, const Problem& problem, const Solution& solution,
-                         const std::vector<double>& residuals, double confidence) {
-  const auto n = static_cast<double>(residuals.size());
-  const auto p = static_cast<double>(problem.free_count());
-  result.correlation_time = correlation_time(residuals);
-  const double noise_variance = sum_of_squares(residuals) / std::max(1.0, n - p) * result.correlation_time;
-  const auto searched = spreads(solution, noise_variance, n / result.correlation_time, confidence);
-  auto next = searched.begin();
-  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    const models::ParameterInfo& info = problem.parameters[i];
-    Estimate estimate{.info = info, .value = solution.values[i]};
-    const Spread spread = problem.free[i] ? *next++ : Spread{0.0, 0.0};
-    const bool logarithmic = info.scale == models::Scale::logarithmic;
-    const double centre = to_search_scale(info, estimate.value);
-    estimate.std_error = logarithmic ? estimate.value * spread.deviation : spread.deviation;
-    estimate.lower = from_search_scale(info, centre - spread.quantile * spread.deviation);
-    estimate.upper = from_search_scale(info, centre + spread.quantile * spread.deviation);
-    if (!std::isfinite(spread.deviation)) {
-      result.warnings.push_back("the data do not determine '" + info.name + "'");
-    } else if (problem.free[i] && (estimate.value <= info.lower * (info.lower > 0.0 ? 1.001 : 1.0) ||
-                                   estimate.value >= info.upper)) {
-      result.warnings.push_back("'" + info.name + "' lies at the bound of its range");
-    }
-    result.parameters.push_back(std::move(estimate));
-  }
+  result.test_rmse = rms_of(residuals, [&](std::size_t i) { return samples.fold[i] == Samples::test; });
 }
 
 /// Error on samples that the fit has not seen; infinite if a fold could not be fitted.
-double cross_validate(const Problem& problem, const Samples& samples, const std::vector<double>& near) {
-  double squares = 0.0;
-  double count = 0.0;
-  for (std::size_t fold = 0; fold < samples.folds; ++fold) {
-    const Mask mask = without_fold(samples, fold);
-    const Solution solution = search(problem, samples, mask, near);
-    if (solution.values.empty()) return infinite;
-    const auto residuals =
-        residuals_of(models::Law::make(problem.model, solution.values, problem.law_options), samples);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (mask[i]) continue;
-      squares += residuals[i] * residuals[i];
-      count += 1.0;
+double cross_validate(const Problem& problem, const Samples& samples, const Weights& weights,
+                      const Values& near, const RobustLoss& loss, std::size_t threads) {
+  if (samples.folds < 2) return nothing;
+  std::vector<double> held_out(samples.size(), 0.0);
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  const auto work = [&] {
+    for (std::size_t fold = next++; fold < samples.folds && !failed; fold = next++) {
+      const Weights rest = without_fold(samples, weights, fold);
+      const Solution solution =
+          search(problem, samples, rest, near, {.loss = loss, .function_tolerance = 1e-8});
+      if (solution.values.empty()) {
+        failed = true;
+        return;
+      }
+      const auto residuals = residuals_of(problem, solution.values, samples);
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.fold[i] == fold) held_out[i] = residuals[i];
+      }
     }
+  };
+  {
+    std::vector<std::jthread> helpers;
+    for (std::size_t i = 1; i < std::min(threads, samples.folds); ++i) helpers.emplace_back(work);
+    work();
   }
-  return count > 0.0 ? std::sqrt(squares / count) : infinite;
+  if (failed) return std::numeric_limits<double>::infinity();
+  return rms_of(held_out, [&](std::size_t i) { return samples.fold[i] < samples.folds; });
+}
+
+/// 1.345 robust standard deviations of what least squares leaves.
+double loss_scale(const std::vector<double>& residuals, const Weights& weights) {
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (weights[i] > 0.0) sizes.push_back(std::sqrt(weights[i]) * std::abs(residuals[i]));
+  }
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return std::max(robust_width * deviation_of_mad * *middle, std::numeric_limits<double>::min());
+}
+
+/// Each run weighed by what a first fit leaves in it.
+Weights by_noise(const Samples& samples, const std::vector<double>& residuals) {
+  Weights weights = all_of(samples);
+  double first = 0.0;
+  for (const Run& run : samples.runs) {
+    const double noise = rms_of(residuals, [&](std::size_t i) {
+      return i >= run.begin && i < run.end && samples.fold[i] != Samples::test;
+    });
+    if (!(noise > 0.0)) return all_of(samples);
+    if (first == 0.0) first = noise;
+    for (std::size_t i = run.begin; i < run.end; ++i) weights[i] *= first * first / (noise * noise);
+  }
+  return weights;
+}
+
+/// A sensor at the end of its range repeats its largest number.
+void warn_of_the_sensor(FitResult& result, const Samples& samples) {
+  const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const double largest = *std::max_element(samples.force.begin(), samples.force.end(), by_size);
+  std::size_t longest = 0;
+  std::size_t count = 0;
+  std::size_t row = 0;
+  for (const double force : samples.force) {
+    row = force == largest ? row + 1 : 0;
+    count += force == largest ? 1 : 0;
+    longest = std::max(longest, row);
+  }
+  if (count == samples.size()) {
+    result.warnings.emplace_back("the force never changes: a sensor that is stuck reads like that");
+  } else if (longest >= 10 && 200 * count > samples.size()) {
+    std::ostringstream warning;
+    warning << "the force stands at its largest value, " << largest << " N, for " << count
+            << " samples, up to " << longest << " in a row: the sensor may be saturated there";
+    result.warnings.push_back(warning.str());
+  }
+}
+
+FitResult fit_problem(const Problem& problem, const Samples& samples, const FitOptions& options) {
+  FitResult result{.model = std::string(problem.model), .law_options = problem.law_options};
+  result.free_parameters = static_cast<std::size_t>(problem.coordinates());
+  result.samples = samples.size();
+  result.cv_rmse = result.test_rmse = nothing;
+  if (samples.size() <= result.free_parameters) {
+    std::ostringstream reason;
+    reason << "cannot fit: law '" << problem.model << "' has " << result.free_parameters
+           << " parameters, and there are only " << samples.size() << " samples";
+    throw std::invalid_argument(reason.str());
+  }
+  warn_of_the_sensor(result, samples);
+  Weights weights = all_of(samples);
+  RobustLoss loss;
+  Solution solution = search(problem, samples, weights, {});
+  const auto search_again = [&] {
+    const int before = solution.iterations;
+    solution = search(problem, samples, weights, solution.values, {.loss = loss});
+    solution.iterations += before;
+  };
+  if (!solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
+    weights = by_noise(samples, residuals_of(problem, solution.values, samples));
+    search_again();
+  }
+  if (!solution.values.empty() && options.loss != Loss::squares) {
+    loss = {options.loss, options.loss_scale_n > 0.0
+                              ? options.loss_scale_n
+                              : loss_scale(residuals_of(problem, solution.values, samples), weights)};
+    search_again();
+  }
+  result.message = solution.message;
+  if (solution.values.empty()) {
+    result.warnings.push_back(solution.message);
+    return result;
+  }
+  result.converged = solution.converged;
+  result.iterations = solution.iterations;
+  measure_errors(result, residuals_of(problem, solution.values, samples), samples, options.jnd);
+  estimate_parameters(result, problem, samples, weights, solution, options, loss);
+  result.cv_rmse = cross_validate(problem, samples, weights, solution.values, loss, options.threads);
+  return result;
+}
+
+/// Maxwell with as many arms as held-out cycles pay for: one more is taken if it lowers their error enough.
+/// Where one does not but the residuals are still far from white, the next is tried too.
+FitResult fit_arms(const FitOptions& options, const Samples& samples) {
+  FitResult best;
+  int failures = 0;
+  for (std::size_t arms = 1; arms <= most_arms; ++arms) {
+    FitOptions with_arms(options);
+    with_arms.law_options["arms"] = static_cast<double>(arms);
+    FitResult next = fit_problem(make_problem("maxwell", with_arms, samples), samples, with_arms);
+    if (next.parameters.empty()) return best.parameters.empty() ? next : best;
+    const bool white = next.correlation_time < white_below;
+    const bool validated = std::isfinite(next.cv_rmse);
+    const bool better = best.parameters.empty() ||
+                        (validated ? next.cv_rmse < worth_an_arm * best.cv_rmse : next.bic < best.bic);
+    failures = better ? 0 : failures + 1;
+    if (better) best = std::move(next);
+    if (failures == 2) break;
+    if (white) break;  // there is nothing left to explain
+  }
+  return best;
 }
 
 }  // namespace
@@ -169,60 +217,56 @@ double ForceJnd::at(double force_n) const noexcept {
   return std::max(weber_fraction * std::abs(force_n), threshold_n);
 }
 
-models::Law FitResult::law() const {
+models::Law FitResult::law(std::size_t recording) const {
   std::vector<double> values;
-  for (const Estimate& estimate : parameters) values.push_back(estimate.value);
+  for (const Estimate& estimate : parameters) {
+    values.push_back(estimate.value);
+    for (const Estimate& other : others) {
+      if (other.info.name == estimate.info.name && other.recording == recording) values.back() = other.value;
+    }
+  }
   return models::Law::make(model, values, law_options);
 }
 
 const std::vector<std::string_view>& fitted_laws() {
-  static const std::vector<std::string_view> laws{"kelvin",    "exponential",       "piecewise",
-                                                  "recording", "scissors_analytic", "precontact"};
+  static const std::vector<std::string_view> laws = [] {
+    std::vector<std::string_view> scalar;
+    for (const models::LawInfo& law : models::registry()) {
+      if (models::Law::axes(law.name).empty()) scalar.push_back(law.name);
+    }
+    return scalar;
+  }();
   return laws;
 }
 
 void check_model(std::string_view model) {
   (void)models::Law::options(model);  // an unknown law is told as such
   if (std::find(fitted_laws().begin(), fitted_laws().end(), model) != fitted_laws().end()) return;
-  std::string message =
-      "law '" + std::string(model) + "' cannot be fitted to a recording; those that can are";
+  std::string message = "law '" + std::string(model) +
+                        "' acts on several axes and cannot be fitted along one; those that can are";
   for (const std::string_view law : fitted_laws()) {
     message += (law == fitted_laws().front() ? " " : ", ") + std::string(law);
   }
   throw std::invalid_argument(message);
 }
 
-FitResult fit(std::string_view model, const Series& series, const FitOptions& options) {
+FitResult fit(std::string_view model, std::span<const Series> recordings, const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  const Samples samples = check_series(series, options.folds);
-  const Problem problem = make_problem(model, options.law_options, samples);
-  FitResult result{.model = std::string(model), .law_options = problem.law_options};
-  result.free_parameters = problem.free_count();
-  if (samples.size() <= result.free_parameters) {
-    std::ostringstream reason;
-    reason << "cannot fit: law '" << model << "' has " << result.free_parameters
-           << " parameters, and there are only " << samples.size() << " samples";
-    throw std::invalid_argument(reason.str());
-  }
+  check_model(model);
+  const Samples samples =
+      check_series(recordings, {.folds = options.folds, .test_share = options.test_share});
   if (std::all_of(samples.force.begin(), samples.force.end(), [](double f) { return f == 0.0; })) {
-    result.warnings.emplace_back("the force is zero throughout");
+    throw std::invalid_argument("cannot fit: the force is zero throughout");
   }
-
-  const Solution solution = search(problem, samples, all_of(samples), {});
-  result.message = solution.message;
-  if (solution.values.empty()) {
-    result.warnings.emplace_back("too few samples, or too few on one branch, for as many parameters");
-  } else {
-    result.converged = solution.converged;
-    result.iterations = solution.iterations;
-    const auto residuals =
-        residuals_of(models::Law::make(model, solution.values, problem.law_options), samples);
-    measure_errors(result, residuals, samples, options.jnd);
-    estimate_parameters(result, problem, solution, residuals, options.confidence);
-    result.cv_rmse = cross_validate(problem, samples, solution.values);
-  }
+  const bool count_arms = model == "maxwell" && !options.law_options.contains("arms");
+  FitResult result = count_arms ? fit_arms(options, samples)
+                                : fit_problem(make_problem(model, options, samples), samples, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
+}
+
+FitResult fit(std::string_view model, const Series& series, const FitOptions& options) {
+  return fit(model, std::span(&series, 1), options);
 }
 
 double line_rmse(const Series& series) {

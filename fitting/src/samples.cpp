@@ -19,6 +19,22 @@ void check_finite(std::span<const double> values, const char* name) {
   }
 }
 
+void check_columns(const Series& series) {
+  const std::size_t count = series.force.size();
+  if (series.time_s.size() != count || series.penetration.size() != count ||
+      series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count)) {
+    refuse("time, penetration, velocity, force and cycle differ in length");
+  }
+  if (count < 4) refuse("there are only " + std::to_string(count) + " samples");
+  check_finite(series.time_s, "time");
+  check_finite(series.penetration, "penetration");
+  check_finite(series.velocity, "velocity");
+  check_finite(series.force, "force");
+  if (!(series.noise_n >= 0.0) || !std::isfinite(series.noise_n)) {
+    refuse("the noise of a recording must be a positive number, or 0 where it is not known");
+  }
+}
+
 std::vector<double> periods(std::span<const double> time_s, double& median_period_s) {
   std::vector<double> all(time_s.size(), 0.0);
   for (std::size_t i = 1; i < time_s.size(); ++i) {
@@ -26,6 +42,12 @@ std::vector<double> periods(std::span<const double> time_s, double& median_perio
     if (!(all[i] > 0.0)) refuse("the time does not increase at sample " + std::to_string(i));
   }
   all[0] = all[1];
+  const auto [shortest, longest] = std::minmax_element(all.begin(), all.end());
+  if (*longest - *shortest < 1e-6 * *shortest) {
+    median_period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+    all.assign(all.size(), median_period_s);
+    return all;
+  }
   std::vector<double> sorted(all);
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
@@ -37,68 +59,134 @@ std::vector<double> periods(std::span<const double> time_s, double& median_perio
   return all;
 }
 
-/// Folds by cycle where there are at least two; else blocks of time.
-void assign_folds(Samples& samples, std::span<const std::uint32_t> cycle, std::size_t folds) {
+/// Folds by cycle where there are at least two; else blocks of time. The test share comes last.
+void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_t> cycle,
+                  const FoldOptions& options) {
+  const std::size_t count = run.end - run.begin;
   const std::uint32_t cycles = cycle.empty() ? 0 : *std::max_element(cycle.begin(), cycle.end());
-  samples.has_cycles = cycles > 0;
-  samples.fold.assign(samples.size(), Samples::no_fold);
-  if (cycles >= 2) {
-    samples.folds = std::min<std::size_t>(folds, cycles);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (cycle[i] > 0) samples.fold[i] = (cycle[i] - 1) % samples.folds;
+  const bool by_cycle = cycles >= 2;
+  const double total = static_cast<double>(by_cycle ? cycles : count);
+  const auto kept = static_cast<std::size_t>(std::ceil(total * (1.0 - options.test_share)));
+  const std::size_t folds = by_cycle ? std::min(options.folds, kept) : options.folds;
+  samples.folds = std::max(samples.folds, folds);
+  const auto fold = samples.fold.begin() + static_cast<std::ptrdiff_t>(run.begin);
+  const auto at = [&](std::size_t row) { return fold + static_cast<std::ptrdiff_t>(row); };
+  if (!by_cycle) {
+    for (std::size_t k = 0; k < folds && folds >= 2; ++k)
+      std::fill(at(k * kept / folds), at((k + 1) * kept / folds), k);
+    std::fill(at(kept), at(count), Samples::test);
+    return;
+  }
+  bool over = false;  // the test share runs to the end, with what lies between its cycles
+  for (std::size_t i = 0; i < count; ++i) {
+    over = over || cycle[i] > kept;
+    if (over) {
+      *at(i) = Samples::test;
+    } else if (cycle[i] > 0 && folds >= 2) {
+      *at(i) = (cycle[i] - 1) % folds;
     }
-  } else {
-    samples.folds = folds;
-    for (std::size_t i = 0; i < samples.size(); ++i) samples.fold[i] = i * folds / samples.size();
   }
 }
 
 }  // namespace
 
-Samples check_series(const Series& series, std::size_t folds) {
-  const std::size_t count = series.force.size();
-  if (series.time_s.size() != count || series.penetration.size() != count ||
-      series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count)) {
-    refuse("time, penetration, velocity, force and cycle differ in length");
+Samples check_series(std::span<const Series> recordings, const FoldOptions& options) {
+  if (recordings.empty()) refuse("there is no recording");
+  if (!(options.test_share >= 0.0 && options.test_share <= 0.9)) {
+    refuse("the share that is held back for a test must be from 0 to 0.9");
   }
-  if (count < 4) refuse("there are only " + std::to_string(count) + " samples");
-  check_finite(series.time_s, "time");
-  check_finite(series.penetration, "penetration");
-  check_finite(series.velocity, "velocity");
-  check_finite(series.force, "force");
-
   Samples samples;
-  samples.force.assign(series.force.begin(), series.force.end());
-  samples.period_s = periods(series.time_s, samples.median_period_s);
-  samples.duration_s = series.time_s.back() - series.time_s.front();
-  for (std::size_t i = 0; i < count; ++i) {
-    samples.motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
+  for (const Series& series : recordings) {
+    check_columns(series);
+    const Run run{
+        .begin = samples.size(), .end = samples.size() + series.force.size(), .noise_n = series.noise_n};
+    double median_period_s = 0.0;
+    const auto run_periods = periods(series.time_s, median_period_s);
+    if (samples.runs.empty()) samples.median_period_s = median_period_s;
+    samples.period_s.insert(samples.period_s.end(), run_periods.begin(), run_periods.end());
+    samples.force.insert(samples.force.end(), series.force.begin(), series.force.end());
+    samples.motion.reserve(samples.size());
+    for (std::size_t i = 0; i < series.force.size(); ++i) {
+      samples.motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
+    }
+    samples.duration_s = std::max(samples.duration_s, series.time_s.back() - series.time_s.front());
+    samples.fold.resize(samples.size(), Samples::no_fold);
+    samples.has_cycles = samples.has_cycles ||
+                         std::any_of(series.cycle.begin(), series.cycle.end(), [](auto c) { return c > 0; });
+    assign_folds(samples, run, series.cycle, options);
+    samples.runs.push_back(run);
   }
-  const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
-  samples.least = *least;
-  samples.most = *most;
+  const auto [least, most] =
+      std::minmax_element(samples.motion.begin(), samples.motion.end(),
+                          [](const auto& a, const auto& b) { return a.penetration < b.penetration; });
+  samples.least = least->penetration;
+  samples.most = most->penetration;
   if (!(samples.most > samples.least))
     refuse("the position is constant, so no law over it can be told from another");
-  assign_folds(samples, series.cycle, std::max<std::size_t>(folds, 2));
   return samples;
 }
 
-Mask all_of(const Samples& samples) { return Mask(samples.size(), true); }
-
-Mask without_fold(const Samples& samples, std::size_t fold) {
-  Mask mask(samples.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) mask[i] = samples.fold[i] != fold;
-  return mask;
+Samples thinned(const Samples& samples, std::size_t count) {
+  const std::size_t step = std::max<std::size_t>(1, samples.size() / count);
+  if (step == 1) return samples;
+  Samples few{.folds = samples.folds,
+              .least = samples.least,
+              .most = samples.most,
+              .median_period_s = samples.median_period_s,
+              .duration_s = samples.duration_s,
+              .has_cycles = samples.has_cycles};
+  for (const Run& run : samples.runs) {
+    Run short_run{.begin = few.size(), .end = 0, .noise_n = run.noise_n};
+    double period_s = 0.0;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      period_s += samples.period_s[i];
+      if ((i - run.begin) % step != 0) continue;
+      few.motion.push_back(samples.motion[i]);
+      // Equal but for rounding is equal: laws keep what they derive from the period.
+      const double usual_s = static_cast<double>(step) * samples.median_period_s;
+      few.period_s.push_back(std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s);
+      few.force.push_back(samples.force[i]);
+      few.fold.push_back(samples.fold[i]);
+      period_s = 0.0;
+    }
+    short_run.end = few.size();
+    few.runs.push_back(short_run);
+  }
+  few.median_period_s *= static_cast<double>(step);
+  return few;
 }
 
-std::vector<double> rendered(const models::Law& law, const Samples& samples) {
-  std::vector<double> force;
-  force.reserve(samples.size());
-  models::Law::State state = law.initial_state();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    force.push_back(law.step(state, samples.motion[i], samples.period_s[i]).force);
+Weights all_of(const Samples& samples) {
+  Weights weights(samples.size(), 1.0);
+  const bool known =
+      std::all_of(samples.runs.begin(), samples.runs.end(), [](const Run& run) { return run.noise_n > 0.0; });
+  for (const Run& run : samples.runs) {
+    const double share = known ? samples.runs.front().noise_n / run.noise_n : 1.0;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      weights[i] = samples.fold[i] == Samples::test ? 0.0 : share * share;
+    }
   }
-  return force;
+  return weights;
+}
+
+Weights thinned_weights(const Samples& samples, const Weights& weights, const Samples& few) {
+  if (few.size() == samples.size()) return weights;
+  const auto step = static_cast<std::size_t>(std::lround(few.median_period_s / samples.median_period_s));
+  Weights light(few.size());
+  for (std::size_t run = 0; run < few.runs.size(); ++run) {
+    for (std::size_t i = few.runs[run].begin; i < few.runs[run].end; ++i) {
+      light[i] = weights[samples.runs[run].begin + (i - few.runs[run].begin) * step];
+    }
+  }
+  return light;
+}
+
+Weights without_fold(const Samples& samples, const Weights& weights, std::size_t fold) {
+  Weights rest(weights);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.fold[i] == fold) rest[i] = 0.0;
+  }
+  return rest;
 }
 
 }  // namespace kerf::fitting

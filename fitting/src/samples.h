@@ -1,38 +1,58 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "kerf/fitting/fit.h"
 
 namespace kerf::fitting {
 
-/// A checked copy of a series in the form in which residuals are computed.
+/// One recording among the samples: rows [begin, end), through which a law runs from a fresh state.
+struct Run {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  double noise_n = 0.0;  ///< 0: not known
+};
+
+/// A checked copy of the recordings in the form in which residuals are computed.
 struct Samples {
   std::vector<models::Motion> motion;
   std::vector<double> period_s;  ///< time since the sample before
   std::vector<double> force;
   std::vector<std::size_t> fold;  ///< held out in that fold of the cross-validation; no_fold: never
+  std::vector<Run> runs;
   std::size_t folds = 0;
   double least = 0.0;  ///< smallest penetration
   double most = 0.0;   ///< largest penetration
   double median_period_s = 0.0;
-  double duration_s = 0.0;
+  double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
 
   static constexpr std::size_t no_fold = static_cast<std::size_t>(-1);
+  static constexpr std::size_t test = static_cast<std::size_t>(-2);  ///< a fold that no fit sees
   [[nodiscard]] std::size_t size() const noexcept { return force.size(); }
 };
 
+struct FoldOptions {
+  std::size_t folds = 5;
+  double test_share = 0.0;
+};
+
 /// @throws std::invalid_argument if the series cannot be fitted at all.
-[[nodiscard]] Samples check_series(const Series& series, std::size_t folds);
+[[nodiscard]] Samples check_series(std::span<const Series> recordings, const FoldOptions& options);
 
-/// Which samples count in a fit: all, or all but those held out in one fold.
-using Mask = std::vector<bool>;
-[[nodiscard]] Mask all_of(const Samples& samples);
-[[nodiscard]] Mask without_fold(const Samples& samples, std::size_t fold);
+/// Every so many samples of each run, at least `count` of them in all, or all there are. A law that is exact
+/// for motion that is linear between samples sees nearly the same motion.
+[[nodiscard]] Samples thinned(const Samples& samples, std::size_t count);
 
-/// The force that a law gives along the samples, from a fresh state.
-[[nodiscard]] std::vector<double> rendered(const models::Law& law, const Samples& samples);
+/// How much each sample counts; 0: not at all.
+using Weights = std::vector<double>;
+/// All samples that a fit may see, each run by its noise where every run's is known.
+[[nodiscard]] Weights all_of(const Samples& samples);
+/// The weights of a thinned series.
+[[nodiscard]] Weights thinned_weights(const Samples& samples, const Weights& weights, const Samples& few);
+/// The same less those of one fold.
+[[nodiscard]] Weights without_fold(const Samples& samples, const Weights& weights, std::size_t fold);
 
 }  // namespace kerf::fitting

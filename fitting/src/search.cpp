@@ -2,110 +2,89 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
-#include <Eigen/Cholesky>
-
-#include "segments.h"
-#include "starts.h"
+#include "scan.h"
+#include "segmented_law.h"
+#include "staged.h"
+#include "tables.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double bridge = 1e-7;  ///< weight of the smoothness that carries a table over cells without data
+constexpr std::size_t thinned_samples = 2000;
 
-std::vector<double> table_grid(const Problem& problem) {
-  const double first = std::get<double>(problem.law_options.at("first"));
-  const double last = std::get<double>(problem.law_options.at("last"));
-  const auto points = static_cast<std::size_t>(std::get<double>(problem.law_options.at("points")));
-  std::vector<double> grid;
-  for (std::size_t i = 0; i < points; ++i) {
-    grid.push_back(first + (last - first) * static_cast<double>(i) / static_cast<double>(points - 1));
-  }
-  return grid;
+Values for_all_runs(const Problem& problem, const std::vector<double>& values) {
+  return Values(problem.runs, values);
 }
 
-/// Second differences of the table, squared and summed: zero for any straight line.
-Eigen::MatrixXd roughness(Eigen::Index points) {
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(points, points);
-  for (Eigen::Index i = 1; i + 1 < points; ++i) {
-    const Eigen::Vector3d difference(1.0, -2.0, 1.0);
-    matrix.block<3, 3>(i - 1, i - 1) += difference * difference.transpose();
-  }
-  return matrix;
+Solution solve_from(const Problem& problem, const Samples& samples, const Weights& weights,
+                    const Values& start, const SearchOptions& options) {
+  const LawObjective objective(problem, samples, weights, start, options.loss);
+  const Minimum minimum = minimise(objective, coordinates_of(problem, start), problem.bounds(),
+                                   {.iterations = 50, .function_tolerance = options.function_tolerance});
+  return {.values = objective.values_at(minimum.at),
+          .converged = minimum.converged,
+          .iterations = minimum.iterations,
+          .message = minimum.message,
+          .squares = minimum.sums.squares,
+          .normal = minimum.sums.normal};
 }
 
-/// What of a mask lies in one stretch of the samples.
-Mask stretch_of(const Mask& mask, Eigen::Index stretch) {
-  const auto size = static_cast<Eigen::Index>(mask.size());
-  Mask part(mask.size(), false);
-  for (Eigen::Index i = stretch * size / stretch_count; i < (stretch + 1) * size / stretch_count; ++i) {
-    part[static_cast<std::size_t>(i)] = mask[static_cast<std::size_t>(i)];
+double squares_at(const Problem& problem, const Samples& samples, const Weights& weights,
+                  const Values& values) {
+  const auto force = rendered(problem, values, samples);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    squares += weights[i] * (force[i] - samples.force[i]) * (force[i] - samples.force[i]);
   }
-  return part;
+  return squares;
 }
 
-/// The tables that interpolate the samples best, by linear least squares: no search is needed. The Jacobian
-/// is given by its triangular factor, which has the same products.
-Solution solve_tables(const Problem& problem, const Samples& samples, const Mask& mask) {
-  const auto grid = table_grid(problem);
-  const bool loop = std::get<bool>(problem.law_options.at("loop"));
-  const auto points = static_cast<Eigen::Index>(grid.size());
-  const Eigen::Index branches = loop ? 2 : 1;
-  Solution solution;
-  solution.normal.setZero(points * branches, points * branches);
-  solution.stretches.assign(stretch_count,
-                            {.normal = Eigen::MatrixXd::Zero(points * branches, points * branches),
-                             .score = Eigen::VectorXd::Zero(points * branches)});
-  solution.converged = true;
-  solution.iterations = 1;
-  solution.message = "linear least squares";
-  for (Eigen::Index branch = 0; branch < branches; ++branch) {
-    const BranchOf mine{.loop = loop, .closing = branch == 0};
-    HatEquations equations = hat_equations(samples, mask, grid, mine);
-    equations.normal +=
-        bridge * std::max(1.0, equations.normal.trace() / static_cast<double>(points)) * roughness(points);
-    const Eigen::LLT<Eigen::MatrixXd> factor(equations.normal);
-    if (factor.info() != Eigen::Success) {
-      solution.converged = false;
-      solution.message = "too few samples on a branch for a table";
-      solution.values.insert(solution.values.end(), grid.size(), 0.0);
-      continue;
-    }
-    const Eigen::VectorXd forces = factor.solve(equations.right);
-    solution.values.insert(solution.values.end(), forces.begin(), forces.end());
-    solution.normal.block(branch * points, branch * points, points, points) = equations.normal;
-    for (Eigen::Index i = 0; i < stretch_count; ++i) {
-      const HatEquations part = hat_equations(samples, stretch_of(mask, i), grid, mine);
-      Stretch& stretch = solution.stretches[static_cast<std::size_t>(i)];
-      stretch.normal.block(branch * points, branch * points, points, points) = part.normal;
-      stretch.score.segment(branch * points, points) = part.normal * forces - part.right;
-    }
-  }
-  return solution;
-}
-
-Solution best_of(const Problem& problem, const Samples& samples, const Mask& mask,
-                 const std::vector<std::vector<double>>& starts) {
+/// The best end of several starts on a thinned series, which is where a search of all samples begins.
+Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
+  const Samples few = thinned(samples, thinned_samples);
+  const Weights light = thinned_weights(samples, weights, few);
   Solution best;
-  best.message = "no start could be made from the data";
+  best.message = "the data offer no start for a search";
+  double least = 0.0;
   int iterations = 0;
-  for (const auto& start : starts) {
-    Solution solution = solve(problem, samples, mask, start);
+  for (const auto& start : starts_of(problem, few, light)) {
+    // A start this far above an end already found is not tried.
+    if (!best.values.empty() && squares_at(problem, few, light, for_all_runs(problem, start)) > 10.0 * least)
+      break;
+    Solution solution = solve_from(problem, few, light, for_all_runs(problem, start),
+                                   {.loss = {}, .function_tolerance = 1e-7});
     iterations += solution.iterations;
-    const bool better =
-        best.values.empty() || (solution.converged && !best.converged) ||
-        (solution.converged == best.converged && solution.sum_of_squares < best.sum_of_squares);
-    if (better) best = std::move(solution);
+    const double squares = squares_at(problem, few, light, solution.values);
+    if (best.values.empty() || squares < least) {
+      best = std::move(solution);
+      least = squares;
+    }
   }
   best.iterations = iterations;
   return best;
 }
 
+/// @throws std::invalid_argument for a name that is no parameter of the law.
+std::vector<bool> own_parameters(const Problem& problem, const std::vector<std::string>& names) {
+  std::vector<bool> own(problem.parameters.size(), false);
+  for (const std::string& name : names) {
+    const auto found = std::find_if(problem.parameters.begin(), problem.parameters.end(),
+                                    [&](const auto& info) { return info.name == name; });
+    if (found == problem.parameters.end()) {
+      throw std::invalid_argument("law '" + std::string(problem.model) + "' has no parameter '" + name +
+                                  "' that each recording could have of its own");
+    }
+    own[static_cast<std::size_t>(found - problem.parameters.begin())] = true;
+  }
+  return own;
+}
+
 }  // namespace
 
-Problem make_problem(std::string_view model, const models::Options& given, const Samples& samples) {
-  check_model(model);
-  Problem problem{.model = model, .law_options = given, .parameters = {}, .free = {}};
+Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples) {
+  Problem problem{.model = model, .law_options = given.law_options, .runs = samples.runs.size()};
   models::Options& options = problem.law_options;
   if (model == "piecewise" || model == "recording") options.try_emplace("loop", samples.has_cycles);
   if (model == "recording") {
@@ -113,28 +92,37 @@ Problem make_problem(std::string_view model, const models::Options& given, const
     options.try_emplace("first", samples.least);
     options.try_emplace("last", samples.most);
   }
+  if (model == "hunt_crossley") options.try_emplace("reference_depth", std::max(samples.most, 1e-9));
+  if (is_staged(model)) prepare_staged(model, options, samples);
+  if (model == "piecewise") {
+    problem.breakpoints = given.breakpoints;
+    prepare_segments(options, given, samples);
+  }
   problem.parameters = models::Law::parameters(model, options);
   problem.free.assign(problem.parameters.size(), true);
-  if (model == "piecewise") {
-    const auto is_knot = [](const auto& info) { return info.name.starts_with("knot"); };
-    const auto knots = static_cast<std::size_t>(
-        std::count_if(problem.parameters.begin(), problem.parameters.end(), is_knot));
-    problem.free[0] = problem.free[knots - 1] = false;  // the ends of the data
+  problem.own = own_parameters(problem, given.per_recording);
+  if (model == "piecewise") hold_knots(problem, !given.breakpoints.empty());
+  if (is_staged(model)) hold_unsearched(problem);
+  const bool differs = std::find(problem.own.begin(), problem.own.end(), true) != problem.own.end();
+  if (differs && (model == "piecewise" || model == "recording" || is_staged(model))) {
+    throw std::invalid_argument("law '" + std::string(model) +
+                                "' is fitted to all recordings as one; it has no "
+                                "parameters that each recording could have of its own");
   }
   return problem;
 }
 
-Solution search(const Problem& problem, const Samples& samples, const Mask& mask,
-                const std::vector<double>& near) {
-  if (problem.model == "recording") return solve_tables(problem, samples, mask);
-  if (!near.empty()) return solve(problem, samples, mask, near);
-  if (problem.model == "piecewise") {
-    const auto start = segmented_start(problem, samples, mask);
-    return best_of(
-        problem, samples, mask,
-        start.empty() ? std::vector<std::vector<double>>{} : std::vector<std::vector<double>>{start});
-  }
-  return best_of(problem, samples, mask, scan_starts(problem, samples, mask));
+Solution search(const Problem& problem, const Samples& samples, const Weights& weights, const Values& near,
+                const SearchOptions& options) {
+  if (problem.model == "recording") return solve_tables(problem, samples, weights, options.loss);
+  if (problem.model == "piecewise") return solve_segments(problem, samples, weights, options.loss);
+  if (is_staged(problem.model)) return solve_staged(problem, samples, weights, near, options.loss);
+  if (!near.empty()) return solve_from(problem, samples, weights, near, options);
+  Solution start = begin_on_few(problem, samples, weights);
+  if (start.values.empty()) return start;
+  Solution solution = solve_from(problem, samples, weights, start.values, options);
+  solution.iterations += start.iterations;
+  return solution;
 }
 
 }  // namespace kerf::fitting

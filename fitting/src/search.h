@@ -1,20 +1,34 @@
 #pragma once
 
 #include <string>
-#include <vector>
+#include <string_view>
 
-#include "solve.h"
+#include "problem.h"
 
 namespace kerf::fitting {
 
+/// Where a search ended. No values: nowhere, for the reason in the message.
+struct Solution {
+  Values values;
+  bool converged = false;
+  int iterations = 0;
+  std::string message;
+  double squares = 0.0;    ///< r'r there
+  Eigen::MatrixXd normal;  ///< J'J of the searched coordinates near there; empty where no search has it
+};
+
 /// What a law needs before its parameters can be searched: options that follow from the data (range and loop
 /// of a table, loop of a piecewise law), and which parameters are free.
-[[nodiscard]] Problem make_problem(std::string_view model, const models::Options& given,
-                                   const Samples& samples);
+[[nodiscard]] Problem make_problem(std::string_view model, const FitOptions& options, const Samples& samples);
 
-/// Finds the best parameters over the masked samples. `near` is a solution to begin at (of other samples), or
+struct SearchOptions {
+  RobustLoss loss;
+  double function_tolerance = 1e-12;
+};
+
+/// Finds the best parameters for weighed samples. `near` is a solution to begin at (of other weights), or
 /// empty.
-[[nodiscard]] Solution search(const Problem& problem, const Samples& samples, const Mask& mask,
-                              const std::vector<double>& near);
+[[nodiscard]] Solution search(const Problem& problem, const Samples& samples, const Weights& weights,
+                              const Values& near, const SearchOptions& options = {});
 
 }  // namespace kerf::fitting

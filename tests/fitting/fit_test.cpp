@@ -116,7 +116,7 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
     strokes.force[i] = exponential.step(state, models::Motion{strokes.penetration[i], 0.0}, 1e-3).force;
   }
   const auto result = fit("exponential", strokes.series());
-  EXPECT_THAT(result.warnings, testing::Contains("the data do not determine 'viscosity'"));
+  EXPECT_THAT(result.warnings, testing::Contains("the data say nothing about 'viscosity'"));
   EXPECT_TRUE(std::isinf(result.parameters[2].std_error));
   EXPECT_NEAR(result.parameters[0].value, 0.2, 1e-6);
 }

@@ -6,13 +6,17 @@
 
 #include <kerf/models/exponential.h>
 #include <kerf/models/fracture.h>
+#include <kerf/models/friction.h>
 #include <kerf/models/fuzzy_kelvin.h>
 #include <kerf/models/fuzzy_rupture.h>
+#include <kerf/models/hunt_crossley.h>
 #include <kerf/models/kelvin.h>
+#include <kerf/models/maxwell.h>
 #include <kerf/models/piecewise.h>
 #include <kerf/models/precontact.h>
 #include <kerf/models/recording.h>
 #include <kerf/models/scissors_analytic.h>
+#include <kerf/models/springpot.h>
 
 namespace kerf::models {
 namespace {
@@ -59,6 +63,24 @@ TEST(Derivatives, OfKelvinByEuler) {
   expect_exact_derivatives<Kelvin>({5.0, 8.0, 1.6}, {{"integrator", std::string("euler")}});
 }
 TEST(Derivatives, OfExponential) { expect_exact_derivatives<Exponential>({0.2, 0.5, 0.3}); }
+TEST(Derivatives, OfExponentialWithAnOffset) {
+  expect_exact_derivatives<Exponential>({0.2, 0.5, 0.3, -0.4}, {{"offset", true}});
+  expect_exact_derivatives<Exponential>({0.2, 0.5, -0.4}, {{"viscous", false}, {"offset", true}});
+}
+TEST(Derivatives, OfMaxwell) {
+  expect_exact_derivatives<Maxwell>({2.0, 1.0, 3.0, 0.05, 0.4});
+  expect_exact_derivatives<Maxwell>({2.0, 1.0, 0.5}, {{"arms", 1.0}});
+}
+TEST(Derivatives, OfSpringpot) {
+  for (const double order : {0.02, 0.3, 0.6, 0.97}) {
+    expect_exact_derivatives<Springpot>({2.0, 1.0, order}, {{"reference_time", 0.2}});
+    expect_exact_derivatives<Springpot>({1.0, order}, {{"spring", false}});
+  }
+}
+TEST(Derivatives, OfHuntCrossley) {
+  expect_exact_derivatives<HuntCrossley>({0.2, 0.1, 1.4}, {{"reference_depth", 0.1}});
+}
+TEST(Derivatives, OfFriction) { expect_exact_derivatives<Friction>({-0.1, 2.0, 0.3, 0.8, 0.1}); }
 TEST(Derivatives, OfPiecewise) {
   expect_exact_derivatives<Piecewise>({0.0, 0.15, 0.4, 0.2, 2.0, 2.5, -0.1, 0.5, 2.0},
                                       {{"segments", 2.0}, {"loop", true}, {"reversal_scale", 2.0}});

@@ -18,6 +18,7 @@ struct Series {
   std::span<const double> velocity;      ///< dx/dt
   std::span<const double> force;         ///< resisting force [N]
   std::span<const std::uint32_t> cycle;  ///< cycle of each sample, 0 for none; empty if not segmented
+  double noise_n = 0.0;                  ///< standard deviation of the force's noise; 0: not known [N]
 };
 
 /// What a person can feel: the larger of a Weber fraction of the force and an absolute threshold.
@@ -28,13 +29,44 @@ struct ForceJnd {
   [[nodiscard]] double at(double force_n) const noexcept;
 };
 
+/// What a residual r costs, in units of a scale s: r^2 (least squares), or less for those far off.
+enum class Loss : std::uint8_t {
+  squares,  ///< r^2
+  huber,    ///< r^2 up to s, 2 s |r| - s^2 beyond
+  soft_l1,  ///< 2 s^2 (sqrt(1 + (r/s)^2) - 1)
+  cauchy    ///< s^2 ln(1 + (r/s)^2)
+};
+
+/// How the number of segments of a piecewise law, or of arms of a Maxwell law, is found where it is not
+/// given.
+enum class CountBy : std::uint8_t {
+  given,  ///< the law's own option, or its default
+  bic,    ///< least Bayesian information criterion, by the effective number of samples
+  jnd     ///< the fewest whose root mean square error stays within the JND
+};
+
+/// What the intervals take the residuals for.
+enum class Intervals : std::uint8_t {
+  correlated,  ///< noise with a memory, estimated from them
+  white        ///< independent from sample to sample: s^2 (J'J)^-1, at no cost; too narrow at 1 kHz
+};
+
 struct FitOptions {
   models::Options
       law_options;  ///< integrator, thickness, segments, points, loop, ...; the rest from the data
   ForceJnd jnd;
   std::size_t folds =
-      5;  ///< of the cross-validation: by cycle, or by blocks of time where there are no cycles
+      5;  ///< of the cross-validation: by cycle, or by blocks of time where there are no cycles; 0: none
+  std::size_t threads = 1;   ///< among which the folds are shared out; the result does not depend on it
+  double test_share = 0.0;   ///< last share of the cycles (or of the time) that no fit sees, in [0, 0.9]
   double confidence = 0.95;  ///< of the intervals
+  Intervals intervals = Intervals::correlated;
+  Loss loss = Loss::squares;
+  double loss_scale_n = 0.0;  ///< s [N]; 0: 1.345 robust standard deviations of the least-squares residuals
+  bool profile = false;       ///< also intervals from the profile of the sum of squares
+  CountBy segments = CountBy::given;
+  std::vector<double> breakpoints;         ///< inner knots of a piecewise law by hand, as penetrations
+  std::vector<std::string> per_recording;  ///< parameters that each recording has of its own
 };
 
 /// A parameter with its uncertainty. A parameter that was not searched (the ends of a piecewise law's knots)
@@ -45,51 +77,71 @@ struct Estimate {
   double std_error = 0.0;
   double lower = 0.0;  ///< confidence interval
   double upper = 0.0;
+  std::size_t recording = shared;  ///< whose own it is, where recordings differ
+
+  static constexpr std::size_t shared = static_cast<std::size_t>(-1);
+};
+
+/// How the sum of squares rises when one parameter is held and the others follow.
+struct Profile {
+  std::string parameter;
+  std::vector<double> value;
+  std::vector<double> deviation;  ///< signed root of the rise, in standard errors
+  double lower = 0.0;             ///< where it reaches the confidence; infinite where it never does
+  double upper = 0.0;
 };
 
 struct FitResult {
   std::string model;
   models::Options law_options;
-  std::vector<Estimate> parameters;
+  std::vector<Estimate> parameters;  ///< of the first recording, where some are each recording's own
+  std::vector<Estimate> others;      ///< those of the further recordings' own
   std::size_t free_parameters = 0;
+  std::size_t samples = 0;
   double rmse = 0.0;     ///< [N]
   double max_abs = 0.0;  ///< [N]
   double r2 = 0.0;
-  double aic = 0.0;               ///< n ln(RSS/n) + 2 (p + 1)
-  double bic = 0.0;               ///< n ln(RSS/n) + (p + 1) ln n
-  double cv_rmse = 0.0;           ///< on held-out cycles [N]
-  double jnd_fraction = 0.0;      ///< share of samples whose error a person could feel
-  double correlation_time = 1.0;  ///< of the residuals, in samples; the intervals allow for it
+  double aic = 0.0;                   ///< n ln(RSS/n) + 2 (p + 1)
+  double bic = 0.0;                   ///< n ln(RSS/n) + (p + 1) ln n
+  double cv_rmse = 0.0;               ///< on held-out cycles [N]; NaN if not asked for
+  double test_rmse = 0.0;             ///< on the share that no fit saw [N]; NaN if none
+  double jnd_fraction = 0.0;          ///< share of samples whose error a person could feel
+  double correlation_time = 1.0;      ///< of the residuals, in samples; the intervals allow for it
+  std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
+  std::vector<std::string> searched;  ///< their names, in the order of that matrix
+  std::vector<Profile> profiles;
   bool converged = false;
   int iterations = 0;
   double seconds = 0.0;
   std::string message;  ///< why it ended
   std::vector<std::string> warnings;
 
-  [[nodiscard]] models::Law law() const;
+  /// The law of the first recording, or of another one.
+  [[nodiscard]] models::Law law(std::size_t recording = 0) const;
 };
 
-/// The laws that can be fitted to a series.
+/// The laws that can be fitted to a series: every scalar law of the registry.
 [[nodiscard]] const std::vector<std::string_view>& fitted_laws();
 /// @throws std::invalid_argument for an unknown law, or one that is not among fitted_laws().
 void check_model(std::string_view model);
 
-/// Fits one law of the registry by least squares on the law's own step.
+/// Fits one law of the registry by least squares on the law's own step, differentiated by dual numbers.
 ///
-/// Kelvin, exponential and precontact: a scan over the one nonlinear parameter gives three starts, and the
-/// best of the three solutions is kept. Analytical scissors: linear in all parameters, which gives the start.
-/// Piecewise: dynamic programming over a grid gives the breakpoints, which are then polished together with
-/// the forces under continuity. Recording: linear least squares on the table's own interpolation. Laws with
-/// two branches are fitted to cycles as loops, and are judged without their rendering aids.
+/// Starts come from a scan over what is not linear in the law, the linear rest following by least squares
+/// (variable projection) on a thinned series; the best three are solved there, and the best of them on all
+/// samples, by a trust region within the law's own bounds. Piecewise laws begin at the global optimum of
+/// their breakpoints (segmented.h); tables are linear; laws that break begin at the breaks in the data. Laws
+/// with two branches are fitted to cycles as loops, and are judged without their rendering aids.
 ///
-/// Intervals are Student's t on the larger of two variances: that of s^2 tau (J^T J)^-1, where tau is the
-/// integrated autocorrelation time of the residuals (Sokal's window), so that n / tau samples count; and that
-/// of the jackknife over 20 stretches of time, which also sees errors that last while the tool stands still,
-/// such as encoder steps. Logarithmic parameters get their interval on the log scale. Non-convergence is a
-/// value of the result.
+/// Several recordings share all parameters but those of `per_recording`; each is weighed by its own noise,
+/// given or estimated from its residuals.
+///
+/// Intervals allow for the autocorrelation of the residuals (fitting/src/uncertainty.h). Logarithmic
+/// parameters get theirs on the log scale. Non-convergence is a value of the result.
 /// @throws std::invalid_argument for an unknown law or option, or a series that cannot be fitted at all
-/// (fewer samples
-///         than parameters, constant position, samples that are not finite), saying which.
+/// (fewer samples than parameters, constant position, samples that are not finite), saying which.
+[[nodiscard]] FitResult fit(std::string_view model, std::span<const Series> recordings,
+                            const FitOptions& options = {});
 [[nodiscard]] FitResult fit(std::string_view model, const Series& series, const FitOptions& options = {});
 
 /// Root mean square error of the straight line of force over penetration: what any law has to beat [N].

@@ -1,0 +1,186 @@
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include "least_squares.h"
+
+namespace kerf::fitting {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// p + 1 residuals with the sums of an objective: the triangle of J and Q'r, and what is left of r, which
+/// does not change.
+class Compressed final : public ceres::CostFunction {
+ public:
+  explicit Compressed(const Objective& objective) : objective_(objective) {
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(objective.size()));
+    set_num_residuals(static_cast<int>(objective.size()) + 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const Eigen::Index p = objective_.size();
+    const Eigen::Map<const Eigen::VectorXd> at(parameters[0], p);
+    if (!known_ || at_ != at) {  // the derivatives of a step that was taken are asked for a second time
+      known_ = objective_.factor(at, sums_, triangle_);
+      if (!known_ || !std::isfinite(sums_.squares) || !sums_.normal.allFinite()) return known_ = false;
+      at_ = at;
+    }
+    Eigen::Map<Eigen::VectorXd>(residuals, p) = triangle_.z;
+    residuals[p] = triangle_.rest;
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor> jacobian(jacobians[0], p + 1, p);
+      jacobian.topRows(p) = triangle_.r;
+      jacobian.row(p).setZero();
+    }
+    return true;
+  }
+
+  [[nodiscard]] const Sums& sums_at(const Eigen::VectorXd& at) const {
+    if (!known_ || at_ != at) {
+      if (!objective_.evaluate(at, sums_)) sums_.normal.setZero(at.size(), at.size());
+    }
+    return sums_;
+  }
+
+ private:
+  const Objective& objective_;
+  mutable bool known_ = false;
+  mutable Eigen::VectorXd at_;
+  mutable Sums sums_;
+  mutable Triangle triangle_;
+};
+
+/// Ceres reports a refused trial step as a warning of its log; a refused step is ordinary here.
+void silence_log() {
+  static const bool once = [] {
+    FLAGS_minloglevel = google::GLOG_FATAL;
+    return true;
+  }();
+  (void)once;
+}
+
+/// The trust region of Ceres, from minimum.at.
+void search(Minimum& minimum, const Objective& objective, const Bounds& bounds,
+            const MinimiseOptions& options) {
+  auto owned = std::make_unique<Compressed>(objective);
+  const Compressed& cost = *owned;
+  ceres::Problem problem;
+  problem.AddResidualBlock(owned.release(), nullptr, minimum.at.data());
+  for (Eigen::Index k = 0; k < minimum.at.size(); ++k) {
+    if (std::isfinite(bounds.lower[k]))
+      problem.SetParameterLowerBound(minimum.at.data(), static_cast<int>(k), bounds.lower[k]);
+    if (std::isfinite(bounds.upper[k]))
+      problem.SetParameterUpperBound(minimum.at.data(), static_cast<int>(k), bounds.upper[k]);
+  }
+  ceres::Solver::Options settings;
+  settings.linear_solver_type = ceres::DENSE_QR;
+  settings.max_num_iterations = options.iterations;
+  settings.function_tolerance = options.function_tolerance;
+  settings.gradient_tolerance = 1e-14;
+  settings.parameter_tolerance = 1e-12;
+  settings.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(settings, &problem, &summary);
+  minimum.sums = cost.sums_at(minimum.at);
+  minimum.converged = summary.termination_type == ceres::CONVERGENCE;
+  minimum.iterations += static_cast<int>(summary.iterations.size());
+  minimum.message = summary.message;
+}
+
+/// A step of Gauss and Newton that leaves alone what a bound holds.
+Eigen::VectorXd step_within(const Bounds& bounds, const Eigen::VectorXd& at, const Sums& sums,
+                            const Triangle& triangle) {
+  std::vector<Eigen::Index> moving;
+  for (Eigen::Index k = 0; k < at.size(); ++k) {
+    const bool below = at[k] <= bounds.lower[k] && sums.score[k] > 0.0;
+    const bool above = at[k] >= bounds.upper[k] && sums.score[k] < 0.0;
+    if (!below && !above) moving.push_back(k);
+  }
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
+  if (!moving.empty()) step(moving) = shortest_least_squares(triangle.r(Eigen::all, moving), -triangle.z);
+  return step;
+}
+
+/// Such steps from near the minimum, as long as they lead down; the last, which promises less than the root
+/// of the tolerance, is taken unseen, since what it leaves is of the order of the square of that. False, and
+/// nothing changed, where they do not go that way.
+bool finish(Minimum& minimum, const Objective& objective, const Bounds& bounds, double tolerance) {
+  Minimum next(minimum);
+  for (int step = 0; step < 6; ++step) {
+    const Eigen::VectorXd change = step_within(bounds, next.at, next.sums, triangle_of(next.sums));
+    const double promise = -change.dot(next.sums.score);
+    if (!std::isfinite(promise) || promise > 0.1 * next.sums.squares) return false;
+    next.at += change;
+    if ((next.at.array() < bounds.lower.array()).any() || (next.at.array() > bounds.upper.array()).any())
+      return false;
+    ++next.iterations;
+    if (promise <= std::sqrt(tolerance) * next.sums.squares) {
+      next.sums.squares -= promise;
+      next.converged = true;
+      next.message = "the next step promises less than the tolerance";
+      minimum = std::move(next);
+      return true;
+    }
+    const double before = next.sums.squares;
+    if (!objective.evaluate(next.at, next.sums) || !(next.sums.squares <= before)) return false;
+  }
+  return false;
+}
+
+/// Steps of Gauss and Newton from a minimum to its last digits. There the sum of squares is flat to rounding,
+/// and it is the promise of the next step that says whether one was good.
+void settle(Minimum& minimum, const Objective& objective, const Bounds& bounds, double tolerance) {
+  constexpr int most_steps = 50;
+  constexpr double level = 1e-9;  // a rise of the sum of squares that may be rounding
+  Triangle triangle;
+  Sums sums;
+  if (!objective.factor(minimum.at, sums, triangle)) return;
+  double promised = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_steps; ++i) {
+    const Eigen::VectorXd step = step_within(bounds, minimum.at, sums, triangle);
+    const double promise = (triangle.r * step).squaredNorm();
+    if (!(promise < 0.8 * promised) || (step.array().abs() <= tolerance * minimum.at.array().abs()).all())
+      return;
+    const Eigen::VectorXd next = (minimum.at + step).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+    if (!objective.factor(next, sums, triangle) || !(sums.squares <= (1.0 + level) * minimum.sums.squares))
+      return;
+    minimum.at = next;
+    minimum.sums = sums;
+    ++minimum.iterations;
+    promised = promise;
+  }
+}
+
+/// Near the minimum a few plain steps do; they are tried before the trust region and after its first descent.
+void descend(Minimum& minimum, const Objective& objective, const Bounds& bounds,
+             const MinimiseOptions& options) {
+  const auto finished = [&] { return finish(minimum, objective, bounds, options.function_tolerance); };
+  if (objective.evaluate(minimum.at, minimum.sums) && finished()) return;
+  MinimiseOptions coarse(options);
+  coarse.function_tolerance = std::max(options.function_tolerance, 1e-2);
+  search(minimum, objective, bounds, coarse);
+  if (minimum.converged && finished()) return;
+  search(minimum, objective, bounds, options);
+}
+
+}  // namespace
+
+Minimum minimise(const Objective& objective, const Eigen::VectorXd& start, const Bounds& bounds,
+                 const MinimiseOptions& options) {
+  silence_log();
+  Minimum minimum{.at = start.cwiseMax(bounds.lower).cwiseMin(bounds.upper)};
+  if (options.parameter_tolerance > 0.0) {
+    search(minimum, objective, bounds, options);
+    if (minimum.converged) settle(minimum, objective, bounds, options.parameter_tolerance);
+  } else {
+    descend(minimum, objective, bounds, options);
+  }
+  return minimum;
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,319 @@
+#include "noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+namespace kerf::fitting {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index most_order = 32;
+constexpr Index patience = 8;  // orders without an improvement before the search ends
+constexpr double near_one = 1.0 - 1e-9;
+
+/// A lattice filter over runs: forward and backward prediction errors of growing order, in place. Backward
+/// errors stay at the row where their run began.
+class Lattice {
+ public:
+  Lattice(const Eigen::MatrixXd& series, const std::vector<Rows>& runs)
+      : forward_(series), backward_(series), runs_(runs) {}
+
+  [[nodiscard]] double reflection() const {
+    double product = 0.0;
+    double energy = 0.0;
+    for (const Rows& run : runs_) {
+      const Index count = run.count() - order_ - 1;
+      if (count <= 0) continue;
+      const auto f = forward_.middleCols(run.begin + order_ + 1, count);
+      const auto b = backward_.middleCols(run.begin, count);
+      product += f.cwiseProduct(b).sum();
+      energy += f.squaredNorm() + b.squaredNorm();
+    }
+    return energy > 0.0 ? std::clamp(-2.0 * product / energy, -near_one, near_one) : 0.0;
+  }
+  void apply(double reflection) {
+    for (const Rows& run : runs_) {
+      const Index count = run.count() - order_ - 1;
+      if (count <= 0) continue;
+      double* f = forward_.col(run.begin + order_ + 1).data();
+      double* b = backward_.col(run.begin).data();
+      for (Index i = 0; i < count * forward_.rows(); ++i) {
+        const double kept = f[i];
+        f[i] += reflection * b[i];
+        b[i] += reflection * kept;
+      }
+    }
+    ++order_;
+  }
+  [[nodiscard]] Eigen::MatrixXd& forward() { return forward_; }
+
+ private:
+  Eigen::MatrixXd forward_;
+  Eigen::MatrixXd backward_;
+  const std::vector<Rows>& runs_;
+  Index order_ = 0;
+};
+
+double criterion(double count, double variance, double parameters, double price) {
+  if (count - parameters - 2.0 <= 0.0) return std::numeric_limits<double>::infinity();
+  return count * std::log(variance) + price * parameters * count / (count - parameters - 2.0);
+}
+
+/// Poles and zeros by turns, an octave apart, from a lowest frequency in cycles a row to the highest: nearly
+/// 1/f.
+std::vector<Pair> flicker_above(double lowest) {
+  std::vector<Pair> pairs;
+  for (double frequency = lowest; frequency < 0.2; frequency *= 4.0) {
+    pairs.push_back({.zero = std::exp(-4.0 * M_PI * frequency), .pole = std::exp(-2.0 * M_PI * frequency)});
+  }
+  return pairs;
+}
+
+/// What drove the filters, at rest before each run.
+Eigen::MatrixXd unfiltered(Eigen::MatrixXd rows, const std::vector<Rows>& runs,
+                           const std::vector<Pair>& pairs) {
+  Eigen::VectorXd input(rows.rows());
+  Eigen::VectorXd before(rows.rows());
+  for (const Pair& pair : pairs) {
+    for (const Rows& run : runs) {
+      if (run.count() == 0) continue;
+      before = rows.col(run.begin);
+      for (Index i = run.begin + 1; i < run.end; ++i) {
+        input = rows.col(i);
+        rows.col(i) += pair.zero * rows.col(i - 1) - pair.pole * before;
+        before = input;
+      }
+    }
+  }
+  return rows;
+}
+
+/// Divides each row of white noise by its deviation over that of the innovations: the first rows of a run
+/// are predicted from fewer.
+Eigen::MatrixXd whitened(const Eigen::MatrixXd& series, const std::vector<Rows>& runs,
+                         const Autoregression& noise) {
+  Lattice lattice(series, runs);
+  for (const double k : noise.reflections) lattice.apply(k);
+  for (const Rows& run : runs) {
+    double shrink = 1.0;
+    for (Index i = std::min(noise.order(), run.count()) - 1; i >= 0; --i) {
+      const double k = noise.reflections[static_cast<std::size_t>(i)];
+      shrink *= std::sqrt(1.0 - k * k);
+      lattice.forward().col(run.begin + i) *= shrink;
+    }
+  }
+  return std::move(lattice.forward());
+}
+
+/// Maps rows (Q, residuals) to (chol(C)^T Q, g).
+Eigen::MatrixXd expectation(const Eigen::MatrixXd& white, double innovation_variance) {
+  const Index r = white.rows() - 1;
+  const Eigen::MatrixXd gram = white * white.transpose();
+  const Eigen::LLT<Eigen::MatrixXd> normal(gram.topLeftCorner(r, r));
+  Eigen::MatrixXd map = Eigen::MatrixXd::Identity(r + 1, r + 1);
+  map.bottomLeftCorner(1, r) = -normal.solve(gram.topRightCorner(r, 1)).transpose();
+  map.topLeftCorner(r, r) =
+      std::sqrt(innovation_variance) * normal.matrixL().solve(Eigen::MatrixXd::Identity(r, r));
+  return map;
+}
+
+/// Burg's estimate from series in rows whose squares add up to those of one series of as many columns. The
+/// order is `most` if fixed, else that of least AICc; a known variance competes as noise without parameters.
+Autoregression burg(const Eigen::MatrixXd& series, const std::vector<Rows>& runs, Index most, bool fixed,
+                    double known_variance) {
+  const auto count = static_cast<double>(series.cols());
+  const double price = known_variance > 0.0 ? std::log(count) : 2.0;  // BIC to overturn what is known
+  double variance = series.squaredNorm() / count;
+  Autoregression best{.innovation_variance = variance};
+  if (!(variance > 0.0)) return best;
+  Lattice lattice(series, runs);
+  std::vector<double> reflections;
+  double least = criterion(count, variance, 1.0, price);
+  if (known_variance > 0.0) {
+    const double score = count * (std::log(known_variance) + variance / known_variance - 1.0);
+    if (score < least) {
+      least = score;
+      best.innovation_variance = known_variance;
+    }
+  }
+  for (Index order = 1; order <= most; ++order) {
+    const double k = lattice.reflection();
+    variance *= 1.0 - k * k;
+    reflections.push_back(k);
+    const double score = criterion(count, variance, static_cast<double>(order + 1), price);
+    if (fixed || score < least) {
+      best = {.reflections = reflections, .innovation_variance = variance};
+      least = score;
+    }
+    if (!fixed && order >= best.order() + patience) break;
+    if (order < most) lattice.apply(k);
+  }
+  return best;
+}
+
+/// The noise of one stage, whose rows are (Q^T, residuals).
+Autoregression autoregression_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs,
+                                 double known_variance) {
+  constexpr double negligible = 0.01;  // share of the noise at low frequency that the parameters took
+  constexpr int free_passes = 3;       // in which the order may still change
+  constexpr double settled = 1e-3;
+  const Index r = rows.rows() - 1;
+  const int most_passes = r <= 6 ? 20 : r <= 12 ? 8 : 2;  // each costs with the square of the parameters
+  const auto count = static_cast<double>(rows.cols());
+  const Index most = std::min(most_order, rows.cols() / 8);
+  Autoregression noise = burg(rows.bottomRows(1), runs, most, false, known_variance);
+  if (!(noise.innovation_variance > 0.0)) return noise;
+  if (noise.innovation_variance != known_variance) {
+    noise.innovation_variance *= count / (count - static_cast<double>(r));
+  }
+  const auto level_of = [](const Autoregression& of) {
+    return of.innovation_variance * of.power_at_zero_frequency();
+  };
+  double level = level_of(noise);
+  if (static_cast<double>(r) / count * std::max(1.0, level / noise.variance()) < negligible) return noise;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    const Eigen::MatrixXd white = whitened(rows, runs, noise);
+    const Eigen::MatrixXd filled = expectation(white, noise.innovation_variance) * rows;
+    const bool fixed = pass >= free_passes;
+    noise = burg(filled, runs, fixed ? noise.order() : most, fixed && noise.order() > 0, known_variance);
+    const double next = level_of(noise);
+    if (std::abs(next - level) < settled * level) break;
+    level = next;
+  }
+  return noise;
+}
+
+/// -2 log of the restricted likelihood, less a constant, with the penalty of AICc.
+double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, const Autoregression& noise) {
+  const Index r = rows.rows() - 1;
+  const auto count = static_cast<double>(rows.cols() - r);
+  const Eigen::MatrixXd white = whitened(rows, runs, noise);
+  const Eigen::LLT<Eigen::MatrixXd> factor(white * white.transpose());
+  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();  // the last: what least squares leaves
+  double first_rows = 0.0;
+  for (Index i = 0; i < noise.order(); ++i) {
+    const double k = noise.reflections[static_cast<std::size_t>(i)];
+    first_rows -= static_cast<double>((i + 1) * static_cast<Index>(runs.size())) * std::log1p(-k * k);
+  }
+  const auto parameters = static_cast<double>(noise.order() + 1);
+  return count * std::log(noise.innovation_variance) + pivots[r] * pivots[r] / noise.innovation_variance +
+         2.0 * pivots.head(r).array().log().sum() + first_rows +
+         2.0 * parameters * count / std::max(1.0, count - parameters - 2.0);
+}
+
+/// Without flicker noise, or with as much of it as is likeliest: from four times as long as the longest run
+/// upwards. Nothing tells where it ends below that.
+Autoregression stage_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, double known_variance) {
+  constexpr Index suspicious = 3;    // an order that long memory would need
+  constexpr double hopeless = 30.0;  // of deviance: no other lowest frequency makes up for it
+  Autoregression best = autoregression_of(rows, runs, known_variance);
+  if (best.order() < suspicious) return best;
+  double least = deviance(rows, runs, best);
+  Index longest = 1;
+  for (const Rows& run : runs) longest = std::max(longest, run.count());
+  double before = std::numeric_limits<double>::infinity();
+  for (double lowest = 0.25 / static_cast<double>(longest); lowest < 0.02; lowest *= 4.0) {
+    const std::vector<Pair> pairs = flicker_above(lowest);
+    const Eigen::MatrixXd driving = unfiltered(rows, runs, pairs);
+    Autoregression flicker = autoregression_of(driving, runs, 0.0);
+    const double score = deviance(driving, runs, flicker);
+    if (score > before || score > least + hopeless) break;
+    before = score;
+    if (score >= least) continue;
+    least = score;
+    best = std::move(flicker);
+    best.flicker = pairs;
+  }
+  return best;
+}
+
+}  // namespace
+
+Eigen::VectorXd Autoregression::coefficients() const {
+  Eigen::VectorXd a(order());
+  for (Index m = 0; m < order(); ++m) {
+    const double k = reflections[static_cast<std::size_t>(m)];
+    a.head(m) += (k * a.head(m).reverse()).eval();
+    a[m] = k;
+  }
+  return a;
+}
+
+double Autoregression::variance() const {
+  double variance = innovation_variance;
+  for (const double k : reflections) variance /= 1.0 - k * k;
+  return variance;
+}
+
+double Autoregression::power_at_zero_frequency() const {
+  double gain = 1.0 / (1.0 + coefficients().sum());
+  for (const Pair& pair : flicker) gain *= (1.0 - pair.zero) / (1.0 - pair.pole);
+  return gain * gain;
+}
+
+Eigen::MatrixXd Autoregression::covariance() const {
+  Eigen::VectorXd lag(order());
+  Eigen::VectorXd a(order());
+  double left = variance();
+  for (Index m = 0; m < order(); ++m) {
+    lag[m] = m == 0 ? left : 0.0;
+    if (m > 0) {
+      const double k = reflections[static_cast<std::size_t>(m - 1)];
+      lag[m] = -k * left - a.head(m - 1).dot(lag.segment(1, m - 1).reverse());
+      a.head(m - 1) += (k * a.head(m - 1).reverse()).eval();
+      a[m - 1] = k;
+      left *= 1.0 - k * k;
+    }
+  }
+  Eigen::MatrixXd result(order(), order());
+  for (Index i = 0; i < order(); ++i) {
+    for (Index j = 0; j < order(); ++j) result(i, j) = lag[std::abs(i - j)];
+  }
+  return result;
+}
+
+double Noise::variance_at_zero_frequency() const {
+  double level = 1.0;
+  for (const Stage& stage : stages) {
+    level *= stage.model.power_at_zero_frequency();
+  }
+  return level * stages.back().model.innovation_variance;
+}
+
+Eigen::MatrixXd in_blocks(const Eigen::MatrixXd& rows, std::vector<Rows>& runs, Index size) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(rows.rows(), rows.cols() / size);
+  Index block = 0;
+  for (Rows& run : runs) {
+    const Index begin = block;
+    for (Index at = run.begin; at + size <= run.end; at += size) {
+      result.col(block++) = rows.middleCols(at, size).rowwise().sum() / std::sqrt(static_cast<double>(size));
+    }
+    run = {begin, block};
+  }
+  return result.leftCols(block);
+}
+
+Noise noise_of(const Blocks& blocks) {
+  constexpr Index coarser = 8;
+  const Index r = blocks.rows.rows() - 1;
+  const Index fewest = std::max<Index>(24, 4 * r);
+  Noise noise;
+  Eigen::MatrixXd rows = blocks.rows;
+  std::vector<Rows> runs = blocks.runs;
+  noise.stages.push_back({.model = stage_of(rows, runs, 0.0), .count = static_cast<double>(rows.cols() - r)});
+  while (rows.cols() >= coarser * fewest) {
+    const Autoregression& fine = noise.stages.back().model;
+    rows = in_blocks(whitened(unfiltered(std::move(rows), runs, fine.flicker), runs, fine), runs, coarser);
+    if (rows.cols() < fewest) break;  // runs shorter than a block
+    Autoregression model = stage_of(rows, runs, fine.innovation_variance);
+    noise.stages.push_back(
+        {.size = coarser, .model = std::move(model), .count = static_cast<double>(rows.cols() - r)});
+  }
+  return noise;
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,169 @@
+#include "scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "prony.h"
+
+namespace kerf::fitting {
+namespace {
+
+constexpr double small = 1e-6;  ///< of the whole, in place of a part that must be positive and is not
+constexpr std::size_t starts_kept = 3;
+
+std::vector<double> geometric(double first, double last, int steps) {
+  std::vector<double> all;
+  for (int i = 0; i < steps; ++i)
+    all.push_back(first * std::pow(last / first, static_cast<double>(i) / (steps - 1)));
+  return all;
+}
+
+/// Every parameter linear but those named, which take one value after another.
+std::vector<LinearFamily> grid_over(const Problem& problem, std::string_view name,
+                                    const std::vector<double>& values) {
+  std::vector<double> unit(problem.parameters.size(), 1.0);
+  std::vector<bool> linear(unit.size(), true);
+  std::size_t at = unit.size();
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    if (problem.parameters[i].name == name) at = i;
+  }
+  std::vector<LinearFamily> families;
+  if (at == unit.size()) return {family_of(problem, unit, linear)};
+  linear[at] = false;
+  for (const double value : values) {
+    unit[at] = std::clamp(value, problem.parameters[at].lower, problem.parameters[at].upper);
+    families.push_back(family_of(problem, unit, linear));
+  }
+  return families;
+}
+
+/// Kelvin is linear in both springs at a given relaxation time, along which the dashpot goes with its spring.
+std::vector<LinearFamily> kelvin_families(const Problem& problem, const Samples& samples) {
+  const double shortest = 2.0 * samples.median_period_s;
+  std::vector<LinearFamily> families;
+  for (const double time_s : geometric(shortest, std::max(samples.duration_s, 4.0 * shortest), 13)) {
+    LinearFamily family = family_of(problem, {1.0, 1.0, time_s}, {true, true, false});
+    family.base[2] = 0.0;
+    family.directions(2, 1) = time_s;
+    families.push_back(std::move(family));
+  }
+  return families;
+}
+
+double option(const Problem& problem, std::string_view name) {
+  const auto given = problem.law_options.find(name);
+  if (given != problem.law_options.end()) return std::get<double>(given->second);
+  for (const models::OptionInfo& info : models::Law::options(problem.model)) {
+    if (info.name == name) return std::get<double>(info.standard);
+  }
+  return 0.0;
+}
+
+std::vector<LinearFamily> families_of(const Problem& problem, const Samples& samples,
+                                      const Weights& weights) {
+  const double range = samples.most - samples.least;
+  if (problem.model == "kelvin") return kelvin_families(problem, samples);
+  if (problem.model == "maxwell") return prony_families(problem, samples, weights);
+  if (problem.model == "exponential") {
+    std::vector<double> exponents{0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 20.0};
+    for (double& e : exponents) e *= option(problem, "thickness") / std::max(samples.most, 1e-12);
+    return grid_over(problem, "exponent", exponents);
+  }
+  if (problem.model == "precontact") {
+    std::vector<double> widths{0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0};
+    for (double& width : widths) width *= std::max(samples.most, 1e-9);
+    return grid_over(problem, "width", widths);
+  }
+  if (problem.model == "springpot")
+    return grid_over(problem, "order", {0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95});
+  if (problem.model == "hunt_crossley")
+    return grid_over(problem, "exponent", {0.7, 1.0, 1.5, 2.0, 2.7, 3.5, 4.5});
+  if (problem.model == "friction") return grid_over(problem, "presliding", geometric(1e-4 * range, range, 9));
+  return grid_over(problem, "", {});
+}
+
+}  // namespace
+
+LinearFamily family_of(const Problem& problem, const std::vector<double>& values,
+                       const std::vector<bool>& linear) {
+  const auto all = static_cast<Eigen::Index>(values.size());
+  const auto count = static_cast<Eigen::Index>(std::count(linear.begin(), linear.end(), true));
+  LinearFamily family{
+      .base = Eigen::VectorXd::Zero(all), .directions = Eigen::MatrixXd::Zero(all, count), .bounds = {}};
+  family.bounds = {.lower = Eigen::VectorXd(count), .upper = Eigen::VectorXd(count)};
+  Eigen::Index next = 0;
+  for (Eigen::Index i = 0; i < all; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!linear[at]) {
+      family.base[i] = values[at];
+      continue;
+    }
+    family.directions(i, next) = 1.0;
+    family.bounds.lower[next] =
+        problem.parameters[at].scale == models::Scale::logarithmic ? 0.0 : problem.parameters[at].lower;
+    family.bounds.upper[next] = problem.parameters[at].upper;
+    ++next;
+  }
+  return family;
+}
+
+Start best_of_family(const Problem& problem, const Samples& samples, const Weights& weights,
+                     const LinearFamily& family) {
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(family.directions.cols());
+  const Eigen::VectorXd unit = family.base + family.directions * ones;
+  const std::vector<double> values(unit.begin(), unit.end());
+  const std::vector<double> slope(values.size(), 1.0);
+  const LawPoint point{.values = values, .slope = slope, .options = problem.law_options};
+  Start start{.values = {}, .sum_of_squares = std::numeric_limits<double>::infinity()};
+  Sums all{.squares = 0.0,
+           .score = Eigen::VectorXd::Zero(unit.size()),
+           .normal = Eigen::MatrixXd::Zero(unit.size(), unit.size())};
+  for (std::size_t run = 0; run < samples.runs.size(); ++run) {
+    Sums part;
+    if (!kernel_of(problem.model).sums(point, view_of(samples, weights, run), {}, part)) return start;
+    all.squares += part.squares;
+    all.score += part.score;
+    all.normal += part.normal;
+  }
+  if (!all.normal.allFinite() || !all.score.allFinite()) return start;
+  const Eigen::MatrixXd normal = family.directions.transpose() * all.normal * family.directions;
+  const Eigen::VectorXd score = family.directions.transpose() * all.score;
+  const Eigen::VectorXd best = solve_bounded(normal, normal * ones - score, family.bounds);
+  const Eigen::VectorXd change = best - ones;
+  start.sum_of_squares = all.squares + 2.0 * change.dot(score) + change.dot(normal * change);
+  const Eigen::VectorXd found = family.base + family.directions * best;
+  start.values.assign(found.begin(), found.end());
+  // What must be positive and is not at all begins at a small part of the largest of its kind.
+  for (std::size_t i = 0; i < start.values.size(); ++i) {
+    const auto& info = problem.parameters[i];
+    double largest = 0.0;
+    for (std::size_t k = 0; k < start.values.size(); ++k) {
+      if (problem.parameters[k].quantity == info.quantity)
+        largest = std::max(largest, std::abs(start.values[k]));
+    }
+    if (info.scale == models::Scale::logarithmic && family.base[static_cast<Eigen::Index>(i)] == 0.0) {
+      start.values[i] = std::max(start.values[i], small * std::max(largest, 1e-6));
+    }
+    start.values[i] = std::clamp(start.values[i], info.lower, info.upper);
+  }
+  return start;
+}
+
+std::vector<std::vector<double>> starts_of(const Problem& problem, const Samples& samples,
+                                           const Weights& weights) {
+  std::vector<Start> starts;
+  for (const LinearFamily& family : families_of(problem, samples, weights)) {
+    starts.push_back(best_of_family(problem, samples, weights, family));
+  }
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Start& a, const Start& b) { return a.sum_of_squares < b.sum_of_squares; });
+  std::vector<std::vector<double>> best;
+  for (const Start& start : starts) {
+    if (best.size() < starts_kept && !start.values.empty()) best.push_back(start.values);
+  }
+  return best;
+}
+
+}  // namespace kerf::fitting

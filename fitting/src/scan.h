@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "problem.h"
+
+namespace kerf::fitting {
+
+/// A law as it is linear: values(c) = base + directions c. What is not linear is in the base.
+struct LinearFamily {
+  Eigen::VectorXd base;
+  Eigen::MatrixXd directions;
+  Bounds bounds;  ///< of c
+};
+
+/// One value of what is not linear, the rest at its best, and what that leaves.
+struct Start {
+  std::vector<double> values;
+  double sum_of_squares = 0.0;
+};
+
+/// The best member of a family, by linear least squares on the law's own step.
+[[nodiscard]] Start best_of_family(const Problem& problem, const Samples& samples, const Weights& weights,
+                                   const LinearFamily& family);
+
+/// The family of all parameters that are named linear, the others held at these values.
+[[nodiscard]] LinearFamily family_of(const Problem& problem, const std::vector<double>& values,
+                                     const std::vector<bool>& linear);
+
+/// Where a search of this law begins: the best few starts, best first. Empty: the data offer none.
+[[nodiscard]] std::vector<std::vector<double>> starts_of(const Problem& problem, const Samples& samples,
+                                                         const Weights& weights);
+
+}  // namespace kerf::fitting

@@ -1,0 +1,143 @@
+#include "segmented_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include <kerf/models/branch.h>
+#include <kerf/models/piecewise.h>
+
+#include "kerf/fitting/segmented.h"
+#include "statistics.h"
+
+namespace kerf::fitting {
+namespace {
+
+constexpr int most_reweighings = 20;  ///< of a robust loss
+constexpr double settled = 1e-9;
+
+std::vector<double> positions(const Samples& samples) {
+  std::vector<double> all;
+  for (const models::Motion& motion : samples.motion) all.push_back(motion.penetration);
+  return all;
+}
+
+/// What the curve leaves at each sample.
+std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& samples,
+                                 const std::vector<std::uint8_t>& branch) {
+  std::vector<double> left;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double x = samples.motion[i].penetration;
+    const auto& force = curve.force[std::min<std::size_t>(branch[i], curve.force.size() - 1)];
+    const auto above = std::upper_bound(curve.knots.begin() + 1, curve.knots.end() - 1, x);
+    const auto k = static_cast<std::size_t>(above - curve.knots.begin());
+    const double share = std::max(0.0, (x - curve.knots[k - 1]) / (curve.knots[k] - curve.knots[k - 1]));
+    left.push_back(force[k - 1] + share * (force[k] - force[k - 1]) - samples.force[i]);
+  }
+  return left;
+}
+
+double segments_in(const models::Options& options) {
+  const auto given = options.find("segments");
+  return given != options.end() ? std::get<double>(given->second) : 5.0;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> branches(const Samples& samples, bool loop) {
+  std::vector<std::uint8_t> branch(samples.size(), 0);
+  if (!loop) return branch;
+  const models::BranchSelector selector;
+  for (const Run& run : samples.runs) {
+    models::BranchSelector::State state;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      branch[i] = selector.step(state, samples.motion[i], samples.period_s[i]).closing ? 0 : 1;
+    }
+  }
+  return branch;
+}
+
+void prepare_segments(models::Options& law_options, const FitOptions& options, const Samples& samples) {
+  if (!options.breakpoints.empty()) {
+    law_options["segments"] = static_cast<double>(options.breakpoints.size() + 1);
+  }
+  if (options.segments == CountBy::given || !options.breakpoints.empty()) return;
+  const bool loop = std::get<bool>(law_options.at("loop"));
+  const auto branch = branches(samples, loop);
+  const auto position = positions(samples);
+  const Weights weights = all_of(samples);
+  const auto curves = fit_segments(
+      {.position = position,
+       .force = samples.force,
+       .weight = weights,
+       .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()});
+  std::size_t chosen = curves.size() - 1;
+  if (options.segments == CountBy::bic) {
+    const double correlation = correlation_time(residuals_of(curves.back(), samples, branch));
+    chosen = choose_by_bic(curves, static_cast<double>(samples.size()) / correlation);
+  } else {
+    const double squares =
+        std::inner_product(samples.force.begin(), samples.force.end(), samples.force.begin(), 0.0);
+    const double force_rms = std::sqrt(squares / static_cast<double>(samples.size()));
+    chosen = fewest_within(curves, options.jnd.at(force_rms)).value_or(chosen);
+  }
+  law_options["segments"] = static_cast<double>(curves[chosen].segments());
+}
+
+void hold_knots(Problem& problem, bool all) {
+  const auto is_knot = [](const auto& info) { return info.name.starts_with("knot"); };
+  const auto knots =
+      static_cast<std::size_t>(std::count_if(problem.parameters.begin(), problem.parameters.end(), is_knot));
+  for (std::size_t i = 0; i < knots; ++i) {
+    if (all || i == 0 || i + 1 == knots) problem.free[i] = false;
+  }
+}
+
+Solution solve_segments(const Problem& problem, const Samples& samples, const Weights& weights,
+                        const RobustLoss& loss) {
+  const bool loop = std::get<bool>(problem.law_options.at("loop"));
+  const auto segments = static_cast<std::size_t>(segments_in(problem.law_options));
+  const auto branch = branches(samples, loop);
+  const auto position = positions(samples);
+  Weights robust(weights);
+  Solution solution;
+  for (int round = 0; round < most_reweighings; ++round) {
+    std::vector<SegmentedCurve> curves;
+    try {
+      curves = fit_segments(
+          {.position = position,
+           .force = samples.force,
+           .weight = robust,
+           .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()},
+          {.most_segments = segments, .breakpoints = problem.breakpoints});
+    } catch (const std::invalid_argument& error) {
+      solution.message = error.what();
+    }
+    if (curves.empty() || curves.back().segments() != segments) {
+      if (solution.message.empty())
+        solution.message = "too few samples, or too few on one branch, for as many segments";
+      return solution;
+    }
+    const SegmentedCurve& curve = curves.back();
+    std::vector<double> values = curve.knots;
+    for (const auto& force : curve.force) values.insert(values.end(), force.begin(), force.end());
+    solution.converged = curve.converged;
+    solution.iterations += curve.iterations;
+    solution.message = curve.optimal_on_grid ? "global optimum on the grid, polished" : "polished";
+    const Values last = std::exchange(solution.values, Values(problem.runs, values));
+    if (loss.kind == Loss::squares) break;
+    double moved = last.empty() ? 1.0 : 0.0;
+    for (std::size_t i = 0; !last.empty() && i < values.size(); ++i) {
+      moved = std::max(moved, std::abs(values[i] - last[0][i]) / (1e-12 + std::abs(values[i])));
+    }
+    if (moved < settled) break;
+    const auto left = residuals_of(curve, samples, branch);
+    for (std::size_t i = 0; i < left.size(); ++i)
+      robust[i] = weights[i] * loss(weights[i] * left[i] * left[i]).slope;
+  }
+  return solution;
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "search.h"
+
+namespace kerf::fitting {
+
+/// Sets the number of segments of a piecewise law where the options leave it to the data.
+void prepare_segments(models::Options& law_options, const FitOptions& options, const Samples& samples);
+
+/// The outer knots are the ends of the data and not searched; given breakpoints hold the inner ones too.
+void hold_knots(Problem& problem, bool all);
+
+/// The best piecewise law of the problem's number of segments, globally on a grid and polished (segmented.h).
+[[nodiscard]] Solution solve_segments(const Problem& problem, const Samples& samples, const Weights& weights,
+                                      const RobustLoss& loss);
+
+/// For each sample its branch, as the law itself decides it: 0 closing, 1 opening; all 0 without a loop.
+[[nodiscard]] std::vector<std::uint8_t> branches(const Samples& samples, bool loop);
+
+}  // namespace kerf::fitting

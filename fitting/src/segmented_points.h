@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "kerf/fitting/segmented.h"
+
+namespace kerf::fitting::segmented {
+
+/// Weighted moments of points about their own mean: nothing large is ever subtracted from something large.
+struct Moments {
+  double weight = 0.0;
+  double x = 0.0;  ///< mean
+  double y = 0.0;  ///< mean
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+
+  /// Joined with those of other points (Chan, Golub and LeVeque 1983).
+  void join(const Moments& other) noexcept {
+    if (other.weight == 0.0) return;
+    if (weight == 0.0) {
+      *this = other;
+      return;
+    }
+    const double both = weight + other.weight;
+    const double share = other.weight / both;
+    const double dx = other.x - x;
+    const double dy = other.y - y;
+    const double lever = weight * share;
+    xx += other.xx + lever * dx * dx;
+    xy += other.xy + lever * dx * dy;
+    yy += other.yy + lever * dy * dy;
+    x += share * dx;
+    y += share * dy;
+    weight = both;
+  }
+};
+
+/// The points of one branch, sorted, in scaled coordinates: positions from 0 to 1 over all branches, forces
+/// about zero with a spread of one. A tree over stretches of them gives the moments of any range.
+class Branch {
+ public:
+  struct Point {
+    double x, y, weight;
+  };
+  explicit Branch(std::vector<Point> points);
+
+  [[nodiscard]] std::size_t size() const noexcept { return x_.size(); }
+  [[nodiscard]] const std::vector<double>& positions() const noexcept { return x_; }
+  /// How many points lie before a position; all do before 1, the end.
+  [[nodiscard]] std::size_t before(double position) const noexcept;
+  /// How many points lie from one position to another, both ends included.
+  [[nodiscard]] std::size_t between(double from, double to) const noexcept;
+  [[nodiscard]] Moments range(std::size_t first, std::size_t last) const noexcept;
+  /// Sum of squares about the polygon, point by point.
+  [[nodiscard]] double error(const std::vector<double>& knots, const std::vector<double>& force) const;
+
+ private:
+  [[nodiscard]] Moments leaf(std::size_t first, std::size_t last) const noexcept;
+
+  std::vector<double> x_, y_, weight_;  ///< no weights if all are 1
+  std::vector<Moments> tree_;           ///< node i over nodes 2i and 2i + 1
+  std::size_t leaves_ = 0;
+  std::vector<std::uint32_t> index_;  ///< points before each of equal stretches of the position
+};
+
+/// A curve that was checked, sorted and scaled.
+struct Points {
+  explicit Points(const Curve& curve);
+
+  std::vector<Branch> branches;
+  std::vector<double> places;      ///< every scaled position of a point, once
+  double first = 0.0, last = 0.0;  ///< positions
+  double middle = 0.0;             ///< of the forces
+  double spread = 1.0;             ///< of the forces
+  std::size_t count = 0;
+  double weight = 0.0;
+
+  [[nodiscard]] double position(double x) const noexcept;
+  [[nodiscard]] double scaled(double position) const noexcept { return (position - first) / (last - first); }
+};
+
+}  // namespace kerf::fitting::segmented

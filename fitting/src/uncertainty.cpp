@@ -1,0 +1,253 @@
+#include "uncertainty.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "noise.h"
+#include "statistics.h"
+
+namespace kerf::fitting {
+namespace {
+
+using Eigen::Index;
+
+// Of the logarithm of a variance under flicker noise, whose lowest frequency is known to a factor of four
+// only: the level to which the study of coverage leads.
+constexpr double flicker_variance = 0.1;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// y_s -= sum a_k y_{s-k}, on columns.
+void recur(Eigen::MatrixXd& y, Index s, const Eigen::VectorXd& a) {
+  const Index p = y.rows();
+  double* at = y.col(s).data();
+  for (Index k = 1; k <= std::min(a.size(), s); ++k) {
+    const double coefficient = a[k - 1];
+    const double* before = at - k * p;
+    for (Index i = 0; i < p; ++i) at[i] -= coefficient * before[i];
+  }
+}
+
+/// y = H^T x, where H makes noise of innovations: x^T e = y^T w. It runs backwards in time and on before the
+/// start of the run, since noise was there before the recording. Columns in reversed order.
+Eigen::MatrixXd adjoint(const Eigen::MatrixXd& rows, const Rows& run, const Eigen::VectorXd& a,
+                        const std::vector<Pair>& flicker) {
+  constexpr Index longest = 4;  // runs, for noise whose memory outlasts the recording
+  constexpr double faded = 1e-8;
+  const Index q = a.size();
+  const Index n = run.count();
+  const Index most = q == 0 && flicker.empty() ? n : (1 + longest) * n;
+  Eigen::MatrixXd y(rows.rows(), most);
+  double energy = 0.0;
+  double recent = 0.0;
+  Eigen::MatrixXd memory = Eigen::MatrixXd::Zero(rows.rows(), 2 * static_cast<Index>(flicker.size()));
+  for (Index s = 0; s < most; ++s) {
+    auto value = y.col(s);
+    if (s < n) {
+      value = rows.col(run.end - 1 - s);
+    } else {
+      value.setZero();
+    }
+    for (std::size_t i = 0; i < flicker.size(); ++i) {
+      auto input = memory.col(2 * static_cast<Index>(i));
+      auto output = memory.col(2 * static_cast<Index>(i) + 1);
+      output = value - flicker[i].zero * input + flicker[i].pole * output;
+      input = value;
+      value = output;
+    }
+    recur(y, s, a);
+    const double square = value.squaredNorm();
+    energy += square;
+    recent = std::max(square, s % (q + 1) == 0 ? 0.0 : recent);
+    if (s >= n + q && s % (q + 1) == q && recent * static_cast<double>(n) < faded * energy) {
+      return y.leftCols(s + 1);
+    }
+  }
+  return y;
+}
+
+/// The covariance of sums x^T e over noise e, a row of x each, and the relative variance of the estimates of
+/// their variances.
+struct Propagated {
+  Eigen::MatrixXd covariance;
+  Eigen::VectorXd relative_variance;
+};
+
+/// Derivatives of sum y^2 by the coefficients of the filter.
+Eigen::MatrixXd slope_of(const Eigen::MatrixXd& y, const Eigen::VectorXd& a) {
+  Eigen::MatrixXd slope(y.rows(), a.size());
+  Eigen::MatrixXd z = y;
+  for (Index s = 0; s < y.cols(); ++s) recur(z, s, a);
+  for (Index k = 1; k <= a.size(); ++k) {
+    const Index count = y.cols() - k;
+    slope.col(k - 1) = -2.0 * y.rightCols(count).cwiseProduct(z.leftCols(count)).rowwise().sum();
+  }
+  return slope;
+}
+
+Propagated propagate(const Eigen::MatrixXd& weights, const std::vector<Rows>& runs, const Noise& noise,
+                     std::size_t at) {
+  const Stage& stage = noise.stages[at];
+  const Index p = weights.rows();
+  const Index q = stage.model.order();
+  const Eigen::VectorXd a = stage.model.coefficients();
+  const bool last = at + 1 == noise.stages.size();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(p, p);
+  Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(p, q);
+  std::vector<Eigen::MatrixXd> parts;
+  Index columns = 0;
+  for (const Rows& run : runs) {
+    Eigen::MatrixXd y = adjoint(weights, run, a, stage.model.flicker);
+    sum.noalias() += y * y.transpose();
+    if (q > 0) slope += slope_of(y, a);
+    if (last) continue;
+    std::vector<Rows> whole{{0, y.cols()}};
+    parts.push_back(in_blocks(y, whole, noise.stages[at + 1].size));
+    columns += parts.back().cols();
+  }
+  Propagated result{.covariance = stage.model.innovation_variance * sum,
+                    .relative_variance = Eigen::VectorXd::Constant(p, 2.0 / stage.count)};
+  if (q > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> covariance(stage.model.covariance() / stage.model.innovation_variance);
+    for (Index k = 0; k < p; ++k) {
+      if (!(sum(k, k) > 0.0)) continue;
+      const Eigen::VectorXd relative = slope.row(k).transpose() / sum(k, k);
+      result.relative_variance[k] += covariance.matrixL().solve(relative).squaredNorm() / stage.count;
+    }
+  }
+  if (!stage.model.flicker.empty()) result.relative_variance.array() += flicker_variance;
+  if (last) return result;
+  Eigen::MatrixXd coarse(p, columns);
+  std::vector<Rows> coarse_runs;
+  Index begin = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    coarse.middleCols(begin, part.cols()) = part;
+    coarse_runs.push_back({begin, begin + part.cols()});
+    begin += part.cols();
+  }
+  const Propagated next = propagate(coarse, coarse_runs, noise, at + 1);
+  result.covariance += next.covariance - stage.model.innovation_variance * coarse * coarse.transpose();
+  const bool known = noise.stages[at + 1].model.order() == 0 &&
+                     noise.stages[at + 1].model.innovation_variance == stage.model.innovation_variance;
+  if (!known) {
+    const Eigen::ArrayXd share = next.covariance.diagonal().array() / result.covariance.diagonal().array();
+    result.relative_variance.array() += share.square() * next.relative_variance.array();
+  }
+  return result;
+}
+
+void check(const Linearisation& linearisation) {
+  const Index n = linearisation.jacobian.rows();
+  const auto p = static_cast<std::size_t>(linearisation.jacobian.cols());
+  std::size_t before = 0;
+  for (const std::size_t end : linearisation.run_ends) {
+    if (end < before) throw std::invalid_argument("the ends of the runs must not decrease");
+    before = end;
+  }
+  if (linearisation.residuals.size() != n ||
+      (!linearisation.scale.empty() && linearisation.scale.size() != p) ||
+      (!linearisation.run_ends.empty() && before != static_cast<std::size_t>(n))) {
+    throw std::invalid_argument("the residuals, their derivatives, the runs and the scale must fit together");
+  }
+  for (const double scale : linearisation.scale) {
+    if (!(scale > 0.0 && std::isfinite(scale))) throw std::invalid_argument("a scale must be above zero");
+  }
+}
+
+/// Nothing is known: no rows to speak of, or none that any parameter moves.
+Uncertainty unknown(Index p) {
+  const auto count = static_cast<std::size_t>(p);
+  return {.covariance = Eigen::MatrixXd::Constant(p, p, std::numeric_limits<double>::quiet_NaN()),
+          .correlation = Eigen::MatrixXd::Identity(p, p),
+          .quantile = std::vector<double>(count, 1.0),
+          .determined = std::vector<bool>(count, false)};
+}
+
+/// Infinite variances and no correlations where the rows do not determine a parameter.
+void mark_undetermined(Uncertainty& result) {
+  constexpr double unknown_number = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t k = 0; k < result.determined.size(); ++k) {
+    if (result.determined[k]) continue;
+    const auto i = static_cast<Index>(k);
+    for (Eigen::MatrixXd* matrix : {&result.covariance, &result.correlation}) {
+      matrix->row(i).setConstant(unknown_number);
+      matrix->col(i).setConstant(unknown_number);
+    }
+    result.covariance(i, i) = infinite;
+    result.correlation(i, i) = 1.0;
+  }
+}
+
+Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (deviation.array() > 0.0).select(deviation.cwiseInverse(), 0.0);
+  Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  correlation.diagonal().setOnes();
+  return correlation;
+}
+
+/// A quantile for an estimated variance whose own relative variance is `spread`. That too is an estimate,
+/// which is small where the variance is: to first order it is larger on average by as much again, twice.
+double quantile_of(double confidence, double spread) {
+  return student_t(confidence, 2.0 / (spread * (1.0 + 2.0 * spread)));
+}
+
+/// Sets the covariance and the quantiles.
+void propagate_into(Uncertainty& result, const Blocks& blocks, const Noise& noise, double confidence) {
+  const Eigen::VectorXd length = blocks.basis.rowwise().norm();
+  const Eigen::VectorXd inverse = (length.array() > 0.0).select(length.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd unit = inverse.asDiagonal() * blocks.basis;
+  const Eigen::MatrixXd weights = unit * blocks.rows.topRows(blocks.basis.cols());
+  const Propagated propagated = propagate(weights, blocks.runs, noise, 0);
+  const Eigen::MatrixXd covariance =
+      propagated.covariance + blocks.lost_variance * unit * blocks.lost * unit.transpose();
+  result.covariance = length.asDiagonal() * covariance * length.asDiagonal();
+  for (Index k = 0; k < length.size(); ++k) {
+    result.quantile.push_back(quantile_of(confidence, propagated.relative_variance[k]));
+  }
+}
+
+}  // namespace
+
+Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence) {
+  check(linearisation);
+  const Eigen::MatrixXd& jacobian = linearisation.jacobian;
+  const Index p = jacobian.cols();
+  const Index n = jacobian.rows();
+  const Eigen::MatrixXd normal = gram(jacobian);
+  const Basis basis = normal.allFinite() ? basis_of(normal) : Basis{};
+  Uncertainty result;
+  Eigen::MatrixXd noise_of_normal = Eigen::MatrixXd::Zero(p, p);
+  if (n <= basis.determined.cols() || basis.determined.cols() == 0 || !linearisation.residuals.allFinite()) {
+    result = unknown(p);
+  } else {
+    const Blocks blocks = coarsen(linearisation, normal, basis.determined);
+    const Noise noise = noise_of(blocks);
+    propagate_into(result, blocks, noise, confidence);
+    result.determined.assign(basis.lost.begin(), basis.lost.end());
+    result.determined.flip();
+    result.correlation = correlation_of(result.covariance);
+    noise_of_normal = normal * result.covariance * normal;
+    const double variance =
+        linearisation.residuals.squaredNorm() / static_cast<double>(n - basis.determined.cols());
+    if (variance > 0.0) result.correlation_time = noise.variance_at_zero_frequency() / variance;
+    result.noise_order = static_cast<int>(noise.stages.front().model.order());
+    result.rows_a_block = static_cast<int>(blocks.size);
+  }
+  result.effective_samples = static_cast<double>(n) / result.correlation_time;
+  mark_undetermined(result);
+  if (p > 0 && normal.allFinite()) {
+    const Eigen::VectorXd scale =
+        linearisation.scale.empty()
+            ? Eigen::VectorXd::Ones(p)
+            : Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(linearisation.scale.data(), p));
+    result.indistinct = indistinct_of(normal, noise_of_normal, basis.null, scale,
+                                      *std::max_element(result.quantile.begin(), result.quantile.end()));
+  }
+  return result;
+}
+
+}  // namespace kerf::fitting

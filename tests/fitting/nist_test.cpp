@@ -1,0 +1,84 @@
+#include "fitting/nist/nist.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace kerf::test {
+namespace {
+
+using fitting::Minimum;
+
+NistProblem problem_named(const std::string& name) {
+  return read_nist(KERF_SOURCE_DIR "/tests/fitting/nist", name);
+}
+
+class Nist : public testing::TestWithParam<std::string> {};
+
+TEST_P(Nist, IsSolvedToEightDigitsFromBothStarts) {
+  const NistProblem problem = problem_named(GetParam());
+  for (const auto& start : problem.starts) {
+    const Minimum minimum = solve_nist(problem, start);
+    EXPECT_TRUE(minimum.converged) << minimum.message;
+    EXPECT_GE(digits(minimum.at, problem.certified), 8.0) << "from " << start.transpose();
+    EXPECT_GE(digits(minimum.sums.squares, problem.squares), 8.0) << "from " << start.transpose();
+  }
+}
+
+TEST_P(Nist, HasTheCertifiedStandardDeviations) {
+  const NistProblem problem = problem_named(GetParam());
+  fitting::Sums sums;
+  fitting::Triangle triangle;
+  ASSERT_TRUE(nist_objective(problem)->factor(problem.certified, sums, triangle));
+  const auto freedom = static_cast<double>(problem.y.size() - problem.certified.size());
+  const Eigen::VectorXd deviation = triangle.r.inverse().rowwise().norm() * std::sqrt(sums.squares / freedom);
+  EXPECT_GE(digits(deviation, problem.deviation), 8.0) << deviation.transpose();
+}
+
+INSTANTIATE_TEST_SUITE_P(HigherDifficulty, Nist, testing::ValuesIn(nist_names()),
+                         [](const auto& of) { return of.param; });
+
+fitting::Bounds bounds_of(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  return {.lower = lower, .upper = upper};
+}
+
+TEST(Minimise, StaysInItsBoundsToTheLastDigit) {
+  const NistProblem problem = problem_named("BoxBOD");
+  const auto objective = nist_objective(problem);
+  const double infinite = std::numeric_limits<double>::infinity();
+  const Minimum held = minimise(*objective, problem.starts[1],
+                                bounds_of(Eigen::Vector2d(0.0, 0.6), Eigen::Vector2d(infinite, infinite)),
+                                {.parameter_tolerance = 1e-12});
+  EXPECT_EQ(held.at[1], 0.6);
+  // With b2 held the model is linear in b1: its least squares are known in closed form.
+  const Eigen::VectorXd shape = 1.0 - (-0.6 * problem.x.array()).exp();
+  EXPECT_GE(digits(held.at[0], shape.dot(problem.y) / shape.squaredNorm()), 10.5);
+}
+
+TEST(Minimise, EndsInTheNearestValleyUnlessItBeginsInMany) {
+  const NistProblem problem = problem_named("BoxBOD");
+  const auto objective = nist_objective(problem);
+  const Eigen::Vector2d infinite = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  const Minimum one = minimise(*objective, problem.starts[0], bounds_of(-infinite, infinite));
+  const Minimum many = minimise_from_many(*objective, problem.starts[0], bounds_of(-infinite, infinite));
+  EXPECT_GT(one.sums.squares, 5.0 * problem.squares) << "as b2 grows, the model becomes a constant";
+  EXPECT_NEAR(many.sums.squares, problem.squares, 1e-6 * problem.squares);
+}
+
+TEST(Triangle, OfTheSumsIsThatOfTheResidualsWhileTheirDigitsLast) {
+  const NistProblem problem = problem_named("Rat42");
+  const auto objective = nist_objective(problem);
+  fitting::Sums sums;
+  fitting::Triangle triangle;
+  ASSERT_TRUE(objective->factor(problem.certified, sums, triangle));
+  const fitting::Triangle again = fitting::triangle_of(sums);
+  EXPECT_TRUE((again.r.transpose() * again.r).isApprox(triangle.r.transpose() * triangle.r, 1e-12));
+  EXPECT_TRUE((again.r.transpose() * again.z).isApprox(triangle.r.transpose() * triangle.z, 1e-6));
+  EXPECT_NEAR(again.rest, triangle.rest, 1e-12 * triangle.rest);
+}
+
+}  // namespace
+}  // namespace kerf::test

@@ -1,0 +1,169 @@
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/fitting/fit.h>
+
+#include "fitting/strokes.h"
+
+namespace kerf::fitting {
+namespace {
+
+using models::Law;
+using test::Strokes;
+
+const Law kelvin = Law::make("kelvin", std::vector{5.0, 8.0, 1.6});
+
+TEST(SeveralRecordings, ShareTheirParameters) {
+  const Strokes one(3000, 0.02, kelvin, 1);
+  const Strokes two(3000, 0.02, kelvin, 2);
+  const std::array both{one.series(), two.series()};
+  const auto alone = fit("kelvin", one.series(), {.folds = 0});
+  const auto together = fit("kelvin", both, {.folds = 0});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(together.parameters[i].value, kelvin.values()[i], 4.0 * together.parameters[i].std_error);
+    EXPECT_NEAR(together.parameters[i].std_error / alone.parameters[i].std_error, std::sqrt(0.5), 0.12);
+  }
+}
+
+TEST(SeveralRecordings, MayEachHaveADashpotOfTheirOwn) {
+  const Law stiffer = Law::make("kelvin", std::vector{5.0, 8.0, 3.2});
+  const Strokes one(3000, 0.0, kelvin);
+  const Strokes two(3000, 0.0, stiffer);
+  const std::array both{one.series(), two.series()};
+  const auto result = fit("kelvin", both, {.folds = 0, .per_recording = {"damping"}});
+  EXPECT_EQ(result.free_parameters, 4U);
+  EXPECT_NEAR(result.law(0).values()[2], 1.6, 1e-6);
+  EXPECT_NEAR(result.law(1).values()[2], 3.2, 1e-6);
+  EXPECT_NEAR(result.law(1).values()[0], 5.0, 1e-6);
+  ASSERT_EQ(result.others.size(), 1U);
+  EXPECT_EQ(result.others[0].recording, 1U);
+}
+
+TEST(SeveralRecordings, CountByTheirNoise) {
+  // The noisy one lies, by a force that is 10 % too large; unknown noise is estimated, so it counts little.
+  const Law louder = Law::make("kelvin", std::vector{5.5, 8.8, 1.76});
+  const Strokes quiet(3000, 0.01, kelvin, 1);
+  const Strokes noisy(3000, 1.0, louder, 2);
+  const std::array both{quiet.series(), noisy.series()};
+  EXPECT_NEAR(fit("kelvin", both, {.folds = 0}).parameters[0].value, 5.0, 0.02);
+}
+
+TEST(SeveralRecordings, RefuseANameThatIsNoParameter) {
+  const Strokes one(3000, 0.0, kelvin);
+  const std::array both{one.series(), one.series()};
+  EXPECT_THROW((void)fit("kelvin", both, {.per_recording = {"speed"}}), std::invalid_argument);
+}
+
+TEST(Loss, OfHuberIsNotMovedByHits) {
+  Strokes strokes(4000, 0.02, kelvin);
+  for (std::size_t i = 0; i < strokes.force.size(); i += 25) strokes.force[i] += 5.0;  // 4 % of all
+  const auto plain = fit("kelvin", strokes.series(), {.folds = 0});
+  const double missed = std::abs(plain.parameters[0].value - 5.0);
+  for (const Loss loss : {Loss::huber, Loss::soft_l1, Loss::cauchy}) {
+    const auto robust = fit("kelvin", strokes.series(), {.folds = 0, .loss = loss});
+    EXPECT_LT(std::abs(robust.parameters[0].value - 5.0), 0.1 * missed);
+    EXPECT_TRUE(robust.converged);
+  }
+}
+
+TEST(TestShare, IsSeenByNoFit) {
+  Strokes strokes(8000, 0.0, kelvin);
+  for (std::size_t i = 0; i < strokes.force.size(); ++i) {
+    if (strokes.cycle[i] > 4) strokes.force[i] += 1.0;  // the last cycles are of another world
+  }
+  const auto result = fit("kelvin", strokes.series(true), {.test_share = 0.34});
+  EXPECT_NEAR(result.parameters[0].value, 5.0, 1e-5);
+  EXPECT_NEAR(result.test_rmse, 1.0, 1e-5);
+  EXPECT_NEAR(result.cv_rmse, 0.0, 1e-5);
+  EXPECT_TRUE(std::isnan(fit("kelvin", strokes.series(true), {.folds = 0}).cv_rmse));
+}
+
+TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {
+  const Strokes strokes(6000, 0.02, kelvin);
+  const auto white = fit("kelvin", strokes.series(), {.folds = 0, .intervals = Intervals::white});
+  const auto correlated = fit("kelvin", strokes.series(), {.folds = 0});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(white.parameters[i].std_error, correlated.parameters[i].std_error,
+                0.1 * correlated.parameters[i].std_error);
+  }
+}
+
+TEST(CrossValidation, DoesNotDependOnTheNumberOfThreads) {
+  const Strokes strokes(6000, 0.02, kelvin);
+  const double one = fit("kelvin", strokes.series(), {.threads = 1}).cv_rmse;
+  EXPECT_EQ(fit("kelvin", strokes.series(), {.threads = 2}).cv_rmse, one);
+  EXPECT_EQ(fit("kelvin", strokes.series(), {.threads = 7}).cv_rmse, one);
+}
+
+TEST(Profile, AgreesWithTheIntervalWhereTheLawIsNearlyLinear) {
+  const auto result = fit("kelvin", Strokes(6000, 0.02, kelvin).series(), {.folds = 0, .profile = true});
+  ASSERT_EQ(result.profiles.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Estimate& estimate = result.parameters[i];
+    const double width = estimate.upper - estimate.lower;
+    EXPECT_NEAR(result.profiles[i].lower, estimate.lower, 0.05 * width) << estimate.info.name;
+    EXPECT_NEAR(result.profiles[i].upper, estimate.upper, 0.05 * width);
+  }
+}
+
+TEST(Profile, SaysWhereAParameterHasNoEnd) {
+  // A ramp that is sampled every other second: of an arm that relaxes in 0.2 s only the dashpot is felt, and
+  // its spring may be as stiff as it likes.
+  const Strokes noise(300, 1e-3, Law::make("precontact", std::vector{1e-9, 1e-9}), 5);
+  std::vector<double> time, x, v, f;
+  Law::State state = kelvin.initial_state();
+  for (std::size_t i = 0; i < 300; ++i) {
+    time.push_back(2.0 * static_cast<double>(i));
+    x.push_back(0.01 * time.back());
+    v.push_back(0.01);
+    f.push_back(kelvin.step(state, models::Motion{x.back(), 0.01}, 2.0).force + noise.force[i]);
+  }
+  const auto result =
+      fit("kelvin", {.time_s = time, .penetration = x, .velocity = v, .force = f, .cycle = {}},
+          {.folds = 0, .profile = true});
+  EXPECT_FALSE(result.warnings.empty());
+  EXPECT_NEAR(result.parameters[0].value, 5.0, 4.0 * result.parameters[0].std_error);
+  EXPECT_GT(result.parameters[1].upper, 100.0) << "no confident number";
+  for (const Profile& profile : result.profiles) {
+    if (profile.parameter == "series_stiffness") {
+      EXPECT_GT(profile.upper, 100.0);
+    }
+  }
+}
+
+TEST(Segments, AreCountedByBicOrTheJnd) {
+  const Law broken =
+      Law::make("piecewise", std::vector{0.0, 0.1, 0.25, 0.4, 0.0, 1.5, 1.8, 4.0}, {{"segments", 3.0}});
+  const Strokes strokes(6000, 0.05, broken);
+  const auto by_bic = fit("piecewise", strokes.series(), {.folds = 0, .segments = CountBy::bic});
+  EXPECT_EQ(std::get<double>(by_bic.law_options.at("segments")), 3.0);
+  const auto by_jnd =
+      fit("piecewise", strokes.series(),
+          {.jnd = {.weber_fraction = 0.0, .threshold_n = 0.6}, .folds = 0, .segments = CountBy::jnd});
+  EXPECT_EQ(std::get<double>(by_jnd.law_options.at("segments")), 1.0) << "nobody feels more";
+}
+
+TEST(Segments, StandWhereTheHandPutsThem) {
+  const Law broken =
+      Law::make("piecewise", std::vector{0.0, 0.1, 0.25, 0.4, 0.0, 1.5, 1.8, 4.0}, {{"segments", 3.0}});
+  const auto result =
+      fit("piecewise", Strokes(6000, 0.0, broken).series(), {.folds = 0, .breakpoints = {0.1, 0.25}});
+  EXPECT_EQ(result.free_parameters, 4U);
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(result.parameters[i].value, broken.values()[i], 1e-5);
+}
+
+TEST(Warning, OfASensorAtTheEndOfItsRange) {
+  Strokes strokes(4000, 0.0, kelvin);
+  for (double& force : strokes.force) force = std::min(force, 2.0);
+  EXPECT_THAT(fit("kelvin", strokes.series(), {.folds = 0}).warnings,
+              testing::Contains(testing::HasSubstr("may be saturated")));
+}
+
+}  // namespace
+}  // namespace kerf::fitting
