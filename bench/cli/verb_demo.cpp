@@ -7,6 +7,7 @@
 
 #include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "fits/fit_files.h"
 #include "fits/fit_recording.h"
 #include "loop/check.h"
 #include "report/charts.h"
@@ -53,7 +54,7 @@ void run_demo(const Arguments& arguments, Context& context) {
   say(fmt::format("   {}: {} samples, {} closings", cut.string(), recording.rows(),
                   recording.cycles->closing.size()));
 
-  say("2. Four force laws are fitted to it");
+  say("2. Five force laws are fitted to it");
   RecordingFit fit = fit_recording(recording, {});
   write_fits(fit, cut, folder / "fits");
   say(fmt::format("   {}", fit.choice.why));

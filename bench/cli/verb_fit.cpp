@@ -1,102 +1,129 @@
 #include <algorithm>
 #include <memory>
-#include <optional>
-#include <string>
+#include <stdexcept>
+#include <thread>
 
 #include <fmt/core.h>
 
+#include "cli/fit_arguments.h"
+#include "cli/fit_table.h"
+#include "cli/progress.h"
 #include "cli/verbs.h"
-#include "fits/fit_recording.h"
-#include "recordings/axes.h"
+#include "files/whole_file.h"
+#include "fits/batch.h"
+#include "fits/fit_files.h"
+#include "loop/run.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
-  std::string recording;
-  std::string output;
-  std::string axis;
-  std::string direction;
-  std::optional<double> contact;
-  bool force = false;
-  FitRecordingOptions options;
-};
+namespace fs = std::filesystem;
 
-void print_table(const RecordingFit& fit) {
-  say(fmt::format("  {:12} {:>4} {:>9} {:>9} {:>7} {:>9} {:>6} {:>9}", "law", "free", "rmse N", "max N", "R2",
-                  "held-out", "> JND", "converged"));
-  for (const FittedLaw& law : fit.laws) {
-    const fitting::FitResult& result = law.result;
-    say(fmt::format("  {:12} {:4} {:9.4f} {:9.4f} {:7.4f} {:9.4f} {:5.1f}% {:>9}", result.model,
-                    result.free_parameters, result.rmse, result.max_abs, result.r2, result.cv_rmse,
-                    100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
+/// What names each file apart from the others: its stem, with a number where two have the same.
+std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    const std::string stem = fs::path(file).stem().string();
+    std::string name = stem;
+    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i)
+      name = fmt::format("{}-{}", stem, i);
+    names.push_back(name);
   }
-  say(fmt::format("  {:12} {:4} {:9.4f}", "straight line", 2, fit.line_rmse_n));
+  return names;
 }
 
-void run_fit(const Arguments& arguments, Context& context) {
-  const std::filesystem::path folder = arguments.output;
+void run_together(const FitArguments& arguments, Context& context) {
+  const fs::path folder = arguments.output;
   if (!arguments.force) refuse_to_replace_fits(arguments.options, folder);
-  const schema::Recording recording = schema::read_recording(arguments.recording);
-  FitRecordingOptions options = arguments.options;
-  options.axis = find_axis(recording, arguments.axis);
-  if (arguments.contact || !arguments.direction.empty()) {
-    options.contact = contact_of(recording, options.axis);
-    if (arguments.contact) options.contact->position = *arguments.contact;
-    if (!arguments.direction.empty())
-      options.contact->direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+  const auto names = names_of(arguments.recordings);
+  std::vector<schema::Recording> recordings;
+  std::vector<FitSource> sources;
+  for (const std::string& file : arguments.recordings) recordings.push_back(schema::read_recording(file));
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    sources.push_back(source_of(arguments, recordings[i], names[i], i));
+  RecordingFit fit = fit_recordings(sources, options_of(arguments, sources.front()));
+  if (const std::string reason = fit.refusal(); !reason.empty()) {
+    throw std::invalid_argument(fmt::format("{}: {}", arguments.recordings.front(), reason));
   }
-  RecordingFit fit = fit_recording(recording, options);
-  for (const std::string& warning : fit.warnings) warn(warning);
-  for (const FittedLaw& law : fit.laws) {
-    for (const std::string& warning : law.result.warnings) warn(law.result.model + ": " + warning);
-  }
+  warn_of(fit);
   context.result = fits_as_json(fit);
   if (std::none_of(fit.laws.begin(), fit.laws.end(),
                    [](const FittedLaw& law) { return law.result.converged; })) {
     context.exit = Exit::check_failed;
     if (fit.laws.empty()) return;
   }
-  write_fits(fit, arguments.recording, folder);
-  print_table(fit);
-  say(fmt::format("{}: {}", fit.choice.model, fit.choice.why));
+  const std::vector<fs::path> files(arguments.recordings.begin(), arguments.recordings.end());
+  write_fits(fit, files, folder);
+  say_fit(fit);
   say(fmt::format("law files, fit.json and fit.csv are in {}", folder.string()));
+}
+
+void say_batch(const std::vector<BatchEntry>& entries, const fs::path& folder, Context& context) {
+  std::size_t failed = 0;
+  for (const BatchEntry& entry : entries) {
+    if (entry.failure.empty()) {
+      say(fmt::format("  {:40} {}", entry.recording, entry.fit.choice.model));
+    } else {
+      ++failed;
+    }
+  }
+  for (const BatchEntry& entry : entries) {
+    if (!entry.failure.empty()) warn(fmt::format("{}: {}", entry.recording, entry.failure));
+  }
+  if (failed > 0) context.exit = Exit::check_failed;
+  say(fmt::format("{} of {} recordings fitted; batch.csv, batch.json and a folder for each are in {}",
+                  entries.size() - failed, entries.size(), folder.string()));
+}
+
+void run_batch_of(const FitArguments& arguments, Context& context) {
+  const fs::path folder = arguments.output;
+  for (const auto* table : {"batch.csv", "batch.json"}) refuse_to_replace(folder / table, arguments.force);
+  const auto recordings = recordings_in(arguments.batch);
+  const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+  const BatchOptions options{
+      .folder = arguments.batch,
+      .output = folder,
+      .jobs = arguments.jobs > 0 ? arguments.jobs : processors,
+      .replace = arguments.force,
+      .source = [&](const auto& recording) { return source_of(arguments, recording, "recording"); },
+      .options = [&](const auto& source) { return options_of(arguments, source); }};
+  std::vector<BatchEntry> entries;
+  {
+    const StopOnSignal signals;
+    Progress progress(fmt::format("fitting {} recordings", recordings.size()), recordings.size());
+    entries = run_batch(recordings, options, signals.requested(), progress.done);
+  }
+  const double confidence = arguments.options.fit.confidence;
+  fs::create_directories(folder);
+  write_whole_file(folder / "batch.csv", batch_csv(entries, confidence));
+  context.result = batch_json(entries, confidence);
+  write_whole_file(folder / "batch.json", context.result.dump(2) + "\n");
+  say_batch(entries, folder, context);
 }
 
 }  // namespace
 
 void add_fit(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
-  FitRecordingOptions& options = arguments->options;
-  Verb verb =
-      add_verb(app, context, "fit", "Fit force laws to a recording, with the uncertainty of each parameter",
-               "kerf fit punch.h5 --models kelvin,piecewise --segments 4 -o fits\n\n"
-               "Segment a recording of cycles first: laws with branches are then fitted as loops, and held-\n"
-               "out errors are by cycle. Exit status 1 if no law converged.",
-               [arguments, &context] { run_fit(*arguments, context); });
-  verb.add_option("RECORDING", arguments->recording, "Recording").required();
-  verb.add_option("--models", options.models,
-                  "Laws, separated by commas (default: kelvin, exponential, piecewise, recording)")
-      .separated_by(',');
-  verb.add_option("--axis", arguments->axis, "Axis to fit (default: the first)");
-  verb.add_option("--segments", options.segments, "Segments of the piecewise law")
-      .within(1, 12)
-      .with_default();
-  verb.add_option("--contact", arguments->contact,
-                  "Position where the penetration is zero, in m or rad (default: from the recording)");
-  verb.add_option("--direction", arguments->direction, "Way into the tissue (default: from the recording)")
-      .one_of({"increasing", "decreasing"});
-  verb.add_option("--weber", options.fit.jnd.weber_fraction, "Weber fraction of the force JND")
-      .within(0.0, 1.0)
-      .with_default();
-  verb.add_option("--threshold", options.fit.jnd.threshold_n, "Smallest force JND [N]")
-      .not_negative()
-      .with_default();
-  verb.add_option("--folds", options.fit.folds, "Folds of the cross-validation")
-      .within(2, 100)
-      .with_default();
-  verb.add_option("-o,--output", arguments->output, "Folder for law files, fit.json and fit.csv").required();
-  verb.add_flag("--force", arguments->force, "Replace an existing fit");
+  auto arguments = std::make_shared<FitArguments>();
+  Verb verb = add_verb(
+      app, context, "fit", "Fit force laws to recordings, with the uncertainty of each parameter",
+      "kerf fit punch.h5 --models kelvin,piecewise --segments bic -o fits\n"
+      "  kerf fit slow.h5 fast.h5 --models kelvin --per-recording damping -o fits\n"
+      "  kerf fit --batch recordings --jobs 4 -o fits\n\n"
+      "Segment a recording of cycles first: laws with branches are then fitted as loops, and held-\n"
+      "out errors are by cycle. Exit status 1 if no law converged, of a batch: if any recording has\n"
+      "no fit. A batch goes on after a failure and lists it; Ctrl-C ends it with the recordings that\n"
+      "are underway.",
+      [arguments, &context] {
+        check(*arguments);
+        if (arguments->batch.empty()) {
+          arguments->options.fit.threads = std::max(1U, std::thread::hardware_concurrency());
+          run_together(*arguments, context);
+        } else {
+          run_batch_of(*arguments, context);
+        }
+      });
+  add_fit_options(verb, *arguments);
 }
 
 }  // namespace kerf::bench

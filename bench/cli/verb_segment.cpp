@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "recordings/axes.h"
+#include "recordings/provenance.h"
 #include "report/charts.h"
 #include "segment/segment.h"
 
@@ -69,6 +70,10 @@ void run_segment(const Arguments& arguments, Context& context) {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.recording, error.what()));
   }
+  add_history(recording.header,
+              fmt::format("segment: {} cycles along {}, prominence {:g}, zero-phase low-pass {:g} Hz",
+                          recording.cycles->closing.size(), recording.axes[options.axis].name,
+                          options.prominence, recording.cycles->filter_corner_hz));
   schema::write_recording(arguments.recording, recording);
   if (!arguments.charts.empty()) {
     std::filesystem::create_directories(arguments.charts);

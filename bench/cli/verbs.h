@@ -6,6 +6,7 @@
 namespace kerf::bench {
 
 // One function a verb, each in the file cli/verb_NAME.cpp.
+void add_blade(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
@@ -13,6 +14,7 @@ void add_fit(CLI::App& app, Context& context);
 void add_import(CLI::App& app, Context& context);
 void add_info(CLI::App& app, Context& context);
 void add_laws(CLI::App& app, Context& context);
+void add_prepare(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);
 void add_repair(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
-#include "files/whole_file.h"
+#include "fits/choice.h"
+#include "fits/fit_series.h"
+#include "fits/law_options.h"
 #include "recordings/provenance.h"
-#include "signal/signal.h"
 
 namespace kerf::bench {
 namespace {
@@ -17,43 +19,7 @@ constexpr double velocity_corner_rad_s = 10.0;  // 004, section 2.2
 constexpr double ramp_share = 0.05;             // of the 95th percentile of the speed
 constexpr double reversal_share = 0.05;  // of the range of the penetration, until the full force is back
 
-constexpr auto csv_name = "fit.csv";
-constexpr auto json_name = "fit.json";
-
-std::string law_file_name(const std::string& model) { return model + ".law.toml"; }
-
-/// Leaves out the rows that are not finite; returns how many.
-std::size_t keep_finite(AxisSeries& series) {
-  const auto is_finite = [&](std::size_t i) {
-    return std::isfinite(series.time_s[i]) && std::isfinite(series.penetration[i]) &&
-           std::isfinite(series.velocity[i]) && std::isfinite(series.force[i]);
-  };
-  std::size_t kept = 0;
-  const std::size_t count = series.time_s.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_finite(i)) continue;
-    series.time_s[kept] = series.time_s[i];
-    series.penetration[kept] = series.penetration[i];
-    series.velocity[kept] = series.velocity[i];
-    series.force[kept] = series.force[i];
-    if (!series.cycle.empty()) series.cycle[kept] = series.cycle[i];
-    ++kept;
-  }
-  for (auto* values : {&series.time_s, &series.penetration, &series.velocity, &series.force})
-    values->resize(kept);
-  if (!series.cycle.empty()) series.cycle.resize(kept);
-  return count - kept;
-}
-
-void take_zero_phase_velocity(AxisSeries& series) {
-  if (series.time_s.size() < 5) return;
-  constexpr double window_s = 0.02;
-  const double period_s =
-      (series.time_s.back() - series.time_s.front()) / static_cast<double>(series.time_s.size() - 1);
-  series.velocity = differentiate(series.time_s, series.penetration, std::max(window_s, 4.0 * period_s));
-}
-
-/// The rendering aids of 004 for a law with branches, scaled to the recording.
+/// The rendering aids of 004 for a law with branches, scaled to the recordings.
 models::Options with_rendering_aids(models::Options options, const AxisSeries& series) {
   const auto loop = options.find("loop");
   if (loop == options.end() || !std::get<bool>(loop->second)) return options;
@@ -68,179 +34,202 @@ models::Options with_rendering_aids(models::Options options, const AxisSeries& s
   return options;
 }
 
-double error_of(const models::Law& law, const AxisSeries& series) {
+double squares_left(const models::Law& law, const AxisSeries& series) {
   const auto force = render(law, series);
   double squares = 0.0;
   for (std::size_t i = 0; i < force.size(); ++i) squares += std::pow(force[i] - series.force[i], 2);
-  return std::sqrt(squares / static_cast<double>(force.size()));
+  return squares;
 }
 
-FittedLaw finished(fitting::FitResult result, const AxisSeries& series, const schema::Recording& recording,
-                   std::size_t axis, const models::Contact& contact) {
-  std::vector<double> values;
+/// Recordings and their series, side by side.
+struct Sources {
+  std::span<const FitSource> all;
+  std::vector<FitSeries> series;
+  AxisSeries pool;
+
+  [[nodiscard]] std::vector<fitting::Series> views() const {
+    std::vector<fitting::Series> views;
+    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(series[i].view(all[i].noise_n));
+    return views;
+  }
+};
+
+LawFile file_of(const fitting::FitResult& result, const Sources& sources, std::size_t at) {
+  const FitSource& source = sources.all[at];
+  const schema::Axis& axis = source.recording->axes[source.axis];
   std::vector<double> std_errors;
   for (const fitting::Estimate& estimate : result.parameters) {
-    values.push_back(estimate.value);
     std_errors.push_back(estimate.std_error);
+    for (const fitting::Estimate& other : result.others) {
+      if (other.info.name == estimate.info.name && other.recording == at) std_errors.back() = other.std_error;
+    }
   }
-  LawFile file{
-      .law = models::Law::make(result.model, values, with_rendering_aids(result.law_options, series)),
-      .contact = contact,
-      .axis = recording.axes[axis].name,
-      .position_unit = recording.axes[axis].position_unit,
-      .force_unit = recording.axes[axis].force_unit,
-      .std_errors = std::move(std_errors),
-      .fit = {.recording_uuid = recording.header.uuid,
-              .recording_sha256 = {},
-              .rmse_n = result.rmse,
-              .date = schema::new_header("").created,
-              .software = software()}};
-  const double rmse_rendered = error_of(file.law, series);
-  return {.result = std::move(result), .file = std::move(file), .rmse_rendered = rmse_rendered};
+  const models::Law law = result.law(at);
+  return {.law = models::Law::make(result.model, law.values(),
+                                   with_rendering_aids(result.law_options, sources.pool)),
+          .contact = source.contact,
+          .axis = axis.name,
+          .position_unit = axis.position_unit,
+          .force_unit = axis.force_unit,
+          .std_errors = std::move(std_errors),
+          .fit = {.recording_uuid = source.recording->header.uuid,
+                  .recording_sha256 = {},
+                  .rmse_n = result.rmse,
+                  .date = schema::new_header("").created,
+                  .software = software()}};
+}
+
+FittedLaw finished(fitting::FitResult result, const Sources& sources) {
+  LawFile file = file_of(result, sources, 0);
+  FittedLaw fitted{.result = std::move(result), .file = std::move(file), .others = {}};
+  const auto differs = [&](const FitSource& source) {
+    return source.contact.position != sources.all[0].contact.position ||
+           source.contact.direction != sources.all[0].contact.direction;
+  };
+  const bool own =
+      !fitted.result.others.empty() || std::any_of(sources.all.begin(), sources.all.end(), differs);
+  for (std::size_t i = 1; own && i < sources.all.size(); ++i) {
+    fitted.others.push_back(file_of(fitted.result, sources, i));
+  }
+  double squares = 0.0;
+  for (std::size_t i = 0; i < sources.all.size(); ++i) {
+    const LawFile& of = own && i > 0 ? fitted.others[i - 1] : fitted.file;
+    squares += squares_left(of.law, sources.series[i].axis);
+  }
+  fitted.rmse_rendered = std::sqrt(squares / static_cast<double>(sources.pool.force.size()));
+  return fitted;
+}
+
+bool units_fit(const std::string& model, const schema::Axis& axis) {
+  const models::LawInfo info = models::law_info(model);
+  return info.position_unit.empty() ||
+         (info.position_unit == axis.position_unit && info.force_unit == axis.force_unit);
 }
 
 /// A law whose equation is in metres says nothing of an angle. @throws std::invalid_argument.
 void check_units(const std::string& model, const schema::Axis& axis) {
+  if (units_fit(model, axis)) return;
   const models::LawInfo info = models::law_info(model);
-  if (info.position_unit.empty() ||
-      (info.position_unit == axis.position_unit && info.force_unit == axis.force_unit)) {
-    return;
-  }
   throw std::invalid_argument(fmt::format("its force is in {} over {}, and axis '{}' has {} over {}",
                                           info.force_unit, info.position_unit, axis.name, axis.force_unit,
                                           axis.position_unit));
 }
 
-models::Options options_for(const std::string& model, const FitRecordingOptions& options,
-                            const models::Contact& contact) {
-  models::Options all = options.fit.law_options;
-  if (model == "piecewise") all.try_emplace("segments", static_cast<double>(options.segments));
-  if (model == "scissors_analytic") all.try_emplace("contact_angle", contact.position);
-  return all;
-}
-
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json to_json(const FittedLaw& law) {
-  const fitting::FitResult& fit = law.result;
-  nlohmann::ordered_json parameters = nlohmann::ordered_json::object();
-  for (const fitting::Estimate& estimate : fit.parameters) {
-    parameters[estimate.info.name] = {
-        {"value", estimate.value},
-        {"std_error", number(estimate.std_error)},
-        {"ci95", {number(estimate.lower), number(estimate.upper)}},
-        {"unit", models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit)}};
+/// One law cannot serve an angle and a length. @throws std::invalid_argument.
+void check_same_units(std::span<const FitSource> sources) {
+  const schema::Axis& first = sources[0].recording->axes[sources[0].axis];
+  for (const FitSource& source : sources) {
+    const schema::Axis& axis = source.recording->axes[source.axis];
+    if (axis.position_unit == first.position_unit && axis.force_unit == first.force_unit) continue;
+    throw std::invalid_argument(fmt::format("{}: axis '{}' has {} over {}, and that of {} has {} over {}",
+                                            source.name, axis.name, axis.force_unit, axis.position_unit,
+                                            sources[0].name, first.force_unit, first.position_unit));
   }
-  return {{"model", fit.model},
-          {"parameters", parameters},
-          {"free_parameters", fit.free_parameters},
-          {"rmse", fit.rmse},
-          {"rmse_rendered", law.rmse_rendered},
-          {"max_abs", fit.max_abs},
-          {"r2", fit.r2},
-          {"aic", fit.aic},
-          {"bic", fit.bic},
-          {"cv_rmse", number(fit.cv_rmse)},
-          {"jnd_fraction", fit.jnd_fraction},
-          {"correlation_time_samples", fit.correlation_time},
-          {"converged", fit.converged},
-          {"iterations", fit.iterations},
-          {"seconds", fit.seconds},
-          {"message", fit.message},
-          {"warnings", fit.warnings}};
 }
 
-std::string as_csv(const RecordingFit& fit) {
-  std::string text = "model,parameter,value,std_error,ci95_lower,ci95_upper,unit\n";
-  for (const FittedLaw& law : fit.laws) {
-    for (const fitting::Estimate& estimate : law.result.parameters) {
-      text +=
-          fmt::format("{},{},{},{},{},{},{}\n", law.result.model, estimate.info.name, estimate.value,
-                      estimate.std_error, estimate.lower, estimate.upper,
-                      models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit));
-    }
+fitting::FitOptions options_for(const std::string& model, const FitRecordingOptions& options,
+                                const models::Contact& contact) {
+  fitting::FitOptions fit = options.fit;
+  for (const auto& [name, value] : options_of_law(model, options.law_options)) fit.law_options[name] = value;
+  if (model == "piecewise") fit.law_options.try_emplace("segments", static_cast<double>(options.segments));
+  if (model == "scissors_analytic") fit.law_options.try_emplace("contact_angle", contact.position);
+  return fit;
+}
+
+Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
+  Sources sources{.all = all, .series = {}, .pool = {}};
+  for (const FitSource& source : all) {
+    sources.series.push_back(fit_series(*source.recording, source.axis, source.contact));
+    const std::size_t left_out = sources.series.back().left_out;
+    fit.recordings.push_back({.name = source.name,
+                              .uuid = source.recording->header.uuid,
+                              .axis = source.recording->axes[source.axis].name,
+                              .contact = source.contact,
+                              .samples = source.recording->rows(),
+                              .left_out = left_out,
+                              .noise_n = source.noise_n});
+    if (left_out == 0) continue;
+    const std::string whose = all.size() > 1 ? source.name + ": " : "";
+    fit.warnings.push_back(fmt::format("{}{} rows are not finite and are left out", whose, left_out));
   }
-  return text;
+  sources.pool = pooled(sources.series);
+  return sources;
 }
 
 }  // namespace
 
-std::vector<std::string> models_of(const FitRecordingOptions& options) {
-  if (!options.models.empty()) return options.models;
-  // Those that any recording along an axis can be compared by; the others need to be asked for.
-  return {"kelvin", "exponential", "piecewise", "recording"};
+std::size_t RecordingFit::samples() const {
+  return std::accumulate(recordings.begin(), recordings.end(), std::size_t{0},
+                         [](std::size_t sum, const auto& one) { return sum + one.samples; });
 }
 
-void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder) {
-  for (const std::string& model : models_of(options)) refuse_to_replace(folder / law_file_name(model), false);
-  for (const auto* table : {csv_name, json_name}) refuse_to_replace(folder / table, false);
+std::string RecordingFit::refusal() const {
+  const bool one_reason = laws.empty() && !refusals.empty() &&
+                          std::all_of(refusals.begin(), refusals.end(),
+                                      [&](const Refusal& other) { return other.why == refusals[0].why; });
+  return one_reason ? refusals[0].why : "";
+}
+
+std::vector<std::string> models_of(const FitRecordingOptions& options) {
+  if (options.models.empty()) return {"kelvin", "exponential", "piecewise", "recording", "maxwell"};
+  std::vector<std::string> models;
+  const auto add = [&](std::string_view model) {
+    if (std::find(models.begin(), models.end(), model) == models.end()) models.emplace_back(model);
+  };
+  for (const std::string& model : options.models) {
+    if (model != "all") add(model);
+    for (const std::string_view one : fitting::fitted_laws()) {
+      if (model == "all") add(one);
+    }
+  }
+  return models;
+}
+
+RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOptions& options) {
+  if (all.empty()) throw std::invalid_argument("there is no recording to fit");
+  check_same_units(all);
+  const auto models = models_of(options);
+  for (const std::string& model : models) fitting::check_model(model);  // a mistake of the caller
+  check_law_options(models, options.law_options);
+  RecordingFit fit{.recordings = {}, .choice = {}, .settings = options.fit};
+  const Sources sources = sources_of(all, fit);
+  const schema::Axis& axis = all[0].recording->axes[all[0].axis];
+  const auto named = [&](const std::string& model) {
+    return options.models.empty() ||
+           std::find(options.models.begin(), options.models.end(), model) != options.models.end();
+  };
+  std::vector<fitting::FitResult> results;
+  for (const std::string& model : models) {
+    if (!named(model) && !units_fit(model, axis)) continue;
+    try {
+      check_units(model, axis);
+      fitting::FitResult result =
+          fitting::fit(model, sources.views(), options_for(model, options, all[0].contact));
+      if (result.parameters.empty()) throw std::invalid_argument(result.message);
+      fit.laws.push_back(finished(result, sources));
+      results.push_back(std::move(result));
+    } catch (const std::invalid_argument& error) {
+      fit.refusals.push_back({.model = model, .why = error.what()});
+    }
+  }
+  if (fit.laws.empty()) return fit;
+  const fitting::Series pool{.time_s = sources.pool.time_s,
+                             .penetration = sources.pool.penetration,
+                             .velocity = sources.pool.velocity,
+                             .force = sources.pool.force};
+  fit.line_rmse_n = fitting::line_rmse(pool);
+  fit.jnd_n = jnd_of(sources.pool.force, options.fit.jnd);
+  fit.choice = choose(results, pool, options.fit);
+  return fit;
 }
 
 RecordingFit fit_recording(const schema::Recording& recording, const FitRecordingOptions& options) {
-  const models::Contact contact = options.contact.value_or(contact_of(recording, options.axis));
-  AxisSeries series = axis_series(recording, options.axis, contact);
-  // What a driver gives as velocity lags behind the position; in hindsight there is a better one. Derived
-  // after the rows that are not finite are gone, or each would spoil its neighbours.
-  const bool lags = recording.header.velocity_derived.empty();
-  if (lags) series.velocity.assign(series.velocity.size(), 0.0);
-  RecordingFit all{.uuid = recording.header.uuid, .samples = recording.rows(), .choice = {}};
-  all.left_out = keep_finite(series);
-  if (lags) take_zero_phase_velocity(series);
-  if (all.left_out > 0)
-    all.warnings.push_back(fmt::format("{} rows are not finite and are left out", all.left_out));
-  const fitting::Series view{.time_s = series.time_s,
-                             .penetration = series.penetration,
-                             .velocity = series.velocity,
-                             .force = series.force,
-                             .cycle = series.cycle};
-  std::vector<fitting::FitResult> results;
-  for (const std::string& model : models_of(options)) {
-    fitting::check_model(model);  // a mistake of the caller, not of the data
-    fitting::FitOptions fit_options = options.fit;
-    fit_options.law_options = options_for(model, options, contact);
-    try {
-      check_units(model, recording.axes[options.axis]);
-      results.push_back(fitting::fit(model, view, fit_options));
-      if (results.back().parameters.empty()) {
-        all.warnings.push_back(fmt::format("{}: {}", model, results.back().message));
-        results.pop_back();
-        continue;
-      }
-      all.laws.push_back(finished(results.back(), series, recording, options.axis, contact));
-    } catch (const std::invalid_argument& error) {
-      all.warnings.push_back(fmt::format("{}: {}", model, error.what()));
-    }
-  }
-  if (!all.laws.empty()) {
-    all.line_rmse_n = fitting::line_rmse(view);
-    all.choice = fitting::choose_simplest(results, view, options.fit.jnd);
-  }
-  return all;
-}
-
-void write_fits(RecordingFit& fit, const std::filesystem::path& recording,
-                const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  const std::string sha256 = sha256_of(recording);
-  for (FittedLaw& law : fit.laws) {
-    law.file.fit.recording_sha256 = sha256;
-    write_law_file(folder / law_file_name(law.result.model), law.file);
-  }
-  write_whole_file(folder / csv_name, as_csv(fit));
-  write_whole_file(folder / json_name, fits_as_json(fit).dump(2) + "\n");
-}
-
-nlohmann::ordered_json fits_as_json(const RecordingFit& fit) {
-  nlohmann::ordered_json fits = nlohmann::ordered_json::array();
-  for (const FittedLaw& law : fit.laws) fits.push_back(to_json(law));
-  return {{"recording", fit.uuid},
-          {"samples", fit.samples},
-          {"line_rmse", fit.line_rmse_n},
-          {"fits", fits},
-          {"choice", {{"model", fit.choice.model}, {"why", fit.choice.why}}},
-          {"warnings", fit.warnings}};
+  if (options.axis >= recording.dimensions()) throw std::invalid_argument("the recording has no such axis");
+  const FitSource source{.recording = &recording,
+                         .name = "recording",
+                         .axis = options.axis,
+                         .contact = options.contact.value_or(contact_of(recording, options.axis))};
+  return fit_recordings(std::span(&source, 1), options);
 }
 
 }  // namespace kerf::bench

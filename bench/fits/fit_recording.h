@@ -1,11 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include <kerf/fitting/fit.h>
 #include <kerf/schema/recording.h>
@@ -16,51 +14,75 @@
 namespace kerf::bench {
 
 struct FitRecordingOptions {
-  std::vector<std::string> models;  ///< empty: the four that fit any axis
+  std::vector<std::string> models;  ///< "all": every law whose units fit the axis; empty: models_of()
   std::size_t axis = 0;
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   std::size_t segments = 5;                ///< of the piecewise law
+  std::vector<std::string> law_options;    ///< NAME=VALUE, each for the laws that have it
   fitting::FitOptions fit;
 };
 
-/// One law fitted to a recording: the result, and the law as it will be rendered.
+/// A recording with what a fit has to know of it.
+struct FitSource {
+  const schema::Recording* recording = nullptr;
+  std::string name;  ///< in the names of law files and in tables
+  std::size_t axis = 0;
+  models::Contact contact;
+  double noise_n = 0.0;  ///< 0: not known
+};
+
+/// One law fitted to one recording or several: the result, and the law as it will be rendered.
 struct FittedLaw {
   fitting::FitResult result;
-  LawFile file;                ///< with the rendering aids of laws that have branches
-  double rmse_rendered = 0.0;  ///< error with those aids on [N]
+  LawFile file;                 ///< with the rendering aids of laws that have branches
+  std::vector<LawFile> others;  ///< of the further recordings, where their parameters or contacts differ
+  double rmse_rendered = 0.0;   ///< error with those aids on [N]
 };
 
-/// All laws fitted to one recording.
-struct RecordingFit {
+/// What a fit took from a recording.
+struct FittedRecording {
+  std::string name;
   std::string uuid;
+  std::string axis;
+  models::Contact contact;
   std::size_t samples = 0;
   std::size_t left_out = 0;  ///< rows that are not finite
-  double line_rmse_n = 0.0;  ///< of a straight line of force over penetration
-  std::vector<FittedLaw> laws;
-  fitting::Choice choice;
-  std::vector<std::string> warnings;
+  double noise_n = 0.0;
 };
 
-/// Fits laws to an axis of a recording. The velocity of a device, which lags, is replaced by the zero-phase
-/// slope of its positions (a parabola over 20 ms, at least five samples). A law that cannot be fitted is told
-/// of in the warnings.
-/// @throws std::invalid_argument for an unknown law, or a recording without force.
+/// A law that could not be fitted.
+struct Refusal {
+  std::string model;
+  std::string why;
+};
+
+/// All laws fitted to one recording, or to several at once.
+struct RecordingFit {
+  std::vector<FittedRecording> recordings;
+  double line_rmse_n = 0.0;  ///< of a straight line of force over penetration
+  double jnd_n = 0.0;        ///< at the root mean square force
+  std::vector<FittedLaw> laws;
+  std::vector<Refusal> refusals;
+  fitting::Choice choice;
+  std::vector<std::string> warnings;
+  fitting::FitOptions settings;  ///< as asked for
+
+  [[nodiscard]] std::size_t samples() const;
+  /// Why no law could be fitted, where all refused for one reason; else empty.
+  [[nodiscard]] std::string refusal() const;
+};
+
+/// Fits laws to an axis of a recording. A law that cannot be fitted is a refusal.
+/// @throws std::invalid_argument for an unknown law or option, or a recording without force.
 [[nodiscard]] RecordingFit fit_recording(const schema::Recording& recording,
                                          const FitRecordingOptions& options);
 
-/// The laws that are asked for: those named, or every one of the registry.
+/// Fits laws to several recordings at once; `options.axis` and `options.contact` are those of the sources.
+[[nodiscard]] RecordingFit fit_recordings(std::span<const FitSource> sources,
+                                          const FitRecordingOptions& options);
+
+/// The laws that are asked for, each once: those named, every scalar law for "all", or the five that say
+/// something of any recording along an axis (kelvin, exponential, piecewise, recording, maxwell).
 [[nodiscard]] std::vector<std::string> models_of(const FitRecordingOptions& options);
-
-/// @throws std::invalid_argument if any file that write_fits() would write stands in the folder.
-void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder);
-
-/// Adds the recording's checksum to the law files and writes NAME.law.toml, fit.json and fit.csv into a
-/// folder.
-/// @throws std::system_error
-void write_fits(RecordingFit& fit, const std::filesystem::path& recording,
-                const std::filesystem::path& folder);
-
-/// The JSON of `kerf fit`.
-[[nodiscard]] nlohmann::ordered_json fits_as_json(const RecordingFit& fit);
 
 }  // namespace kerf::bench

@@ -46,6 +46,10 @@ models::Contact contact_of(const schema::Recording& recording, std::size_t axis)
       if (law.axis == recording.axes.at(axis).name) return law.contact;
     }
   }
+  const schema::Axis& about = recording.axes.at(axis);
+  if (std::isfinite(about.contact_position) && std::isfinite(about.contact_direction)) {
+    return {.position = about.contact_position, .direction = about.contact_direction};
+  }
   if (recording.cycles && recording.cycles->axis == axis) {
     return {.position = recording.cycles->contact_position, .direction = recording.cycles->closing_direction};
   }

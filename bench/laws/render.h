@@ -21,8 +21,9 @@ struct AxisSeries {
 [[nodiscard]] AxisSeries axis_series(const schema::Recording& recording, std::size_t axis,
                                      const models::Contact& contact);
 
-/// The contact of a recording: that of the tissue in its scene if it was simulated, else from its cycles if
-/// it was segmented, else the smallest position with direction +1.
+/// The contact of a recording: that of the tissue in its scene if it was simulated, else the onset that
+/// `kerf prepare` found, else from its cycles if it was segmented, else the smallest position with direction
+/// +1.
 [[nodiscard]] models::Contact contact_of(const schema::Recording& recording, std::size_t axis);
 
 /// The law without the rendering aids of a BranchSelector (velocity filter, ramp band, reversal scaling):

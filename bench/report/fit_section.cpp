@@ -1,33 +1,24 @@
 #include "report/fit_section.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/core.h>
 
-#include "laws/law_file.h"
-#include "laws/render.h"
-#include "report/charts.h"
+#include "report/comparison.h"
+#include "report/fit_view.h"
 #include "report/html.h"
+#include "report/parameter_tables.h"
+#include "report/residual_charts.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr std::array law_colours{Colour::vermillion, Colour::green, Colour::blue, Colour::purple,
-                                 Colour::orange};
 constexpr std::uint32_t cycles_drawn = 3;
-constexpr std::size_t parameters_listed = 40;  ///< of a law; a longer list is a table to be seen as a curve
-
-/// A law drawn along the recording.
-struct Trace {
-  std::string model;
-  Colour colour;
-  std::vector<double> force;
-};
 
 struct Window {
   std::size_t begin = 0;
@@ -35,21 +26,26 @@ struct Window {
 };
 
 /// The first cycles, or all where there are none: what the eye can follow.
-Window window_of(const schema::Recording& recording) {
-  Window window{.begin = 0, .end = recording.rows()};
-  if (!recording.cycles || recording.cycles->phases.empty()) return window;
+Window window_of(const schema::Recording& recording, const AxisSeries& series) {
+  const Window all{.begin = 0, .end = series.time_s.size()};
+  if (!recording.cycles || recording.cycles->phases.empty()) return all;
   const auto& phases = recording.cycles->phases;
   const auto first = std::find_if(phases.begin(), phases.end(),
                                   [](const auto& span) { return span.phase == schema::Phase::closing; });
-  if (first == phases.end()) return window;
-  window.begin = first->begin;
+  if (first == phases.end()) return all;
+  const double begin_s = recording.time[first->begin];
+  double end_s = begin_s;
   for (const auto& span : phases) {
-    if (span.cycle < first->cycle + cycles_drawn) window.end = span.end;
+    if (span.cycle < first->cycle + cycles_drawn)
+      end_s = recording.time[std::min<std::size_t>(span.end, recording.rows() - 1)];
   }
-  const std::size_t margin = (window.end - window.begin) / 20;
-  window.begin -= std::min(window.begin, margin);
-  window.end = std::min(window.end + margin, recording.rows());
-  return window;
+  const double margin_s = (end_s - begin_s) / 20.0;
+  const auto row = [&](double time_s) {
+    const auto& times = series.time_s;
+    return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time_s) - times.begin());
+  };
+  const Window window{.begin = row(begin_s - margin_s), .end = row(end_s + margin_s)};
+  return window.end > window.begin + 1 ? window : all;
 }
 
 std::vector<double> part(const std::vector<double>& values, const Window& window) {
@@ -59,123 +55,114 @@ std::vector<double> part(const std::vector<double>& values, const Window& window
 
 std::string figure(const Chart& chart) { return "<figure>" + draw(chart) + "</figure>\n"; }
 
-std::string over_time(const AxisSeries& series, const std::vector<Trace>& traces, const Window& window,
-                      const std::string& unit) {
+Chart over_time(const FitView& view, const Window& window) {
   Chart chart{.title = "The laws over the recorded force",
               .x_label = "time [s]",
-              .y_label = "resisting force [" + unit + "]",
+              .y_label = "resisting force [" + view.force_unit + "]",
               .height_px = 420};
-  chart.curves.push_back(decimated({.label = "recorded",
-                                    .x = part(series.time_s, window),
-                                    .y = part(series.force, window),
-                                    .colour = Colour::grey,
-                                    .width = 3.0}));
-  for (const Trace& trace : traces) {
-    chart.curves.push_back(decimated({.label = trace.model,
-                                      .x = part(series.time_s, window),
-                                      .y = part(trace.force, window),
-                                      .colour = trace.colour,
-                                      .width = 1.4}));
-  }
-  return figure(chart);
+  const auto add = [&](const std::string& label, const std::vector<double>& force, Colour colour,
+                       double width) {
+    chart.curves.push_back(decimated({.label = label,
+                                      .x = part(view.series.time_s, window),
+                                      .y = part(force, window),
+                                      .colour = colour,
+                                      .width = width}));
+  };
+  add("recorded", view.series.force, Colour::grey, 3.0);
+  for (std::size_t i = view.shown; i-- > 0;)
+    add(view.traces[i].model, view.traces[i].force, view.traces[i].colour, 1.4);
+  return chart;
 }
 
-std::string over_penetration(const schema::Recording& recording, std::size_t axis, const AxisSeries& series,
-                             const std::vector<Trace>& traces, const Window& window) {
-  const DrawnUnit unit = drawn_position(recording.axes[axis]);
-  std::vector<double> penetration = part(series.penetration, window);
-  for (double& x : penetration) x *= unit.factor;
-  Chart chart{.title = "Force against penetration", .height_px = 420};
-  chart.x_label = fmt::format("penetration from contact [{}]", unit.unit);
-  chart.y_label = "resisting force [" + recording.axes[axis].force_unit + "]";
+Chart over_penetration(const FitView& view, const Window& window) {
+  Chart chart{.title = "Force against penetration",
+              .x_label = fmt::format("penetration from contact [{}]", view.position.unit),
+              .y_label = "resisting force [" + view.force_unit + "]",
+              .height_px = 420};
+  std::vector<double> penetration = part(view.series.penetration, window);
+  for (double& x : penetration) x *= view.position.factor;
   const auto add = [&](const std::string& label, const std::vector<double>& force, Colour colour,
                        double width) {
     chart.curves.push_back(decimated(
         {.label = label, .x = penetration, .y = part(force, window), .colour = colour, .width = width},
         8000));
   };
-  add("recorded", series.force, Colour::grey, 2.5);
-  for (const Trace& trace : traces) add(trace.model, trace.force, trace.colour, 1.2);
-  return figure(chart);
+  add("recorded", view.series.force, Colour::grey, 2.5);
+  for (std::size_t i = view.shown; i-- > 0;)
+    add(view.traces[i].model, view.traces[i].force, view.traces[i].colour, 1.2);
+  return chart;
 }
 
-std::string residual_charts(const AxisSeries& series, const std::vector<Trace>& traces,
-                            const std::string& unit) {
-  double largest = 0.0;
-  std::vector<std::vector<double>> residuals;
-  for (const Trace& trace : traces) {
-    auto& residual = residuals.emplace_back();
-    for (std::size_t i = 0; i < series.force.size(); ++i)
-      residual.push_back(series.force[i] - trace.force[i]);
-    for (const double r : residual) largest = std::max(largest, std::abs(r));
-  }
+std::string warnings_of(const json& fits, const FitView& view) {
   std::string html;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    Chart chart{.title = "Residual of " + traces[i].model + " (recorded less law), on one scale for all laws",
-                .x_label = "time [s]",
-                .y_label = "[" + unit + "]",
-                .height_px = 210};
-    chart.y_range = {-largest, largest};
-    chart.curves.push_back(
-        decimated({.x = series.time_s, .y = residuals[i], .colour = traces[i].colour, .width = 0.8}));
-    html += figure(chart);
+  const auto add = [&](const std::string& text) { html += "<p class=\"soft\">" + escaped(text) + "</p>\n"; };
+  if (!view.of_this_recording)
+    add("These laws were fitted to another recording: what is drawn below is how they predict this one.");
+  if (fits.contains("recordings") && fits.at("recordings").size() > 1)
+    add(fmt::format("Fitted to {} recordings at once; the charts show this one.",
+                    fits.at("recordings").size()));
+  if (fits.contains("warnings")) {
+    for (const json& warning : fits.at("warnings")) add(warning.get<std::string>());
+  }
+  if (fits.contains("refused")) {
+    for (const json& refused : fits.at("refused"))
+      add(refused.at("model").get<std::string>() + ": " + refused.at("why").get<std::string>());
   }
   return html;
 }
 
-std::string number(const json& value, const char* format = "{:.4g}") {
-  return value.is_null() ? "undetermined" : fmt::format(fmt::runtime(format), value.get<double>());
+double largest_residual(const FitView& view) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < view.shown; ++i) {
+    for (const double r : view.traces[i].residual) largest = std::max(largest, std::abs(r));
+  }
+  return largest;
 }
 
-std::string comparison_table(const json& fits, const std::string& unit) {
-  std::vector<std::vector<std::string>> rows{{"law", "free parameters", "rmse [" + unit + "]",
-                                              "rmse rendered [" + unit + "]", "largest [" + unit + "]", "R²",
-                                              "AIC", "BIC", "rmse held out [" + unit + "]", "outside JND",
-                                              "converged"}};
-  for (const json& fit : fits.at("fits")) {
-    rows.push_back(
-        {fit.at("model").get<std::string>(), fmt::format("{}", fit.at("free_parameters").get<int>()),
-         number(fit.at("rmse")), number(fit.at("rmse_rendered")), number(fit.at("max_abs")),
-         number(fit.at("r2"), "{:.4f}"), number(fit.at("aic"), "{:.0f}"), number(fit.at("bic"), "{:.0f}"),
-         number(fit.at("cv_rmse")), fmt::format("{:.1f} %", 100.0 * fit.at("jnd_fraction").get<double>()),
-         fit.at("converged").get<bool>() ? "yes" : "no"});
+std::string residual_part(const FitView& view) {
+  const double largest = largest_residual(view);
+  std::string html =
+      "<h2>Residuals</h2>\n<p class=\"soft\">Recorded less law, on one scale for these laws. Against "
+      "penetration "
+      "and velocity: samples in grey, their mean in bins with one deviation to each side.</p>\n";
+  for (std::size_t i = 0; i < view.shown; ++i) {
+    const Trace& trace = view.traces[i];
+    html += "<h3>" + escaped(trace.model) + "</h3>\n" + figure(residual_over_time(view, trace, largest));
+    html += figures_in_pairs({residual_over_penetration(view, trace, largest),
+                              residual_over_velocity(view, trace, largest),
+                              residual_autocorrelation(view, trace), residual_histogram(view, trace)});
   }
-  rows.push_back({"straight line", "2", number(fits.at("line_rmse"))});
-  return html_table(rows);
+  if (view.shown == view.traces.size()) return html;
+  html +=
+      fmt::format("<details><summary>Residuals of the other {} laws, each on a scale of its own</summary>\n",
+                  view.traces.size() - view.shown);
+  for (std::size_t i = view.shown; i < view.traces.size(); ++i) {
+    const Trace& trace = view.traces[i];
+    html += "<h3>" + escaped(trace.model) + "</h3>\n";
+    html += figures_in_pairs(
+        {residual_over_penetration(view, trace, 0.0), residual_autocorrelation(view, trace)});
+  }
+  return html + "</details>\n";
 }
 
-std::string parameter_table(const json& fit) {
-  const json& parameters = fit.at("parameters");
-  const std::string title = "<h3>" + escaped(fit.at("model").get<std::string>()) + "</h3>\n";
-  if (parameters.size() > parameters_listed) {
-    return title +
-           fmt::format(
-               "<p>{} table values, drawn above; with their uncertainty in <code>fit.csv</code>.</p>\n",
-               parameters.size());
-  }
-  std::vector<std::vector<std::string>> rows{
-      {"parameter", "value", "standard error", "95 % interval", "unit"}};
-  for (const auto& [name, parameter] : parameters.items()) {
-    const json& interval = parameter.at("ci95");
-    const bool held = parameter.at("std_error").is_number() && parameter.at("std_error").get<double>() == 0.0;
-    rows.push_back({name, number(parameter.at("value"), "{:.6g}"),
-                    held ? "held" : number(parameter.at("std_error"), "{:.2g}"),
-                    held ? "" : number(interval.at(0), "{:.6g}") + " to " + number(interval.at(1), "{:.6g}"),
-                    parameter.at("unit").get<std::string>()});
-  }
-  std::string html = title + html_table(rows);
-  for (const json& warning : fit.at("warnings")) {
-    html += "<p class=\"soft\">" + escaped(warning.get<std::string>()) + "</p>\n";
-  }
-  return html;
+std::string parameters_part(const FitView& view, double confidence) {
+  std::string html = "<h2>Parameters</h2>\n";
+  for (std::size_t i = 0; i < view.shown; ++i) html += parameter_part(view.traces[i], confidence);
+  if (view.shown == view.traces.size()) return html;
+  html += fmt::format("<details><summary>Parameters of the other {} laws</summary>\n",
+                      view.traces.size() - view.shown);
+  for (std::size_t i = view.shown; i < view.traces.size(); ++i)
+    html += parameter_part(view.traces[i], confidence);
+  return html + "</details>\n";
 }
 
 }  // namespace
 
 std::string choice_paragraph(const json& fits) {
   try {
-    return fmt::format("<p class=\"answer\"><strong>Choice: {}.</strong> {}.</p>\n",
-                       escaped(fits.at("choice").at("model").get<std::string>()),
+    const std::string model = fits.at("choice").at("model").get<std::string>();
+    return fmt::format("<p class=\"answer{}\"><strong>Choice: {}</strong>: {}.</p>\n",
+                       model.empty() ? " bad" : "", escaped(model.empty() ? "none" : model),
                        escaped(fits.at("choice").at("why").get<std::string>()));
   } catch (const json::exception& error) {
     throw std::invalid_argument(fmt::format("fit.json is not what 'kerf fit' writes: {}", error.what()));
@@ -184,33 +171,27 @@ std::string choice_paragraph(const json& fits) {
 
 std::string fit_section(const schema::Recording& recording, std::size_t axis, const json& fits,
                         const std::filesystem::path& folder) {
-  const std::string unit = recording.axes[axis].force_unit;
   try {
-    std::vector<Trace> traces;
-    AxisSeries series;
-    for (const json& fit : fits.at("fits")) {
-      const std::string model = fit.at("model").get<std::string>();
-      const LawFile law = read_law_file(folder / (model + ".law.toml"));
-      series = axis_series(recording, axis, law.contact);
-      traces.push_back({.model = model,
-                        .colour = law_colours[traces.size() % law_colours.size()],
-                        .force = render(without_rendering_aids(law.law), series)});
-    }
-    if (traces.empty()) return "<h2>Fits</h2>\n<p>No law could be fitted.</p>\n";
-    const Window window = window_of(recording);
-    std::string html = "<h2>Fits</h2>\n" + comparison_table(fits, unit);
+    const FitView view = view_of_fits(recording, axis, fits, folder);
+    if (view.traces.empty())
+      return "<h2>Fits</h2>\n<p>No law could be fitted.</p>\n" + warnings_of(fits, view);
+    const double confidence =
+        fits.contains("settings") ? fits.at("settings").at("confidence").get<double>() : 0.95;
+    const Window window = window_of(recording, view.series);
+    std::string html = "<h2>Fits</h2>\n" + warnings_of(fits, view) + comparison_table(fits, view.force_unit);
     html +=
         "<p class=\"soft\">Held out: each cycle (or block of time) predicted by a fit to the others. "
         "Rendered: with "
         "the rendering aids of laws that have branches. Outside JND: share of samples whose error a person "
         "could "
-        "feel.</p>\n";
-    html +=
-        over_time(series, traces, window, unit) + over_penetration(recording, axis, series, traces, window);
-    html += "<h2>Residuals</h2>\n" + residual_charts(series, traces, unit);
-    html += "<h2>Parameters</h2>\n";
-    for (const json& fit : fits.at("fits")) html += parameter_table(fit);
-    return html;
+        "feel. The straight line's error is over all samples.</p>\n";
+    html += figure(comparison_chart(fits, view.force_unit));
+    if (view.shown < view.traces.size())
+      html +=
+          fmt::format("<p class=\"soft\">Drawn below: the chosen law and the next {} by that error.</p>\n",
+                      view.shown - 1);
+    html += figure(over_time(view, window)) + figure(over_penetration(view, window));
+    return html + residual_part(view) + parameters_part(view, confidence);
   } catch (const json::exception& error) {
     throw std::invalid_argument(
         fmt::format("{}/fit.json is not what 'kerf fit' writes: {}", folder.string(), error.what()));

@@ -21,6 +21,11 @@ p { margin: .5rem 0; }
 .answer.bad { border-color: var(--bad); }
 figure { margin: 1rem 0; padding: .6rem; background: #fff; border: 1px solid var(--line); border-radius: 6px; }
 figure svg { display: block; width: 100%; height: auto; }
+.pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 400px), 1fr)); gap: .8rem; margin: .8rem 0; }
+.pair figure { margin: 0; }
+details { margin: 1.2rem 0; }
+summary { cursor: pointer; color: var(--soft); }
+td.share { text-align: right; padding-left: .5rem; padding-right: .5rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .93rem; margin: .6rem 0; }
 th, td { text-align: left; padding: .28rem .8rem .28rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }

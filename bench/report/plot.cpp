@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -63,14 +64,15 @@ void add_data(std::string& script, const Curve& curve, std::size_t index) {
 }
 
 std::string script_of(const Chart& chart, const std::string& output) {
-  std::string script;
+  std::string script = "reset session\n";
   auto out = std::back_inserter(script);
   fmt::format_to(out, "set terminal svg noenhanced size {},{} font 'DejaVu Sans,13' background '#ffffff'\n",
                  chart.width_px, chart.height_px);
   fmt::format_to(out, "set output {}\nset title {}\nset xlabel {}\nset ylabel {}\n", gnuplot_text(output),
                  gnuplot_text(chart.title), gnuplot_text(chart.x_label), gnuplot_text(chart.y_label));
   script +=
-      "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror out\nset grid lc rgb '#dddddd' lw "
+      "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror out\nset format '%.6g'\nset grid "
+      "lc rgb '#dddddd' lw "
       "1 dt 1\n"
       "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\nset offsets graph 0, 0, "
       "0.05, 0.05\n";
@@ -79,6 +81,17 @@ std::string script_of(const Chart& chart, const std::string& output) {
   if (chart.log_x || chart.log_y) script += "set offsets 0, 0, 0, 0\n";
   for (const auto& [axis, range] : {std::pair{'x', chart.x_range}, std::pair{'y', chart.y_range}}) {
     if (range.begin < range.end) fmt::format_to(out, "set {}range [{}:{}]\n", axis, range.begin, range.end);
+  }
+  if (std::all_of(chart.curves.begin(), chart.curves.end(),
+                  [](const Curve& curve) { return curve.label.empty(); }))
+    script += "unset key\nset rmargin 3\n";
+  if (!chart.y_ticks.empty()) {
+    script += "set ytics (";
+    for (const NamedTick& tick : chart.y_ticks) {
+      fmt::format_to(out, "{}{} {}", &tick == &chart.y_ticks.front() ? "" : ", ", gnuplot_text(tick.name),
+                     tick.at);
+    }
+    script += ")\n";
   }
   for (const Band& band : chart.bands) {
     fmt::format_to(
@@ -91,8 +104,9 @@ std::string script_of(const Chart& chart, const std::string& output) {
     fmt::format_to(
         out, "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead lc rgb '{1}' lw 1.5 dt 3\n",
         marker.at, hex(Colour::vermillion));
-    fmt::format_to(out, "set label {} at first {}, graph 0.96 right offset -0.5,0 textcolor rgb '{}'\n",
-                   gnuplot_text(marker.label), marker.at, hex(Colour::vermillion));
+    fmt::format_to(out, "set label {} at first {}, graph 0.96 {} textcolor rgb '{}'\n",
+                   gnuplot_text(marker.label), marker.at,
+                   marker.label_after ? "left offset 0.5,0" : "right offset -0.5,0", hex(Colour::vermillion));
   }
   for (const Marker& marker : chart.horizontal) {
     fmt::format_to(out,
@@ -132,26 +146,34 @@ class TemporaryName {
 
 }  // namespace
 
-std::string draw(const Chart& chart) {
-  const TemporaryName output;
+std::vector<std::string> draw_all(std::span<const Chart> charts) {
+  std::deque<TemporaryName> outputs;
+  std::string script;
+  for (const Chart& chart : charts) script += script_of(chart, outputs.emplace_back().path());
   const TemporaryName errors;
   const std::string command = "gnuplot - 2>" + errors.path();
   FILE* pipe = popen(command.c_str(), "w");
   if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");
-  const std::string script = script_of(chart, output.path());
   fwrite(script.data(), 1, script.size(), pipe);
   const int status = pclose(pipe);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
     throw std::runtime_error("gnuplot is not installed; charts need it: apt-get install gnuplot-nox");
   }
-  const std::string svg = read_whole_file(output.path());
-  const auto begin = svg.find("<svg");
-  if (status != 0 || begin == std::string::npos || svg.rfind("</svg>") == std::string::npos) {
-    throw std::runtime_error(
-        fmt::format("gnuplot could not draw '{}': {}", chart.title, read_whole_file(errors.path())));
+  std::vector<std::string> drawings;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const std::string svg = read_whole_file(outputs[i].path());
+    const auto begin = svg.find("<svg");
+    if (begin == std::string::npos || svg.rfind("</svg>") == std::string::npos) {
+      throw std::runtime_error(
+          fmt::format("gnuplot could not draw '{}': {}", charts[i].title, read_whole_file(errors.path())));
+    }
+    drawings.push_back(svg.substr(begin));
   }
-  return svg.substr(begin);
+  if (status != 0) throw std::runtime_error("gnuplot failed: " + read_whole_file(errors.path()));
+  return drawings;
 }
+
+std::string draw(const Chart& chart) { return draw_all(std::span(&chart, 1)).front(); }
 
 Curve decimated(const Curve& curve, std::size_t most) {
   const std::size_t count = curve.x.size();

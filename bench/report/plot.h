@@ -34,6 +34,13 @@ struct Band {
 struct Marker {
   double at = 0.0;
   std::string label;
+  bool label_after = false;  ///< right of a vertical line instead of left
+};
+
+/// A name in place of a number at the y axis.
+struct NamedTick {
+  double at = 0.0;
+  std::string name;
 };
 
 /// A range of an axis; empty while begin is not less than end.
@@ -50,7 +57,8 @@ struct Chart {
   std::vector<Band> bands;
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
-  Range x_range;  ///< empty: what the curves need
+  std::vector<NamedTick> y_ticks;  ///< in place of numbers
+  Range x_range;                   ///< empty: what the curves need
   Range y_range;
   bool log_x = false;
   bool log_y = false;
@@ -61,6 +69,8 @@ struct Chart {
 /// Draws a chart with gnuplot and returns it as one `<svg>` element, without the XML prolog.
 /// @throws std::runtime_error that names the package if gnuplot is missing, or what it printed if it fails.
 [[nodiscard]] std::string draw(const Chart& chart);
+/// Several, by one run of gnuplot, whose start takes longer than most charts.
+[[nodiscard]] std::vector<std::string> draw_all(std::span<const Chart> charts);
 
 /// Fewer points for a long curve: of every stretch the first, the smallest, the largest and the last in their
 /// order, so that no spike is lost. Curves of up to `most` points stay as they are.

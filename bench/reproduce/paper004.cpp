@@ -123,7 +123,10 @@ LawFile fitted(const schema::Recording& recording, const std::string& model) {
   FitRecordingOptions options;
   options.models = {model};
   const RecordingFit fit = fit_recording(recording, options);
-  if (fit.laws.empty()) throw std::runtime_error(model + " could not be fitted");
+  if (fit.laws.empty()) {
+    throw std::runtime_error(
+        model + " could not be fitted: " + (fit.refusals.empty() ? "" : fit.refusals.front().why));
+  }
   return fit.laws.front().file;
 }
 

@@ -51,12 +51,33 @@ Scene read_scene(const std::filesystem::path& file) {
 
 Scene default_scene() { return parse_scene(default_scene_toml, "the default scene"); }
 
+namespace {
+
+/// The tissue of a law that acts on several axes; those of the device that it does not name are free.
+drivers::TissueOfAxes tissue_of_axes(const Scene& scene, const drivers::DeviceInfo& device) {
+  return [law = scene.tissue.law, state = scene.tissue.law.initial_state(),
+          axes = axes_for(scene.tissue, device)](const drivers::Axes& position, const drivers::Axes& velocity,
+                                                 double period_s) mutable {
+    models::SpatialMotion motion;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      motion.position[i] = position[axes[i]];
+      motion.velocity[i] = velocity[axes[i]];
+    }
+    const models::SpatialResponse response = law.step(state, motion, period_s);
+    drivers::Axes force{};
+    for (std::size_t i = 0; i < axes.size(); ++i) force[axes[i]] = response.force[i];
+    return force;
+  };
+}
+
+}  // namespace
+
 drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device) {
-  if (scene.tissue.law.is_spatial()) {
-    throw std::invalid_argument(fmt::format(
-        "the tissue of a scene acts along one axis, and law '{}' on several", scene.tissue.law.model()));
-  }
   drivers::Surroundings surroundings;
+  if (scene.tissue.law.is_spatial()) {
+    surroundings.tissue_of_axes = tissue_of_axes(scene, device);
+    return surroundings;
+  }
   surroundings.tissue[axis_for(scene.tissue, device)] =
       [law = scene.tissue.law, state = scene.tissue.law.initial_state(), contact = scene.tissue.contact](
           double position, double velocity, double period_s) mutable {

@@ -9,7 +9,8 @@
 
 namespace kerf::bench {
 
-/// What a simulated tool meets: a tissue with known parameters, on one axis of the device.
+/// What a simulated tool meets: a tissue with known parameters, on one axis of the device, or on those of a
+/// law that brings its own (`blade` on sim:pose6).
 ///
 ///     name = "skin-like"
 ///     [tissue]            # as a law file: model, axis, position_unit, force_unit

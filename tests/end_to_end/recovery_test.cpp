@@ -19,7 +19,20 @@ namespace kerf::bench {
 namespace {
 
 constexpr int seeds = 100;
-constexpr int least_hits = 90;
+// Intervals that hold the truth in 95 of 100 cases on average hold it in fewer than 87 once in a thousand
+// times, and some twenty parameters are counted here. Averaged over the parameters of a law it has to be
+// nearer.
+constexpr int least_hits = 87;
+constexpr double least_hits_on_average = 92.0;
+
+void expect_hits(const std::vector<int>& counts) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    EXPECT_GE(counts[i], least_hits) << "parameter " << i;
+    sum += counts[i];
+  }
+  EXPECT_GE(sum, least_hits_on_average * static_cast<double>(counts.size()));
+}
 
 std::string scene_of(const std::string& model, const std::string& parameters,
                      const std::string& fidelity = "") {
@@ -74,7 +87,7 @@ TEST(Recovery, OfKelvin) {
                                   "scene");
   const std::vector<double> truth{5.0, 8.0, 1.6};
   const auto counts = hits(scene, only("kelvin"), [&](const auto&, std::size_t i) { return truth[i]; });
-  for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_GE(counts[i], least_hits) << "parameter " << i;
+  expect_hits(counts);
 }
 
 TEST(Recovery, OfExponential) {
@@ -86,7 +99,7 @@ TEST(Recovery, OfExponential) {
   const std::vector<double> truth{0.1, 0.8, 0.1};
   const auto counts = hits(
       scene, only("exponential"), [&](const auto&, std::size_t i) { return truth[i]; }, 20.0);
-  for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_GE(counts[i], least_hits) << "parameter " << i;
+  expect_hits(counts);
 }
 
 TEST(Recovery, OfPiecewise) {
@@ -102,7 +115,7 @@ TEST(Recovery, OfPiecewise) {
                              if (i == 7) return 1.5 + (estimates[3].value - 0.15) * (3.0 - 1.5) / 0.45;
                              return truth[i];
                            });
-  for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_GE(counts[i], least_hits) << "parameter " << i;
+  expect_hits(counts);
 }
 
 TEST(Recovery, OfARecordingsTable) {
@@ -114,7 +127,7 @@ TEST(Recovery, OfARecordingsTable) {
   const auto counts =
       hits(scene, only("recording", {{"points", 5.0}, {"first", 0.0}, {"last", 0.36}, {"loop", false}}),
            [&](const auto&, std::size_t i) { return truth[i]; });
-  for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_GE(counts[i], least_hits) << "grid point " << i;
+  expect_hits(counts);
 }
 
 }  // namespace

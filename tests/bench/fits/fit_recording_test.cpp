@@ -51,7 +51,7 @@ TEST(FitRecording, LeavesOutOneRowForAPositionThatIsNoNumberAndNotItsNeighbours)
   recording.position[1234] = std::numeric_limits<double>::quiet_NaN();
   recording.time[2345] = std::numeric_limits<double>::quiet_NaN();
   const RecordingFit fit = fit_recording(recording, kelvin_only());
-  EXPECT_EQ(fit.left_out, 2U);
+  EXPECT_EQ(fit.recordings.front().left_out, 2U);
   EXPECT_LT(rmse(recording), 2.0 * whole + 1e-3);
 }
 

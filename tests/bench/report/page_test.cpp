@@ -56,6 +56,49 @@ TEST_F(ReportProgram, ShowsEverythingAndNeedsNothingElse) {
   EXPECT_THAT(html, Not(HasSubstr("<script")));
 }
 
+TEST_F(ReportProgram, ShowsAFitFromEverySide) {
+  record("cut.h5");
+  ASSERT_EQ(run_kerf({"segment", file_}).exit_status, 0);
+  ASSERT_EQ(
+      run_kerf({"fit", file_, "--models", "kelvin,exponential", "--folds", "2", "--profile", "-o", fits()})
+          .exit_status,
+      0);
+  const Outcome outcome = report({"--fits", fits()});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const std::string html = test::read_text(page());
+  for (const auto* part :
+       {"Root mean square error of each law", "what a person feels (JND)", "Residual over time",
+        "residual [N]", "Residual against penetration", "penetration from contact [deg]",
+        "Residual against velocity", "velocity into the tissue [deg/s]", "Autocorrelation", "lag [s]",
+        "Distribution", "Correlation of the estimates", "Profile of damping", "damping [N·s/rad]"}) {
+    EXPECT_THAT(html, HasSubstr(part));
+  }
+}
+
+TEST_F(ReportProgram, FoldsAwayAllButTheBestLaws) {
+  record("cut.h5");
+  ASSERT_EQ(
+      run_kerf({"fit", file_, "--models", "kelvin,maxwell,exponential,springpot,hunt_crossley,precontact",
+                "--arms", "1", "--folds", "2", "-o", fits()})
+          .exit_status,
+      0);
+  ASSERT_EQ(report({"--fits", fits()}).exit_status, 0);
+  const std::string html = test::read_text(page());
+  EXPECT_THAT(html, HasSubstr("<details><summary>Residuals of the other 2 laws"));
+  EXPECT_THAT(html, HasSubstr("<details><summary>Parameters of the other 2 laws"));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+}
+
+TEST_F(ReportProgram, SaysThatAFitIsOfAnotherRecording) {
+  record("cut.h5");
+  ASSERT_EQ(run_kerf({"fit", file_, "--models", "kelvin", "--no-folds", "-o", fits()}).exit_status, 0);
+  ASSERT_EQ(report({"--fits", fits()}).exit_status, 0);
+  EXPECT_THAT(test::read_text(page()), Not(HasSubstr("fitted to another recording")));
+  record("other.h5");
+  ASSERT_EQ(report({"--fits", fits(), "--force"}).exit_status, 0);
+  EXPECT_THAT(test::read_text(page()), HasSubstr("fitted to another recording"));
+}
+
 TEST_F(ReportProgram, SaysWhatIsNotThere) {
   record("cut.h5");
   ASSERT_EQ(report().exit_status, 0);

@@ -55,6 +55,28 @@ TEST(Scene, IsATissueOnAnAxisThatPushesBack) {
   EXPECT_EQ(around.tissue[0](0.6, 0.0, 50e-6), 0.0);
 }
 
+TEST(Scene, MayBeALawThatActsOnSeveralAxesAtOnce) {
+  const Scene scene = parse_scene(R"([tissue]
+model = "blade"
+[tissue.parameters]
+edge_damping = { value = 0, unit = "N·s/m²" }
+normal_damping = { value = 20000, unit = "N·s/m³" }
+tangential_damping = { value = 4000, unit = "N·s/m³" }
+[tissue.fidelity]
+thresholds = false
+)",
+                                  "blade.toml");
+  const drivers::Surroundings around = surroundings_of(scene, drivers::open_device("sim:pose6")->info());
+  ASSERT_TRUE(around.tissue_of_axes);
+  EXPECT_FALSE(around.tissue[0]);
+  // The check value of the blade: T1 with its tip 12 mm under the surface.
+  const drivers::Axes force =
+      around.tissue_of_axes({0.0, 0.0, 0.1, 0.0, 0.0, 0.0}, {0.05, 0.02, 0.0, 0.0, 0.0, 0.0}, 50e-6);
+  EXPECT_NEAR(force[0], -0.024, 1e-12);
+  EXPECT_NEAR(force[4], 2.544e-3, 1e-12);
+  EXPECT_THROW((void)surroundings_of(scene, scissors), std::invalid_argument);
+}
+
 TEST(Scene, OnThetaIsGivenByDefault) {
   EXPECT_EQ(default_scene().tissue.axis, "theta");
   EXPECT_TRUE(surroundings_of(default_scene(), scissors).tissue[0]);

@@ -1,0 +1,85 @@
+#include "fits/batch.h"
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "fits/fit_files.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// HDF5 serves one thread at a time.
+schema::Recording read_alone(const fs::path& file, std::mutex& hdf5) {
+  const std::scoped_lock lock(hdf5);
+  return schema::read_recording(file);
+}
+
+void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch, std::mutex& hdf5) {
+  const schema::Recording recording = read_alone(file, hdf5);
+  const FitSource source = batch.source(recording);
+  const FitRecordingOptions options = batch.options(source);
+  const fs::path folder = batch.output / fs::path(entry.recording).replace_extension();
+  if (!batch.replace) refuse_to_replace_fits(options, folder);
+  entry.fit = fit_recordings(std::span(&source, 1), options);
+  if (entry.fit.laws.empty()) {
+    const std::string reason = entry.fit.refusal();
+    throw std::invalid_argument(reason.empty() ? "no law could be fitted" : reason);
+  }
+  write_fits(entry.fit, file, folder);
+  if (std::none_of(entry.fit.laws.begin(), entry.fit.laws.end(),
+                   [](const FittedLaw& law) { return law.result.converged; })) {
+    throw std::invalid_argument("no law converged");
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> recordings_in(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw std::invalid_argument(fmt::format("{}: there is no such folder", folder.string()));
+  }
+  std::vector<fs::path> files;
+  for (const auto& file : fs::recursive_directory_iterator(folder)) {
+    if (file.is_regular_file() && file.path().extension() == ".h5") files.push_back(file.path());
+  }
+  if (files.empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: holds no recordings (*.h5); 'kerf import' makes them from text", folder.string()));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<BatchEntry> run_batch(const std::vector<fs::path>& recordings, const BatchOptions& options,
+                                  const std::atomic<bool>& stop, std::atomic<std::size_t>& done) {
+  std::vector<BatchEntry> entries(recordings.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    entries[i].recording = recordings[i].lexically_relative(options.folder).generic_string();
+  }
+  std::mutex hdf5;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < entries.size(); i = next++) {
+      try {
+        if (stop) throw std::runtime_error("not begun: the batch was stopped");
+        fit_one(entries[i], recordings[i], options, hdf5);
+      } catch (const std::exception& error) {
+        entries[i].failure = error.what();
+      }
+      ++done;
+    }
+  };
+  std::vector<std::jthread> workers;
+  const std::size_t count = std::clamp<std::size_t>(options.jobs, 1, entries.size());
+  for (std::size_t i = 0; i < count; ++i) workers.emplace_back(work);
+  workers.clear();
+  return entries;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,73 @@
+#include "fits/fit_files.h"
+
+#include <fmt/core.h>
+
+#include "files/whole_file.h"
+#include "recordings/provenance.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr auto csv_name = "fit.csv";
+constexpr auto json_name = "fit.json";
+
+std::string law_file_name(const std::string& model) { return model + ".law.toml"; }
+
+std::string as_csv(const RecordingFit& fit) {
+  const std::string interval = interval_name(fit.settings.confidence);
+  std::string text =
+      fmt::format("model,parameter,value,std_error,{0}_lower,{0}_upper,unit,recording\n", interval);
+  for (const FittedLaw& law : fit.laws) {
+    const auto add = [&](const fitting::Estimate& estimate) {
+      const bool shared = estimate.recording == fitting::Estimate::shared;
+      text +=
+          fmt::format("{},{},{},{},{},{},{},{}\n", law.result.model, estimate.info.name, estimate.value,
+                      estimate.std_error, estimate.lower, estimate.upper,
+                      models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit),
+                      shared ? "" : fit.recordings.at(estimate.recording).name);
+    };
+    for (const fitting::Estimate& estimate : law.result.parameters) add(estimate);
+    for (const fitting::Estimate& estimate : law.result.others) add(estimate);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string interval_name(double confidence) { return fmt::format("ci{:.6g}", 100.0 * confidence); }
+
+std::vector<std::string> law_file_names(const RecordingFit& fit, const FittedLaw& law) {
+  std::vector<std::string> names{law_file_name(law.result.model)};
+  for (std::size_t i = 0; i < law.others.size(); ++i) {
+    names.push_back(law_file_name(law.result.model + "." + fit.recordings[i + 1].name));
+  }
+  return names;
+}
+
+void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder) {
+  for (const std::string& model : models_of(options)) refuse_to_replace(folder / law_file_name(model), false);
+  for (const auto* table : {csv_name, json_name}) refuse_to_replace(folder / table, false);
+}
+
+void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
+                const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::string> sha256;
+  for (const auto& file : files) sha256.push_back(sha256_of(file));
+  for (FittedLaw& law : fit.laws) {
+    const auto names = law_file_names(fit, law);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      LawFile& file = i == 0 ? law.file : law.others[i - 1];
+      file.fit.recording_sha256 = sha256.at(i);
+      write_law_file(folder / names[i], file);
+    }
+  }
+  write_whole_file(folder / csv_name, as_csv(fit));
+  write_whole_file(folder / json_name, fits_as_json(fit).dump(2) + "\n");
+}
+
+void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std::filesystem::path& folder) {
+  write_fits(fit, std::span(&file, 1), folder);
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "fits/fit_recording.h"
+
+namespace kerf::bench {
+
+/// @throws std::invalid_argument if any file that write_fits() may write stands in the folder.
+void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder);
+
+/// Adds the recordings' checksums to the law files and writes NAME.law.toml (NAME.RECORDING.law.toml for a
+/// further recording with parameters or a contact of its own), fit.json and fit.csv into a folder. `files`
+/// are the recordings', in order.
+/// @throws std::system_error
+void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
+                const std::filesystem::path& folder);
+void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std::filesystem::path& folder);
+
+/// The JSON of `kerf fit`.
+[[nodiscard]] nlohmann::ordered_json fits_as_json(const RecordingFit& fit);
+
+/// What the JSON and the tables call an interval: "ci95" for a confidence of 0.95.
+[[nodiscard]] std::string interval_name(double confidence);
+
+/// The law files of a fitted law, in the order of the recordings.
+[[nodiscard]] std::vector<std::string> law_file_names(const RecordingFit& fit, const FittedLaw& law);
+
+}  // namespace kerf::bench

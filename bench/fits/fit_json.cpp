@@ -1,0 +1,159 @@
+#include <cmath>
+#include <variant>
+
+#include "fits/fit_files.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// JSON knows no infinity: what the data do not determine is null.
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json numbers(const std::vector<double>& values) {
+  json list = json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
+
+const char* name_of(fitting::Loss loss) {
+  switch (loss) {
+    case fitting::Loss::squares:
+      return "squares";
+    case fitting::Loss::huber:
+      return "huber";
+    case fitting::Loss::soft_l1:
+      return "soft_l1";
+    case fitting::Loss::cauchy:
+      return "cauchy";
+  }
+  return "squares";
+}
+
+json estimate_as_json(const fitting::Estimate& estimate, const LawFile& file, const std::string& interval) {
+  return {{"value", estimate.value},
+          {"std_error", number(estimate.std_error)},
+          {interval, {number(estimate.lower), number(estimate.upper)}},
+          {"unit", models::unit_of(estimate.info.quantity, file.force_unit, file.position_unit)}};
+}
+
+json options_as_json(const models::Options& options) {
+  json object = json::object();
+  for (const auto& [name, value] : options) {
+    object[name] = std::visit([](const auto& one) { return json(one); }, value);
+  }
+  return object;
+}
+
+json correlation_as_json(const fitting::FitResult& fit) {
+  const std::size_t count = fit.searched.size();
+  json matrix = json::array();
+  for (std::size_t row = 0; row < count && fit.correlation.size() == count * count; ++row) {
+    const auto begin = fit.correlation.begin() + static_cast<std::ptrdiff_t>(row * count);
+    matrix.push_back(numbers({begin, begin + static_cast<std::ptrdiff_t>(count)}));
+  }
+  return {{"parameters", fit.searched}, {"matrix", matrix}};
+}
+
+json profiles_as_json(const fitting::FitResult& fit) {
+  json list = json::array();
+  for (const fitting::Profile& profile : fit.profiles) {
+    list.push_back({{"parameter", profile.parameter},
+                    {"value", numbers(profile.value)},
+                    {"deviation", numbers(profile.deviation)},
+                    {"lower", number(profile.lower)},
+                    {"upper", number(profile.upper)}});
+  }
+  return list;
+}
+
+/// The parameters that recordings have of their own, by recording.
+json own_as_json(const FittedLaw& law, const RecordingFit& fit, const std::string& interval) {
+  json own = json::object();
+  const auto add = [&](const fitting::Estimate& estimate) {
+    if (estimate.recording == fitting::Estimate::shared) return;
+    own[fit.recordings.at(estimate.recording).name][estimate.info.name] =
+        estimate_as_json(estimate, law.file, interval);
+  };
+  for (const fitting::Estimate& estimate : law.result.parameters) add(estimate);
+  for (const fitting::Estimate& estimate : law.result.others) add(estimate);
+  return own;
+}
+
+json law_as_json(const FittedLaw& law, const RecordingFit& all) {
+  const fitting::FitResult& fit = law.result;
+  const std::string interval = interval_name(all.settings.confidence);
+  json parameters = json::object();
+  for (const fitting::Estimate& estimate : fit.parameters) {
+    parameters[estimate.info.name] = estimate_as_json(estimate, law.file, interval);
+  }
+  json result{{"model", fit.model},
+              {"options", options_as_json(fit.law_options)},
+              {"law_files", law_file_names(all, law)},
+              {"parameters", parameters},
+              {"free_parameters", fit.free_parameters},
+              {"samples", fit.samples},
+              {"rmse", fit.rmse},
+              {"rmse_rendered", law.rmse_rendered},
+              {"max_abs", fit.max_abs},
+              {"r2", fit.r2},
+              {"aic", fit.aic},
+              {"bic", fit.bic},
+              {"cv_rmse", number(fit.cv_rmse)},
+              {"test_rmse", number(fit.test_rmse)},
+              {"jnd_fraction", fit.jnd_fraction},
+              {"correlation_time_samples", fit.correlation_time},
+              {"correlation", correlation_as_json(fit)},
+              {"converged", fit.converged},
+              {"iterations", fit.iterations},
+              {"seconds", fit.seconds},
+              {"message", fit.message},
+              {"warnings", fit.warnings}};
+  if (!fit.profiles.empty()) result["profiles"] = profiles_as_json(fit);
+  if (!fit.others.empty()) result["per_recording"] = own_as_json(law, all, interval);
+  return result;
+}
+
+json recording_as_json(const FittedRecording& recording) {
+  return {{"name", recording.name},
+          {"uuid", recording.uuid},
+          {"axis", recording.axis},
+          {"contact", {{"position", recording.contact.position}, {"direction", recording.contact.direction}}},
+          {"samples", recording.samples},
+          {"left_out", recording.left_out},
+          {"noise", recording.noise_n > 0.0 ? json(recording.noise_n) : json(nullptr)}};
+}
+
+json settings_as_json(const fitting::FitOptions& settings) {
+  return {{"folds", settings.folds},
+          {"test_share", settings.test_share},
+          {"confidence", settings.confidence},
+          {"loss", name_of(settings.loss)},
+          {"loss_scale", settings.loss_scale_n > 0.0 ? json(settings.loss_scale_n) : json(nullptr)},
+          {"weber_fraction", settings.jnd.weber_fraction},
+          {"threshold", settings.jnd.threshold_n}};
+}
+
+}  // namespace
+
+json fits_as_json(const RecordingFit& fit) {
+  json fits = json::array();
+  for (const FittedLaw& law : fit.laws) fits.push_back(law_as_json(law, fit));
+  json refusals = json::array();
+  for (const auto& [model, why] : fit.refusals) refusals.push_back({{"model", model}, {"why", why}});
+  json recordings = json::array();
+  for (const FittedRecording& recording : fit.recordings) recordings.push_back(recording_as_json(recording));
+  return {{"recording", fit.recordings.empty() ? "" : fit.recordings.front().uuid},
+          {"recordings", recordings},
+          {"samples", fit.samples()},
+          {"settings", settings_as_json(fit.settings)},
+          {"line_rmse", fit.line_rmse_n},
+          {"jnd", fit.jnd_n},
+          {"fits", fits},
+          {"refused", refusals},
+          {"choice", {{"model", fit.choice.model}, {"why", fit.choice.why}}},
+          {"warnings", fit.warnings}};
+}
+
+}  // namespace kerf::bench

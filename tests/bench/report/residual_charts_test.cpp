@@ -1,0 +1,87 @@
+#include "report/residual_charts.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+/// r[i] = memory r[i-1] + white noise.
+std::vector<double> coloured(double memory, std::size_t count) {
+  std::mt19937 generator(7);
+  std::normal_distribution<double> noise;
+  std::vector<double> values{noise(generator)};
+  while (values.size() < count) values.push_back(memory * values.back() + noise(generator));
+  return values;
+}
+
+FitView view_of(const std::vector<double>& residual) {
+  FitView view;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    view.series.time_s.push_back(1e-3 * static_cast<double>(i));
+    view.series.penetration.push_back(1e-3 * static_cast<double>(i % 10));
+    view.series.velocity.push_back(i % 2 == 0 ? 1.0 : -1.0);
+  }
+  view.position = {.factor = 1000.0, .unit = "mm"};
+  view.force_unit = "N";
+  return view;
+}
+
+Trace trace_of(const std::vector<double>& residual, LawFile law, double correlation_time = 1.0) {
+  return {.model = "kelvin",
+          .fit = {{"correlation_time_samples", correlation_time}},
+          .law = std::move(law),
+          .force = {},
+          .residual = residual};
+}
+
+LawFile any_law() { return {.law = models::Law::make("kelvin", std::vector{300.0, 500.0, 50.0})}; }
+
+TEST(ResidualCharts, TheAutocorrelationOfANoiseWithMemoryIsItsPower) {
+  const auto values = coloured(0.8, 200'000);
+  const auto correlation = autocorrelation(values, 2, 8);
+  ASSERT_EQ(correlation.size(), 5U);
+  EXPECT_DOUBLE_EQ(correlation[0], 1.0);
+  for (std::size_t k = 1; k < correlation.size(); ++k) {
+    EXPECT_NEAR(correlation[k], std::pow(0.8, 2.0 * static_cast<double>(k)), 0.02) << k;
+  }
+}
+
+TEST(ResidualCharts, TheBandIsThatOfWhiteNoiseAndTheLagIsInSeconds) {
+  const auto values = coloured(0.0, 10'000);
+  const Chart chart = residual_autocorrelation(view_of(values), trace_of(values, any_law()));
+  ASSERT_EQ(chart.horizontal.size(), 2U);
+  EXPECT_NEAR(chart.horizontal[0].at, 0.0196, 1e-6);
+  EXPECT_NEAR(chart.curves.at(0).x.back(), 0.05, 1e-9);
+}
+
+TEST(ResidualCharts, TheHistogramHoldsTheSamplesAndTheNormalCurveOverThem) {
+  const auto values = coloured(0.0, 50'000);
+  const Chart chart = residual_histogram(view_of(values), trace_of(values, any_law()));
+  const Curve& boxes = chart.curves.at(0);
+  const Curve& normal = chart.curves.at(1);
+  double samples = 0.0;
+  double area = 0.0;
+  for (std::size_t i = 0; i < boxes.y.size(); ++i) {
+    samples += boxes.y[i];
+    area += normal.y[i];
+    EXPECT_NEAR(boxes.y[i], normal.y[i], 5.0 * std::sqrt(normal.y[i] + 10.0)) << i;
+  }
+  EXPECT_NEAR(samples, 50'000.0, 20.0) << "four deviations to each side";
+  EXPECT_NEAR(area, 50'000.0, 20.0);
+}
+
+TEST(ResidualCharts, TheMeanInBinsFollowsWhatDependsOnThePosition) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < 1000; ++i) values.push_back(i % 10 == 9 ? 2.0 : 0.0);
+  const Chart chart = residual_over_penetration(view_of(values), trace_of(values, any_law()), 3.0);
+  const Curve& mean = chart.curves.back();
+  EXPECT_DOUBLE_EQ(mean.y.back(), 2.0);
+  EXPECT_DOUBLE_EQ(mean.y.front(), 0.0);
+  EXPECT_NEAR(mean.x.back(), 9.0, 0.2) << "in millimetres";
+}
+
+}  // namespace
+}  // namespace kerf::bench
