@@ -14,6 +14,10 @@ REPETITIONS = 9
 TARGETS = [
     ("kelvin", "kelvin", 20),
     ("exponential", "exponential", 20),
+    ("maxwell_2_arms", "maxwell, 2 arms", 30),
+    ("springpot", "springpot", 100),
+    ("hunt_crossley", "hunt_crossley", 40),
+    ("friction", "friction", 30),
     ("precontact", "precontact", 20),
     ("fracture", "fracture", 20),
     ("scissors_analytic", "scissors_analytic", 20),
