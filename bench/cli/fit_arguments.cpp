@@ -96,7 +96,7 @@ void add_law_options(Verb& verb, FitArguments& arguments) {
                   "Arms of the Maxwell law (default: as many as lower the held-out error)")
       .within(1, 6);
   verb.add_option("--memberships", arguments.memberships, "Memberships of the fuzzy laws, for each input")
-      .within(1, 16);
+      .within(1, 5);
   verb.add_option("--thickness", arguments.thickness,
                   "Thickness of the sample, for the exponential and the fracture law [m or rad]")
       .positive();

@@ -90,12 +90,6 @@ std::string place_text(const schema::Recording& recording, double time_s) {
   return text;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 /// One run over a recording: each member a step.
 class Run {
  public:

@@ -135,12 +135,6 @@ std::vector<double> mean_of(const std::vector<std::vector<double>>& cycles, std:
   return mean;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void check(const schema::Recording& recording, const SegmentOptions& options,
            const std::vector<double>& position, const std::vector<double>& force) {
   if (options.axis >= recording.dimensions()) {

@@ -7,6 +7,9 @@
 #include <numeric>
 #include <utility>
 
+#include <kerf/models/exponential.h>
+#include <kerf/models/fracture.h>
+
 #include "scan.h"
 
 namespace kerf::fitting {
@@ -126,7 +129,9 @@ class FractureSearch {
     if (elastic.values.empty()) return {};
     const double amplitude = elastic.values[0][0];
     const double exponent = elastic.values[0][1];
-    const double energy = amplitude * thickness_ / exponent * std::expm1(exponent * depth / thickness_);
+    const models::Exponential<double> tissue{
+        .amplitude = amplitude, .exponent = exponent, .thickness = thickness_};
+    const double energy = tissue.stored_energy(depth);
     std::vector<double> all{amplitude, exponent, energy,
                             force_of_cutting(samples, weights, depth) / blade_width_m, blade_width_m};
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -140,7 +145,7 @@ class FractureSearch {
                        : squares_of(problem_, samples, weights, all, loss_);
   }
   [[nodiscard]] double yield_depth(const std::vector<double>& all) const {
-    return thickness_ / all[1] * std::log1p(all[2] * all[1] / (all[0] * thickness_));
+    return models::Fracture<double>::make(all, problem_.law_options).yield_depth();
   }
   [[nodiscard]] int iterations() const { return iterations_; }
 

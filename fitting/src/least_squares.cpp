@@ -54,10 +54,6 @@ bool DenseObjective::factor(const Eigen::VectorXd& at, Sums& sums, Triangle& tri
   return true;
 }
 
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  return a.colPivHouseholderQr().solve(b);
-}
-
 Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   const Eigen::VectorXd norm = a.colwise().norm();
   const Eigen::VectorXd scale = (norm.array() > 0.0).select(norm.cwiseInverse(), 0.0);

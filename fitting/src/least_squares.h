@@ -85,10 +85,8 @@ struct Minimum {
                                          const Bounds& bounds, const MinimiseOptions& options = {},
                                          std::size_t most = 12);
 
-/// The x of least |A x - b|. Decompositions are slow to compile, so that each is compiled once, here.
-[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
-
-/// The same, and the shortest where A leaves a choice, each x being measured by the norm of its column.
+/// The x of least |A x - b|, and the shortest where A leaves a choice, each x being measured by the norm of
+/// its column. Decompositions are slow to compile, so that each is compiled once, here.
 [[nodiscard]] Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// The same from the normal equations A'A x = A'b; the shortest x where they leave a choice.

@@ -24,17 +24,17 @@ std::vector<double> positions(const Samples& samples) {
   return all;
 }
 
-/// What the curve leaves at each sample.
+/// What the curve leaves at each sample, as the law itself has it.
 std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& samples,
                                  const std::vector<std::uint8_t>& branch) {
+  models::Piecewise<double> law;
+  law.knots = curve.knots.size();
+  std::copy(curve.knots.begin(), curve.knots.end(), law.knot.begin());
+  std::copy(curve.force.front().begin(), curve.force.front().end(), law.closing.begin());
+  std::copy(curve.force.back().begin(), curve.force.back().end(), law.opening.begin());
   std::vector<double> left;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const double x = samples.motion[i].penetration;
-    const auto& force = curve.force[std::min<std::size_t>(branch[i], curve.force.size() - 1)];
-    const auto above = std::upper_bound(curve.knots.begin() + 1, curve.knots.end() - 1, x);
-    const auto k = static_cast<std::size_t>(above - curve.knots.begin());
-    const double share = std::max(0.0, (x - curve.knots[k - 1]) / (curve.knots[k] - curve.knots[k - 1]));
-    left.push_back(force[k - 1] + share * (force[k] - force[k - 1]) - samples.force[i]);
+    left.push_back(law.branch_force(branch[i] == 0, samples.motion[i].penetration) - samples.force[i]);
   }
   return left;
 }

@@ -77,6 +77,11 @@ TEST(Derivative, StillHasNeighboursAcrossAGap) {
   EXPECT_THAT(differentiate(std::vector{1.0}, std::vector{7.0}, 0.01), testing::ElementsAre(0.0));
 }
 
+TEST(Median, IsTheMiddleValueOrTheMeanOfTwo) {
+  EXPECT_EQ(median({5.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
+}
+
 TEST(MedianPeriod, IsNotMovedByAGap) {
   EXPECT_DOUBLE_EQ(median_period(std::vector{0.0, 1.0, 2.0, 50.0, 51.0}), 1.0);
   EXPECT_EQ(median_period(std::vector{3.0}), 0.0);
