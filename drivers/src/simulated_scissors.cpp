@@ -9,6 +9,8 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 constexpr double handle_inertia_kg_m2 = 2e-5;
 constexpr double carriage_kg = 0.4;
+constexpr double viscous_n_s_per_m = 0.2;
+constexpr double coulomb_n = 0.1;
 
 std::vector<AxisInfo> scissors_axes() {
   return {{.name = "theta",
@@ -20,7 +22,11 @@ std::vector<AxisInfo> scissors_axes() {
            .upper = 60.0 * degree,
            .force_limit = 7.58,
            .slew_limit = 2000.0,
-           .speed_limit = 50.0},
+           .speed_limit = 50.0,
+           .mechanics = Mechanics{.mass_kg = handle_inertia_kg_m2 /
+                                             (SimulatedScissors::lever_m * SimulatedScissors::lever_m),
+                                  .viscous_n_s_per_m = viscous_n_s_per_m,
+                                  .coulomb_n = coulomb_n}},
           {.name = "x_s",
            .position_unit = "m",
            .force_unit = "N",
@@ -30,7 +36,9 @@ std::vector<AxisInfo> scissors_axes() {
            .upper = 0.05,
            .force_limit = 159.0,
            .slew_limit = 20000.0,
-           .speed_limit = 5.0}};
+           .speed_limit = 5.0,
+           .mechanics = Mechanics{
+               .mass_kg = carriage_kg, .viscous_n_s_per_m = viscous_n_s_per_m, .coulomb_n = coulomb_n}}};
 }
 
 std::string as_toml(const SimulatedScissors::Options& options) {
@@ -88,7 +96,10 @@ SimulatedScissors::SimulatedScissors(std::string_view uri, const Options& option
   const double hand_mass = options.with_hand ? options.hand.mass_kg : 0.0;
   for (const std::size_t at : {0U, 1U}) {
     SimulatedAxis& axis = mechanism_.axis(at);
-    axis.mass_kg = (at == 0 ? handle_inertia_kg_m2 / (lever_m * lever_m) : carriage_kg) + hand_mass;
+    const Mechanics& device = *mechanism_.info().axes[at].mechanics;
+    axis.mass_kg = device.mass_kg + hand_mass;
+    axis.viscous_n_s_per_m = device.viscous_n_s_per_m;
+    axis.coulomb_n = device.coulomb_n;
     if (!options.with_hand) continue;
     axis.hand_stiffness_n_per_m = options.hand.stiffness_n_per_m;
     axis.hand_damping_n_s_per_m = options.hand.damping_n_s_per_m;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,6 +20,14 @@ inline constexpr std::size_t max_channels = 16;
 /// One number per axis of a device, in the units of its AxisInfo; unused axes are zero.
 using Axes = std::array<double, max_axes>;
 
+/// What is known of how an axis moves without a hand, at the travel of its lever (at the joint where the
+/// lever is 1).
+struct Mechanics {
+  double mass_kg = 0.0;            ///< m, or the inertia [kg·m²] of an axis in rad without a lever
+  double viscous_n_s_per_m = 0.0;  ///< b
+  double coulomb_n = 0.0;          ///< f_c
+};
+
 /// One axis of a device. Frames and signs are those of drivers/README.md.
 struct AxisInfo {
   std::string name;           ///< "theta", "x_s", "x", ...
@@ -31,6 +40,7 @@ struct AxisInfo {
   double force_limit = 0.0;  ///< largest force that may be commanded, in the unit of force
   double slew_limit = 0.0;   ///< largest change of force per second
   double speed_limit = 0.0;  ///< faster than hand and mechanism can be, per second; 0 if not known
+  std::optional<Mechanics> mechanics{};
 };
 
 /// A further quantity that a device measures, beside its axes.
