@@ -49,7 +49,7 @@ TEST(Pose6, GivesTheTruthBesideWhatItsEncodersSay) {
 }
 
 TEST(Pose6, RefusesOptionsThatItDoesNotHave) {
-  EXPECT_THROW((void)open_device("sim:pose6?grip=3N/m"), DeviceError);
+  EXPECT_THROW((void)open_device("sim:pose6?open=30deg"), DeviceError);
   EXPECT_THROW((void)open_device("sim:pose6?reach=3m"), DeviceError);
 }
 
