@@ -95,7 +95,7 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
   drivers::PosePath::Options path;
   double time_s = 0.0;
   const auto add = [&](double position, double lasting_s) {
-    time_s += lasting_s;
+    time_s = std::round(1e9 * (time_s + lasting_s)) / 1e9;  // without the digits that sums leave behind
     if (lasting_s == 0.0 && !path.keyframes.empty()) return;
     PoseKeyframe keyframe{.at_s = time_s, .position = {}};
     keyframe.position[static_cast<std::size_t>(axis - device.axes.begin())] = position;
@@ -117,6 +117,7 @@ PoseKeyframe read_keyframe(const Place& place, const toml::table& table, const d
   place.allow_only(table, {"at", "position"}, "[[trajectory.keyframe]]");
   keyframe.at_s = read_number(place, table,
                               {.key = "at", .unit = "s", .lower = 0.0, .upper = longest_s, .required = true});
+  if (table.get("position") == nullptr) return keyframe;
   const toml::table& position = place.table(table, "position");
   for (const auto& [key, node] : position) {
     const auto axis = std::ranges::find(device.axes, key.str(), &drivers::AxisInfo::name);
