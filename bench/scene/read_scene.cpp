@@ -45,11 +45,13 @@ double read_until(const Place& place, const toml::table& layer, const std::strin
 }
 
 /// A layer is measured in the units of the first one unless its law has only its own.
-void inherit_units(toml::table& layer, const LawFile& first) {
+void inherit_units(const Place& place, toml::table& layer, const LawFile& first) {
   const auto* model = layer.get_as<std::string>("model");
   if (model == nullptr) return;
   for (const models::LawInfo& law : models::registry()) {
     if (law.name != model->get()) continue;
+    if (!models::Law::axes(law.name).empty())
+      place.refuse(*model, "law '{}' acts on several axes, and a layer lies on one", law.name);
     if (law.position_unit.empty() && !layer.contains("position_unit"))
       layer.insert("position_unit", first.position_unit);
     if (law.force_unit.empty() && !layer.contains("force_unit")) layer.insert("force_unit", first.force_unit);
@@ -62,12 +64,8 @@ TissueLayer read_layer(const Place& place, toml::table& layer, const std::string
     if (const toml::node* node = layer.get(key))
       place.refuse(*node, "a deeper layer has no '{}' of its own; 'from' says where it begins", key);
   }
-  inherit_units(layer, first);
+  inherit_units(place, layer, first);
   LawFile law = law_from_table(layer, name, {"from", "until"});
-  if (law.law.is_spatial()) {
-    place.refuse(*layer.get("model"), "law '{}' acts on several axes, and a layer lies on one",
-                 law.law.model());
-  }
   if (law.position_unit != first.position_unit || law.force_unit != first.force_unit) {
     place.refuse(layer, "the layer has {} over {}, expected {} over {} as [tissue]", law.force_unit,
                  law.position_unit, first.force_unit, first.position_unit);

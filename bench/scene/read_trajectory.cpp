@@ -179,13 +179,17 @@ double read_number(const Place& place, const toml::table& table, const SceneNumb
   }
   const auto values = place.measured(*node, std::string(about.key), std::string(about.unit)).values;
   if (values.size() != 1) place.refuse(*node, "'{}' must be one number", about.key);
-  const double slack = 1e-9 * std::max(std::abs(about.lower), std::abs(about.upper));
-  if (!(std::isfinite(values[0]) && values[0] >= about.lower - (std::isfinite(slack) ? slack : 0.0) &&
-        values[0] <= about.upper + (std::isfinite(slack) ? slack : 0.0))) {
-    place.refuse(*node, "'{}' is {:.6g} {}, expected a number from {:.6g} to {:.6g} {}", about.key, values[0],
-                 about.unit, about.lower, about.upper, about.unit);
+  const double value = values[0];
+  // 60 deg is within 60 deg, whatever its last digit becomes in rad.
+  const double slack = 1e-12 * std::abs(value);
+  if (std::isfinite(value) && value >= about.lower - slack && value <= about.upper + slack)
+    return std::clamp(value, about.lower, about.upper);
+  if (std::isinf(about.upper)) {
+    place.refuse(*node, "'{}' is {:.6g} {}, expected at least {:.6g} {}", about.key, value, about.unit,
+                 about.lower, about.unit);
   }
-  return std::clamp(values[0], about.lower, about.upper);
+  place.refuse(*node, "'{}' is {:.6g} {}, expected a number from {:.6g} to {:.6g} {}", about.key, value,
+               about.unit, about.lower, about.upper, about.unit);
 }
 
 Trajectory read_trajectory(const Place& place, const toml::table& table, const drivers::DeviceInfo& device) {

@@ -103,8 +103,9 @@ std::string fitting_device(const LawFile& tissue) {
 }
 
 std::string options_of(const ScissorsStrokes& strokes) {
-  return fmt::format("&open={}deg&close={}deg&stroke={}s&pause={}s&variation={}", strokes.open_rad / degree,
-                     strokes.close_rad / degree, strokes.stroke_s, strokes.pause_s, strokes.variation);
+  return fmt::format("&open={:.12g}deg&close={:.12g}deg&stroke={}s&pause={}s&variation={}",
+                     strokes.open_rad / degree, strokes.close_rad / degree, strokes.stroke_s, strokes.pause_s,
+                     strokes.variation);
 }
 
 std::string options_of(const drivers::PosePath::Options& path) {
