@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <array>
+#include <ranges>
 #include <stdexcept>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
@@ -135,7 +138,12 @@ void read_device(const Place& place, const toml::table& root, Scene& scene) {
     place.refuse(at, "'uri' is \"{}\", expected a simulated device such as \"sim:scissors?noise=off\"",
                  scene.device_uri);
   }
-  (void)try_device(place, at, scene);
+  const drivers::DeviceInfo device = try_device(place, at, scene);
+  const std::string& axis = scene.tissue.axis;
+  if (axis.empty() || std::ranges::find(device.axes, axis, &drivers::AxisInfo::name) != device.axes.end())
+    return;
+  place.refuse(*tissue_table(place, root).get("axis"), "'axis' is \"{}\", and the axes of {} are {}", axis,
+               device.model, fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
 }
 
 }  // namespace

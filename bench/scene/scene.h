@@ -72,9 +72,8 @@ struct ToolPath {
   std::vector<drivers::Axes> velocity;  ///< its derivative
 };
 
-/// @throws std::invalid_argument: a scene without a trajectory on a device other than scissors, a rate that
-/// is
-///         not from 1 Hz to 1 MHz.
+/// @throws std::invalid_argument: a scene that says nothing of what the hand does, on a device that is not a
+///         pair of scissors; a rate that is not from 1 Hz to 1 MHz; more than 20 million ticks.
 [[nodiscard]] ToolPath tool_path(const Scene& scene, double rate_hz);
 
 }  // namespace kerf::bench
