@@ -1,0 +1,44 @@
+#include <fmt/core.h>
+
+#include "stability/cases/controlled_wall.h"
+#include "stability/cases/each_case.h"
+
+namespace kerf::bench::cases {
+namespace {
+
+constexpr double share = 4.0;
+
+CaseOutcome judged(const Trace& trace) {
+  const double ripple = ripple_n(trace);
+  return {.holds = ripple <= felt_n,
+          .measured = ripple,
+          .unit = "N",
+          .figure = fmt::format("{:.2g} N rms under a weight of {} N", ripple, leaning_n)};
+}
+
+}  // namespace
+
+NamedCase passivity_control(std::uint64_t) {
+  const SampledDevice device = weighted_scissors();
+  const double passive = 2.0 * device.viscous_n_s_per_m / device.period_s;
+  const double stiffness = share * passive;
+  const WallForce wall{{.stiffness_n_per_m = stiffness}};
+  const Trace failing = lean_on(device, wall);
+  const Trace holding = lean_on(device, ControlledWall(wall, device, {stiffness}));
+  return {.where = "literature (Hannaford and Ryu 2002)",
+          .what = fmt::format("A wall {} times as stiff as the device's friction keeps passive hums under a "
+                              "weight.",
+                              share),
+          .remedy = "A passivity controller: what the hold gave in a tick is braked away in the next.",
+          .limit = felt_n,
+          .quantity = "ripple of the force over the last quarter of 1.5 s",
+          .without = judged(failing),
+          .with = judged(holding),
+          .theory = fmt::format("The spring leaks (K T / 2 - b) v^2 T a tick, so that the controller adds K T / "
+                                "2 - b = {:.2f} N·s/m; nothing up to 2 b / T = {:.0f} N/m.",
+                                0.5 * stiffness * device.period_s - device.viscous_n_s_per_m, passive),
+          .picture = two_traces(fmt::format("2 N lean on a wall of {:.0f} N/m", stiffness), failing, "plain wall",
+                                holding, "under passivity control")};
+}
+
+}  // namespace kerf::bench::cases

@@ -1,0 +1,72 @@
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "stability/bisection.h"
+#include "stability/cases/devices.h"
+#include "stability/cases/each_case.h"
+#include "stability/cases/trace.h"
+#include "stability/wall_force.h"
+
+namespace kerf::bench::cases {
+namespace {
+
+constexpr Wall tissue{.stiffness_n_per_m = 100.0, .damping_n_s_per_m = 14.2};
+constexpr double margin = 0.7;
+constexpr double seconds = 4.0;
+constexpr double into_tissue_m = 15e-3;
+
+/// 20 Hz velocity filter and 8 ms from reading to force.
+SampledDevice held(const HandImpedance& hand) {
+  SampledDevice device = linear_handle();
+  device.delay_s = 8e-3;
+  device.hand = hand;
+  return device;
+}
+
+Trace press(const HandImpedance& hand, const Wall& wall) {
+  return run_loop(held(hand), WallForce{wall}, {}, seconds,
+                  [](double) { return HandPush{.place_m = into_tissue_m}; });
+}
+
+CaseOutcome judged(double ripple, std::string figure) {
+  return {.holds = ripple <= felt_n, .measured = ripple, .unit = "N", .figure = std::move(figure)};
+}
+
+}  // namespace
+
+NamedCase stiff_grip(std::uint64_t) {
+  const double boundary = first_change({.lower = 0.5, .upper = 100.0, .share = 1e-4}, [](double damping) {
+    const Wall wall{.stiffness_n_per_m = tissue.stiffness_n_per_m, .damping_n_s_per_m = damping};
+    return spectral_radius(held(firm_grip), wall) < 1.0 && spectral_radius(held(loose_grip), wall) < 1.0;
+  });
+  const Wall damped_less{.stiffness_n_per_m = tissue.stiffness_n_per_m,
+                         .damping_n_s_per_m = margin * boundary};
+  const Trace loose = press(loose_grip, tissue);
+  const Trace failing = press(firm_grip, tissue);
+  const Trace holding = press(firm_grip, damped_less);
+  Chart picture = two_traces("A hand of 600 N/m presses a damped tissue", failing, "14.2 N·s/m", holding,
+                             fmt::format("{:.1f} N·s/m", damped_less.damping_n_s_per_m));
+  picture.curves.push_back(curve_of(loose, "14.2 N·s/m, hand of 200 N/m", Colour::green));
+  const double loose_ripple = ripple_n(loose);
+  const double firm_ripple = ripple_n(failing);
+  const double held_ripple = ripple_n(holding);
+  return {
+      .where = "literature (Fu and Cavusoglu 2012 for the hands)",
+      .what = "A damped tissue that is at rest in a loose grip vibrates when the same hand stiffens: the loop "
+              "moves faster, and late damping pushes instead of braking.",
+      .remedy = fmt::format("Less damping of the tissue: {} of what the eigenvalues pass in both grips.", margin),
+      .limit = felt_n,
+      .quantity = "ripple of the force over the last second of four, in the firm grip",
+      .without = judged(firm_ripple, fmt::format("{:.2g} N rms in the firm grip; {:.2g} N in the loose one",
+                                                 firm_ripple, loose_ripple)),
+      .with = judged(held_ripple, fmt::format("{:.2g} N rms in the firm grip", held_ripple)),
+      .theory = fmt::format("Largest eigenvalue: {:.5f} loose, {:.5f} firm. Both carry up to {:.1f} N·s/m. A "
+                            "grip that gains mass and damping in the same measure (0.2 kg, 8 N·s/m) stays "
+                            "stable: the case needs a hand that stiffens without them.",
+                            spectral_radius(held(loose_grip), tissue),
+                            spectral_radius(held(firm_grip), tissue), boundary),
+      .picture = std::move(picture)};
+}
+
+}  // namespace kerf::bench::cases

@@ -1,0 +1,87 @@
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include <kerf/drivers/hand.h>
+#include <kerf/drivers/simulated_scissors.h>
+
+#include "stability/bisection.h"
+#include "stability/cases/devices.h"
+#include "stability/cases/each_case.h"
+#include "stability/cases/trace.h"
+#include "stability/law_force.h"
+#include "stability/wall_theory.h"
+
+namespace kerf::bench::cases {
+namespace {
+
+constexpr double closing_n = 1.5;
+constexpr double opening_n = -0.5 * closing_n;  // as 004 has it for empty scissors
+constexpr double band_rad_s = 0.8;
+constexpr double corner_rad_s = 10.0;  // 004
+constexpr double way_m = 8e-3;
+constexpr double stroke_s = 0.6;
+
+SampledDevice held_scissors() {
+  SampledDevice device = scissors_handle();
+  device.hand = stylus_grip;
+  device.velocity_corner_rad_s = corner_rad_s;
+  return device;
+}
+
+/// A hand that closes the scissors a little and then holds still.
+Trace close_and_hold(double ramp_band) {
+  const double values[] = {0.0, 1.0, closing_n, closing_n, opening_n, opening_n};
+  const AxisLaw law{models::Law::make("piecewise", values,
+                                      {{"segments", 1.0}, {"loop", true}, {"ramp_band", ramp_band}}),
+                    drivers::SimulatedScissors::lever_m};
+  const SampledDevice device = held_scissors();
+  return run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
+    return HandPush{.place_m = way_m * drivers::MinimumJerk::at(time_s / stroke_s).place};
+  });
+}
+
+CaseOutcome judged(const Trace& trace, double limit) {
+  const double ripple = ripple_n(trace);
+  double jumps = 0.0;
+  const std::size_t begin = trace.force_n.size() / 2;
+  for (std::size_t i = begin; i < trace.force_n.size(); ++i) {
+    jumps += std::abs(trace.force_n[i] - trace.force_n[i - 1]) > 0.5 * closing_n;
+  }
+  return {.holds = ripple <= limit,
+          .measured = ripple,
+          .unit = "N",
+          .figure = fmt::format("{:.3g} N rms while the hand holds still, {:.0f} changes of branch a second",
+                                ripple, jumps)};
+}
+
+/// Narrowest band whose slope the sampled loop carries [rad/s].
+double narrowest_band() {
+  const double damper = first_change({.lower = 0.1, .upper = 1e4, .share = 1e-4}, [](double damping) {
+    return spectral_radius(held_scissors(), {.damping_n_s_per_m = damping}) < 1.0;
+  });
+  return closing_n / (drivers::SimulatedScissors::lever_m * damper);
+}
+
+}  // namespace
+
+NamedCase velocity_sign(std::uint64_t) {
+  const Trace failing = close_and_hold(0.0);
+  const Trace holding = close_and_hold(band_rad_s);
+  return {.where = "004, section 3.1",
+          .what = "A law that chooses its branch by the sign of a filtered velocity is a relay behind a lag: "
+                  "where the hand holds still, it switches to and fro for ever.",
+          .remedy = fmt::format("A linear ramp of the force around zero velocity, {} rad/s wide to each side.",
+                                band_rad_s),
+          .limit = felt_n,
+          .quantity = "ripple of the force over the last half second",
+          .without = judged(failing, felt_n),
+          .with = judged(holding, felt_n),
+          .theory = fmt::format("Inside a band w the law is a damper F / (w l), and the eigenvalues with hand "
+                                "and filter carry it from w = {:.3g} rad/s on (l = {:.1f} mm).",
+                                narrowest_band(), 1e3 * drivers::SimulatedScissors::lever_m),
+          .picture = two_traces("A hand closes the scissors and holds still", failing, "sign of the velocity",
+                                holding, "ramp band")};
+}
+
+}  // namespace kerf::bench::cases

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "loop/passivity.h"
+#include "stability/sampled_loop.h"
+
+namespace kerf::bench {
+
+/// A rendering that stores nothing that is known.
+struct NothingStored {
+  double operator()(double) const noexcept { return 0.0; }
+};
+
+/// A Force under a passivity controller (PassivityObserver), which sees what the rendering and the friction
+/// of the device together take:
+///
+///     E += -F_held dx - dU + b v^2 T
+///
+/// dx is the travel that was read in a tick, U(x) the energy that the rendering means to store at a place, b
+/// the viscous friction of the device and v its read velocity. Without U the observer has all that was pressed
+/// into a wall as a reserve that a hum may use up; without b it would brake walls that the device keeps
+/// passive by itself. Coulomb friction is left out of the account.
+///
+/// Of a spring, with U = K x^2 / 2 and the plain difference as v, each tick leaves (b - K T / 2) v^2 T: the
+/// controller never acts up to K = 2 b / T, and beyond adds the damping that is missing, K T / 2 - b.
+template <typename Force, typename Stored = NothingStored>
+class PassivityControlled {
+ public:
+  /// @throws std::invalid_argument if the device has a delay: what brakes late does not brake.
+  PassivityControlled(Force force, const SampledDevice& device, Stored stored = {})
+      : force_(std::move(force)),
+        stored_(std::move(stored)),
+        observer_(std::vector<drivers::AxisInfo>(1)),
+        viscous_n_s_per_m_(device.viscous_n_s_per_m),
+        period_s_(device.period_s) {
+    if (device.delay_s > 0.0) {
+      throw std::invalid_argument("a passivity controller needs a device without delay");
+    }
+  }
+
+  double operator()(const AxisReading& reading) noexcept {
+    const double travel_m = started_ ? reading.place_m - last_m_ : 0.0;
+    if (travel_m != 0.0) {
+      const double elastic_n = -(stored_(reading.place_m) - stored_(last_m_)) / travel_m;
+      const double friction_n =
+          -viscous_n_s_per_m_ * reading.speed_m_s * reading.speed_m_s * period_s_ / travel_m;
+      observer_.observe({held_n_ - elastic_n + friction_n}, {reading.place_m});
+    } else {
+      observer_.restart({reading.place_m});
+    }
+    started_ = true;
+    last_m_ = reading.place_m;
+    drivers::Axes force{force_(reading)};
+    acted_ = observer_.control({reading.speed_m_s}, period_s_, force);
+    held_n_ = force[0];
+    return held_n_;
+  }
+
+  [[nodiscard]] bool acted() const noexcept { return acted_; }
+  [[nodiscard]] double energy_j() const noexcept { return observer_.energy_j(); }
+
+ private:
+  Force force_;
+  Stored stored_;
+  PassivityObserver observer_;
+  double viscous_n_s_per_m_;
+  double period_s_;
+  double last_m_ = 0.0;
+  double held_n_ = 0.0;
+  bool started_ = false;
+  bool acted_ = false;
+};
+
+}  // namespace kerf::bench
