@@ -25,6 +25,9 @@ struct NothingStored {
 /// into a wall as a reserve that a hum may use up; without b it would brake walls that the device keeps
 /// passive by itself. Coulomb friction is left out of the account.
 ///
+/// What is left over in a tick is not saved up (E <= 0): a tool that came through free air would else have paid
+/// for a hum.
+///
 /// Of a spring, with U = K x^2 / 2 and the plain difference as v, each tick leaves (b - K T / 2) v^2 T: the
 /// controller never acts up to K = 2 b / T, and beyond adds the damping that is missing, K T / 2 - b.
 template <typename Force, typename Stored = NothingStored>
@@ -34,7 +37,8 @@ class PassivityControlled {
   PassivityControlled(Force force, const SampledDevice& device, Stored stored = {})
       : force_(std::move(force)),
         stored_(std::move(stored)),
-        observer_(std::vector<drivers::AxisInfo>(1)),
+        fresh_(std::vector<drivers::AxisInfo>(1)),
+        observer_(fresh_),
         viscous_n_s_per_m_(device.viscous_n_s_per_m),
         period_s_(device.period_s) {
     if (device.delay_s > 0.0) {
@@ -49,9 +53,8 @@ class PassivityControlled {
       const double friction_n =
           -viscous_n_s_per_m_ * reading.speed_m_s * reading.speed_m_s * period_s_ / travel_m;
       observer_.observe({held_n_ - elastic_n + friction_n}, {reading.place_m});
-    } else {
-      observer_.restart({reading.place_m});
     }
+    if (travel_m == 0.0 || observer_.energy_j() > 0.0) forget(reading.place_m);
     started_ = true;
     last_m_ = reading.place_m;
     drivers::Axes force{force_(reading)};
@@ -64,8 +67,15 @@ class PassivityControlled {
   [[nodiscard]] double energy_j() const noexcept { return observer_.energy_j(); }
 
  private:
+  /// From here on, with no more than what is owed.
+  void forget(double place_m) noexcept {
+    if (observer_.energy_j() > 0.0) observer_ = fresh_;
+    observer_.restart({place_m});
+  }
+
   Force force_;
   Stored stored_;
+  PassivityObserver fresh_;
   PassivityObserver observer_;
   double viscous_n_s_per_m_;
   double period_s_;

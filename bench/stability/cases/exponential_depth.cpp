@@ -13,17 +13,18 @@ namespace kerf::bench::cases {
 namespace {
 
 constexpr models::Exponential<double> intestine{.amplitude = 4.3e-7, .exponent = 13.0, .thickness = 0.1};
-constexpr double push_n = 4.5;
+constexpr double push_n = 6.0;
 constexpr ToolRange tool{.depth_m = 0.12, .speed_m_s = 0.5};
 constexpr double deepest_m = 0.2;
+constexpr double margin = 0.5;  // of the stiffness at the passive depth
 
 /// The exponential, carried on with a constant slope from a depth on.
 struct LimitedDepth {
-  double passive_m = deepest_m;
+  double limit_m = deepest_m;
   double operator()(const AxisReading& reading) const noexcept {
-    const double followed_m = std::min(reading.place_m, passive_m);
+    const double followed_m = std::min(reading.place_m, limit_m);
     return -intestine.elastic_force(followed_m) -
-           intestine.stiffness(passive_m) * (reading.place_m - followed_m);
+           intestine.stiffness(limit_m) * (reading.place_m - followed_m);
   }
 };
 
@@ -37,7 +38,7 @@ SampledDevice weighted_handle() {
 /// A weight that leans on the tissue, from where half of it would rest.
 Trace lean(const LimitedDepth& law) {
   const double begin_m = intestine.depth_at_stiffness(0.5 * push_n * intestine.exponent / intestine.thickness);
-  return run_loop(weighted_handle(), law, {.place_m = begin_m}, 1.5, [](double time_s) {
+  return run_loop(weighted_handle(), law, {.place_m = begin_m}, 5.0, [](double time_s) {
     return HandPush{.force_n = push_n * std::min(1.0, 0.5 + time_s)};
   });
 }
@@ -58,14 +59,15 @@ NamedCase exponential_depth(std::uint64_t) {
   const LawLimits limits = limits_of(weighted_handle(), law, tool, deepest_m);
   const double passive_m = limits.depth_m.value_or(deepest_m);
   const Trace failing = lean({});
-  const Trace holding = lean({.passive_m = passive_m});
-  const double rest_m =
-      passive_m + (push_n - intestine.elastic_force(passive_m)) / intestine.stiffness(passive_m);
+  const double kept_m = intestine.depth_at_stiffness(margin * intestine.stiffness(passive_m));
+  const Trace holding = lean({.limit_m = kept_m});
+  const double rest_m = kept_m + (push_n - intestine.elastic_force(kept_m)) / intestine.stiffness(kept_m);
   return {.where = "001, eq. 11",
           .what = "Exponential tissue stiffens with its own force, so that at some depth no sampled loop is "
                   "passive any more: pressed harder, it hums.",
-          .remedy = "The law ends at its passive depth on this device and goes on with the slope that it has "
-                    "there.",
+          .remedy = fmt::format("The law ends where its slope is {} of that at its passive depth on this device, and "
+                                "goes on with that slope.",
+                                margin),
           .limit = felt_n,
           .quantity = "ripple of the force",
           .without = judged(failing),
@@ -77,8 +79,8 @@ NamedCase exponential_depth(std::uint64_t) {
                                 1e3 * passive_m, push_n,
                                 1e3 * (rest_m - intestine.depth_at_stiffness(push_n * intestine.exponent /
                                                                              intestine.thickness))),
-          .picture = two_traces("4.5 N lean on exponential tissue", failing, "as it is", holding,
-                                fmt::format("limited at {:.0f} mm", 1e3 * passive_m))};
+          .picture = two_traces("6 N lean on exponential tissue", failing, "as it is", holding,
+                                fmt::format("limited at {:.0f} mm", 1e3 * kept_m))};
 }
 
 }  // namespace kerf::bench::cases

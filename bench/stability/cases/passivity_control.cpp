@@ -25,13 +25,18 @@ NamedCase passivity_control(std::uint64_t) {
   const WallForce wall{{.stiffness_n_per_m = stiffness}};
   const Trace failing = lean_on(device, wall);
   const Trace holding = lean_on(device, ControlledWall(wall, device, {stiffness}));
+  SampledDevice stepped = device;
+  stepped.encoder_step_m = scissors_handle().encoder_step_m;
+  const double stepped_n = ripple_n(lean_on(stepped, ControlledWall(wall, stepped, {stiffness})));
+  stepped.velocity_corner_rad_s = scissors_handle().velocity_corner_rad_s;
+  printf("enc %g %g\n", stepped_n, ripple_n(lean_on(stepped, ControlledWall(wall, stepped, {stiffness}))));
   return {.where = "literature (Hannaford and Ryu 2002)",
           .what = fmt::format("A wall {} times as stiff as the device's friction keeps passive hums under a "
                               "weight.",
                               share),
           .remedy = "A passivity controller: what the hold gave in a tick is braked away in the next.",
           .limit = felt_n,
-          .quantity = "ripple of the force over the last quarter of 1.5 s",
+          .quantity = "ripple of the force over the last quarter of 3 s",
           .without = judged(failing),
           .with = judged(holding),
           .theory = fmt::format("The spring leaks (K T / 2 - b) v^2 T a tick, so that the controller adds K T / "

@@ -8,14 +8,12 @@ constexpr std::size_t points_of_a_picture = 1200;
 double ripple_n(const Trace& trace, double share) {
   const std::size_t size = trace.force_n.size();
   const auto begin = size - static_cast<std::size_t>(share * static_cast<double>(size));
-  double sum = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = begin; i < size; ++i) {
-    sum += trace.force_n[i];
-    squares += trace.force_n[i] * trace.force_n[i];
-  }
   const auto count = static_cast<double>(size - begin);
-  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+  double mean = 0.0;
+  for (std::size_t i = begin; i < size; ++i) mean += trace.force_n[i] / count;
+  double squares = 0.0;
+  for (std::size_t i = begin; i < size; ++i) squares += std::pow(trace.force_n[i] - mean, 2);
+  return std::sqrt(squares / count);
 }
 
 Curve curve_of(const Trace& trace, std::string label, Colour colour) {
