@@ -58,7 +58,7 @@ class PassivityControlled {
     started_ = true;
     last_m_ = reading.place_m;
     drivers::Axes force{force_(reading)};
-    acted_ = observer_.control({reading.speed_m_s}, period_s_, force);
+    acted_ = observer_.control({travel_m / period_s_}, period_s_, force);
     held_n_ = force[0];
     return held_n_;
   }

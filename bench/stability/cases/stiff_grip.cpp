@@ -6,6 +6,7 @@
 #include "stability/cases/devices.h"
 #include "stability/cases/each_case.h"
 #include "stability/cases/trace.h"
+#include "stability/in_hand.h"
 #include "stability/wall_force.h"
 
 namespace kerf::bench::cases {
@@ -38,13 +39,13 @@ CaseOutcome judged(double ripple, std::string figure) {
 NamedCase stiff_grip(std::uint64_t) {
   const double boundary = first_change({.lower = 0.5, .upper = 100.0, .share = 1e-4}, [](double damping) {
     const Wall wall{.stiffness_n_per_m = tissue.stiffness_n_per_m, .damping_n_s_per_m = damping};
-    return spectral_radius(held(firm_grip), wall) < 1.0 && spectral_radius(held(loose_grip), wall) < 1.0;
+    return spectral_radius(held(stiffened_grip), wall) < 1.0 && spectral_radius(held(light_grip), wall) < 1.0;
   });
   const Wall damped_less{.stiffness_n_per_m = tissue.stiffness_n_per_m,
                          .damping_n_s_per_m = margin * boundary};
-  const Trace loose = press(loose_grip, tissue);
-  const Trace failing = press(firm_grip, tissue);
-  const Trace holding = press(firm_grip, damped_less);
+  const Trace loose = press(light_grip, tissue);
+  const Trace failing = press(stiffened_grip, tissue);
+  const Trace holding = press(stiffened_grip, damped_less);
   Chart picture = two_traces("A hand of 600 N/m presses a damped tissue", failing, "14.2 N·s/m", holding,
                              fmt::format("{:.1f} N·s/m", damped_less.damping_n_s_per_m));
   picture.curves.push_back(curve_of(loose, "14.2 N·s/m, hand of 200 N/m", Colour::green));
@@ -53,19 +54,21 @@ NamedCase stiff_grip(std::uint64_t) {
   const double held_ripple = ripple_n(holding);
   return {
       .where = "literature (Fu and Cavusoglu 2012 for the hands)",
-      .what = "A damped tissue that is at rest in a loose grip vibrates when the same hand stiffens: the loop "
+      .what = "A damped tissue that is at rest in a light grip vibrates when the same hand stiffens: the loop "
               "moves faster, and late damping pushes instead of braking.",
       .remedy = fmt::format("Less damping of the tissue: {} of what the eigenvalues pass in both grips.", margin),
       .limit = felt_n,
       .quantity = "ripple of the force over the last second of four, in the firm grip",
-      .without = judged(firm_ripple, fmt::format("{:.2g} N rms in the firm grip; {:.2g} N in the loose one",
+      .without = judged(firm_ripple, fmt::format("{:.2g} N rms in the firm grip; {:.2g} N in the light one",
                                                  firm_ripple, loose_ripple)),
       .with = judged(held_ripple, fmt::format("{:.2g} N rms in the firm grip", held_ripple)),
-      .theory = fmt::format("Largest eigenvalue: {:.5f} loose, {:.5f} firm. Both carry up to {:.1f} N·s/m. A "
-                            "grip that gains mass and damping in the same measure (0.2 kg, 8 N·s/m) stays "
-                            "stable: the case needs a hand that stiffens without them.",
-                            spectral_radius(held(loose_grip), tissue),
-                            spectral_radius(held(firm_grip), tissue), boundary),
+      .theory = fmt::format("Largest eigenvalue: {:.5f} in the light grip, {:.5f} in the firm one; both carry up "
+                            "to {:.1f} N·s/m. A grip that gains as much mass and damping as the range allows "
+                            "(0.2 kg, 8 N·s/m) stays stable, at {:.5f}: the case needs a hand that stiffens "
+                            "more than it damps.",
+                            spectral_radius(held(light_grip), tissue),
+                            spectral_radius(held(stiffened_grip), tissue), boundary,
+                            spectral_radius(held(firm_grip), tissue)),
       .picture = std::move(picture)};
 }
 
