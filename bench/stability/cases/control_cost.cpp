@@ -22,7 +22,8 @@ double tapped(double time_s) {
   return -above_m + (above_m + inside_m) * (in - out);
 }
 
-void tap(const SampledDevice& device, double stiffness, ControlCost& cost) {
+void tap(const SampledDevice& device, ControlCost& cost) {
+  const double stiffness = cost.stiffness_n_per_m;
   const WallForce own{{.stiffness_n_per_m = stiffness}};
   ControlledWall controlled(own, device, {stiffness});
   AxisSensor sensor(device);
@@ -50,6 +51,9 @@ void tap(const SampledDevice& device, double stiffness, ControlCost& cost) {
 
 ControlCosts control_costs() {
   const SampledDevice device = weighted_scissors();
+  SampledDevice perfect = device;
+  perfect.encoder_step_m = 0.0;
+  perfect.velocity_corner_rad_s = 0.0;
   const double passive = 2.0 * device.viscous_n_s_per_m / device.period_s;
   ControlCosts costs;
   Curve worst{.label = "worst difference", .colour = Colour::vermillion, .width = 2.0};
@@ -60,7 +64,10 @@ ControlCosts control_costs() {
     cost.holds_without = ripple_n(lean_on(device, wall)) <= felt_n;
     cost.holds_with =
         ripple_n(lean_on(device, ControlledWall(wall, device, {cost.stiffness_n_per_m}))) <= felt_n;
-    tap(device, cost.stiffness_n_per_m, cost);
+    tap(perfect, cost);
+    ControlCost stepped = cost;
+    tap(device, stepped);
+    cost.worst_with_encoder_n = stepped.worst_n;
     worst.x.push_back(share);
     worst.y.push_back(cost.worst_n);
     rms.x.push_back(share);
@@ -72,8 +79,10 @@ ControlCosts control_costs() {
                    .y_label = "force [N]",
                    .curves = {worst, rms},
                    .horizontal = {{.at = felt_n, .label = "0.05 N"}},
+                   .y_range = {0.0, 0.1},
+                   .legend_below = true,
                    .width_px = 640,
-                   .height_px = 260};
+                   .height_px = 280};
   return costs;
 }
 

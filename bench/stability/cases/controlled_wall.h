@@ -19,20 +19,17 @@ struct WallEnergy {
 };
 using ControlledWall = PassivityControlled<WallForce, WallEnergy>;
 
-/// The handle under a weight, with a perfect encoder and the plain difference as velocity: nothing but its own
-/// friction brakes it.
+/// The handle under a weight: nothing but its own friction brakes it.
 inline SampledDevice weighted_scissors() {
   SampledDevice device = scissors_handle();
-  device.encoder_step_m = 0.0;
-  device.velocity_corner_rad_s = 0.0;
   device.hand.mass_kg = 0.1;
   return device;
 }
 
-inline constexpr double leaning_n = 2.0;
-inline constexpr double above_wall_m = 10e-3;
+inline constexpr double leaning_n = 4.0;
+inline constexpr double above_wall_m = 5e-3;
 
-/// A weight of 2 N that falls on a wall from 10 mm above it.
+/// A weight of 4 N that falls on a wall from 5 mm above it.
 template <typename Force>
 [[nodiscard]] Trace lean_on(const SampledDevice& device, Force wall, double seconds = 3.0) {
   return run_loop(device, std::move(wall), {.place_m = -above_wall_m}, seconds,

@@ -25,7 +25,7 @@ CaseOutcome judged(const Trace& trace, std::string figure) {
   return {.holds = ripple <= felt_n,
           .measured = ripple,
           .unit = "N",
-          .figure = fmt::format("{:.2g} N rms {}", ripple, figure)};
+          .figure = fmt::format("{} rms {}", newtons(ripple), figure)};
 }
 
 }  // namespace
@@ -40,23 +40,25 @@ NamedCase delay(std::uint64_t) {
   const Trace holding = lean(late, margin * boundary);
   const double prompt_ripple = ripple_n(lean(prompt, stiffness_n_per_m));
   const double damping = late.damping_n_s_per_m();
-  return {.where = "literature (Diolaiti et al. 2006)",
-          .what = "A wall that is at rest under a hand at once vibrates when the force comes a few milliseconds "
-                  "late.",
-          .remedy = fmt::format("A stiffness that the eigenvalues pass with the delay: {} of their boundary.",
-                                margin),
-          .limit = felt_n,
-          .quantity = "ripple of the force over the last quarter of a second",
-          .without = judged(failing, fmt::format("at {:.0f} N/m with {:.0f} ms; {:.2g} N without delay",
-                                                 stiffness_n_per_m, 1e3 * delay_s, prompt_ripple)),
-          .with = judged(holding, fmt::format("at {:.0f} N/m with the same delay", margin * boundary)),
-          .theory = fmt::format("Eigenvalues: up to {:.0f} N/m with the delay, {:.0f} N/m without; (b + B_h) / "
-                                "(t_d + T / 2) is {:.0f} N/m.",
-                                boundary, eigenvalue_boundary(prompt, 0.0, 1.0, 1e6),
-                                damping / (delay_s + 0.5 * late.period_s)),
-          .picture = two_traces("A hand leans on a wall through a delay of 4 ms", failing,
-                                fmt::format("{:.0f} N/m", stiffness_n_per_m), holding,
-                                fmt::format("{:.0f} N/m", margin * boundary))};
+  return {
+      .where = "literature (Diolaiti et al. 2006)",
+      .what =
+          "A wall that is at rest under a hand at once vibrates when the force comes a few milliseconds "
+          "late.",
+      .remedy =
+          fmt::format("A stiffness that the eigenvalues pass with the delay: {} of their boundary.", margin),
+      .limit = felt_n,
+      .quantity = "ripple of the force over the last quarter of a second",
+      .without = judged(failing, fmt::format("at {:.0f} N/m with {:.0f} ms; {} without delay",
+                                             stiffness_n_per_m, 1e3 * delay_s, newtons(prompt_ripple))),
+      .with = judged(holding, fmt::format("at {:.0f} N/m with the same delay", margin * boundary)),
+      .theory = fmt::format("Eigenvalues: up to {:.0f} N/m with the delay, {:.0f} N/m without; (b + B_h) / "
+                            "(t_d + T / 2) is {:.0f} N/m.",
+                            boundary, eigenvalue_boundary(prompt, 0.0, 1.0, 1e6),
+                            damping / (delay_s + 0.5 * late.period_s)),
+      .picture = two_traces("A hand leans on a wall through a delay of 4 ms", failing,
+                            fmt::format("{:.0f} N/m", stiffness_n_per_m), holding,
+                            fmt::format("{:.0f} N/m", margin * boundary))};
 }
 
 }  // namespace kerf::bench::cases

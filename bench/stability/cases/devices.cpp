@@ -4,7 +4,9 @@
 
 namespace kerf::bench {
 
-SampledDevice scissors_handle() { return sampled_device(drivers::open_device("sim:scissors")->info(), 0, 1000.0); }
+SampledDevice scissors_handle() {
+  return sampled_device(drivers::open_device("sim:scissors")->info(), 0, 1000.0);
+}
 
 SampledDevice linear_handle() {
   SampledDevice handle = scissors_handle();

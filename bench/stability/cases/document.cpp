@@ -31,15 +31,20 @@ std::string cases_as_markdown(const std::vector<NamedCase>& cases, const Control
   }
   text +=
       "\n### What passivity control costs\n\n"
-      "A tap of 2 mm at up to 0.19 m/s on walls from half to four times the passive stiffness. A difference of "
-      "1 JND is 7 % of\nthe force, or 0.05 N where that is more. A wall holds if a weight of 2 N that falls on "
-      "it comes to rest.\n\n"
+      "A tap of 2 mm at up to 0.19 m/s on walls from half to four times the passive stiffness. A difference "
+      "of "
+      "1 JND is 7 % of\nthe force, or 0.05 N where that is more. A wall holds if a weight of 4 N that falls "
+      "on "
+      "it comes to rest. All are\nmeasured with a perfect encoder but the last: the steps of an encoder leak "
+      "too, "
+      "also on a passive wall.\n\n"
       "| K over 2 b / T | K [N/m] | holds alone | holds controlled | rms [N] | worst [N] | rms [JND] | worst "
-      "[JND] |\n|---|---|---|---|---|---|---|---|\n";
+      "[JND] | worst with the encoder [N] |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const ControlCost& row : costs.rows) {
-    fmt::format_to(out, "| {:g} | {:.0f} | {} | {} | {:.3g} | {:.3g} | {:.2g} | {:.2g} |\n", row.share,
-                   row.stiffness_n_per_m, row.holds_without ? "yes" : "no", row.holds_with ? "yes" : "no",
-                   row.rms_n, row.worst_n, row.rms_jnd, row.worst_jnd);
+    fmt::format_to(out, "| {:g} | {:.0f} | {} | {} | {:.3f} | {:.3f} | {:.2f} | {:.2f} | {:.3f} |\n",
+                   row.share, row.stiffness_n_per_m, row.holds_without ? "yes" : "no",
+                   row.holds_with ? "yes" : "no", row.rms_n, row.worst_n, row.rms_jnd, row.worst_jnd,
+                   row.worst_with_encoder_n);
   }
   fmt::format_to(out, "\n![{}]({}/control_cost.svg)\n", costs.picture.title, folder);
   return text;

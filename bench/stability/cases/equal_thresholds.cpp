@@ -61,18 +61,20 @@ NamedCase equal_thresholds(std::uint64_t seed) {
   picture.x_range = {0.35, 1.65};
   const double step_n = 2.0 * peak_n / seconds * period_s;
   const double expected = 4.0 * noise_n / (std::sqrt(std::numbers::pi) * step_n);
-  return {.where = "000, section 3.5",
-          .what = "With one threshold for breaking in and for letting go, the noise of the force alone makes "
-                  "the tissue alternate between holding and being cut.",
-          .remedy = fmt::format("Two thresholds, {} N apart: ten times the noise.", gap_n),
-          .limit = 2.0,
-          .quantity = "transitions while the force passes the thresholds once up and once down",
-          .without = judged(failing),
-          .with = judged(holding),
-          .theory = fmt::format("4 s / (sqrt(pi) dF) = {:.0f} transitions are expected of noise s = {} N and a "
-                                "force that moves by dF = {:g} N a tick.",
-                                expected, noise_n, step_n),
-          .picture = std::move(picture)};
+  return {
+      .where = "000, section 3.5",
+      .what =
+          "With one threshold for breaking in and for letting go, the noise of the force alone makes "
+          "the tissue alternate between holding and being cut.",
+      .remedy = fmt::format("Two thresholds, {} N apart: ten times the noise.", gap_n),
+      .limit = 2.0,
+      .quantity = "transitions while the force passes the thresholds once up and once down",
+      .without = judged(failing),
+      .with = judged(holding),
+      .theory = fmt::format("4 s / (sqrt(pi) dF) = {:.0f} transitions are expected of noise s = {} N and a "
+                            "force that moves by dF = {:g} N a tick.",
+                            expected, noise_n, step_n),
+      .picture = std::move(picture)};
 }
 
 }  // namespace kerf::bench::cases

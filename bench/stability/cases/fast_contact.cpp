@@ -85,26 +85,30 @@ NamedCase fast_contact(std::uint64_t) {
   const double precontact_j = most_gained(speed_m_s, SoftContact{});
   const double leak = 0.5 * stiffness_n_per_m * device.period_s - device.viscous_n_s_per_m;
   Chart picture =
-      two_traces("Thrown at a wall of 1000 N/m at 0.8 m/s", bounce(speed_m_s, 0.5, stiff).speed, "plain wall",
-                 bounce(speed_m_s, 0.5, damped).speed, "with 1 N·s/m");
+      two_traces("Leaving a wall of 1000 N/m that was met at 0.8 m/s", bounce(speed_m_s, 0.5, stiff).speed,
+                 "plain wall", bounce(speed_m_s, 0.5, damped).speed, "with 1 N·s/m");
   picture.y_label = "speed [m/s]";
   picture.curves.push_back(
       curve_of(bounce(speed_m_s, 0.5, SoftContact{}).speed, "pre-contact of 3 mm", Colour::green));
+  picture.x_range = {0.028, 0.04};
+  picture.y_range = {-0.84, -0.6};
   picture.horizontal = {{.at = -speed_m_s}};
   return {
       .where = "literature (Abbott and Okamura 2005); models/precontact.h is 000's",
-      .what = "A wall that Coulomb friction keeps passive when it is met slowly throws back a fast tool faster "
-              "than it came.",
-      .remedy = fmt::format("Damping of {} N·s/m in the wall, more than the hold leaks. Meeting the wall "
-                            "through 3 mm of pre-contact does not do: it bends the first millimetres, and what "
-                            "leaks is K T v^2 / 2 along the whole way.",
-                            damping_n_s_per_m),
+      .what =
+          "A wall that Coulomb friction keeps passive when it is met slowly throws back a fast tool faster "
+          "than it came.",
+      .remedy =
+          fmt::format("Damping of {} N·s/m in the wall, more than the hold leaks. Meeting the wall "
+                      "through 3 mm of pre-contact does not do: it bends the first millimetres, and what "
+                      "leaks is K T v^2 / 2 along the whole way.",
+                      damping_n_s_per_m),
       .limit = 0.0,
       .quantity = "energy gained in a bounce at 0.8 m/s, at the worst moment of a tick",
       .without = judged(failing_j, fmt::format("{:+.2f} mJ; {:+.2f} mJ at {:.1f} m/s", 1e3 * failing_j,
                                                1e3 * slow_j, 0.25 * speed_m_s)),
-      .with = judged(holding_j, fmt::format("{:+.2f} mJ; with pre-contact instead {:+.2f} mJ", 1e3 * holding_j,
-                                            1e3 * precontact_j)),
+      .with = judged(holding_j, fmt::format("{:+.2f} mJ; with pre-contact instead {:+.2f} mJ",
+                                            1e3 * holding_j, 1e3 * precontact_j)),
       .theory = fmt::format("A stroke of constant speed gains past f_c / (K T / 2 - b) = {:.2f} m/s, half a "
                             "swing past 4 / pi times that, {:.2f} m/s.",
                             device.coulomb_n / leak, 4.0 / std::numbers::pi * device.coulomb_n / leak),

@@ -17,9 +17,8 @@ constexpr double into_wall_m_s = 10e-3;
 
 /// A hand that goes into the wall at 10 mm/s for a second and stays.
 Trace slow_press(const SampledDevice& device) {
-  return run_loop(device, WallForce{wall}, {}, seconds, [](double time_s) {
-    return HandPush{.place_m = into_wall_m_s * std::min(time_s, 1.0)};
-  });
+  return run_loop(device, WallForce{wall}, {}, seconds,
+                  [](double time_s) { return HandPush{.place_m = into_wall_m_s * std::min(time_s, 1.0)}; });
 }
 
 struct Hum {
@@ -58,23 +57,26 @@ NamedCase quantised_velocity(std::uint64_t) {
   filtered.velocity_corner_rad_s = corner_rad_s;
   const Hum holding = hum_of(filtered);
   const double count_n = wall.damping_n_s_per_m * device.encoder_step_m / device.period_s;
-  return {.where = "literature (Colgate and Brown 1994); the encoder of 004",
-          .what = "A damped wall on the plain difference of a coarse encoder hums: one count reads as a speed "
-                  "of a step over a period.",
-          .remedy = fmt::format("A first-order filter of the velocity, corner {} rad/s, at which the loop still "
-                                "damps; or an encoder 16 times as fine.",
-                                corner_rad_s),
-          .limit = felt_n,
-          .quantity = "rms of the force about that of the same loop with a perfect encoder",
-          .without = judged(failing.rms_n, fmt::format("{:.3g} N rms", failing.rms_n)),
-          .with = judged(holding.rms_n, fmt::format("{:.3g} N rms; the finer encoder unfiltered {:.3g} N",
-                                                    holding.rms_n, fine.rms_n)),
-          .theory = fmt::format("One count is a force B delta / T = {:.2f} N; through the filter {:.3f} N, the "
-                                "share 1 - exp(-w T). Eigenvalues of the loop: {:.4f} plain, {:.4f} filtered.",
-                                count_n, count_n * filtered.velocity_gain(), spectral_radius(device, wall),
-                                spectral_radius(filtered, wall)),
-          .picture = two_traces("Into a damped wall at 10 mm/s", failing.trace, "plain difference", holding.trace,
-                                "filtered")};
+  return {
+      .where = "literature (Colgate and Brown 1994); the encoder of 004",
+      .what =
+          "A damped wall on the plain difference of a coarse encoder rattles as soon as the hand moves: one "
+          "count reads as a speed "
+          "of a step over a period.",
+      .remedy = fmt::format("A first-order filter of the velocity, corner {} rad/s, at which the loop still "
+                            "damps; or an encoder 16 times as fine.",
+                            corner_rad_s),
+      .limit = felt_n,
+      .quantity = "rms of the force about that of the same loop with a perfect encoder",
+      .without = judged(failing.rms_n, fmt::format("{} rms", newtons(failing.rms_n))),
+      .with = judged(holding.rms_n, fmt::format("{} rms; the finer encoder unfiltered {}",
+                                                newtons(holding.rms_n), newtons(fine.rms_n))),
+      .theory = fmt::format("One count is a force B delta / T = {:.2f} N; through the filter {:.3f} N, the "
+                            "share 1 - exp(-w T). Eigenvalues of the loop: {:.4f} plain, {:.4f} filtered.",
+                            count_n, count_n * filtered.velocity_gain(), spectral_radius(device, wall),
+                            spectral_radius(filtered, wall)),
+      .picture = two_traces("Into a damped wall at 10 mm/s", failing.trace, "plain difference", holding.trace,
+                            "filtered")};
 }
 
 }  // namespace kerf::bench::cases

@@ -31,6 +31,9 @@ inline constexpr double felt_n = 0.05;
 /// rms of a force about its mean over the last `share` of a trace [N].
 [[nodiscard]] double ripple_n(const Trace& trace, double share = 0.25);
 
+/// A force as a reader wants it: "0.36 N", "below 0.001 N", "beyond 1000 N".
+[[nodiscard]] std::string newtons(double force_n);
+
 /// A curve of a trace, thinned for a small picture.
 [[nodiscard]] Curve curve_of(const Trace& trace, std::string label, Colour colour);
 
