@@ -10,11 +10,6 @@
 
 namespace kerf::bench {
 
-/// A rendering that stores nothing that is known.
-struct NothingStored {
-  double operator()(double) const noexcept { return 0.0; }
-};
-
 /// What a passivity controller takes for the speed.
 enum class BrakeOn { travel, read_velocity };
 
@@ -24,23 +19,21 @@ enum class BrakeOn { travel, read_velocity };
 ///     E += -F_held dx - dU + b v^2 T
 ///
 /// dx is the travel that was read in a tick, U(x) the energy that the rendering means to store at a place, b
-/// the viscous friction of the device and v its read velocity. Without U the observer has all that was
-/// pressed into a wall as a reserve that a hum may use up; without b it would brake walls that the device
-/// keeps passive by itself. Coulomb friction is left out of the account.
-///
-/// What is left over in a tick is not saved up (E <= 0): a tool that came through free air would else have
-/// paid for a hum.
+/// the viscous friction of the device and v its read velocity. Without U all that was pressed into a wall
+/// would be a reserve that a hum may use up; without b walls would be braked that the device keeps passive by
+/// itself. Coulomb friction is left out of the account. What is left over in a tick is not saved up (E <= 0):
+/// a tool that came through free air would else have paid for a hum.
 ///
 /// The controller brakes on the travel of the last tick. On the velocity of a driver, which lags behind by
 /// its filter, it may push where it means to brake; that is here to be shown.
 ///
 /// Of a spring, with U = K x^2 / 2 and the plain difference as v, each tick leaves (b - K T / 2) v^2 T: the
 /// controller never acts up to K = 2 b / T, and beyond adds the damping that is missing, K T / 2 - b.
-template <typename Force, typename Stored = NothingStored>
+template <typename Force, typename Stored>
 class PassivityControlled {
  public:
   /// @throws std::invalid_argument if the device has a delay: what brakes late does not brake.
-  PassivityControlled(Force force, const SampledDevice& device, Stored stored = {},
+  PassivityControlled(Force force, const SampledDevice& device, Stored stored,
                       BrakeOn brake_on = BrakeOn::travel)
       : force_(std::move(force)),
         stored_(std::move(stored)),
