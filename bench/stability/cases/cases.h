@@ -35,8 +35,8 @@ struct NamedCase {
 /// Names of all cases, in the order in which they are told.
 [[nodiscard]] std::vector<std::string_view> case_names();
 
-/// Runs the named cases, in that order; all if no name is given. One seed gives the same numbers on any
-/// machine, and 2 s of arithmetic suffice for all.
+/// Runs the named cases, in that order; all if no name is given. One seed gives the same numbers at
+/// any time; all of them take well under a second.
 /// @throws std::invalid_argument for an unknown name, listing the known ones.
 [[nodiscard]] std::vector<NamedCase> run_cases(const std::vector<std::string>& names, std::uint64_t seed);
 

@@ -146,8 +146,8 @@ NamedCase fracture_at_low_rate(std::uint64_t) {
   picture.x_range = {0.8, 1.6};
   return {.where = "001, section 4.3",
           .what =
-              "Work counted as F dx tick by tick, with the fracture noticed at a tick, makes energy out of "
-              "nothing; the lower the rate, the more.",
+              "Work counted as F dx tick by tick, with the fracture noticed at a tick, does not add up to "
+              "what is stored and what became crack; the lower the rate, the less.",
           .remedy =
               "Books kept from the path: the tissue yields where its energy reaches the yield energy, within "
               "a tick if need be, and the rest of the tick's travel is cut. The one tick without force "

@@ -87,7 +87,7 @@ NamedCase velocity_sign(std::uint64_t) {
       .where = "004, section 3.1",
       .what =
           "A law that chooses its branch by the sign of a filtered velocity is a relay behind a lag: "
-          "where the hand holds still, it switches to and fro for ever.",
+          "where a hand has let go a little and holds still, it switches to and fro for ever.",
       .remedy = fmt::format(
           "A linear ramp of the force around zero velocity, {} rad/s wide to each side; its price is that "
           "nothing is felt where the hand rests.",

@@ -12,6 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/drivers/hand.h>
+#include <kerf/drivers/simulated_scissors.h>
 #include <kerf/models/lattice.h>
 #include <kerf/models/law.h>
 
@@ -20,6 +22,7 @@
 #include "stability/cases/controlled_wall.h"
 #include "stability/cases/document.h"
 #include "stability/in_hand.h"
+#include "stability/law_force.h"
 
 namespace kerf::bench {
 namespace {
@@ -77,6 +80,29 @@ TEST(Cases, RefuseANameThatNoneHas) {
                   testing::HasSubstr("'velocity_signs'"), testing::HasSubstr("fast_contact"))));
 }
 
+/// Ripple of 1.5 N to and fro, chosen by the velocity's sign with a band, where a hand came back and rests.
+double ripple_with_band(double band_rad_s) {
+  const double values[] = {0.0, 1.0, 1.5, 1.5, -0.75, -0.75};
+  const AxisLaw law{
+      models::Law::make("piecewise", values, {{"segments", 1.0}, {"loop", true}, {"ramp_band", band_rad_s}}),
+      drivers::SimulatedScissors::lever_m};
+  SampledDevice device = scissors_handle();
+  device.hand = stylus_grip;
+  device.velocity_corner_rad_s = 10.0;
+  return ripple_n(run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
+    return HandPush{.place_m = 8e-3 * drivers::MinimumJerk::at(time_s / 0.6).place -
+                               2e-3 * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).place};
+  }));
+}
+
+TEST(VelocitySign, NeedsABandWiderThanTheEncodersStepAllows) {
+  const SampledDevice device = scissors_handle();
+  const double narrowest =
+      1.5 * 10.0 * device.encoder_step_m / (2.0 * device.coulomb_n * drivers::SimulatedScissors::lever_m);
+  EXPECT_GT(ripple_with_band(0.6 * narrowest), felt_n);
+  EXPECT_LT(ripple_with_band(3.0 * narrowest), felt_n);
+}
+
 TEST(EqualThresholds, AlternateAsOftenAsTheNoiseSays) {
   constexpr int seeds = 60;
   double sum = 0.0;
@@ -124,6 +150,13 @@ TEST(EulerLattice, BlowsUpFromTheStableStepOn) {
   EXPECT_GT(breathing(1.01), 1.0);
 }
 
+TEST(FractureAtLowRate, MissesHalfATicksTravelTimesTheForce) {
+  const NamedCase it = run_cases({"fracture_at_low_rate"}, 1).front();
+  const double noticed_n = 4.3e-7 * std::exp(13.0 * 0.12 / 0.1);  // the first tick of 2 mm past 118.1 mm
+  EXPECT_NEAR(it.picture.curves[0].y.back(), 1e3 * 0.5 * noticed_n * 2e-3, 0.15) << "mJ";
+  EXPECT_LT(it.picture.curves[1].y.back(), 1e-6);
+}
+
 TEST(Delay, AHandOnAWallVibratesFromTheEigenvaluesBoundaryOn) {
   SampledDevice late = linear_handle();
   late.hand = stylus_grip;
@@ -160,6 +193,18 @@ TEST(FastContact, GainsPastFourOverPiTimesTheSpeedOfAbbottAndOkamura) {
   const double speed = 4.0 / std::numbers::pi * 0.1 / (0.5 * 1000.0 * 1e-3 - 0.2);
   EXPECT_LT(mean_gain(device, 0.9 * speed), 0.0);
   EXPECT_GT(mean_gain(device, 1.1 * speed), 0.0);
+}
+
+TEST(StiffGrip, TurnsTheEigenvaluesOut) {
+  SampledDevice device = linear_handle();
+  device.delay_s = 8e-3;
+  const Wall tissue{.stiffness_n_per_m = 100.0, .damping_n_s_per_m = 14.2};
+  device.hand = light_grip;
+  EXPECT_LT(spectral_radius(device, tissue), 1.0);
+  device.hand = stiffened_grip;
+  EXPECT_GT(spectral_radius(device, tissue), 1.0);
+  device.hand = firm_grip;
+  EXPECT_LT(spectral_radius(device, tissue), 1.0) << "with all the mass and damping of the range";
 }
 
 TEST(StiffGrip, LiesWithinWhatWasMeasuredOfHands) {
