@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <kerf/drivers/device.h>
+#include <kerf/schema/recording.h>
+
+#include "choose/choose.h"
+#include "laws/law_file.h"
+
+namespace kerf::bench {
+
+struct LoopCheckOptions {
+  std::string device_uri;  ///< empty: device_for() the recording
+  double seconds = 2.0;    ///< of a run by the wall clock
+  double rate_hz = 1000.0;
+  double margin = 0.5;  ///< share of the period that 99.9 % of the ticks may compute for, at most 0.5
+};
+
+/// The device on which a recording was simulated; else the first simulated one with an axis of its units.
+/// @throws std::invalid_argument if there is none.
+[[nodiscard]] std::string device_for(const schema::Recording& recording, std::size_t axis);
+
+/// Laws in closed loop with a device and the hand that holds it.
+///
+/// The axis of a recording is seldom that of the device: a law that the hand would hardly meet is placed so
+/// that it goes as deep as it did in the recording, or through the whole range of the hand if that is less.
+class LoopChecks {
+ public:
+  /// @throws drivers::DeviceError (no such device), std::invalid_argument (no axis of these units).
+  LoopChecks(LoopCheckOptions options, const schema::Recording& recording, std::size_t axis,
+             const models::Contact& contact, const std::atomic<bool>& stop);
+
+  /// By the wall clock. Where the machine alone was late, up to three times.
+  [[nodiscard]] Deadline deadline(const LawFile& law) const;
+
+  /// In virtual time, on a simulated device: nothing if fewer than one tick in a thousand hits a limit of
+  /// force or slew, and what the rendering gives to the hand does not grow from one half of the run to the
+  /// next. On a real device, nothing is known.
+  [[nodiscard]] std::optional<std::string> instability(const LawFile& law) const;
+
+  [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
+  [[nodiscard]] bool simulated() const noexcept { return simulated_; }
+  /// Where a law was moved to, in words; empty if it stands where it was recorded.
+  [[nodiscard]] const std::string& placed_in_words() const noexcept { return placed_in_words_; }
+
+ private:
+  [[nodiscard]] LawFile placed(LawFile law) const;
+
+  LoopCheckOptions options_;
+  const std::atomic<bool>& stop_;
+  bool simulated_ = true;
+  std::optional<models::Contact> placed_at_;
+  std::string placed_in_words_;
+};
+
+}  // namespace kerf::bench
