@@ -137,10 +137,11 @@ void refuse_to_replace_choice(const std::filesystem::path& folder, bool replace)
 void write_choice(LawChoice& choice, const json& json, const std::filesystem::path& recording,
                   const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  if (choice.taken) {
-    Candidate& taken = choice.candidates.at(*choice.taken);
-    taken.fit->file.fit.recording_sha256 = sha256_of(recording);
-    write_law_file(folder / (taken.law.name + ".law.toml"), taken.fit->file);
+  for (const auto& place : {choice.taken, choice.as_good}) {
+    if (!place) continue;
+    Candidate& law = choice.candidates.at(*place);
+    law.fit->file.fit.recording_sha256 = sha256_of(recording);
+    write_law_file(folder / (law.law.name + ".law.toml"), law.fit->file);
   }
   write_whole_file(folder / "choose.csv", choice_csv(choice));
   write_whole_file(folder / "choose.html", choice_page(json, recording, choice));

@@ -18,8 +18,9 @@ namespace kerf::bench {
 /// @throws std::invalid_argument if a file that write_choice() always writes stands in the folder.
 void refuse_to_replace_choice(const std::filesystem::path& folder, bool replace);
 
-/// Writes choose.json, choose.csv, choose.html and NAME.law.toml of the law that was taken into a folder, the
-/// recording's checksum added. `json` is the choice's, with whatever the caller added.
+/// Writes choose.json, choose.csv, choose.html and NAME.law.toml of the law that was taken, and of the one
+/// that is as good, into a folder; the recording's checksum is added. `json` is the choice's, with whatever
+/// the caller added.
 /// @throws std::system_error.
 void write_choice(LawChoice& choice, const nlohmann::ordered_json& json,
                   const std::filesystem::path& recording, const std::filesystem::path& folder);

@@ -37,6 +37,7 @@ class Walk {
     if (options.fit.folds < 2)
       throw std::invalid_argument("a law is chosen by held-out data: at least 2 folds are needed");
     choice_.settings = options.fit;
+    if (options.richer_too) segmented_memory_ = fitting::remember_segments(options.candidates.most_segments);
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
     const FitSeries series = fit_series(recording, options.axis, choice_.contact);
     if (series.axis.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
@@ -118,6 +119,7 @@ class Walk {
     settings.threads = 1;
     settings.intervals = fitting::Intervals::white;  // those of the law that is taken follow
     settings.profile = false;
+    settings.segmented_memory = segmented_memory_;
     RecordingFit fit = fit_of(candidate.law, std::move(settings));
     if (fit.laws.empty()) {
       candidate.why = fit.refusals.empty() ? "it could not be fitted" : fit.refusals.front().why;
@@ -224,10 +226,16 @@ class Walk {
       return fitted(one) && left_out(one.error_n, best->error_n) <= choice_.jnd_n;
     });
     choice_.as_good = static_cast<std::size_t>(good - all.begin());
-    const std::string error = std::move(best->why);
-    best->why.clear();
-    (void)passes_checks(*best);
-    best->why = best->why.empty() ? error : error + "; " + best->why;
+    check_all_the_same(*best);
+    if (good != best) check_all_the_same(*good);
+  }
+
+  /// A law that was passed over already.
+  void check_all_the_same(Candidate& candidate) {
+    const std::string before = std::move(candidate.why);
+    candidate.why.clear();
+    (void)passes_checks(candidate);
+    candidate.why = candidate.why.empty() ? before : before + "; " + candidate.why;
     choice_.in_doubt = false;
   }
 
@@ -281,6 +289,7 @@ class Walk {
   LawChoice choice_;
   std::vector<models::Motion> motion_;
   double period_s_ = 1e-3;
+  std::shared_ptr<fitting::SegmentedMemory> segmented_memory_;
 };
 
 }  // namespace

@@ -9,13 +9,17 @@
 namespace kerf::bench {
 namespace {
 
+constexpr double as_good = 0.99;
+
 struct Best {
   const Candidate* least_error = nullptr;
   const Candidate* simplest_within = nullptr;
 
   void consider(const Candidate& candidate) {
     if (!candidate.fit || !candidate.fit->result.converged) return;
-    if (least_error == nullptr || candidate.error_n < least_error->error_n) least_error = &candidate;
+    // Of laws that are as good as each other the simplest, which comes first.
+    if (least_error == nullptr || candidate.error_n < as_good * least_error->error_n)
+      least_error = &candidate;
     if (simplest_within == nullptr && candidate.within_jnd) simplest_within = &candidate;
   }
 };
