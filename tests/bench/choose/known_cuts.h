@@ -16,7 +16,7 @@ struct KnownCut {
   double rate_hz = 200.0;
   double depth = 0.4;  ///< of a stroke [rad or m]
   double noise_n = 0.02;
-  double encoder_step = 1e-3;
+  double encoder_step = 1e-4;  ///< [rad or m]
   const char* position_unit = "rad";
   bool with_cycles = true;
   std::uint64_t seed = 1;
@@ -48,7 +48,8 @@ inline schema::Recording cut_of(const models::Law& law, const KnownCut& cut = {}
     x_before = seen;
     recording.force_measured.push_back(law.step(state, models::Motion{x, v}, period_s).force + noise(random));
   };
-  const auto stroke = [&](std::uint32_t cycle, schema::Phase phase, double from, double to, double duration_s) {
+  const auto stroke = [&](std::uint32_t cycle, schema::Phase phase, double from, double to,
+                          double duration_s) {
     const std::size_t begin = recording.rows();
     const auto rows = static_cast<std::size_t>(duration_s * cut.rate_hz);
     for (std::size_t i = 0; i < rows; ++i) {
