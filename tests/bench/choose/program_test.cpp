@@ -54,7 +54,7 @@ TEST_F(ProgramChoose, WritesTheLawItsTablesAndAPage) {
   EXPECT_THAT(test::read_text(path("choice") + "/choose.csv"), HasSubstr("maxwell-2,maxwell,5,"));
   EXPECT_THAT(test::read_text(path("choice") + "/choose.html"),
               AllOf(HasSubstr("<svg"), HasSubstr("Which effects matter"), HasSubstr("kelvin")));
-  EXPECT_THAT(test::read_text(path("choice") + "/kelvin.law.toml"), HasSubstr("recording_sha256"));
+  EXPECT_THAT(test::read_text(path("choice") + "/kelvin.law.toml"), HasSubstr("sha256 = '"));
   expect_refusal({cut, "-o", path("choice"), "--no-loop"}, 2, "--force");
 }
 
@@ -110,7 +110,7 @@ TEST_F(ProgramChoose, RefusesWithOneLine) {
   expect_refusal({}, 2, "name a recording, or a scene");
   expect_refusal({"missing.h5"}, 2, "missing.h5");
   expect_refusal({cut, "--device", "sim:spoon"}, 3, "sim:spoon");
-  expect_refusal({cut, "--device", "sim:premium"}, 2, "theta");
+  expect_refusal({cut, "--device", "sim:premium"}, 2, "no axis of sim:premium");
   expect_refusal({cut, "--axis", "phi"}, 2, "theta");
   expect_refusal({"--scene", "a.toml"}, 2, "-o");
   recording.force_measured.clear();
