@@ -69,8 +69,8 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
   const DrawnUnit unit = drawn_position(axis);
   const AxisSeries series = fit_series(recording, axis_place, choice.contact).axis;
   const auto rendered = render(without_rendering_aids(taken.fit->file.law), series);
-  Curve measured{.label = "recorded", .colour = Colour::grey, .mark = Mark::points, .width = 0.3};
-  Curve law{.label = taken.law.name, .colour = Colour::vermillion, .mark = Mark::points, .width = 0.3};
+  Curve measured{.label = "recorded", .colour = Colour::grey, .mark = Mark::points, .width = 1.2};
+  Curve law{.label = taken.law.name, .colour = Colour::vermillion, .mark = Mark::points, .width = 1.2};
   const std::size_t step = std::max<std::size_t>(1, series.force.size() / 4000);
   for (std::size_t i = 0; i < series.force.size(); i += step) {
     const double position = unit.factor * series.penetration[i];
@@ -88,9 +88,9 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
 }  // namespace
 
 Chart choice_chart(const json& all) {
-  Curve within{.label = "within the JND", .colour = Colour::blue, .mark = Mark::points, .width = 1.2};
-  Curve beyond{.label = "passed over", .colour = Colour::grey, .mark = Mark::points, .width = 1.2};
-  Curve taken{.label = "taken", .colour = Colour::vermillion, .mark = Mark::points, .width = 2.4};
+  Curve within{.label = "within the JND", .colour = Colour::blue, .mark = Mark::points, .width = 4.0};
+  Curve beyond{.label = "passed over", .colour = Colour::grey, .mark = Mark::points, .width = 4.0};
+  Curve taken{.label = "taken", .colour = Colour::vermillion, .mark = Mark::points, .width = 6.0};
   for (const json& one : all.at("candidates")) {
     if (one.at("held_out_jnd").is_null()) continue;
     Curve& curve = one.at("law") == all.at("choice").at("law") ? taken
@@ -109,6 +109,7 @@ Chart choice_chart(const json& all) {
   }
   chart.horizontal.push_back({.at = 1.0, .label = "JND"});
   chart.x_range = {1.8, 260.0};
+  const auto errors = [&](const Curve& curve) { return curve.y; };
   return chart;
 }
 
