@@ -33,20 +33,22 @@ json deadline_as_json(const std::optional<Deadline>& deadline) {
 }
 
 json candidate_as_json(const Candidate& candidate) {
-  return {{"law", candidate.law.name},
-          {"model", candidate.law.model},
-          {"options", candidate.law.law_options},
-          {"parameters", candidate.law.parameters},
-          {"effects", names_of(candidate.law.effects)},
-          {"converged", candidate.fit && candidate.fit->result.converged},
-          {"rmse", candidate.fit ? number(candidate.fit->result.rmse) : json(nullptr)},
-          {"held_out", number(candidate.error_n)},
-          {"held_out_jnd", number(candidate.error_jnd)},
-          {"within_jnd", candidate.within_jnd},
-          {"tick_us", candidate.tick_us},
-          {"deadline", deadline_as_json(candidate.deadline)},
-          {"stable", candidate.stable ? json(*candidate.stable) : json(nullptr)},
-          {"passed_over", candidate.why}};
+  json result{{"law", candidate.law.name},
+              {"model", candidate.law.model},
+              {"options", candidate.law.law_options},
+              {"parameters", candidate.law.parameters},
+              {"effects", names_of(candidate.law.effects)},
+              {"converged", candidate.converged},
+              {"rmse", candidate.fit ? number(candidate.fit->result.rmse) : json(nullptr)},
+              {"held_out", number(candidate.error_n)},
+              {"held_out_jnd", number(candidate.error_jnd)},
+              {"within_jnd", candidate.within_jnd},
+              {"tick_us", candidate.tick_us},
+              {"deadline", deadline_as_json(candidate.deadline)},
+              {"stable", candidate.stable ? json(*candidate.stable) : json(nullptr)},
+              {"passed_over", candidate.why}};
+  if (std::isfinite(candidate.error_torque_n_m)) result["held_out_torque"] = candidate.error_torque_n_m;
+  return result;
 }
 
 json effect_as_json(const EffectVerdict& verdict) {
@@ -140,8 +142,8 @@ void write_choice(LawChoice& choice, const json& json, const std::filesystem::pa
   for (const auto& place : {choice.taken, choice.as_good}) {
     if (!place) continue;
     Candidate& law = choice.candidates.at(*place);
-    law.fit->file.fit.recording_sha256 = sha256_of(recording);
-    write_law_file(folder / (law.law.name + ".law.toml"), law.fit->file);
+    if (!recording.empty()) law.file->fit.recording_sha256 = sha256_of(recording);
+    write_law_file(folder / (law.law.name + ".law.toml"), *law.file);
   }
   write_whole_file(folder / "choose.csv", choice_csv(choice));
   write_whole_file(folder / "choose.html", choice_page(json, recording, choice));

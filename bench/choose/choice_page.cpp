@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "fits/fit_series.h"
+#include "recordings/axes.h"
 #include "report/charts.h"
 #include "report/html.h"
 
@@ -68,7 +69,7 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
   const schema::Axis& axis = recording.axes[axis_place];
   const DrawnUnit unit = drawn_position(axis);
   const AxisSeries series = fit_series(recording, axis_place, choice.contact).axis;
-  const auto rendered = render(without_rendering_aids(taken.fit->file.law), series);
+  const auto rendered = render(without_rendering_aids(taken.file->law), series);
   Curve measured{.label = "recorded", .colour = Colour::grey, .mark = Mark::points, .width = 1.2};
   Curve law{.label = taken.law.name, .colour = Colour::vermillion, .mark = Mark::points, .width = 1.2};
   const std::size_t step = std::max<std::size_t>(1, series.force.size() / 4000);
@@ -88,6 +89,7 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
 }  // namespace
 
 Chart choice_chart(const json& all) {
+  const bool fidelities = !all.contains("recording");  // of one law: they have as many parameters
   Curve within{.label = "within the JND", .colour = Colour::blue, .mark = Mark::points, .width = 4.0};
   Curve beyond{.label = "passed over", .colour = Colour::grey, .mark = Mark::points, .width = 4.0};
   Curve taken{.label = "taken", .colour = Colour::vermillion, .mark = Mark::points, .width = 6.0};
@@ -96,11 +98,12 @@ Chart choice_chart(const json& all) {
     Curve& curve = one.at("law") == all.at("choice").at("law") ? taken
                    : one.at("within_jnd").get<bool>()          ? within
                                                                : beyond;
-    curve.x.push_back(one.at("parameters").get<double>());
+    curve.x.push_back(one.at(fidelities ? "tick_us" : "parameters").get<double>());
     curve.y.push_back(one.at("held_out_jnd").get<double>());
   }
-  Chart chart{.title = "Error on held-out data against the number of parameters",
-              .x_label = "parameters",
+  Chart chart{.title = fidelities ? "Error against the cost of a tick"
+                                  : "Error on held-out data against the number of parameters",
+              .x_label = fidelities ? "cost of a tick [us]" : "parameters",
               .y_label = "error [JND]",
               .log_x = true,
               .log_y = true};
@@ -108,28 +111,26 @@ Chart choice_chart(const json& all) {
     if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
   }
   chart.horizontal.push_back({.at = 1.0, .label = "JND"});
-  chart.x_range = {1.8, 260.0};
-  const auto errors = [&](const Curve& curve) { return curve.y; };
+  if (!fidelities) chart.x_range = {1.8, 260.0};
   return chart;
 }
 
 std::string choice_page(const json& all, const std::filesystem::path& file, const LawChoice& choice) {
-  const schema::Recording recording = schema::read_recording(file);
-  const std::string name = file.stem().string();
   const json& made = all.at("choice");
-  std::string body =
-      fmt::format("<h1>Which law serves {}</h1>\n<p class=\"soft\">Axis {}, {}</p>\n", escaped(name),
-                  escaped(all.at("axis").get<std::string>()), escaped(choice.held_out));
+  const auto name = all.at("name").get<std::string>();
+  std::string body = fmt::format("<h1>Which law serves {}</h1>\n<p class=\"soft\">{}</p>\n", escaped(name),
+                                 escaped(choice.held_out));
   body += fmt::format("<p class=\"answer{}\">{}.</p>\n", choice.serves ? "" : " bad", escaped(choice.why));
   for (const std::string& warning : choice.warnings)
     body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(warning));
-  if (choice.taken) {
-    std::size_t axis = 0;
-    while (recording.axes[axis].name != all.at("axis").get<std::string>()) ++axis;
+  if (choice.taken && !file.empty()) {
+    const schema::Recording recording = schema::read_recording(file);
+    const std::size_t axis = find_axis(recording, all.at("axis").get<std::string>());
     body += figure(law_chart(recording, axis, choice));
-    if (made.at("parameters").size() <= 40) body += parameter_table(made.at("parameters"));
+    body += "<details><summary>Its parameters</summary>\n" + parameter_table(made.at("parameters")) +
+            "</details>\n";
   }
-  body += "<h2>Which effects matter</h2>\n" + effect_table(all);
+  if (!choice.effects.empty()) body += "<h2>Which effects matter</h2>\n" + effect_table(all);
   body += "<h2>All candidates</h2>\n" + figure(choice_chart(all)) + candidate_table(all);
   return html_page(name, body);
 }

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "choose/choose.h"
+#include "choose/walk.h"
 #include "report/plot.h"
 
 namespace kerf::bench {

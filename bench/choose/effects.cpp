@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "choose/choose.h"
+#include "choose/walk.h"
 
 namespace kerf::bench {
 namespace {
@@ -16,7 +16,7 @@ struct Best {
   const Candidate* simplest_within = nullptr;
 
   void consider(const Candidate& candidate) {
-    if (!candidate.fit || !candidate.fit->result.converged) return;
+    if (!candidate.file || !candidate.converged) return;
     // Of laws that are as good as each other the simplest, which comes first.
     if (least_error == nullptr || candidate.error_n < as_good * least_error->error_n)
       least_error = &candidate;

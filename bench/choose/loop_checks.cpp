@@ -88,20 +88,20 @@ std::string device_for(const schema::Recording& recording, std::size_t axis) {
                   wanted.force_unit, wanted.position_unit));
 }
 
-LoopChecks::LoopChecks(LoopCheckOptions options, const schema::Recording& recording, std::size_t axis,
-                       const models::Contact& contact, const std::atomic<bool>& stop)
-    : options_(std::move(options)), stop_(stop) {
-  if (options_.device_uri.empty()) options_.device_uri = device_for(recording, axis);
-  simulated_ = options_.device_uri.starts_with("sim:");
-  if (!simulated_) return;
-  const drivers::DeviceInfo info = drivers::open_device(options_.device_uri)->info();
+LoopChecks::LoopChecks(LoopCheckOptions options, const std::atomic<bool>& stop)
+    : options_(std::move(options)),
+      stop_(stop),
+      device_(drivers::open_device(options_.device_uri, {.stop = &stop})->info()) {}
+
+void LoopChecks::place(const schema::Recording& recording, std::size_t axis, const models::Contact& contact) {
   const schema::Axis& about = recording.axes.at(axis);
   const LawFile any{.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0}),
                     .contact = contact,
                     .axis = about.name,
                     .position_unit = about.position_unit,
                     .force_unit = about.force_unit};
-  const std::size_t on = axis_for(any, info);
+  const std::size_t on = axis_for(any, device_);
+  if (!device_.simulated) return;
   const Travel travel = travel_of_hand(options_.device_uri, on);
   placed_at_ = better_contact(travel, deepest(recording, axis, contact), contact);
   if (!placed_at_) return;
@@ -110,7 +110,7 @@ LoopChecks::LoopChecks(LoopCheckOptions options, const schema::Recording& record
       "for the closed loop the laws begin at {:.3g} {} of {}, where its hand, which moves from {:.3g} to "
       "{:.3g} "
       "{}, meets them",
-      unit.factor * placed_at_->position, unit.unit, info.axes[on].name, unit.factor * travel.lower,
+      unit.factor * placed_at_->position, unit.unit, device_.axes[on].name, unit.factor * travel.lower,
       unit.factor * travel.upper, unit.unit);
 }
 
@@ -146,7 +146,7 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
 }
 
 std::optional<std::string> LoopChecks::instability(const LawFile& law) const {
-  if (!simulated_) return std::nullopt;
+  if (!device_.simulated) return std::nullopt;
   const auto run = [&](double seconds) {
     return run_on_device({.device_uri = options_.device_uri,
                           .seconds = seconds,

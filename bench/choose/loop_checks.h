@@ -8,14 +8,14 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
-#include "choose/choose.h"
+#include "choose/walk.h"
 #include "laws/law_file.h"
 
 namespace kerf::bench {
 
 struct LoopCheckOptions {
-  std::string device_uri;  ///< empty: device_for() the recording
-  double seconds = 2.0;    ///< of a run by the wall clock
+  std::string device_uri;
+  double seconds = 2.0;  ///< of a run by the wall clock
   double rate_hz = 1000.0;
   double margin = 0.5;  ///< share of the period that 99.9 % of the ticks may compute for, at most 0.5
 };
@@ -30,9 +30,11 @@ struct LoopCheckOptions {
 /// that it goes as deep as it did in the recording, or through the whole range of the hand if that is less.
 class LoopChecks {
  public:
-  /// @throws drivers::DeviceError (no such device), std::invalid_argument (no axis of these units).
-  LoopChecks(LoopCheckOptions options, const schema::Recording& recording, std::size_t axis,
-             const models::Contact& contact, const std::atomic<bool>& stop);
+  /// @throws drivers::DeviceError: no such device.
+  LoopChecks(LoopCheckOptions options, const std::atomic<bool>& stop);
+
+  /// Places the laws of a recording. @throws std::invalid_argument: the device has no axis of its units.
+  void place(const schema::Recording& recording, std::size_t axis, const models::Contact& contact);
 
   /// By the wall clock. Where the machine alone was late, up to three times.
   [[nodiscard]] Deadline deadline(const LawFile& law) const;
@@ -43,7 +45,7 @@ class LoopChecks {
   [[nodiscard]] std::optional<std::string> instability(const LawFile& law) const;
 
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
-  [[nodiscard]] bool simulated() const noexcept { return simulated_; }
+  [[nodiscard]] bool simulated() const noexcept { return device_.simulated; }
   /// Where a law was moved to, in words; empty if it stands where it was recorded.
   [[nodiscard]] const std::string& placed_in_words() const noexcept { return placed_in_words_; }
 
@@ -52,7 +54,7 @@ class LoopChecks {
 
   LoopCheckOptions options_;
   const std::atomic<bool>& stop_;
-  bool simulated_ = true;
+  drivers::DeviceInfo device_;
   std::optional<models::Contact> placed_at_;
   std::string placed_in_words_;
 };
