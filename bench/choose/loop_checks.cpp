@@ -101,9 +101,10 @@ void LoopChecks::place(const schema::Recording& recording, std::size_t axis, con
                     .position_unit = about.position_unit,
                     .force_unit = about.force_unit};
   const std::size_t on = axis_for(any, device_);
+  deepest_ = deepest(recording, axis, contact);
   if (!device_.simulated) return;
   const Travel travel = travel_of_hand(options_.device_uri, on);
-  placed_at_ = better_contact(travel, deepest(recording, axis, contact), contact);
+  placed_at_ = better_contact(travel, deepest_, contact);
   if (!placed_at_) return;
   const DrawnUnit unit = drawn_position(about);
   placed_in_words_ = fmt::format(
@@ -146,6 +147,8 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
 }
 
 std::optional<std::string> LoopChecks::instability(const LawFile& law) const {
+  if (auto hum = hum_of(law, device_, options_.rate_hz, {.grip = options_.grip, .deepest = deepest_}))
+    return fmt::format("on {}, {}", options_.device_uri, *hum);
   if (!device_.simulated) return std::nullopt;
   const auto run = [&](double seconds) {
     return run_on_device({.device_uri = options_.device_uri,

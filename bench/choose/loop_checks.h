@@ -8,6 +8,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
+#include "choose/hum.h"
 #include "choose/walk.h"
 #include "laws/law_file.h"
 
@@ -17,7 +18,8 @@ struct LoopCheckOptions {
   std::string device_uri;
   double seconds = 2.0;  ///< of a run by the wall clock
   double rate_hz = 1000.0;
-  double margin = 0.5;  ///< share of the period that 99.9 % of the ticks may compute for, at most 0.5
+  double margin = 0.5;        ///< share of the period that 99.9 % of the ticks may compute for, at most 0.5
+  std::string grip = "firm";  ///< of the hand that presses and holds: light, firm, arm
 };
 
 /// The device on which a recording was simulated; else the first simulated one with an axis of its units.
@@ -39,9 +41,10 @@ class LoopChecks {
   /// By the wall clock. Where the machine alone was late, up to three times.
   [[nodiscard]] Deadline deadline(const LawFile& law) const;
 
-  /// In virtual time, on a simulated device: nothing if fewer than one tick in a thousand hits a limit of
-  /// force or slew, and what the rendering gives to the hand does not grow from one half of the run to the
-  /// next. On a real device, nothing is known.
+  /// Nothing if a hand that presses and holds feels no hum, as far as the axis' mass and friction are known
+  /// (hum_of()), and, on a simulated device in virtual time, fewer than one tick in a thousand hits a limit
+  /// of force or slew and what the rendering gives to the hand does not grow from one half of the run to the
+  /// next.
   [[nodiscard]] std::optional<std::string> instability(const LawFile& law) const;
 
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
@@ -55,6 +58,7 @@ class LoopChecks {
   LoopCheckOptions options_;
   const std::atomic<bool>& stop_;
   drivers::DeviceInfo device_;
+  double deepest_ = 0.0;  ///< penetration that was recorded
   std::optional<models::Contact> placed_at_;
   std::string placed_in_words_;
 };

@@ -10,12 +10,12 @@
 
 #include "choose/choice_files.h"
 #include "choose/choose.h"
+#include "choose/fidelity.h"
 #include "choose/loop_checks.h"
+#include "choose/scene_cut.h"
 #include "cli/verbs.h"
-#include "laws/placement.h"
 #include "loop/run.h"
 #include "recordings/axes.h"
-#include "segment/segment.h"
 
 namespace kerf::bench {
 namespace {
@@ -31,43 +31,10 @@ struct Arguments {
   std::optional<double> contact;
   bool no_loop = false;
   bool force = false;
-  double record_s = 20.0;
+  std::optional<double> record_s;
   LoopCheckOptions loop;
   ChooseOptions choose;
 };
-
-/// A cut through the scene, recorded in virtual time, with its cycles where there are some.
-fs::path record_scene(const Arguments& arguments, std::uint64_t seed, const std::atomic<bool>& stop) {
-  const Scene scene = read_scene(arguments.scene);
-  if (scene.tissue.law.is_spatial()) {
-    throw std::invalid_argument(
-        fmt::format("{}: law '{}' acts on several axes; 'kerf choose' chooses among laws along one",
-                    arguments.scene, scene.tissue.law.model()));
-  }
-  const fs::path file = fs::path(arguments.output) / "cut.h5";
-  fs::create_directories(file.parent_path());
-  std::string uri = arguments.loop.device_uri;
-  if (uri.empty()) uri = scene.tissue.position_unit == "rad" ? "sim:scissors" : "sim:pose6";
-  if (uri.find("seed=") == std::string::npos)
-    uri += fmt::format("{}seed={}", uri.find('?') == std::string::npos ? '?' : '&', seed);
-  const RunResult run = run_on_device({.device_uri = uri,
-                                       .seconds = arguments.record_s,
-                                       .virtual_time = true,
-                                       .scene = scene,
-                                       .record = file,
-                                       .replace = arguments.force},
-                                      stop);
-  schema::Recording recording = schema::read_recording(file);
-  try {
-    recording.cycles = find_cycles(recording, {.axis = axis_for(scene.tissue, run.device)});
-    schema::write_recording(file, recording);
-  } catch (const std::invalid_argument&) {
-    // No cycles: choose_law() says so.
-  }
-  say(fmt::format("{}: {} cut for {:g} s in virtual time on {}", file.string(), scene.name,
-                  arguments.record_s, uri));
-  return file;
-}
 
 std::size_t axis_of(const Arguments& arguments, const schema::Recording& recording) {
   if (arguments.axis.empty() && recording.cycles) return recording.cycles->axis;
@@ -92,8 +59,8 @@ void say_choice(const LawChoice& choice) {
   say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>6}  {}", "law", "free", "held-out N", "JND",
                   "tick us", "deadline", "stable", "why passed over"));
   for (const Candidate& one : choice.candidates) {
-    const std::string error = one.fit ? fmt::format("{:.4f}", one.error_n) : "-";
-    const std::string jnd = one.fit ? fmt::format("{:.2f}", one.error_jnd) : "-";
+    const std::string error = one.file ? fmt::format("{:.4g}", one.error_n) : "-";
+    const std::string jnd = one.file ? fmt::format("{:.3g}", one.error_jnd) : "-";
     say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>6}  {}", one.law.name, one.law.parameters,
                     error, jnd, one.tick_us, deadline_in_short(one.deadline),
                     one.stable ? (*one.stable ? "yes" : "NO") : "-", one.why.empty() ? "taken" : one.why));
@@ -104,57 +71,117 @@ void say_choice(const LawChoice& choice) {
   say("");
 }
 
-void run_choose(const Arguments& arguments, Context& context) {
-  if (arguments.recording.empty() == arguments.scene.empty())
-    throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
-  if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
-  if (!arguments.scene.empty() && arguments.output.empty())
-    throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
-  const StopOnSignal signals;
-  const fs::path file = arguments.scene.empty() ? fs::path(arguments.recording)
-                                                : record_scene(arguments, context.seed, signals.requested());
-  const schema::Recording recording = schema::read_recording(file);
-  ChooseOptions options = arguments.choose;
-  options.axis = axis_of(arguments, recording);
-  options.contact = contact_for(arguments, recording, options.axis);
-  options.threads = std::max(1U, std::thread::hardware_concurrency());
-  std::optional<LoopChecks> checks;
-  if (!arguments.no_loop) {
-    checks.emplace(arguments.loop, recording, options.axis, *options.contact, signals.requested());
-    options.deadline = [&](const LawFile& law) { return checks->deadline(law); };
-    if (checks->simulated())
-      options.stability = [&](const LawFile& law, const schema::Recording&) {
-        return checks->instability(law);
-      };
-    options.begins = [&](const std::string& law) {
-      say(fmt::format("{} in closed loop with {} ...", law, checks->device_uri()));
-    };
-  }
-  LawChoice choice = [&] {
-    try {
-      return choose_law(recording, options, signals.requested());
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", file.string(), error.what()));
-    }
-  }();
-  if (checks && !checks->placed_in_words().empty()) choice.warnings.push_back(checks->placed_in_words());
-  if (checks && !checks->simulated())
-    choice.warnings.emplace_back(
-        "stability was not judged: the device is real, and no model of it was named");
-  context.result = choice_as_json(choice);
-  context.result["recording"] = file.string();
-  context.result["uuid"] = recording.header.uuid;
-  context.result["axis"] = recording.axes[options.axis].name;
-  context.result["device"] = checks ? nlohmann::ordered_json(checks->device_uri()) : nullptr;
+/// Says, keeps and prints what was chosen; `about` names it.
+void finish(const Arguments& arguments, Context& context, LawChoice& choice,
+            const nlohmann::ordered_json& about, const fs::path& recording) {
+  context.result = about;
+  context.result.update(choice_as_json(choice));
   for (const std::string& warning : choice.warnings) warn(warning);
   say_choice(choice);
   say(choice.why);
   if (!arguments.output.empty()) {
-    write_choice(choice, context.result, file, arguments.output);
+    write_choice(choice, context.result, recording, arguments.output);
     say(fmt::format("choose.json, choose.csv, choose.html{} are in {}",
                     choice.taken ? " and the law's file" : "", arguments.output));
   }
   if (!choice.serves) context.exit = Exit::check_failed;
+}
+
+/// The closed loop with a device, unless there is to be none.
+std::optional<LoopChecks> checks_for(const Arguments& arguments, const std::string& device_uri,
+                                     WalkOptions& walk, const std::atomic<bool>& stop) {
+  std::optional<LoopChecks> checks;
+  if (arguments.no_loop) return checks;
+  LoopCheckOptions options = arguments.loop;
+  options.device_uri = device_uri;
+  checks.emplace(std::move(options), stop);
+  walk.begins = [device_uri](const std::string& law) {
+    say(fmt::format("{} in closed loop with {} ...", law, device_uri));
+  };
+  return checks;
+}
+
+void connect(const LoopChecks& checks, WalkOptions& walk) {
+  walk.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
+  walk.stability = [&checks](const LawFile& law, const schema::Recording&) {
+    return checks.instability(law);
+  };
+}
+
+void choose_for_recording(const Arguments& arguments, Context& context, const schema::Recording& recording,
+                          const fs::path& file, const std::atomic<bool>& stop) {
+  ChooseOptions options = arguments.choose;
+  options.axis = axis_of(arguments, recording);
+  options.contact = contact_for(arguments, recording, options.axis);
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string uri = arguments.loop.device_uri;
+  if (uri.empty() && !arguments.no_loop) uri = device_for(recording, options.axis);
+  std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
+  if (checks) {
+    checks->place(recording, options.axis, *options.contact);
+    connect(*checks, options.walk);
+  }
+  LawChoice choice = choose_law(recording, options, stop);
+  if (checks && !checks->placed_in_words().empty()) choice.warnings.push_back(checks->placed_in_words());
+  if (checks && !checks->simulated()) {
+    choice.warnings.emplace_back(
+        "on a real device the closed loop is judged by its deadlines alone, and stability by what is known "
+        "of "
+        "its mass and friction");
+  }
+  finish(arguments, context, choice,
+         {{"name", file.stem().string()},
+          {"recording", file.string()},
+          {"uuid", recording.header.uuid},
+          {"axis", recording.axes[options.axis].name},
+          {"device", checks ? nlohmann::ordered_json(checks->device_uri()) : nullptr}},
+         file);
+}
+
+void choose_for_blade(const Arguments& arguments, Context& context, const Scene& scene,
+                      const std::atomic<bool>& stop) {
+  FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
+  const std::string uri = arguments.loop.device_uri.empty() ? device_of(scene) : arguments.loop.device_uri;
+  const std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
+  if (checks) connect(*checks, options.walk);
+  LawChoice choice = choose_fidelity(scene, options, stop);
+  finish(arguments, context, choice,
+         {{"name", scene.name},
+          {"scene", arguments.scene},
+          {"device", checks ? nlohmann::ordered_json(uri) : nullptr}},
+         {});
+}
+
+void choose_for_scene(const Arguments& arguments, Context& context, const std::atomic<bool>& stop) {
+  const Scene scene = read_scene(arguments.scene);
+  if (scene.tissue.law.is_spatial()) return choose_for_blade(arguments, context, scene, stop);
+  if (arguments.output.empty())
+    throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
+  const fs::path file = fs::path(arguments.output) / "cut.h5";
+  fs::create_directories(file.parent_path());
+  const SceneCut cut{.device_uri = arguments.loop.device_uri,
+                     .seconds = arguments.record_s.value_or(0.0),
+                     .seed = context.seed};
+  const schema::Recording recording = record_scene(scene, cut, file, stop);
+  say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.string(), scene.name,
+                  recording.time.empty() ? 0.0 : recording.time.back(), recording.header.device_uri));
+  choose_for_recording(arguments, context, recording, file, stop);
+}
+
+void run_choose(const Arguments& arguments, Context& context) {
+  if (arguments.recording.empty() == arguments.scene.empty())
+    throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
+  if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
+  const StopOnSignal signals;
+  const std::string& name = arguments.scene.empty() ? arguments.recording : arguments.scene;
+  if (!arguments.scene.empty()) return choose_for_scene(arguments, context, signals.requested());
+  const schema::Recording recording = schema::read_recording(name);
+  try {
+    choose_for_recording(arguments, context, recording, name, signals.requested());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    throw std::invalid_argument(what.starts_with(name) ? what : name + ": " + what);
+  }
 }
 
 }  // namespace
@@ -165,7 +192,7 @@ void add_choose(CLI::App& app, Context& context) {
       app, context, "choose", "The simplest law that serves: within the JND, in time and stable",
       "kerf choose cut.h5 -o choice\n"
       "  kerf choose punch.h5 --device sim:scissors?grip=300 --most-segments 7 -o choice\n"
-      "  kerf choose --scene skin.scene.toml -o choice\n\n"
+      "  kerf choose --scene examples/scenes/palpation.scene.toml -o choice\n\n"
       "Fits every law that fits the axis, walks from the fewest parameters and the cheapest tick up,\n"
       "and takes the first whose error on held-out cycles is within the force JND, that holds its\n"
       "deadlines in closed loop with the device, and that is stable there. Segment a recording of\n"
@@ -207,8 +234,12 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("--threshold", arguments->choose.fit.jnd.threshold_n, "Smallest force JND [N]")
       .positive()
       .with_default();
-  verb.add_option("--record-seconds", arguments->record_s, "Of a scene: how long it is cut [s]")
-      .within(5.0, 600.0)
+  verb.add_option("--record-seconds", arguments->record_s,
+                  "How long a scene is cut (default: as it says) [s]")
+      .within(1.0, 600.0);
+  verb.add_option("--grip", arguments->loop.grip,
+                  "Hand that presses a law and holds: stability is judged in it")
+      .one_of({"light", "firm", "arm"})
       .with_default();
   verb.add_flag("--force", arguments->force, "Replace an earlier choice");
 }

@@ -1,12 +1,14 @@
 #include "stability/law_limits.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <kerf/drivers/hand.h>
 
 #include "stability/bisection.h"
 #include "stability/strokes.h"
+#include "stability/wall_theory.h"
 
 namespace kerf::bench {
 namespace {
@@ -67,38 +69,81 @@ std::vector<Stroke> strokes_at(double depth_m, double fastest, double period_s) 
   return strokes;
 }
 
-bool is_passive(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
-  const auto strokes = strokes_at(range.depth_m, range.speed_m_s, device.period_s);
+namespace {
+
+constexpr std::array parts_of_depth{1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01};
+
+/// Calls `gain(stroke, energy)` for the strokes that end at a depth and are given more than rounding, until
+/// it returns false.
+template <typename Visit>
+void visit_gains(const SampledDevice& device, const AxisLaw& law, const ToolRange& range, Visit visit) {
   const double rounding_n = rounding * (1.0 + std::abs(held_force(law, range.depth_m, device.period_s)));
-  return std::none_of(strokes.begin(), strokes.end(), [&](const Stroke& stroke) {
-    const double gained_j = energy_gained(device, LawForce(law, device.period_s), stroke);
-    return !(gained_j <= rounding_n * (stroke.to_m - stroke.from_m));
+  for (const Stroke& stroke : strokes_at(range.depth_m, range.speed_m_s, device.period_s)) {
+    const double energy_j = energy_gained(device, LawForce(law, device.period_s), stroke);
+    const bool gains = !(energy_j <= rounding_n * (stroke.to_m - stroke.from_m));
+    if (gains && !visit(Gain{stroke, energy_j})) return;
+  }
+}
+
+}  // namespace
+
+bool is_passive_at(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
+  bool passive = true;
+  visit_gains(device, law, range, [&](const Gain&) { return passive = false; });
+  return passive;
+}
+
+bool is_passive(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
+  return std::all_of(parts_of_depth.begin(), parts_of_depth.end(), [&](double part) {
+    return is_passive_at(device, law, {part * range.depth_m, range.speed_m_s});
   });
 }
 
-double passive_stiffness_up_to(const SampledDevice& device, double speed_m_s) {
-  const auto at = [&](double speed) {
-    return 2.0 * (device.viscous_n_s_per_m * speed + device.coulomb_n) /
-           (device.encoder_step_m + speed * (device.period_s + 2.0 * device.delay_s));
-  };
-  if (device.encoder_step_m == 0.0) return at(speed_m_s);
-  return std::min(at(speed_m_s), at(0.0));
+std::optional<Gain> worst_stroke(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
+  std::optional<Gain> worst;
+  for (const double part : parts_of_depth) {
+    visit_gains(device, law, {part * range.depth_m, range.speed_m_s}, [&](const Gain& gain) {
+      if (!worst || gain.energy_j > worst->energy_j) worst = gain;
+      return true;
+    });
+  }
+  return worst;
 }
 
-double local_stiffness(const AxisLaw& law, double depth_m, double period_s) {
-  LawForce force(law, period_s);
+double passive_stiffness_up_to(const SampledDevice& device, double speed_m_s, double damping) {
+  const double friction = device.viscous_n_s_per_m - worst_of_damping(device) * std::abs(damping);
+  const auto at = [&](double speed) {
+    return 2.0 * (friction * speed + device.coulomb_n) /
+           (device.encoder_step_m + speed * (device.period_s + 2.0 * device.delay_s));
+  };
+  const double moving = std::max(0.0, at(speed_m_s));
+  return device.encoder_step_m == 0.0 ? moving : std::min(moving, at(0.0));
+}
+
+Local local_impedance(const AxisLaw& law, double depth_m, double period_s) {
   constexpr int ticks = 1000;
-  double before = 0.0;
-  for (int tick = 0; tick <= ticks; ++tick) {
-    before = -force({.place_m = depth_m * tick / ticks, .speed_m_s = 0.0});
-  }
+  LawForce come(law, period_s);
+  for (int tick = 0; tick <= ticks; ++tick) (void)come({.place_m = depth_m * tick / ticks, .speed_m_s = 0.0});
+  // Beside one that stays, so that a law that relaxes is not taken for a softer one.
+  const auto next = [&](double place_m, double speed_m_s) {
+    LawForce from_here = come;
+    return -from_here({.place_m = place_m, .speed_m_s = speed_m_s});
+  };
   const double little_m = 1e-4 * depth_m;
-  return (-force({.place_m = depth_m + little_m, .speed_m_s = 0.0}) - before) / little_m;
+  constexpr double little_m_s = 1e-3;
+  const double staying_n = next(depth_m, 0.0);
+  return {.stiffness_n_per_m = (next(depth_m + little_m, 0.0) - staying_n) / little_m,
+          .damping_n_s_per_m = (next(depth_m, little_m_s) - staying_n) / little_m_s};
+}
+
+bool is_locally_passive(const SampledDevice& device, const AxisLaw& law, const ToolRange& range) {
+  const Local local = local_impedance(law, range.depth_m, device.period_s);
+  return local.stiffness_n_per_m <= passive_stiffness_up_to(device, range.speed_m_s, local.damping_n_s_per_m);
 }
 
 LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolRange& range,
                     double deepest_m) {
-  LawLimits limits{.passive_stiffness_n_per_m = passive_stiffness_up_to(device, range.speed_m_s)};
+  LawLimits limits;
   const auto found = [](double at, const Search& search) -> std::optional<double> {
     if (at <= search.lower || at >= search.upper) return std::nullopt;
     return at;
@@ -106,7 +151,7 @@ LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolR
   const Search depths{.lower = 1e-3 * deepest_m, .upper = deepest_m, .share = share, .scan = 24};
   limits.depth_m = found(first_change(depths,
                                       [&](double depth_m) {
-                                        return is_passive(device, law, {depth_m, range.speed_m_s});
+                                        return is_passive_at(device, law, {depth_m, range.speed_m_s});
                                       }),
                          depths);
   const Search speeds{.lower = 1e-4, .upper = fastest_m_s, .share = share, .scan = 16};
@@ -121,14 +166,15 @@ LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolR
   if (const auto period_s = found(longest_s, periods)) limits.rate_hz = 1.0 / *period_s;
   limits.passive_at_all = is_passive(at_rate(device, highest_hz), law, {1e-3 * deepest_m, 1e-4}) ||
                           limits.depth_m || limits.speed_m_s;
-  limits.local_stiffness_n_per_m =
-      local_stiffness(law, limits.depth_m.value_or(range.depth_m), device.period_s);
-  limits.depth_by_stiffness_m = found(first_change(depths,
-                                                   [&](double depth_m) {
-                                                     return local_stiffness(law, depth_m, device.period_s) <=
-                                                            limits.passive_stiffness_n_per_m;
-                                                   }),
-                                      depths);
+  limits.local = local_impedance(law, limits.depth_m.value_or(range.depth_m), device.period_s);
+  limits.passive_stiffness_n_per_m =
+      passive_stiffness_up_to(device, range.speed_m_s, limits.local.damping_n_s_per_m);
+  limits.local_depth_m =
+      found(first_change(depths,
+                         [&](double depth_m) {
+                           return is_locally_passive(device, law, {depth_m, range.speed_m_s});
+                         }),
+            depths);
   return limits;
 }
 

@@ -28,7 +28,8 @@ struct Cell {
 /// Boundaries of walls at one damping [N/m].
 struct WallBoundary {
   double damping_n_s_per_m = 0.0;
-  double simulated = 0.0;
+  double simulated = 0.0;         ///< of the wall as it was tried
+  double simulated_linear = 0.0;  ///< two-sided, without encoder steps and Coulomb friction
   double eigenvalues = 0.0;
   double colgate_schenkel = 0.0;
   double passive = 0.0;  ///< passive_stiffness()
@@ -43,9 +44,16 @@ struct WallMap {
   std::vector<WallBoundary> boundaries;  ///< one a row
   double abbott_okamura = 0.0;           ///< without damping
 
+  /// Largest difference of the simulated linear boundary to that of the eigenvalues, as a share of it, over
+  /// the rows that have one within the grid.
+  [[nodiscard]] double boundary_error() const;
   /// Share of the cells in which simulation and eigenvalues agree.
   [[nodiscard]] double agreement() const;
 };
+
+/// A grid that shows where walls break on a device: damping from 0 to a tenth beyond where even the softest
+/// wall breaks, stiffness from a hundredth of the passive to twice the stiffest that is stable.
+[[nodiscard]] Grid2 wall_grid(const SampledDevice& device, std::size_t columns, std::size_t rows);
 
 struct MapOptions {
   bool with_cells = true;
@@ -55,8 +63,8 @@ struct MapOptions {
 [[nodiscard]] WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid2& grid,
                                const MapOptions& options);
 
-/// A law over depth [m] (columns) and sampling rate [Hz] (rows): passive by strokes, and by its local
-/// stiffness against passive_stiffness_up_to() the speed.
+/// A law over depth [m] (columns, increasing) and sampling rate [Hz] (rows): passive by strokes to that and
+/// every lesser depth of the grid; theory: is_locally_passive() there.
 struct LawMap {
   SampledDevice device;
   double speed_m_s = 0.2;

@@ -22,23 +22,45 @@ double abbott_okamura(const SampledDevice& device) {
   return std::min(by_damping, 2.0 * device.coulomb_n / device.encoder_step_m);
 }
 
-double passive_stiffness(const SampledDevice& device, double wall_damping) {
+namespace {
+
+/// The two parts of the theorem at a frequency: what a unit of K and of B need of the device's friction.
+struct Needs {
+  double of_stiffness;
+  double of_damping;
+};
+
+Needs needs_at(const SampledDevice& device, double angle) {
   using Complex = std::complex<double>;
-  constexpr int frequencies = 2000;
   const double gain = device.velocity_gain();
   const double delay = std::ceil(device.delay_s / device.period_s - 1e-9);
+  const Complex back = std::polar(1.0, -angle);
+  const Complex held =
+      0.5 * device.period_s / (1.0 - std::cos(angle)) * (1.0 - back) * std::polar(1.0, -angle * delay);
+  const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
+  return {held.real(), (held * damper).real()};
+}
+
+constexpr int frequencies = 2000;
+double angle_of(int i) { return std::numbers::pi * i / frequencies; }  // w T
+
+}  // namespace
+
+double passive_stiffness(const SampledDevice& device, double wall_damping) {
   double stiffest = std::numeric_limits<double>::infinity();
   for (int i = 1; i <= frequencies; ++i) {
-    const double angle = std::numbers::pi * i / frequencies;  // w T
-    const Complex back = std::polar(1.0, -angle);
-    const Complex held =
-        0.5 * device.period_s / (1.0 - std::cos(angle)) * (1.0 - back) * std::polar(1.0, -angle * delay);
-    const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
-    const double left = device.viscous_n_s_per_m - wall_damping * (held * damper).real();
+    const Needs needs = needs_at(device, angle_of(i));
+    const double left = device.viscous_n_s_per_m - wall_damping * needs.of_damping;
     if (left <= 0.0) return 0.0;
-    if (held.real() > 0.0) stiffest = std::min(stiffest, left / held.real());
+    if (needs.of_stiffness > 0.0) stiffest = std::min(stiffest, left / needs.of_stiffness);
   }
   return stiffest;
+}
+
+double worst_of_damping(const SampledDevice& device) {
+  double most = 0.0;
+  for (int i = 1; i <= frequencies; ++i) most = std::max(most, needs_at(device, angle_of(i)).of_damping);
+  return most;
 }
 
 double spectral_radius(const SampledDevice& device, const Wall& wall) {

@@ -28,6 +28,10 @@ struct Wall {
 ///     H = z^-d (K + B g (1 - z^-1) / (T (1 - (1 - g) z^-1))),   g the filter's gain
 [[nodiscard]] double passive_stiffness(const SampledDevice& device, double wall_damping);
 
+/// How much of the device's friction a damper needs to be passive, by that theorem: 1 for the plain
+/// difference, less with a filter, whose lag in turn makes it a spring.
+[[nodiscard]] double worst_of_damping(const SampledDevice& device);
+
 /// Largest modulus of the eigenvalues of the sampled system: below 1 the motion dies away. The wall pulls as
 /// it pushes; encoder steps and Coulomb friction are left out.
 ///

@@ -92,8 +92,8 @@ TEST(Choose, TakesTheSimplestWithinTheJnd) {
   EXPECT_TRUE(choice.serves) << choice.why;
   EXPECT_EQ(taken_name(choice), "kelvin");
   EXPECT_THAT(candidate(choice, "maxwell-2").why, HasSubstr("5 parameters, where kelvin does with 3"));
-  EXPECT_THAT(candidate(choice, "piecewise-1").why, HasSubstr("JND off on held-out data"));
-  EXPECT_EQ(choice.held_out, "6 cycles in 5 folds");
+  EXPECT_THAT(candidate(choice, "piecewise-1").why, HasSubstr("JND off"));
+  EXPECT_EQ(choice.held_out, "6 cycles, held out in 5 folds");
 }
 
 TEST(Choose, GoesByFewestParametersFirst) {
@@ -105,7 +105,7 @@ TEST(Choose, GoesByFewestParametersFirst) {
 
 TEST(Choose, PassesOverALawThatMissesItsDeadlines) {
   ChooseOptions options = small();
-  options.deadline = [](const LawFile& law) {
+  options.walk.deadline = [](const LawFile& law) {
     const bool slow = law.law.model() == "kelvin";
     return Deadline{.held = !slow, .why = slow ? "your law is too slow" : ""};
   };
@@ -118,7 +118,7 @@ TEST(Choose, PassesOverALawThatMissesItsDeadlines) {
 
 TEST(Choose, PassesOverALawThatIsNotStable) {
   ChooseOptions options = small();
-  options.stability = [](const LawFile& law, const schema::Recording&) {
+  options.walk.stability = [](const LawFile& law, const schema::Recording&) {
     return law.law.model() == "kelvin" ? std::optional<std::string>("it chatters") : std::nullopt;
   };
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
@@ -130,7 +130,7 @@ TEST(Choose, PassesOverALawThatIsNotStable) {
 
 TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
   ChooseOptions options = small();
-  options.deadline = [](const LawFile&) {
+  options.walk.deadline = [](const LawFile&) {
     return Deadline{.held = false, .machine_late = true, .why = "700 of 2000 deadlines missed"};
   };
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
@@ -142,7 +142,7 @@ TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
 
 TEST(Choose, NamesNoneWhereNoneOfThoseWithinTheJndIsStable) {
   ChooseOptions options = small();
-  options.stability = [](const LawFile&, const schema::Recording&) {
+  options.walk.stability = [](const LawFile&, const schema::Recording&) {
     return std::optional<std::string>("no");
   };
   const LawChoice choice = choose(cut_of(known_line()), options);
@@ -156,7 +156,7 @@ TEST(Choose, NamesTheBestAndWhatNobodyWouldMissWhereNoneIsWithinTheJnd) {
   options.fit.jnd = {.weber_fraction = 0.0, .threshold_n = 0.015};
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
   EXPECT_FALSE(choice.serves);
-  EXPECT_THAT(choice.why, HasSubstr("none is within the JND of 0.015 N"));
+  EXPECT_THAT(choice.why, HasSubstr("None is within the JND of 0.015 N"));
   const Candidate& best = choice.candidates.at(choice.taken.value());
   for (const Candidate& one : choice.candidates) EXPECT_GE(one.error_n, best.error_n) << one.law.name;
   EXPECT_EQ(choice.candidates.at(choice.as_good.value()).law.name, "kelvin");
@@ -183,7 +183,7 @@ TEST(Choose, StopsWhereItIsToldTo) {
 
 TEST(Choose, HoldsOutBlocksOfTimeWhereThereAreNoCycles) {
   const LawChoice choice = choose(cut_of(known_kelvin(), {.with_cycles = false}));
-  EXPECT_EQ(choice.held_out, "5 blocks of time");
+  EXPECT_EQ(choice.held_out, "5 blocks of time, held out by turns");
   EXPECT_THAT(choice.warnings, Contains(HasSubstr("kerf segment")));
   EXPECT_EQ(taken_name(choice), "kelvin");
 }

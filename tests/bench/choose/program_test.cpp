@@ -76,7 +76,7 @@ TEST_F(ProgramChoose, RunsTheLawInClosedLoop) {
 TEST_F(ProgramChoose, ExitsWithOneWhereNoneIsWithinTheJnd) {
   const std::string cut = write(test::cut_of(test::known_kelvin()));
   expect_refusal({cut, "--no-loop", "--most-segments", "1", "--weber", "0", "--threshold", "0.01"}, 1,
-                 "none is within the JND of 0.01 N");
+                 "None is within the JND of 0.01 N");
 }
 
 TEST_F(ProgramChoose, MakesARecordingOfAScene) {
@@ -136,7 +136,7 @@ TEST_F(ProgramChoose, OfAMeniscusTakesFewSegmentsOrSaysWhyNot) {
   const json choice = json::parse(outcome.output).at("choice");
   // No law is within the JND: the cycles differ by more. Among those there are, five segments are as good.
   EXPECT_FALSE(choice.at("serves").get<bool>());
-  EXPECT_THAT(choice.at("why").get<std::string>(), HasSubstr("none is within the JND of 0.174 N"));
+  EXPECT_THAT(choice.at("why").get<std::string>(), HasSubstr("None is within the JND of 0.174 N"));
   EXPECT_EQ(choice.at("as_good"), "piecewise-5-loop");
 }
 

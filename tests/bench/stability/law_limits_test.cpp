@@ -71,8 +71,8 @@ TEST(LawLimits, TheExponentialFailsWhereItsLocalStiffnessIsTwiceTheFrictionOverT
   const LawLimits limits = limits_of(handle, intestine(), {.depth_m = 0.12, .speed_m_s = 0.5}, 0.2);
   ASSERT_TRUE(limits.depth_m);
   EXPECT_NEAR(*limits.depth_m, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m);
-  EXPECT_NEAR(*limits.depth_by_stiffness_m, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m);
-  EXPECT_NEAR(limits.local_stiffness_n_per_m, 800.0, 60.0);
+  EXPECT_NEAR(*limits.local_depth_m, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m);
+  EXPECT_NEAR(limits.local.stiffness_n_per_m, 800.0, 60.0);
 }
 
 TEST(LawLimits, TheLowestRateOfASpringIsItsStiffnessOverTwiceTheFriction) {
@@ -94,6 +94,16 @@ TEST(LawLimits, CoulombFrictionHoldsAWallUpToASpeedInClosedForm) {
   EXPECT_NEAR(*limits.speed_m_s, 0.02 / (0.5 * 1600.0 * 1e-3 - 0.4), 0.01 * 0.05) << "f_c / (K T / 2 - b)";
 }
 
+TEST(LawLimits, ADamperIsPassiveUpToTheDevicesFriction) {
+  // F = alpha exp(...) + B0 v with next to no elastic part.
+  for (const double damping : {0.3, 0.5}) {
+    const double values[] = {1e-12, 1e-6, damping};
+    const AxisLaw law{models::Law::make("exponential", values)};
+    EXPECT_EQ(is_passive(handle, law, {.depth_m = 0.01, .speed_m_s = 1.0}), damping < 0.4);
+    EXPECT_EQ(is_locally_passive(handle, law, {.depth_m = 0.01, .speed_m_s = 1.0}), damping < 0.4);
+  }
+}
+
 TEST(LawLimits, AKelvinTissueIsPassiveAtAnyRate) {
   // Liver (002): far softer than the friction of any handle.
   const double values[] = {8.0, 7.0, 130.0};
@@ -101,6 +111,13 @@ TEST(LawLimits, AKelvinTissueIsPassiveAtAnyRate) {
       limits_of(handle, {models::Law::make("kelvin", values)}, {.depth_m = 0.02, .speed_m_s = 0.3}, 0.1);
   EXPECT_FALSE(limits.depth_m);
   EXPECT_FALSE(limits.rate_hz && *limits.rate_hz > 30.0);
+}
+
+TEST(LawLimits, ARelaxingLawIsLocallyAsStiffAsItsSpringsTogether) {
+  const double values[] = {8.0, 7.0, 0.07};  // tau = 10 ms
+  const Local local = local_impedance({models::Law::make("kelvin", values)}, 0.01, 1e-4);
+  EXPECT_NEAR(local.stiffness_n_per_m, 8.0 + 7.0 * (1.0 - std::exp(-0.01)) / 0.01, 1e-6);
+  EXPECT_NEAR(local.damping_n_s_per_m, 0.0, 1e-9);
 }
 
 TEST(LawMap, OfTheExponentialAgreesWithItsLocalStiffness) {
