@@ -42,7 +42,9 @@ struct WalkOptions {
 /// One law of the table.
 struct Candidate {
   CandidateLaw law;
-  std::optional<FittedLaw> fit;                              ///< none if it could not be fitted, or was not
+  std::optional<LawFile> file;   ///< none if it could not be fitted, or was not
+  std::optional<FittedLaw> fit;  ///< none of a law that was known and not fitted
+  bool converged = false;
   double error_n = std::numeric_limits<double>::infinity();  ///< root mean square, on held-out data
   double error_jnd = std::numeric_limits<double>::infinity();
   double error_torque_n_m = std::numeric_limits<double>::quiet_NaN();  ///< of a law that gives torques
