@@ -127,6 +127,7 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
   }
   const double period_s = 1.0 / options.rate_hz;
   const auto motion = motion_of(scene, options.rate_hz);
+  if (motion.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
   LawChoice choice;
   choice.settings.jnd = options.jnd;
   choice.candidates.push_back(candidate(scene.tissue, "exact", 16));

@@ -104,6 +104,18 @@ exponent = { value = 1.8, unit = "1" }
   EXPECT_TRUE(std::filesystem::exists(path("choice") + "/cut.h5"));
 }
 
+TEST_F(ProgramChoose, NamesTheFidelityThatABladeNeeds) {
+  const std::string scene = std::string(KERF_SOURCE_DIR) + "/examples/scenes/scalpel-t1.scene.toml";
+  const Outcome outcome = run_kerf({"choose", "--scene", scene, "-o", path("choice"), "--no-loop", "--json"});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const json result = json::parse(outcome.output);
+  EXPECT_EQ(result.at("choice").at("law"), "blade-paper-1");
+  EXPECT_EQ(result.at("effects").at(0).at("effect"), "rotation");
+  EXPECT_EQ(result.at("effects").at(0).at("verdict"), "does not matter");
+  EXPECT_THAT(test::read_text(path("choice") + "/choose.html"), HasSubstr("cost of a tick"));
+  EXPECT_THAT(test::read_text(path("choice") + "/blade-paper-1.law.toml"), HasSubstr("fidelity = \"paper\""));
+}
+
 TEST_F(ProgramChoose, RefusesWithOneLine) {
   schema::Recording recording = test::cut_of(test::known_kelvin());
   const std::string cut = write(recording);
@@ -112,7 +124,8 @@ TEST_F(ProgramChoose, RefusesWithOneLine) {
   expect_refusal({cut, "--device", "sim:spoon"}, 3, "sim:spoon");
   expect_refusal({cut, "--device", "sim:premium"}, 2, "no axis of sim:premium");
   expect_refusal({cut, "--axis", "phi"}, 2, "theta");
-  expect_refusal({"--scene", "a.toml"}, 2, "-o");
+  const std::string scenes = std::string(KERF_SOURCE_DIR) + "/examples/scenes/";
+  expect_refusal({"--scene", scenes + "palpation.scene.toml"}, 2, "-o");
   recording.force_measured.clear();
   expect_refusal({write(recording), "--no-loop"}, 2, "holds no force");
 }
