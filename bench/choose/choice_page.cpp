@@ -1,6 +1,8 @@
 #include "choose/choice_page.h"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -14,6 +16,8 @@ namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
+
+constexpr double least_drawn_jnd = 1e-4;  ///< less is drawn there
 
 std::string figure(const Chart& chart) { return "<figure>" + draw(chart) + "</figure>\n"; }
 
@@ -30,7 +34,7 @@ std::string deadline_in_words(const json& deadline) {
 
 std::string candidate_table(const json& all) {
   std::vector<std::vector<std::string>> rows{
-      {"law", "parameters", "held out [N]", "JND", "tick [us]", "deadlines", "stable", "why passed over"}};
+      {"law", "parameters", "error [N]", "JND", "tick [us]", "deadlines", "stable", "why passed over"}};
   for (const json& one : all.at("candidates")) {
     const json& stable = one.at("stable");
     const auto why = one.at("passed_over").get<std::string>();
@@ -44,7 +48,7 @@ std::string candidate_table(const json& all) {
 }
 
 std::string effect_table(const json& all) {
-  std::vector<std::vector<std::string>> rows{{"effect", "verdict", "least error, by the law"}};
+  std::vector<std::vector<std::string>> rows{{"effect", "verdict", "least error, in JNDs, and its law"}};
   for (const json& one : all.at("effects")) {
     rows.push_back({one.at("effect").get<std::string>(), one.at("verdict").get<std::string>(),
                     one.at("why").get<std::string>()});
@@ -99,7 +103,7 @@ Chart choice_chart(const json& all) {
                    : one.at("within_jnd").get<bool>()          ? within
                                                                : beyond;
     curve.x.push_back(one.at(fidelities ? "tick_us" : "parameters").get<double>());
-    curve.y.push_back(one.at("held_out_jnd").get<double>());
+    curve.y.push_back(std::max(one.at("held_out_jnd").get<double>(), least_drawn_jnd));
   }
   Chart chart{.title = fidelities ? "Error against the cost of a tick"
                                   : "Error on held-out data against the number of parameters",
@@ -107,11 +111,18 @@ Chart choice_chart(const json& all) {
               .y_label = "error [JND]",
               .log_x = true,
               .log_y = true};
+  std::pair least{std::numeric_limits<double>::infinity(), 1.0};  // the JND is always seen
+  std::pair most{0.0, 1.0};
   for (Curve* curve : {&beyond, &within, &taken}) {
+    for (std::size_t i = 0; i < curve->x.size(); ++i) {
+      least = {std::min(least.first, curve->x[i]), std::min(least.second, curve->y[i])};
+      most = {std::max(most.first, curve->x[i]), std::max(most.second, curve->y[i])};
+    }
     if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
   }
   chart.horizontal.push_back({.at = 1.0, .label = "JND"});
-  if (!fidelities) chart.x_range = {1.8, 260.0};
+  chart.x_range = {least.first / 1.2, most.first * 1.2};
+  chart.y_range = {least.second / 1.5, most.second * 1.5};
   return chart;
 }
 

@@ -24,7 +24,7 @@ std::string why_not_instead(const Candidate& one, const Candidate& taken) {
   }
   if (one.law.effects.size() > taken.law.effects.size())
     return fmt::format("as many parameters as {}, and an effect more", taken.law.name);
-  return fmt::format("as simple as {}, and off by more", taken.law.name);
+  return fmt::format("as simple as {}, and no nearer", taken.law.name);
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST_F(ProgramChoose, NamesTheFidelityThatABladeNeeds) {
   EXPECT_EQ(result.at("effects").at(0).at("effect"), "rotation");
   EXPECT_EQ(result.at("effects").at(0).at("verdict"), "does not matter");
   EXPECT_THAT(test::read_text(path("choice") + "/choose.html"), HasSubstr("cost of a tick"));
-  EXPECT_THAT(test::read_text(path("choice") + "/blade-paper-1.law.toml"), HasSubstr("fidelity = \"paper\""));
+  EXPECT_THAT(test::read_text(path("choice") + "/blade-paper-1.law.toml"), HasSubstr("fidelity = 'paper'"));
 }
 
 TEST_F(ProgramChoose, RefusesWithOneLine) {
