@@ -34,6 +34,7 @@ TEST(ChooseOverSeeds, ExplainsAKnownLawByNoneThatIsRicher) {
     ++wrong;
     list += std::string(law.name) + ": " + choice.why + '\n';
   }
+  RecordProperty("wrong", wrong);
   EXPECT_LE(wrong, 5) << list;
 }
 
