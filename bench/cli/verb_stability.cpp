@@ -151,7 +151,7 @@ void write(const Findings& findings, const fs::path& folder) {
   }
   write_whole_file(folder / "stability.csv", findings.csv);
   write_whole_file(folder / "stability.html",
-                   html_page("Stability", "<h1>Where it breaks</h1>\n" + findings.html));
+                   html_page("Stability", "<h1>Where it breaks</h1>\n" + page_body(findings)));
   write_whole_file(folder / "stability.json", findings.json.dump(2) + "\n");
 }
 

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <array>
+#include <ranges>
 #include <stdexcept>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
@@ -100,9 +103,9 @@ void read_layers(const Place& place, toml::table& root, const std::string& name,
   }
 }
 
-HandImpedance read_hand(const Place& place, const toml::table& table) {
+drivers::HandImpedance read_hand(const Place& place, const toml::table& table) {
   place.allow_only(table, {"mass", "damping", "stiffness"}, "[hand]");
-  const HandImpedance standard;
+  const drivers::HandImpedance& standard = drivers::usual_grip;
   const auto read = [&](std::string_view key, std::string_view unit, double value, double upper) {
     return read_number(place, table,
                        {.key = key, .unit = unit, .standard = value, .lower = 0.0, .upper = upper});
@@ -135,7 +138,12 @@ void read_device(const Place& place, const toml::table& root, Scene& scene) {
     place.refuse(at, "'uri' is \"{}\", expected a simulated device such as \"sim:scissors?noise=off\"",
                  scene.device_uri);
   }
-  (void)try_device(place, at, scene);
+  const drivers::DeviceInfo device = try_device(place, at, scene);
+  const std::string& axis = scene.tissue.axis;
+  if (axis.empty() || std::ranges::find(device.axes, axis, &drivers::AxisInfo::name) != device.axes.end())
+    return;
+  place.refuse(*tissue_table(place, root).get("axis"), "'axis' is \"{}\", and the axes of {} are {}", axis,
+               device.model, fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
 }
 
 }  // namespace

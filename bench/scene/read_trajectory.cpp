@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 #include <fmt/ranges.h>
 
@@ -15,6 +16,10 @@ constexpr double cycles_at_most = 100.0;
 constexpr std::size_t keyframes_at_most = 1000;
 
 using drivers::PoseKeyframe;
+
+std::string names_of(const drivers::DeviceInfo& device) {
+  return fmt::format("{}", fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
+}
 
 /// A trajectory for one kind of device alone.
 void expect_device(const Place& place, const toml::node& node, const drivers::DeviceInfo& device,
@@ -61,6 +66,46 @@ ScissorsStrokes read_strokes(const Place& place, const toml::table& table,
 }
 
 /// In and out along one axis, at rest at both ends; the other axes stay at zero.
+struct Indentation {
+  std::size_t axis = 0;
+  double from = 0.0;
+  double to = 0.0;
+  double pause_s = 0.5;
+  double stroke_s = 0.8;
+  double hold_s = 1.0;
+  double cycles = 1.0;
+
+  [[nodiscard]] drivers::PosePath::Options path() const {
+    drivers::PosePath::Options path;
+    double time_s = 0.0;
+    const auto add = [&](double position, double lasting_s) {
+      // Without the digits that sums leave behind; what takes no time needs no keyframe.
+      time_s = std::round(1e9 * (time_s + lasting_s)) / 1e9;
+      if (!path.keyframes.empty() && !(time_s > path.keyframes.back().at_s)) return;
+      PoseKeyframe keyframe{.at_s = time_s, .position = {}};
+      keyframe.position[axis] = position;
+      path.keyframes.push_back(keyframe);
+    };
+    add(from, 0.0);
+    for (double cycle = 0.0; cycle < cycles; ++cycle) {
+      add(from, pause_s);
+      add(to, stroke_s);
+      add(to, hold_s);
+      add(from, stroke_s);
+    }
+    return path;
+  }
+};
+
+double read_cycles(const Place& place, const toml::table& table) {
+  const toml::node* node = table.get("cycles");
+  if (node == nullptr) return Indentation{}.cycles;
+  const double cycles = place.number(*node, "'cycles'");
+  if (!(cycles >= 1.0 && cycles <= cycles_at_most && cycles == std::floor(cycles)))
+    place.refuse(*node, "'cycles' is {}, expected a whole number from 1 to {}", cycles, cycles_at_most);
+  return cycles;
+}
+
 drivers::PosePath::Options read_indentation(const Place& place, const toml::table& table,
                                             const drivers::DeviceInfo& device) {
   place.allow_only(table, {"kind", "seconds", "axis", "from", "to", "stroke", "hold", "pause", "cycles"},
@@ -69,7 +114,7 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
   const auto axis = std::ranges::find(device.axes, name, &drivers::AxisInfo::name);
   if (axis == device.axes.end()) {
     place.refuse(*table.get("axis"), "'axis' is \"{}\", and the axes of {} are {}", name, device.model,
-                 fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
+                 names_of(device));
   }
   const auto place_of = [&](std::string_view key) {
     return read_number(place, table,
@@ -79,36 +124,19 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
                         .upper = axis->upper,
                         .required = true});
   };
-  const double from = place_of("from");
-  const double to = place_of("to");
-  const double stroke_s = read_number(
-      place, table, {.key = "stroke", .unit = "s", .standard = 0.8, .lower = 0.05, .upper = 100.0});
-  const double hold_s =
-      read_number(place, table, {.key = "hold", .unit = "s", .standard = 1.0, .lower = 0.0, .upper = 1000.0});
-  const double pause_s = read_number(
-      place, table, {.key = "pause", .unit = "s", .standard = 0.5, .lower = 0.0, .upper = 1000.0});
-  const toml::node* node = table.get("cycles");
-  const double cycles = node != nullptr ? place.number(*node, "'cycles'") : 1.0;
-  if (!(cycles >= 1.0 && cycles <= cycles_at_most && cycles == std::floor(cycles)))
-    place.refuse(*node, "'cycles' is {}, expected a whole number from 1 to {}", cycles, cycles_at_most);
-
-  drivers::PosePath::Options path;
-  double time_s = 0.0;
-  const auto add = [&](double position, double lasting_s) {
-    time_s = std::round(1e9 * (time_s + lasting_s)) / 1e9;  // without the digits that sums leave behind
-    if (lasting_s == 0.0 && !path.keyframes.empty()) return;
-    PoseKeyframe keyframe{.at_s = time_s, .position = {}};
-    keyframe.position[static_cast<std::size_t>(axis - device.axes.begin())] = position;
-    path.keyframes.push_back(keyframe);
+  const auto seconds_of = [&](std::string_view key, double standard, double lower, double upper) {
+    return read_number(place, table,
+                       {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = upper});
   };
-  add(from, 0.0);
-  for (double cycle = 0.0; cycle < cycles; ++cycle) {
-    add(from, pause_s);
-    add(to, stroke_s);
-    add(to, hold_s);
-    add(from, stroke_s);
-  }
-  return path;
+  const Indentation standard;
+  return Indentation{.axis = static_cast<std::size_t>(axis - device.axes.begin()),
+                     .from = place_of("from"),
+                     .to = place_of("to"),
+                     .pause_s = seconds_of("pause", standard.pause_s, 0.0, 1000.0),
+                     .stroke_s = seconds_of("stroke", standard.stroke_s, 0.05, 100.0),
+                     .hold_s = seconds_of("hold", standard.hold_s, 0.0, 1000.0),
+                     .cycles = read_cycles(place, table)}
+      .path();
 }
 
 /// One keyframe; an axis that it does not name stays where it was.
@@ -123,7 +151,7 @@ PoseKeyframe read_keyframe(const Place& place, const toml::table& table, const d
     const auto axis = std::ranges::find(device.axes, key.str(), &drivers::AxisInfo::name);
     if (axis == device.axes.end()) {
       place.refuse(node, "unknown axis '{}' in a keyframe; those of {} are {}", key.str(), device.model,
-                   fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
+                   names_of(device));
     }
     keyframe.position[static_cast<std::size_t>(axis - device.axes.begin())] = read_number(
         place, position,

@@ -1,7 +1,6 @@
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -114,32 +113,6 @@ std::string options_of(const drivers::PosePath::Options& path) {
 
 std::string options_of(std::monostate) { return ""; }
 
-ToolPath path_of(const ScissorsStrokes& strokes, std::size_t ticks, double period_s) {
-  drivers::Strokes hand({.open_rad = strokes.open_rad,
-                         .close_rad = strokes.close_rad,
-                         .stroke_s = strokes.stroke_s,
-                         .pause_s = strokes.pause_s,
-                         .variation = 0.0});
-  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    const auto wish = hand.at(static_cast<double>(tick) * period_s);
-    path.position.push_back({wish.angle_rad});
-    path.velocity.push_back({wish.speed_rad_s});
-  }
-  return path;
-}
-
-ToolPath path_of(const drivers::PosePath::Options& options, std::size_t ticks, double period_s) {
-  const drivers::PosePath hand(options);
-  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    const auto wish = hand.at(static_cast<double>(tick) * period_s);
-    path.position.push_back(wish.position);
-    path.velocity.push_back(wish.velocity);
-  }
-  return path;
-}
-
 }  // namespace
 
 drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device) {
@@ -162,25 +135,6 @@ std::string device_of(const Scene& scene) {
   options += std::visit([](const auto& script) { return options_of(script); }, scene.trajectory.script);
   if (!options.empty() && uri.find('?') == std::string::npos) options.front() = '?';
   return uri + options;
-}
-
-ToolPath tool_path(const Scene& scene, double rate_hz) {
-  if (!(rate_hz >= 1.0 && rate_hz <= 1e6)) {
-    throw std::invalid_argument(fmt::format("a rate of {} Hz is not from 1 Hz to 1 MHz", rate_hz));
-  }
-  const double period_s = 1.0 / rate_hz;
-  const auto ticks = static_cast<std::size_t>(std::llround(scene.trajectory.seconds * rate_hz));
-  if (const auto* poses = std::get_if<drivers::PosePath::Options>(&scene.trajectory.script)) {
-    return path_of(*poses, ticks, period_s);
-  }
-  if (const auto* strokes = std::get_if<ScissorsStrokes>(&scene.trajectory.script)) {
-    return path_of(*strokes, ticks, period_s);
-  }
-  if (!device_of(scene).starts_with("sim:scissors")) {
-    throw std::invalid_argument(
-        fmt::format("the scene '{}' has no [trajectory]: it does not say what the hand does", scene.name));
-  }
-  return path_of(ScissorsStrokes{}, ticks, period_s);
 }
 
 }  // namespace kerf::bench

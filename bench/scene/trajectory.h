@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <variant>
 
 #include <kerf/drivers/hand.h>
@@ -17,12 +16,14 @@ struct ScissorsStrokes {
   double variation = drivers::HandOptions{}.variation;  ///< from stroke to stroke, as a share
 };
 
+/// Strokes for scissors; keyframes, with those that an indentation is made of, for a tool that knows its
+/// pose; neither if nothing is said.
+using Script = std::variant<std::monostate, ScissorsStrokes, drivers::PosePath::Options>;
+
 /// What the hand does with the tool.
 struct Trajectory {
   double seconds = 10.0;
-  /// Strokes for scissors; keyframes, with those that an indentation is made of, for a tool that knows its
-  /// pose; neither if the scene says nothing.
-  std::variant<std::monostate, ScissorsStrokes, drivers::PosePath::Options> script;
+  Script script{};
 };
 
 }  // namespace kerf::bench

@@ -142,12 +142,6 @@ std::vector<std::string> comparison(const WallMap& map) {
   return lines;
 }
 
-std::string paragraph_list(const std::vector<std::string>& lines) {
-  std::string html = "<ul>\n";
-  for (const std::string& line : lines) html += "<li>" + escaped(line) + "</li>\n";
-  return html + "</ul>\n";
-}
-
 Chart chart_of(const LawStudy& study) {
   const LawMap& map = study.map;
   Chart chart{.title = fmt::format("{}: where strokes of up to {:.3g} m/s are given no energy", study.model,
@@ -199,6 +193,14 @@ json as_json(const SampledDevice& device) {
             {"stiffness_n_per_m", device.hand.stiffness_n_per_m}}}};
 }
 
+std::string page_body(const Findings& findings) {
+  std::string html = "<ul>\n";
+  for (const std::string& line : findings.lines) html += "<li>" + escaped(line) + "</li>\n";
+  html += "</ul>\n";
+  for (const Figure& figure : findings.figures) html += "<figure>" + draw(figure.chart) + "</figure>\n";
+  return html + findings.html;
+}
+
 Findings findings_of(const WallMap& map) {
   Findings found;
   json cells = json::array();
@@ -244,9 +246,7 @@ Findings findings_of(const WallMap& map) {
                 {"cells", std::move(cells)}};
   found.lines = comparison(map);
   found.figures.push_back({"wall", chart_of(map)});
-  found.html = fmt::format("<h2>Virtual wall</h2>\n{}<figure>{}</figure>\n{}<h2>Boundaries</h2>\n{}",
-                           paragraph_list(found.lines), draw(found.figures.front().chart),
-                           device_table(map.device), html_table(table));
+  found.html = device_table(map.device) + "<h2>Boundaries</h2>\n" + html_table(table);
   return found;
 }
 
@@ -319,9 +319,7 @@ Findings findings_of(const LawStudy& study) {
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
   found.figures.push_back({"law", chart_of(study)});
-  found.html =
-      fmt::format("<h2>{}</h2>\n{}<figure>{}</figure>\n{}", escaped(study.model), paragraph_list(found.lines),
-                  draw(found.figures.front().chart), device_table(study.device));
+  found.html = device_table(study.device);
   return found;
 }
 

@@ -15,7 +15,7 @@ struct Findings {
   nlohmann::ordered_json json;
   std::string csv;
   std::vector<Figure> figures;
-  std::string html;  ///< body of a page, with its pictures
+  std::string html;  ///< body of a page, below the lines and the pictures
   std::vector<std::string> lines;
 };
 
@@ -33,6 +33,8 @@ struct LawStudy {
 };
 
 [[nodiscard]] nlohmann::ordered_json as_json(const SampledDevice& device);
+/// The body of a page: the lines, the pictures (drawn here), and what else there is.
+[[nodiscard]] std::string page_body(const Findings& findings);
 [[nodiscard]] Findings findings_of(const WallMap& map);
 [[nodiscard]] Findings findings_of(const LawStudy& study);
 

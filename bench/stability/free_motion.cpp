@@ -47,7 +47,9 @@ FreeMotion::FreeMotion(const SampledDevice& device, double time_s)
   const Matrix rates{{{0.0, 1.0, 0.0},
                       {-stiffness_n_per_m_ / mass, -device.damping_n_s_per_m() / mass, 1.0 / mass},
                       {0.0, 0.0, 0.0}}};
-  for (std::size_t level = 0; level < levels_.size(); ++level) {
+  const std::size_t levels =
+      coulomb_n_ > 0.0 ? levels_.size() : 1;  // without friction nothing looks for its rest
+  for (std::size_t level = 0; level < levels; ++level) {
     const Matrix e = exponential(rates, std::ldexp(time_s, -static_cast<int>(level)));
     levels_[level] = {
         .xx = e[0][0], .xv = e[0][1], .xf = e[0][2], .vx = e[1][0], .vv = e[1][1], .vf = e[1][2]};

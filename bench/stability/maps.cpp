@@ -99,24 +99,27 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
   linear_device.encoder_step_m = 0.0;
   WallTrial two_sided = trial;
   two_sided.push_n = 0.0;
+  const WallSimulation tried(device);
+  const WallSimulation linear_walls(linear_device);
   map.boundaries.resize(grid.second.size());
   if (options.with_cells) map.cells.resize(columns * grid.second.size());
   for_each_row(grid.second.size(), options.threads, [&](std::size_t row) {
     const double damping = grid.second[row];
     const double softest = grid.first.front();
     const double stiffest = grid.first.back();
-    map.boundaries[row] = {
-        .damping_n_s_per_m = damping,
-        .simulated = simulated_boundary(device, damping, softest, stiffest, trial),
-        .simulated_linear = simulated_boundary(linear_device, damping, softest, stiffest, two_sided),
-        .eigenvalues = eigenvalue_boundary(device, damping, softest, stiffest),
-        .colgate_schenkel = colgate_schenkel(device, damping),
-        .passive = passive_stiffness(device, damping)};
+    map.boundaries[row] = {.damping_n_s_per_m = damping,
+                           .simulated = tried.boundary(damping, softest, stiffest, trial),
+                           .simulated_linear = linear_walls.boundary(damping, softest, stiffest, two_sided),
+                           .eigenvalues = eigenvalue_boundary(device, damping, softest, stiffest),
+                           .colgate_schenkel = colgate_schenkel(device, damping),
+                           .passive = passive_stiffness(device, damping)};
     if (!options.with_cells) return;
+    std::vector<Wall> walls;
+    for (const double stiffness : grid.first) walls.push_back({stiffness, damping});
+    const std::vector<bool> rest = tried.come_to_rest(walls, trial);
     for (std::size_t column = 0; column < columns; ++column) {
-      const Wall wall{.stiffness_n_per_m = grid.first[column], .damping_n_s_per_m = damping};
-      map.cells[row * columns + column] = {.stable = comes_to_rest(device, wall, trial),
-                                           .theory = spectral_radius(device, wall) < 1.0};
+      map.cells[row * columns + column] = {.stable = rest[column],
+                                           .theory = spectral_radius(device, walls[column]) < 1.0};
     }
   });
   return map;

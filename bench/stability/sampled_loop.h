@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include "stability/free_motion.h"
@@ -72,6 +73,19 @@ struct SplitDelay {
   }
 };
 
+/// How a device in its hand moves within a period, until and after a late command arrives; made once a
+/// device.
+struct DeviceMotion {
+  explicit DeviceMotion(const SampledDevice& device)
+      : delay(device),
+        before(device, delay.share * device.period_s),
+        after(device, (1.0 - delay.share) * device.period_s) {}
+
+  SplitDelay delay;
+  FreeMotion before;
+  FreeMotion after;
+};
+
 /// A device in a hand, closed over a rendering, in virtual time; exact between the ticks (FreeMotion).
 ///
 /// `Force`: double(const AxisReading&) noexcept, the force on the device in a tick. Allocates nothing. The
@@ -80,21 +94,22 @@ template <typename Force>
 class SampledLoop {
  public:
   SampledLoop(const SampledDevice& device, Force force, AxisMotion start)
+      : SampledLoop(device, std::make_shared<const DeviceMotion>(device), std::move(force), start) {}
+  SampledLoop(const SampledDevice& device, std::shared_ptr<const DeviceMotion> moves, Force force,
+              AxisMotion start)
       : force_(std::move(force)),
         motion_(start),
-        delay_(device),
+        moves_(std::move(moves)),
         sensor_(device),
-        line_(delay_.ticks),
-        before_(device, delay_.share * device.period_s),
-        after_(device, (1.0 - delay_.share) * device.period_s) {}
+        line_(moves_->delay.ticks) {}
 
   /// One period: read, compute, hold.
   void step(double push_n = 0.0, double hand_place_m = 0.0) noexcept {
     const double arrived = line_.pass(force_(sensor_.read(motion_.place_m)));
     AxisMotion at{.place_m = motion_.place_m - hand_place_m, .speed_m_s = motion_.speed_m_s};
-    if (delay_.share > 0.0) at = before_.after(at, held_n_ + push_n);
+    if (moves_->delay.share > 0.0) at = moves_->before.after(at, held_n_ + push_n);
     held_n_ = arrived;
-    at = after_.after(at, held_n_ + push_n);
+    at = moves_->after.after(at, held_n_ + push_n);
     motion_ = {.place_m = at.place_m + hand_place_m, .speed_m_s = at.speed_m_s};
   }
 
@@ -106,11 +121,9 @@ class SampledLoop {
  private:
   Force force_;
   AxisMotion motion_;
-  SplitDelay delay_;
+  std::shared_ptr<const DeviceMotion> moves_;
   AxisSensor sensor_;
   CommandDelay line_;
-  FreeMotion before_;  ///< until a late command arrives
-  FreeMotion after_;
   double held_n_ = 0.0;
 };
 

@@ -46,37 +46,78 @@ struct Stretch {
   }
 };
 
+/// One wall's trial while it runs.
+class Trial {
+ public:
+  Trial(const SampledDevice& device, const std::shared_ptr<const DeviceMotion>& moves, const Wall& wall,
+        const WallTrial& trial)
+      : trial_(trial),
+        start_m_(trial.start_m + (trial.push_n > 0.0 ? trial.push_n / wall.stiffness_n_per_m : 0.0)),
+        loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.place_m = start_m_}) {}
+
+  /// A tick of a quarter of the time; of no effect once the device is lost.
+  void step(int quarter) noexcept {
+    if (lost_) return;
+    loop_.step(trial_.push_n);
+    if (quarter == 1) second_.add(loop_.motion());
+    if (quarter == 3) last_.add(loop_.motion());
+    lost_ = !(std::abs(loop_.motion().place_m) < lost_m + start_m_);
+  }
+  [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
+    if (lost_) return false;
+    const double floor_m = std::max(device.encoder_step_m, at_rest_share * trial_.start_m);
+    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
+    const double energy = last_.energy(device.moving_mass_kg(), stiffness);
+    if (energy <= 2.0 * stiffness * floor_m * floor_m) return true;
+    const bool exact = device.is_linear() && trial_.push_n == 0.0;
+    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(device.moving_mass_kg(), stiffness);
+  }
+
+ private:
+  WallTrial trial_;
+  double start_m_;
+  SampledLoop<WallForce> loop_;
+  Stretch second_;
+  Stretch last_;
+  bool lost_ = false;
+};
+
 }  // namespace
 
-bool comes_to_rest(const SampledDevice& device, const Wall& wall, const WallTrial& trial) {
-  const bool one_sided = trial.push_n > 0.0;
-  const double start_m = trial.start_m + (one_sided ? trial.push_n / wall.stiffness_n_per_m : 0.0);
-  SampledLoop loop(device, WallForce{wall, one_sided}, {.place_m = start_m});
-  const auto quarter =
-      std::max<std::size_t>(static_cast<std::size_t>(0.25 * trial.seconds / device.period_s), 4);
-  Stretch second;
-  Stretch last;
-  for (std::size_t tick = 0; tick < 4 * quarter; ++tick) {
-    loop.step(trial.push_n);
-    if (tick / quarter == 1) second.add(loop.motion());
-    if (tick / quarter == 3) last.add(loop.motion());
-    if (!(std::abs(loop.motion().place_m) < lost_m + start_m)) return false;
-  }
-  const double floor_m = std::max(device.encoder_step_m, at_rest_share * trial.start_m);
-  const double stiffness = wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
-  const double energy = last.energy(device.moving_mass_kg(), stiffness);
-  if (energy <= 2.0 * stiffness * floor_m * floor_m) return true;
-  return energy < (device.is_linear() && !one_sided ? 1.0 : limit_cycle_decay) *
-                      second.energy(device.moving_mass_kg(), stiffness);
+WallSimulation::WallSimulation(const SampledDevice& device)
+    : device_(device), moves_(std::make_shared<const DeviceMotion>(device)) {}
+
+bool WallSimulation::comes_to_rest(const Wall& wall, const WallTrial& trial) const {
+  return come_to_rest(std::span(&wall, 1), trial).front();
 }
 
-double simulated_boundary(const SampledDevice& device, double wall_damping, double softest, double stiffest,
-                          const WallTrial& trial, double share) {
+std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, const WallTrial& trial) const {
+  constexpr std::size_t together = 8;  // more no longer fit beside each other
+  const auto quarter =
+      std::max<std::size_t>(static_cast<std::size_t>(0.25 * trial.seconds / device_.period_s), 4);
+  std::vector<bool> rest;
+  for (std::size_t begin = 0; begin < walls.size(); begin += together) {
+    std::vector<Trial> trials;
+    for (const Wall& wall : walls.subspan(begin, std::min(together, walls.size() - begin))) {
+      trials.emplace_back(device_, moves_, wall, trial);
+    }
+    for (int part = 0; part < 4; ++part) {
+      for (std::size_t tick = 0; tick < quarter; ++tick) {
+        for (Trial& one : trials) one.step(part);
+      }
+    }
+    for (Trial& one : trials) rest.push_back(one.came_to_rest(device_));
+  }
+  return rest;
+}
+
+double WallSimulation::boundary(double wall_damping, double softest, double stiffest, const WallTrial& trial,
+                                double share) const {
   return first_change({.lower = softest, .upper = stiffest, .share = share}, [&](double stiffness) {
-    const double rate = std::sqrt((stiffness + device.hand.stiffness_n_per_m) / device.moving_mass_kg());
+    const double rate = std::sqrt((stiffness + device_.hand.stiffness_n_per_m) / device_.moving_mass_kg());
     WallTrial longer = trial;
     longer.seconds = std::max(trial.seconds, periods_of_soft_walls * 2.0 * std::numbers::pi / rate);
-    return comes_to_rest(device, {.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}, longer);
+    return comes_to_rest({.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}, longer);
   });
 }
 

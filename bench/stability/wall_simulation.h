@@ -1,8 +1,10 @@
 #pragma once
 
-#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
 
-#include "stability/sampled_device.h"
+#include "stability/sampled_loop.h"
 #include "stability/wall_theory.h"
 
 namespace kerf::bench {
@@ -15,16 +17,27 @@ struct WallTrial {
   double push_n = 0.0;
 };
 
-/// Whether a simulated wall comes to rest.
+/// Whether simulated walls come to rest.
 ///
 /// The energy of the motion about its mean, M v^2 + K (x - mean)^2, is averaged over the second and the last
 /// quarter of the time. It came to rest if it fell from the one to the other, or was small in the last: below
 /// an encoder step. A limit cycle does not fall: with an encoder or Coulomb friction it has to fall by 10 %.
-[[nodiscard]] bool comes_to_rest(const SampledDevice& device, const Wall& wall, const WallTrial& trial);
+class WallSimulation {
+ public:
+  explicit WallSimulation(const SampledDevice& device);
 
-/// Stiffness above `softest` at which the wall first does not come to rest, to a share of `share`; as
-/// eigenvalue_boundary(). Soft walls swing slowly and are tried for 20 of their periods if that is longer.
-[[nodiscard]] double simulated_boundary(const SampledDevice& device, double wall_damping, double softest,
-                                        double stiffest, const WallTrial& trial, double share = 2e-3);
+  [[nodiscard]] bool comes_to_rest(const Wall& wall, const WallTrial& trial) const;
+  /// Of many walls at once: their ticks are independent of each other and overlap in the processor.
+  [[nodiscard]] std::vector<bool> come_to_rest(std::span<const Wall> walls, const WallTrial& trial) const;
+
+  /// Stiffness above `softest` at which the wall first does not come to rest, to a share of `share`; as
+  /// eigenvalue_boundary(). Soft walls swing slowly and are tried for 20 of their periods if that is longer.
+  [[nodiscard]] double boundary(double wall_damping, double softest, double stiffest, const WallTrial& trial,
+                                double share = 2e-3) const;
+
+ private:
+  SampledDevice device_;
+  std::shared_ptr<const DeviceMotion> moves_;
+};
 
 }  // namespace kerf::bench

@@ -215,6 +215,7 @@ TEST(Scene, RefusesDeviceHandAndTrajectoryByLine) {
        {"sim:scissors?noise=off", "falcon:0", "19", "expected a simulated device"},
        {"sim:scissors?noise=off", "sim:scissors?noise=loud", "19", "expected on or off"},
        {"sim:scissors?noise=off", "sim:pose6", "19", "no axis of sim:pose6"},
+       {"axis = \"theta\"", "axis = \"tetha\"", "5", "the axes of sim:scissors are theta, x_s"},
        {"uri", "url", "19", "unknown key 'url'"},
        {"?noise=off", "?grip=3N/m", "20", "'grip' stands twice"},
        {"stiffness = { value = 0.4", "stiffness = { value = -1", "21",

@@ -116,12 +116,29 @@ TEST(ToolPath, HasTheDerivativeOfItsPositionAsVelocity) {
   }
 }
 
-TEST(ToolPath, IsThatOfTheScissorsHandIfTheSceneSaysNothing) {
+TEST(ToolPath, IsThatOfTheDeviceIfTheSceneHasNoTrajectory) {
   const ToolPath path = tool_path(default_scene(), 1000.0);
   EXPECT_EQ(path.position.size(), 10000U);
   EXPECT_NEAR(path.position[650][0], 0.5 * drivers::HandOptions{}.open_rad, 1e-12);
+  const ToolPath named =
+      tool_path(scene_on("theta", "rad", "[device]\nuri = \"sim:scissors?open=20deg\"\n"), 1000.0);
+  EXPECT_NEAR(named.position[650][0], 10.0 * degree, 1e-12);
+  const ToolPath poses = tool_path(
+      scene_on("z", "m", "[device]\nuri = \"sim:pose6?path=0s:0:0:0mm:0:0:0deg,1s:0:0:8mm:0:0:0deg\"\n"),
+      1000.0);
+  EXPECT_NEAR(poses.position[500][2], 4e-3, 1e-15);
+}
+
+TEST(ToolPath, IsRefusedWhereNothingIsKnownOfIt) {
   EXPECT_THROW((void)tool_path(scene_on("z", "m", ""), 1000.0), std::invalid_argument);
   EXPECT_THROW((void)tool_path(strokes, 0.5), std::invalid_argument);
+  EXPECT_THROW((void)tool_path(scene_on("theta", "rad", R"([trajectory]
+kind = "strokes"
+seconds = { value = 1, unit = "min" }
+)"),
+                               1e6),
+               std::invalid_argument)
+      << "60 million ticks";
 }
 
 }  // namespace

@@ -17,8 +17,8 @@ const std::string examples = std::string(KERF_SOURCE_DIR) + "/examples/";
 TEST(KerfStability, MapsAWallAgainstItsEigenvalues) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "wall").string();
-  const Outcome run =
-      run_kerf({"stability", "--coulomb", "0", "--encoder", "0", "--push", "0", "--cells", "20", "--json", "-o", out});
+  const Outcome run = run_kerf(
+      {"stability", "--coulomb", "0", "--encoder", "0", "--push", "0", "--cells", "20", "--json", "-o", out});
   ASSERT_EQ(run.exit_status, 0) << run.errors;
   const json found = json::parse(run.output);
   EXPECT_EQ(found["cells"].size(), 400U);
@@ -34,8 +34,9 @@ TEST(KerfStability, MapsAWallAgainstItsEigenvalues) {
 }
 
 TEST(KerfStability, SaysHowDeepAnExponentialLawMayGo) {
-  const Outcome run = run_kerf({"stability", examples + "exponential.law.toml", "--viscous", "0.4", "--coulomb", "0",
-                                "--encoder", "0", "--depth", "0.03", "--cells", "8", "--json"});
+  const Outcome run =
+      run_kerf({"stability", examples + "exponential.law.toml", "--viscous", "0.4", "--coulomb", "0",
+                "--encoder", "0", "--depth", "0.03", "--cells", "8", "--json"});
   EXPECT_EQ(run.exit_status, 1) << "it is not passive so deep";
   const json found = json::parse(run.output);
   EXPECT_FALSE(found["passive"].get<bool>());

@@ -21,7 +21,7 @@ TEST_P(LinearWall, BreaksWhereItsEigenvaluesSay) {
   for (const double damping : {0.0, 0.1, 0.5, 2.0, 8.0}) {
     const double theory = eigenvalue_boundary(device, damping, 1.0, 1e6);
     if (theory == 1.0) continue;  // no stiffness is stable
-    EXPECT_NEAR(simulated_boundary(device, damping, 1.0, 1e6, {}), theory, 0.01 * theory) << damping;
+    EXPECT_NEAR(WallSimulation(device).boundary(damping, 1.0, 1e6, {}), theory, 0.01 * theory) << damping;
     ++compared;
   }
   EXPECT_GE(compared, 2);
@@ -47,24 +47,24 @@ INSTANTIATE_TEST_SUITE_P(Devices, LinearWall,
 
 TEST(Wall, WithoutAnyFrictionNeverComesToRest) {
   const SampledDevice free{.mass_kg = 0.1, .viscous_n_s_per_m = 0.0};
-  EXPECT_FALSE(comes_to_rest(free, {.stiffness_n_per_m = 100.0}, {}));
+  EXPECT_FALSE(WallSimulation(free).comes_to_rest({.stiffness_n_per_m = 100.0}, {}));
 }
 
 TEST(Wall, ComesToRestByCoulombFrictionWhereViscousFrictionAloneWouldNotDo) {
   SampledDevice device{.mass_kg = 0.05, .viscous_n_s_per_m = 0.1};
   const Wall stiff{.stiffness_n_per_m = 400.0};  // 2 b / T = 200
-  EXPECT_FALSE(comes_to_rest(device, stiff, {}));
+  EXPECT_FALSE(WallSimulation(device).comes_to_rest(stiff, {}));
   device.coulomb_n = 0.1;
-  EXPECT_TRUE(comes_to_rest(device, stiff, {.start_m = 1e-4}));
+  EXPECT_TRUE(WallSimulation(device).comes_to_rest(stiff, {.start_m = 1e-4}));
 }
 
 TEST(Wall, KeepsALimitCycleThatAnEncoderFeeds) {
   // One step of the encoder is read as 36 mm/s, against which the wall pushes with 1.1 N.
   SampledDevice device{.mass_kg = 0.05, .viscous_n_s_per_m = 0.2, .encoder_step_m = 3.6e-5};
   const Wall wall{.stiffness_n_per_m = 200.0, .damping_n_s_per_m = 30.0};
-  EXPECT_FALSE(comes_to_rest(device, wall, {.start_m = 5e-3, .push_n = 2.0}));
+  EXPECT_FALSE(WallSimulation(device).comes_to_rest(wall, {.start_m = 5e-3, .push_n = 2.0}));
   device.encoder_step_m = 1e-6;
-  EXPECT_TRUE(comes_to_rest(device, wall, {.start_m = 5e-3, .push_n = 2.0}));
+  EXPECT_TRUE(WallSimulation(device).comes_to_rest(wall, {.start_m = 5e-3, .push_n = 2.0}));
 }
 
 }  // namespace
