@@ -14,6 +14,7 @@
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
 #include "cli/verbs.h"
+#include "files/whole_file.h"
 #include "loop/run.h"
 #include "recordings/axes.h"
 
@@ -158,6 +159,7 @@ void choose_for_scene(const Arguments& arguments, Context& context, const std::a
   if (arguments.output.empty())
     throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
   const fs::path file = fs::path(arguments.output) / "cut.h5";
+  refuse_to_replace(file, arguments.force);
   fs::create_directories(file.parent_path());
   const SceneCut cut{.device_uri = arguments.loop.device_uri,
                      .seconds = arguments.record_s.value_or(0.0),

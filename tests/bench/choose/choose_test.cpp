@@ -176,6 +176,19 @@ TEST(Choose, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(Choose, FindsTheCurvesOfAllCountsAtOnceAsWellAsOneByOne) {
+  const schema::Recording recording = cut_of(known_kelvin());
+  ChooseOptions options = small();
+  options.fit.jnd = {.weber_fraction = 0.0, .threshold_n = 1e-3};  // so that every law is fitted both ways
+  const LawChoice at_once = choose(recording, options);
+  options.richer_too = false;
+  const LawChoice one_by_one = choose(recording, options);
+  for (const char* name : {"piecewise-1", "piecewise-2", "piecewise-1-loop", "piecewise-2-loop"}) {
+    const double error_n = candidate(one_by_one, name).error_n;
+    EXPECT_NEAR(candidate(at_once, name).error_n, error_n, 1e-3 * error_n) << name;
+  }
+}
+
 TEST(Choose, StopsWhereItIsToldTo) {
   const std::atomic<bool> stop{true};
   EXPECT_THROW((void)choose_law(cut_of(known_kelvin()), small(), stop), std::system_error);
