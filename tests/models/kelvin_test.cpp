@@ -103,7 +103,7 @@ TEST(Kelvin, TakesMoreEnergyThanItGivesOnClosedPathsAtEveryPeriod) {
 
 TEST(Kelvin, ForwardEulerDivergesPastTwiceTheRelaxationTime) {
   const Kelvin<double> fast{
-      .parallel_stiffness = 8.0, .series_stiffness = 700.0, .damping = 0.3, .euler = true};
+      .parallel_stiffness = 8.0, .series_stiffness = 700.0, .damping = 0.3, .integrator = Integrator::euler};
   ASSERT_GT(1e-3, 2.0 * fast.relaxation_time());
   // The sign alternates from tick to tick, and a negative force is not felt.
   EXPECT_GT(std::max(force_at(fast, ramp_and_hold, 3.0, 1e-3), force_at(fast, ramp_and_hold, 3.001, 1e-3)),
@@ -114,7 +114,8 @@ TEST(Kelvin, ForwardEulerDivergesPastTwiceTheRelaxationTime) {
 TEST(Kelvin, RefusesAnUnknownIntegrator) {
   const std::vector<double> values{8.0, 7.0, 130.0};
   EXPECT_THROW(Kelvin<double>::make(values, {{"integrator", std::string("magic")}}), std::invalid_argument);
-  EXPECT_TRUE(Kelvin<double>::make(values, {{"integrator", std::string("euler")}}).euler);
+  EXPECT_EQ(Kelvin<double>::make(values, {{"integrator", std::string("euler")}}).integrator,
+            Integrator::euler);
 }
 
 }  // namespace
