@@ -42,7 +42,7 @@ void blade(const LawFile& law, double rate_hz, Fidelities& to) {
   }
   const LawFile exact = with_options(law, {{"fidelity", std::string("exact")}});
   to.all.push_back({"exact", exact, rate_hz});
-  to.reference = {"exact", exact, reference_rate_factor * rate_hz};
+  to.reference = {"exact", exact, rate_hz};
 }
 
 void integrators(const LawFile& law, double rate_hz, Fidelities& to) {
@@ -159,7 +159,8 @@ Fidelities fidelities_of(const LawFile& law, double rate_hz) {
     projections(given, rate_hz, result);
   } else {
     result.all.push_back({"as given", given, rate_hz});
-    result.reference = {"as given", given, reference_rate_factor * rate_hz};
+    const bool sampled = model == "piecewise" || model == "recording" || model.starts_with("fuzzy_");
+    result.reference = {"as given", given, sampled ? rate_hz : reference_rate_factor * rate_hz};
     if (model == "piecewise") append(result.all, resampled_segments(given, most_segments, rate_hz));
     if (model == "recording") append(result.all, resampled_tables(given, most_table_points, rate_hz));
     if (model.starts_with("fuzzy_")) add_memberships(given, rate_hz, result);

@@ -72,6 +72,41 @@ double quantile(std::vector<std::uint64_t>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(at)]);
 }
 
+/// The smallest step that the stamps make: some processors count in units and tick in tens of them.
+std::uint64_t smallest_step() {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t before = stamp();
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint64_t now = stamp();
+    if (now > before) least = std::min(least, now - before);
+    before = now;
+  }
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint64_t now = stamp();
+    // Differences of differences are multiples of the step, too.
+    const std::uint64_t rest = (now - before) % least;
+    if (rest > 0) least = rest;
+    before = now;
+  }
+  return least;
+}
+
+/// The median, finer than the step of the stamps. A duration between two steps is measured as one or the
+/// other as often as it is nearer to it, so that the mean of those around the median is right.
+double fine_median(std::vector<std::uint64_t>& values, std::uint64_t step) {
+  const double coarse = quantile(values, 0.5);
+  const double reach = 1.5 * static_cast<double>(step);
+  double sum = 0.0;
+  double count = 0.0;
+  for (const std::uint64_t value : values) {
+    const auto duration = static_cast<double>(value);
+    if (std::abs(duration - coarse) > reach) continue;
+    sum += duration;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : coarse;
+}
+
 double median(std::vector<double> values) {
   if (values.empty()) return not_measured;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -82,8 +117,8 @@ double median(std::vector<double> values) {
 /// Percentiles in units of the stamp, one of each a round.
 struct Rounds {
   std::vector<double> p50, p999;
-  void add(std::vector<std::uint64_t>& durations, double overhead) {
-    p50.push_back(std::max(0.0, quantile(durations, 0.5) - overhead));
+  void add(std::vector<std::uint64_t>& durations, std::uint64_t step, double overhead) {
+    p50.push_back(std::max(0.0, fine_median(durations, step) - overhead));
     p999.push_back(std::max(0.0, quantile(durations, 0.999) - overhead));
   }
 };
@@ -96,7 +131,7 @@ class Subject {
     chosen_.reserve(timed.path.size());
   }
 
-  void warm_round(double overhead) {
+  void warm_round(std::uint64_t step_of_stamps, double overhead) {
     const std::int64_t begin_ns = WallClock::now_ns();
     rendering_ = timed_.rendering;
     for (std::size_t i = 0; i < std::min(warm_up_ticks, timed_.path.size()); ++i) step(i);
@@ -107,11 +142,11 @@ class Subject {
     for (std::size_t i = 0; i < duration_.size(); ++i) {
       if (!ever || pushes_[i] != 0) chosen_.push_back(duration_[i]);
     }
-    warm_.add(chosen_, overhead);
+    warm_.add(chosen_, step_of_stamps, overhead);
     longest_s_ = std::max(longest_s_, 1e-9 * static_cast<double>(WallClock::now_ns() - begin_ns));
   }
 
-  void cold_round(std::size_t most, double overhead, CacheFlush& flush) {
+  void cold_round(std::size_t most, std::uint64_t step_of_stamps, double overhead, CacheFlush& flush) {
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < pushes_.size(); ++i) {
       if (pushes_[i] != 0) places.push_back(i);
@@ -130,7 +165,7 @@ class Subject {
       time(tick++);
       chosen_.push_back(duration_[place]);
     }
-    cold_.add(chosen_, overhead);
+    cold_.add(chosen_, step_of_stamps, overhead);
   }
 
   [[nodiscard]] bool wants_round(const TickCostOptions& options) const {
@@ -165,7 +200,7 @@ class Subject {
 };
 
 /// What two stamps cost with an empty body between them.
-double overhead_of_stamps(std::size_t times, CacheFlush* flush) {
+double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, CacheFlush* flush) {
   std::vector<std::uint64_t> durations(times);
   const drivers::Sample sample;
   for (std::uint64_t& duration : durations) {
@@ -174,7 +209,7 @@ double overhead_of_stamps(std::size_t times, CacheFlush* flush) {
     (void)NoForce{}(sample, 1e-3);
     duration = stamp() - begin;
   }
-  return quantile(durations, 0.5);
+  return fine_median(durations, step_of_stamps);
 }
 
 void check(const TimedLaw& law) {
@@ -197,24 +232,25 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
   std::vector<Subject> subjects(laws.begin(), laws.end());
   CacheFlush flush;
   const StampRate rate;
+  const std::uint64_t step = smallest_step();
   const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   const auto count_one = [&] {
     if (options.done != nullptr) ++*options.done;
   };
   for (std::size_t round = 0; round < options.rounds; ++round) {
-    const double overhead = overhead_of_stamps(1000, nullptr);
+    const double overhead = overhead_of_stamps(4000, step, nullptr);
     for (std::size_t k = 0; k < subjects.size(); ++k) {
       if (stopped()) return {};
       Subject& subject = subjects[round % 2 == 0 ? k : subjects.size() - 1 - k];
-      if (subject.wants_round(options)) subject.warm_round(overhead);
+      if (subject.wants_round(options)) subject.warm_round(step, overhead);
       count_one();
     }
   }
   if (options.cold_ticks > 0) {
-    const double overhead = overhead_of_stamps(options.cold_ticks, &flush);
+    const double overhead = overhead_of_stamps(options.cold_ticks, step, &flush);
     for (Subject& subject : subjects) {
       if (stopped()) return {};
-      subject.cold_round(options.cold_ticks, overhead, flush);
+      subject.cold_round(options.cold_ticks, step, overhead, flush);
       count_one();
     }
   }

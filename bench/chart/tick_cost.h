@@ -47,7 +47,8 @@ struct TickCostOptions {
 /// and branches stay predicted. So few cold ticks make the 99.9th percentile nearly the worst of them.
 ///
 /// Time stamps are those of the processor, whose rate is taken from the monotonic clock over the whole
-/// measurement; where there are none, the clock's own.
+/// measurement; where there are none, the clock's own. Where they come in steps (10 ns on some processors) a
+/// median is the mean of the durations within a step of it, which is finer; a 99.9th percentile is not.
 /// @throws std::invalid_argument for an empty path or a period that is not positive.
 [[nodiscard]] std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws,
                                                const TickCostOptions& options = {});
