@@ -87,8 +87,7 @@ void add_front(const SpeedAccuracy& chart, const Scale& scale, Chart& picture) {
   const auto front = front_of(chart);
   if (front.empty()) return;
   Curve stairs{.label = "front", .colour = Colour::black, .width = 2.0};
-  Curve spread{.label = "p50 to p99.9, front", .colour = Colour::grey, .width = 1.0};
-  constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+  Curve rare{.label = "p99.9, front", .colour = Colour::black, .mark = Mark::circles, .width = 4.0};
   double right = picture.x_range.end;
   for (const ChartPoint* point : front) {
     for (const double x : {right, scale.at(*point)}) {
@@ -96,16 +95,15 @@ void add_front(const SpeedAccuracy& chart, const Scale& scale, Chart& picture) {
       stairs.y.push_back(cost_us(*point));
     }
     right = scale.at(*point);
-    spread.x.insert(spread.x.end(), {right, right, gap});
-    spread.y.insert(spread.y.end(),
-                    {cost_us(*point), std::max(cost_us(*point), 1e-3 * point->cost.p999_ns), gap});
+    rare.x.push_back(right);
+    rare.y.push_back(std::max(cost_us(*point), 1e-3 * point->cost.p999_ns));
     const bool near_left = std::log(right / picture.x_range.begin) <
                            0.45 * std::log(picture.x_range.end / picture.x_range.begin);
     picture.labels.push_back({.x = right, .y = cost_us(*point), .text = name_of(*point), .left = !near_left});
   }
   stairs.x.push_back(right);
   stairs.y.push_back(picture.y_range.end);
-  picture.curves.insert(picture.curves.begin(), {spread, stairs});
+  picture.curves.insert(picture.curves.begin(), {stairs, rare});
 }
 
 std::string cost_text(double nanoseconds) {

@@ -137,11 +137,9 @@ class RecordingChart {
     }
     finish(point, rendered_force);
     const bool first = chart_.points.size() == 1 || chart_.points[chart_.points.size() - 2].law != plan.model;
-    if (has_float(plan.model) && (first || plan.model == "piecewise" || plan.model == "recording"))
-      add_single(plan, point, rendered_force);
+    if (has_float(plan.model) && first) add_single(plan, point, rendered_force);
   }
 
-  /// Only for the first of a law, and tables, where its size might matter.
   void add_single(const FitPlan& plan, ChartPoint point, const std::vector<double>& in_double) {
     try {
       point.file = with_options(point.file, {{"precision", std::string("float")}});

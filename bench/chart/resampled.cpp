@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -105,7 +106,10 @@ std::vector<Fidelity> resampled_segments(const LawFile& file, std::size_t most, 
   const bool loop = option_flag(law, "loop");
   const Points points = points_of(law, law.values().front(), law.values()[knots - 1], loop);
   const auto curves = fitting::fit_segments(
-      {.position = points.position, .force = points.force, .weight = {}, .branch = points.branch},
+      {.position = points.position,
+       .force = points.force,
+       .weight = {},
+       .branch = loop ? std::span<const std::uint8_t>(points.branch) : std::span<const std::uint8_t>()},
       {.most_segments = most});
   std::vector<Fidelity> all;
   for (const fitting::SegmentedCurve& curve : curves) {

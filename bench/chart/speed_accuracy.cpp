@@ -130,7 +130,7 @@ void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
     entries.push_back({.cost_ns = point.cost.p50_ns,
                        .error = point.error_jnd,
                        .parameters = point.parameters,
-                       .name = point.law + " " + point.fidelity,
+                       .name = point.law,
                        .competes = point.stable && point.rate_hz == rate_hz});
   }
   for (const std::size_t place : pareto_front(entries, {.error_floor = shown_from_jnd}))
