@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t warm_up_ticks = 32;
 constexpr std::size_t fewest_rounds = 2;
+constexpr double quiet_share = 0.1;  // of the rounds: a busy neighbour slows whole rounds, by half or more
 constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 /// A time stamp in units of its own, before which all is done and after which nothing has begun.
@@ -107,11 +108,12 @@ double fine_median(std::vector<std::uint64_t>& values, std::uint64_t step) {
   return count > 0.0 ? sum / count : coarse;
 }
 
-double median(std::vector<double> values) {
+/// The value below which lies that share of them.
+double quantile(std::vector<double> values, double share) {
   if (values.empty()) return not_measured;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
 }
 
 /// Percentiles in units of the stamp, one of each a round.
@@ -174,10 +176,10 @@ class Subject {
            (done < options.rounds && static_cast<double>(done + 1) * longest_s_ <= options.most_seconds);
   }
   [[nodiscard]] TickCost cost(double unit_ns) const {
-    return {.p50_ns = unit_ns * median(warm_.p50),
-            .p999_ns = unit_ns * median(warm_.p999),
-            .cold_p50_ns = unit_ns * median(cold_.p50),
-            .cold_p999_ns = unit_ns * median(cold_.p999)};
+    return {.p50_ns = unit_ns * quantile(warm_.p50, quiet_share),
+            .p999_ns = unit_ns * quantile(warm_.p999, 0.5),
+            .cold_p50_ns = unit_ns * quantile(cold_.p50, 0.5),
+            .cold_p999_ns = unit_ns * quantile(cold_.p999, 0.5)};
   }
 
  private:
@@ -241,7 +243,7 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
     const double overhead = overhead_of_stamps(4000, step, nullptr);
     for (std::size_t k = 0; k < subjects.size(); ++k) {
       if (stopped()) return {};
-      Subject& subject = subjects[round % 2 == 0 ? k : subjects.size() - 1 - k];
+      Subject& subject = subjects[(k + round) % subjects.size()];
       if (subject.wants_round(options)) subject.warm_round(step, overhead);
       count_one();
     }

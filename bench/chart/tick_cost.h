@@ -28,7 +28,7 @@ struct TimedLaw {
 };
 
 struct TickCostOptions {
-  std::size_t rounds = 9;
+  std::size_t rounds = 25;
   std::size_t cold_ticks = 128;             ///< at most, a law; 0: the cold costs are not measured and NaN
   double most_seconds = 0.25;               ///< a law: fewer rounds, but two at least, where they take longer
   const std::atomic<bool>* stop = nullptr;  ///< ends early, without a result
@@ -38,9 +38,10 @@ struct TickCostOptions {
 /// Measures laws side by side, one cost each in their order; none if it was stopped.
 ///
 /// A tick is what the loop does: LawRendering, between two time stamps that nothing may pass, less what an
-/// empty body costs between them in the same round. Laws take turns, round by round and there and back, each
-/// along its whole path from a fresh state. A cost is the median of its percentiles in the rounds, so that a
-/// machine that is busy for a while favours no law. Nothing is allocated between the stamps.
+/// empty body costs between them in the same round. Laws take turns, round by round, another one first in
+/// each, each along its whole path from a fresh state. A neighbour on the same core slows whole rounds, by
+/// half or more, so that the cost p50 is the lowest tenth of its medians in the rounds; the others are the
+/// median of their percentiles. Nothing is allocated between the stamps.
 ///
 /// Cold: before a tick the thread reads a buffer larger than the last cache that the core has for itself. The
 /// law's data then come from the shared cache or from memory; instructions may stay in a cache of their own,

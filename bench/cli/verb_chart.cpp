@@ -81,10 +81,12 @@ SpeedAccuracy chart_of_scene(const Arguments& arguments, const ChartOptions& opt
 
 void print(const SpeedAccuracy& chart) {
   say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
-  say(fmt::format("  {:1} {:16} {:30} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity", "par.",
+  say(fmt::format("  {:1} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity", "par.",
                   "p50 us", "p99.9 us", "cold us", "error N", "JND"));
   for (const ChartPoint& point : chart.points) {
-    say(fmt::format("  {:1} {:16} {:30} {:4} {:9.3f} {:9.3f} {:9.3f} {:10.3g} {:9.3g}",
+    const double cold_us = 1e-3 * point.cost.cold_p50_ns;
+    const std::string cold = std::isfinite(cold_us) ? fmt::format("{:.3f}", cold_us) : "-";
+    say(fmt::format("  {:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
                     point.on_front ? "*"
                     : point.stable ? ""
                                    : "x",
