@@ -26,10 +26,10 @@ struct FrontTolerance {
 /// Which entries are worth their cost, in order of rising cost.
 ///
 /// The front begins with the cheapest class: the cheapest entry and all whose cost counts as equal to it. Of
-/// a class the least error is taken; among those whose error counts as equal to the least the one with the
-/// fewest parameters, then the first by name, then the first given. Then again among the entries with an
-/// error that is truly smaller than the last one's, until there are none. So a few nanoseconds of a busy
-/// machine do not decide between two laws, unless one lies at the very edge of a class.
+/// a class the least error is taken; among those that count as equal to that one in cost and in error the one
+/// with the fewest parameters, then the first by name, then the first given. Then again among the entries
+/// with an error that is truly smaller than the last one's, until there are none. So a few nanoseconds of a
+/// busy machine do not decide between two laws, unless one lies at the very edge of a class.
 [[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const FrontEntry> entries,
                                                     const FrontTolerance& tolerance = {});
 

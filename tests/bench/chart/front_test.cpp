@@ -35,6 +35,11 @@ TEST(Front, TakesTheFewestParametersAmongEquals) {
   EXPECT_THAT(pareto_front(entries), ElementsAre(2)) << "of two with three parameters the first by name";
 }
 
+TEST(Front, TakesTheSimplerOfTwoEqualsAlsoJustBeyondTheEdgeOfAClass) {
+  const std::vector<FrontEntry> entries{{100.0, 9.0, 1, "a"}, {117.0, 1.0, 20, "b"}, {119.0, 1.0, 3, "c"}};
+  EXPECT_THAT(pareto_front(entries), ElementsAre(2)) << "the class ends at 118 ns";
+}
+
 TEST(Front, CountsAFewNanosecondsForNothing) {
   const std::vector<FrontEntry> entries{{4.0, 1.0, 3, "a"}, {7.5, 0.5, 3, "b"}};
   EXPECT_THAT(pareto_front(entries), ElementsAre(1)) << "4 ns + 15 % + 3 ns = 7.6 ns";
