@@ -14,7 +14,7 @@ constexpr double runaway = 10.0;  // times the largest force of the reference
 
 }  // namespace
 
-std::vector<drivers::Sample> samples_of(const TickPath& path) {
+std::vector<drivers::Sample> samples_of(const ToolPath& path) {
   std::vector<drivers::Sample> samples(path.position.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples[i].position = path.position[i];
@@ -39,7 +39,7 @@ ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,
 Judge::Judge(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
              const fitting::ForceJnd& jnd)
     : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
-  const TickPath ticks = path.at(rate_hz_);
+  const ToolPath ticks = path.at(rate_hz_);
   ForcePath forces = rendered(reference.law, axes_, samples_of(ticks), ticks.period_s);
   if (forces.fault) {
     throw std::invalid_argument(

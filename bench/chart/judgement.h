@@ -18,7 +18,7 @@ struct ForcePath {
 };
 
 /// What a device would have said along a path.
-[[nodiscard]] std::vector<drivers::Sample> samples_of(const TickPath& path);
+[[nodiscard]] std::vector<drivers::Sample> samples_of(const ToolPath& path);
 
 /// What LawRendering gives along the samples.
 [[nodiscard]] ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,

@@ -164,9 +164,10 @@ class RecordingChart {
     if (!finite || !(largest <= runaway * peak_n_)) {
       point.stable = false;
       point.why = fmt::format("its force reaches {:.3g} N, the recording {:.3g} N", largest, peak_n_);
-    } else if (options_.stable && !options_.stable(point.file)) {
-      point.stable = false;
-      point.why = "the closed loop is not stable";
+    } else if (options_.unstable) {
+      const auto why = options_.unstable(point.file, point.rate_hz);
+      point.stable = !why;
+      point.why = why.value_or("");
     }
     chart_.points.push_back(point);
   }

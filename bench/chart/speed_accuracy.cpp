@@ -137,6 +137,11 @@ void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
     points[place].on_front = true;
 }
 
+ScriptedPath scripted_path(const Scene& scene) {
+  const auto device = drivers::open_device(device_of(scene));
+  return {.device = device->info(), .at = [scene](double rate_hz) { return tool_path(scene, rate_hz); }};
+}
+
 SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const ChartOptions& options) {
   const Fidelities fidelities = fidelities_of(law, options.rate_hz);
   const Judge judge(fidelities.reference, path, axes_for(law, path.device), options.jnd);
@@ -160,9 +165,10 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   for (ChartPoint& point : chart.points) {
     if (stopped(options)) break;
     judge.judge(rendered(point.file, judge.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz), point);
-    if (point.stable && options.stable && !options.stable(point.file)) {
+    if (!point.stable || !options.unstable) continue;
+    if (const auto why = options.unstable(point.file, point.rate_hz)) {
       point.stable = false;
-      point.why = "the closed loop is not stable";
+      point.why = *why;
     }
   }
   if (!stopped(options)) time_points(judge.axes(), samples, options, chart);

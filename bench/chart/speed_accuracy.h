@@ -2,15 +2,16 @@
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <kerf/fitting/fit.h>
 
 #include "chart/tick_cost.h"
-#include "chart/tick_path.h"
 #include "fits/fit_recording.h"
 #include "laws/law_file.h"
+#include "scene/scene.h"
 
 namespace kerf::bench {
 
@@ -49,13 +50,23 @@ struct ChartOptions {
   fitting::ForceJnd jnd;
   std::size_t folds = 5;
   std::size_t threads = 1;
-  /// Whether a closed loop with this law is stable; empty: only what it renders along the path is looked at.
-  std::function<bool(const LawFile&)> stable;
+  /// Why a closed loop with this law at this rate is not stable, in words; nothing if it is. Empty: only what
+  /// it renders along the path is looked at.
+  std::function<std::optional<std::string>(const LawFile&, double rate_hz)> unstable;
   TickCostOptions timing;
   const std::atomic<bool>* stop = nullptr;
   std::atomic<std::size_t>* done = nullptr;  ///< counts up to chart_steps
 };
 inline constexpr std::size_t chart_steps = 1000;
+
+/// A way of the tool that can be had at any rate, on the axes of a device.
+struct ScriptedPath {
+  drivers::DeviceInfo device;
+  std::function<ToolPath(double rate_hz)> at;
+};
+
+/// The script of a scene, on its device. @throws as tool_path() and device_of() do, drivers::DeviceError.
+[[nodiscard]] ScriptedPath scripted_path(const Scene& scene);
 
 /// A law of a scene at all its fidelities along a path, and, for a law along one axis, the other laws as
 /// fitted to its reference there. The reference is the converged fidelity (fidelities.h); forces are compared
@@ -64,7 +75,7 @@ inline constexpr std::size_t chart_steps = 1000;
 /// Each axis is judged by its own JND at the root mean square of its reference; a torque in N·m counts as the
 /// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
-/// what options.stable says. Only points at the chart's own rate compete for the front.
+/// what options.unstable says. Only points at the chart's own rate compete for the front.
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "cli/app.h"
 
@@ -22,14 +23,37 @@ LawChange parse_change(const std::string& text) {
   return {.law = read_law_file(text.substr(0, at)), .at_s = at_s};
 }
 
+/// What of a scene a device of one's own leaves out.
+void warn_of_device(const Scene& scene, const std::string& device) {
+  std::vector<std::string> left_out;
+  if (!scene.device_uri.empty()) left_out.push_back("device " + scene.device_uri);
+  if (scene.hand_given) left_out.emplace_back("hand");
+  if (scene.trajectory.script.index() != 0) left_out.emplace_back("trajectory");
+  if (left_out.empty()) return;
+  warn(fmt::format("with --device {} the scene's {} {} not apply", device, fmt::join(left_out, ", "),
+                   left_out.size() == 1 ? "does" : "do"));
+}
+
+void take_scene(const LoopArguments& arguments, RunOptions& options) {
+  options.scene = read_scene(arguments.scene);
+  if (!arguments.device.empty()) return warn_of_device(*options.scene, arguments.device);
+  options.device_uri = device_of(*options.scene);
+  options.seconds = options.scene->trajectory.seconds;
+}
+
 }  // namespace
 
-void add_loop_options(Verb& verb, LoopArguments& arguments) {
+void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& scene_is) {
   RunOptions& options = arguments.options;
-  verb.add_option("--device", options.device_uri, "Device URI; 'kerf devices' lists them").with_default();
+  verb.add_option(
+      "--device", arguments.device,
+      "Device URI; 'kerf devices' lists them (default: the scene's, else " + options.device_uri + ")");
+  verb.add_option("--scene", arguments.scene, scene_is);
   verb.add_option("--sensor", options.sensor_uri,
                   "URI of a force sensor beside the device: u6:0?calibration=FILE.toml");
-  verb.add_option("--seconds", options.seconds, "Duration [s]").within(0.01, 1e6).with_default();
+  verb.add_option("--seconds", arguments.seconds,
+                  fmt::format("Duration [s] (default: the scene's, else {:g})", options.seconds))
+      .within(0.01, 1e6);
   verb.add_option("--rate", options.rate_hz, "Rate of the loop, 100 to 10000 [Hz]").with_default();
   verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");
   verb.add_option("--switch", arguments.changes,
@@ -44,6 +68,9 @@ void add_loop_options(Verb& verb, LoopArguments& arguments) {
 
 RunOptions run_options(const LoopArguments& arguments) {
   RunOptions options = arguments.options;
+  if (!arguments.device.empty()) options.device_uri = arguments.device;
+  if (!arguments.scene.empty()) take_scene(arguments, options);
+  if (arguments.seconds) options.seconds = *arguments.seconds;
   for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
   options.warn = warn;
   return options;

@@ -11,6 +11,18 @@
 
 namespace kerf::bench {
 
+namespace {
+
+/// What is wrong with a number that has to be greater than zero, or not less; nothing if nothing is.
+std::string wrong_with(const std::string& text, bool may_be_zero) {
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text, value)) return "'" + text + "' is not a number";
+  if (value > 0.0 || (may_be_zero && value == 0.0)) return "";
+  return text + (may_be_zero ? " is negative" : " is not greater than 0");
+}
+
+}  // namespace
+
 Option& Option::required() {
   option_.required();
   return *this;
@@ -32,12 +44,12 @@ Option& Option::within(double lower, double upper) {
 }
 
 Option& Option::positive() {
-  option_.check(CLI::PositiveNumber);
+  option_.check(CLI::Validator([](std::string& text) { return wrong_with(text, false); }, "POSITIVE"));
   return *this;
 }
 
 Option& Option::not_negative() {
-  option_.check(CLI::NonNegativeNumber);
+  option_.check(CLI::Validator([](std::string& text) { return wrong_with(text, true); }, "NOT NEGATIVE"));
   return *this;
 }
 

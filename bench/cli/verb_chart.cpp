@@ -91,8 +91,7 @@ void print(const SpeedAccuracy& chart) {
                     : point.stable ? ""
                                    : "x",
                     point.law, point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
-                    1e-3 * point.cost.p999_ns, 1e-3 * point.cost.cold_p50_ns, point.error_n,
-                    point.error_jnd));
+                    1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
   }
   say("  * on the front, x not stable");
 }

@@ -37,12 +37,25 @@ void print_table(const nlohmann::ordered_json& json) {
   }
 }
 
+/// The law to run. In a scene it is felt in place of the tissue, which is the law itself if none is given.
+void choose_law(const std::string& file, RunOptions& options) {
+  if (!file.empty()) {
+    options.law = read_law_file(file);
+  } else if (options.scene) {
+    options.law = options.scene->tissue;
+    if (!options.scene->deeper.empty()) warn("of the scene's layers the first alone is rendered, as LAW");
+  } else {
+    throw std::invalid_argument("give a LAW file, or a --scene whose tissue is the law");
+  }
+  options.scene.reset();
+}
+
 void run_check(const Arguments& arguments, Context& context) {
   if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.loop.options.replace);
   RunOptions options = run_options(arguments.loop);
   options.floor_s = arguments.floor.value_or(3.0);
   options.floor_anew = arguments.floor.has_value();
-  options.law = read_law_file(arguments.law);
+  choose_law(arguments.law, options);
   if (options.law->law.is_spatial() && (arguments.contact || !arguments.direction.empty())) {
     throw std::invalid_argument(fmt::format(
         "law '{}' acts on axes of its own; --contact and --direction are for a law along one axis",
@@ -94,8 +107,9 @@ void add_check(CLI::App& app, Context& context) {
                "law or device failed; the verdict says whose doing it was. An empty loop is measured\n"
                "first, so that a late machine is not taken for a slow law. docs/real-time.md says more.",
                [arguments, &context] { run_check(*arguments, context); });
-  verb.add_option("LAW", arguments->law, "Law file").required();
-  add_loop_options(verb, arguments->loop);
+  verb.add_option("LAW", arguments->law, "Law file (default: the tissue of --scene)");
+  add_loop_options(verb, arguments->loop,
+                   "Scene file: its device, hand and trajectory; the law is felt in place of its tissue");
   verb.add_option("--contact", arguments->contact,
                   "Position of first contact instead of the law file's, in its unit");
   verb.add_option("--direction", arguments->direction, "Direction of engagement instead of the law file's")

@@ -15,7 +15,6 @@ namespace {
 
 struct Arguments {
   LoopArguments loop;
-  std::string scene;
   std::string law;
   std::string output;
 };
@@ -27,9 +26,7 @@ void run_record(const Arguments& arguments, Context& context) {
   if (!options.changes.empty() && !options.law) {
     throw std::invalid_argument("--switch needs a first law: give it with --law");
   }
-  if (!arguments.scene.empty()) {
-    options.scene = read_scene(arguments.scene);
-  } else if (!options.law && options.device_uri.starts_with("sim:scissors")) {
+  if (!options.scene && !options.law && options.device_uri.starts_with("sim:scissors")) {
     options.scene = default_scene();
   }
   if (options.device_uri.starts_with("sim:") && options.device_uri.find("seed=") == std::string::npos) {
@@ -57,12 +54,13 @@ void add_record(CLI::App& app, Context& context) {
   Verb verb = add_verb(
       app, context, "record", "Record a device's trajectory and forces",
       "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
-      "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue. Ctrl-C ends a\n"
-      "recording cleanly. 'kerf info --follow' shows it from another terminal, and after a\n"
-      "crash 'kerf repair' closes it.",
+      "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue; a scene may\n"
+      "give device, hand and trajectory too (docs/scenes.md). Ctrl-C ends a recording cleanly.\n"
+      "'kerf info --follow' shows it from another terminal, and after a crash 'kerf repair' closes\n"
+      "it.",
       [arguments, &context] { run_record(*arguments, context); });
-  add_loop_options(verb, arguments->loop);
-  verb.add_option("--scene", arguments->scene, "Scene file: the tissue that a simulated device meets");
+  add_loop_options(verb, arguments->loop,
+                   "Scene file: the tissue that a simulated device meets, the hand on it and what that does");
   verb.add_option("--law", arguments->law, "Law file to render while recording");
   verb.add_option("-o,--output", arguments->output, "Recording to write").required();
 }

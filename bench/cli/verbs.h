@@ -21,6 +21,7 @@ void add_repair(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_reproduce(CLI::App& app, Context& context);
 void add_segment(CLI::App& app, Context& context);
+void add_stability(CLI::App& app, Context& context);
 void add_train(CLI::App& app, Context& context);
 void add_validate(CLI::App& app, Context& context);
 

@@ -17,100 +17,6 @@
 namespace kerf::bench {
 namespace {
 
-/// Where in which file a message is about.
-class Place {
- public:
-  explicit Place(std::string file) : file_(std::move(file)) {}
-
-  template <typename... Arguments>
-  [[noreturn]] void refuse(const toml::node& node, fmt::format_string<Arguments...> format,
-                           Arguments&&... arguments) const {
-    throw std::invalid_argument(fmt::format("{}:{}: {}", file_, node.source().begin.line,
-                                            fmt::format(format, std::forward<Arguments>(arguments)...)));
-  }
-
-  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys,
-                  std::string_view where) const {
-    for (const auto& [key, node] : table) {
-      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-      refuse(node, "unknown key '{}' in {}; known are {}", key.str(), where, fmt::join(keys, ", "));
-    }
-  }
-
-  const toml::table& table(const toml::table& parent, std::string_view key) const {
-    const toml::node* node = parent.get(key);
-    if (node == nullptr || !node->is_table()) refuse(node ? *node : parent, "expected a table [{}]", key);
-    return *node->as_table();
-  }
-
-  std::string text(const toml::table& parent, std::string_view key, std::string_view standard) const {
-    const toml::node* node = parent.get(key);
-    if (node == nullptr) return std::string(standard);
-    if (!node->is_string()) refuse(*node, "'{}' must be a text in quotes", key);
-    return **node->as_string();
-  }
-
-  double number(const toml::node& node, std::string_view what) const {
-    if (!node.is_number()) refuse(node, "{} must be a number", what);
-    return *node.value<double>();
-  }
-
- private:
-  std::string file_;
-};
-
-/// The numbers under `value` or `std_error` of a parameter: one, or an array of them.
-std::vector<double> numbers(const Place& place, const toml::node& node, const std::string& what) {
-  std::vector<double> values;
-  if (const toml::array* array = node.as_array()) {
-    for (const auto& element : *array) values.push_back(place.number(element, what));
-  } else {
-    values.push_back(place.number(node, what));
-  }
-  return values;
-}
-
-struct Measured {
-  std::vector<double> values;
-  std::vector<double> std_errors;
-};
-
-/// Reads `{value = ..., unit = "...", std_error = ...}` and converts it to `expected`, an SI unit.
-Measured measured(const Place& place, const toml::node& node, const std::string& name,
-                  const std::string& expected) {
-  const toml::table* table = node.as_table();
-  if (table == nullptr) {
-    place.refuse(node, "'{}' must be written {{ value = ..., unit = \"{}\" }}", name, expected);
-  }
-  place.allow_only(*table, {"value", "unit", "std_error"}, fmt::format("'{}'", name));
-  const toml::node* value = table->get("value");
-  if (value == nullptr) place.refuse(node, "'{}' has no value", name);
-  const toml::node* unit_node = table->get("unit");
-  if (unit_node == nullptr)
-    place.refuse(node, "'{}' has no unit; expected one such as \"{}\"", name, expected);
-  const std::string text = place.text(*table, "unit", "");
-  Unit unit;
-  try {
-    unit = parse_unit(text);
-  } catch (const std::invalid_argument& error) {
-    place.refuse(*unit_node, "'{}': {}", name, error.what());
-  }
-  if (unit.si != expected) {
-    place.refuse(*unit_node, "'{}' is given in {}, expected {} or a multiple of it", name, text, expected);
-  }
-  Measured result{.values = numbers(place, *value, "the value of '" + name + "'"), .std_errors = {}};
-  if (const toml::node* errors = table->get("std_error")) {
-    result.std_errors = numbers(place, *errors, "the std_error of '" + name + "'");
-    if (result.std_errors.size() != result.values.size()) {
-      place.refuse(*errors, "'{}' has {} values and {} standard errors", name, result.values.size(),
-                   result.std_errors.size());
-    }
-  }
-  for (double& number : result.values) number *= unit.factor;
-  for (double& number : result.std_errors) number *= std::abs(unit.factor);
-  return result;
-}
-
 models::Options read_options(const Place& place, const toml::table& root) {
   models::Options options;
   if (root.get("fidelity") == nullptr) return options;
@@ -136,7 +42,7 @@ models::Contact read_contact(const Place& place, const toml::table& root, const 
   const toml::table& table = place.table(root, "contact");
   place.allow_only(table, {"position", "direction"}, "[contact]");
   if (const toml::node* position = table.get("position")) {
-    const auto values = measured(place, *position, "position", position_unit).values;
+    const auto values = place.measured(*position, "position", position_unit).values;
     if (values.size() != 1 || !std::isfinite(values[0]))
       place.refuse(*position, "'position' must be one number");
     contact.position = values[0];
@@ -160,7 +66,7 @@ FitProvenance read_provenance(const Place& place, const toml::table& root) {
   fit.date = place.text(table, "date", "");
   fit.software = place.text(table, "software", "");
   if (const toml::node* rmse = table.get("rmse")) {
-    const auto values = measured(place, *rmse, "rmse", "N").values;
+    const auto values = place.measured(*rmse, "rmse", "N").values;
     if (values.size() != 1) place.refuse(*rmse, "'rmse' must be one number");
     fit.rmse_n = values[0];
   }
@@ -208,7 +114,7 @@ Measured read_parameters(const Place& place, const toml::table& root,
     const toml::node* node = table.get(group);
     if (node == nullptr) place.refuse(table, "parameter '{}' is missing", group);
     const Measured one =
-        measured(place, *node, group, models::unit_of(infos[i].quantity, force_unit, position_unit));
+        place.measured(*node, group, models::unit_of(infos[i].quantity, force_unit, position_unit));
     if (one.values.size() != end - i) {
       place.refuse(*node, "'{}' has {} values, expected {}", group, one.values.size(), end - i);
     }
@@ -278,36 +184,31 @@ std::string parameters_text(const LawFile& file) {
 
 }  // namespace
 
-toml::table parse_toml(const std::string& text, const std::string& name) {
-  try {
-    return toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    throw std::invalid_argument(
-        fmt::format("{}:{}: not TOML: {}", name, error.source().begin.line, error.description()));
-  }
-}
-
-LawFile law_from_table(const toml::table& root, const std::string& name) {
+LawFile law_from_table(const toml::table& root, const std::string& name,
+                       std::initializer_list<std::string_view> beside) {
   const Place place(name);
-  place.allow_only(
-      root, {"model", "axis", "position_unit", "force_unit", "contact", "parameters", "fidelity", "fit"},
-      "a law");
+  std::vector<std::string_view> known{"model",   "axis",       "position_unit", "force_unit",
+                                      "contact", "parameters", "fidelity",      "fit"};
+  known.insert(known.end(), beside);
+  place.allow_only(root, known, "a law");
   const std::string model = place.text(root, "model", "");
   if (model.empty()) place.refuse(root, "no 'model'; expected for example model = \"kelvin\"");
-  const auto in_file = [&](const auto& action) {
+  // What a law says of its options or parameters has the line of their table.
+  const auto at = [&](std::string_view key, const auto& action) {
     try {
       return action();
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
+      const toml::node* node = root.get(key);
+      place.refuse(node != nullptr ? *node : root, "{}", error.what());
     }
   };
-  const models::LawInfo info = in_file([&] { return models::law_info(model); });
+  const models::LawInfo info = at("model", [&] { return models::law_info(model); });
   const std::string position_unit =
       unit_choice(place, root, "position_unit", info.position_unit, {"m", "rad"}, model);
   const std::string force_unit = unit_choice(place, root, "force_unit", info.force_unit, {"N", "N·m"}, model);
   const models::Options options = read_options(place, root);
-  const auto infos = in_file([&] { return models::Law::parameters(model, options); });
-  if (!in_file([&] { return models::Law::axes(model); }).empty()) {
+  const auto infos = at("fidelity", [&] { return models::Law::parameters(model, options); });
+  if (!models::Law::axes(model).empty()) {
     for (const auto* key : {"axis", "position_unit", "force_unit", "contact"}) {
       const toml::node* node = root.get(key);
       if (node == nullptr) continue;
@@ -315,7 +216,7 @@ LawFile law_from_table(const toml::table& root, const std::string& name) {
     }
   }
   Measured parameters = read_parameters(place, root, infos, force_unit, position_unit);
-  return {.law = in_file([&] { return models::Law::make(model, parameters.values, options); }),
+  return {.law = at("parameters", [&] { return models::Law::make(model, parameters.values, options); }),
           .contact = read_contact(place, root, position_unit),
           .axis = place.text(root, "axis", ""),
           .position_unit = position_unit,

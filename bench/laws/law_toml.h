@@ -1,7 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "laws/law_file.h"
@@ -11,8 +19,53 @@ namespace kerf::bench {
 /// Parses TOML. @throws std::invalid_argument with `name` and the line.
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& name);
 
-/// A law that stands in a table of a larger file, such as the tissue of a scene. Messages as in
-/// parse_law_file().
-[[nodiscard]] LawFile law_from_table(const toml::table& table, const std::string& name);
+/// A law that stands in a table of a larger file, such as the tissue of a scene, with keys that the larger
+/// file has `beside` it. Messages as in parse_law_file().
+[[nodiscard]] LawFile law_from_table(const toml::table& table, const std::string& name,
+                                     std::initializer_list<std::string_view> beside = {});
+
+/// Numbers with their unit, in SI.
+struct Measured {
+  std::vector<double> values;
+  std::vector<double> std_errors;  ///< as many, or none
+};
+
+/// Reads the nodes of one file, and refuses them with file and line. Every member throws
+/// std::invalid_argument for a node that is not as asked for.
+class Place {
+ public:
+  explicit Place(std::string file) : file_(std::move(file)) {}
+
+  template <typename... Arguments>
+  [[noreturn]] void refuse(const toml::node& node, fmt::format_string<Arguments...> format,
+                           Arguments&&... arguments) const {
+    throw std::invalid_argument(fmt::format("{}:{}: {}", file_, line_of(node),
+                                            fmt::format(format, std::forward<Arguments>(arguments)...)));
+  }
+
+  void allow_only(const toml::table& table, std::span<const std::string_view> keys,
+                  std::string_view where) const;
+  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys,
+                  std::string_view where) const {
+    allow_only(table, std::span(keys.begin(), keys.size()), where);
+  }
+  [[nodiscard]] const toml::table& table(const toml::table& parent, std::string_view key) const;
+  [[nodiscard]] std::string text(const toml::table& parent, std::string_view key,
+                                 std::string_view standard) const;
+  [[nodiscard]] double number(const toml::node& node, std::string_view what) const;
+  [[nodiscard]] bool flag(const toml::table& parent, std::string_view key, bool standard) const;
+
+  /// `{ value = ..., unit = "...", std_error = ... }`, the value a number or an array of them, converted to
+  /// `expected`, an SI unit.
+  [[nodiscard]] Measured measured(const toml::node& node, const std::string& name,
+                                  const std::string& expected) const;
+
+ private:
+  /// A file without anything in it begins at line 1 too.
+  static toml::source_index line_of(const toml::node& node) {
+    return std::max<toml::source_index>(node.source().begin.line, 1);
+  }
+  std::string file_;
+};
 
 }  // namespace kerf::bench

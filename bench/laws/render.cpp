@@ -42,7 +42,7 @@ models::Contact contact_of(const schema::Recording& recording, std::size_t axis)
   if (!recording.header.scene_toml.empty()) {
     const toml::table scene = parse_toml(recording.header.scene_toml, "the recording's scene");
     if (const toml::table* tissue = scene["tissue"].as_table()) {
-      const LawFile law = law_from_table(*tissue, "the recording's scene");
+      const LawFile law = law_from_table(*tissue, "the recording's scene", {"until"});
       if (law.axis == recording.axes.at(axis).name) return law.contact;
     }
   }

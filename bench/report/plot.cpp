@@ -80,6 +80,7 @@ std::string script_of(const Chart& chart, const std::string& output) {
       "1 dt 1\n"
       "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\nset offsets graph 0, 0, "
       "0.05, 0.05\n";
+  if (chart.legend_below) script += "set key outside below center horizontal\n";
   if (chart.log_x) script += "set logscale x\n";
   if (chart.log_y) script += "set logscale y\n";
   if (chart.log_x || chart.log_y) script += "set offsets 0, 0, 0, 0\n";
@@ -103,6 +104,13 @@ std::string script_of(const Chart& chart, const std::string& output) {
         "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '{}' fs solid 0.18 "
         "noborder\n",
         band.begin, band.end, hex(band.colour));
+  }
+  for (const Box& box : chart.boxes) {
+    fmt::format_to(
+        out,
+        "set object rectangle from first {}, first {} to first {}, first {} behind fc rgb '{}' fs solid 0.3 "
+        "noborder\n",
+        box.left, box.bottom, box.right, box.top, hex(box.colour));
   }
   for (const Marker& marker : chart.vertical) {
     fmt::format_to(

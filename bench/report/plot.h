@@ -30,6 +30,15 @@ struct Band {
   Colour colour = Colour::sky;
 };
 
+/// A rectangle laid behind the curves, such as a run of cells of a map.
+struct Box {
+  double left = 0.0;
+  double right = 0.0;
+  double bottom = 0.0;
+  double top = 0.0;
+  Colour colour = Colour::sky;
+};
+
 /// A line across the chart with a text at it.
 struct Marker {
   double at = 0.0;
@@ -63,6 +72,7 @@ struct Chart {
   std::string y_label;
   std::vector<Curve> curves;
   std::vector<Band> bands;
+  std::vector<Box> boxes;
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
   std::vector<PointLabel> labels;
@@ -71,8 +81,15 @@ struct Chart {
   Range y_range;
   bool log_x = false;
   bool log_y = false;
+  bool legend_below = false;  ///< instead of at the right
   int width_px = 900;
   int height_px = 340;
+};
+
+/// A chart and the name of its file, without ".svg".
+struct Figure {
+  std::string name;
+  Chart chart;
 };
 
 /// Draws a chart with gnuplot and returns it as one `<svg>` element, without the XML prolog.

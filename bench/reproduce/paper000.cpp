@@ -1,35 +1,30 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 
 #include <fmt/core.h>
 
-#include <kerf/drivers/hand.h>
 #include <kerf/models/blade.h>
 #include <kerf/models/precontact.h>
 #include <kerf/models/two_thresholds.h>
 
 #include "reproduce/reproduce.h"
+#include "scene/scalpel_paths.h"
 
 namespace kerf::bench {
 namespace {
 
-using drivers::MinimumJerk;
 using Eigen::Vector3d;
 using models::BladeFidelity;
 
 constexpr double period_s = 1e-3;
-constexpr double stroke_s = 0.8;
-constexpr double travel_m = 0.04;
 
 /// A scalpel's blade in the plane of y and z, 10 mm wide, 30 mm long, its tip 12 mm under the surface, edge
 /// ahead on -y. Friction is five times as large across the blade as along it; 000 gives no numbers.
 const models::BladeShape scalpel = models::BladeShape::parse(
     "0 -0.005 -0.112, 0 0.005 -0.112, 0 0.005 -0.082, 0 -0.005 -0.082", "0 -0.005 -0.112, 0 -0.005 -0.082");
 constexpr models::BladeField friction{.edge = 20.0, .normal = 2e4, .tangential = 4e3};
-constexpr double hand_height_m = 0.10;
 
 /// Pose and twist over time, and the wrench that each fidelity gives.
 struct Path {
@@ -38,30 +33,19 @@ struct Path {
   std::vector<models::Twist> twist;
 };
 
-/// T1: 40 mm along -y, the way a scalpel cuts, then 40 mm along x, across the blade, each in 0.8 s.
-Path path_t1() {
+Path sampled(const std::vector<drivers::PoseKeyframe>& keyframes) {
+  const drivers::PosePath way({.keyframes = keyframes});
   Path path;
-  for (double t = 0.0; t < 1.8; t += period_s) {
-    const MinimumJerk cut = MinimumJerk::at(t / stroke_s);
-    const MinimumJerk across = MinimumJerk::at((t - 1.0) / stroke_s);
+  for (double t = 0.0; t < keyframes.back().at_s; t += period_s) {
+    const auto now = way.at(t);
+    const auto part = [](const drivers::Axes& axes, std::size_t from) {
+      return Vector3d(axes[from], axes[from + 1], axes[from + 2]);
+    };
+    const Vector3d turned = part(now.position, 3);
     path.time_s.push_back(t);
-    path.pose.push_back({.hand = {travel_m * across.place, -travel_m * cut.place, hand_height_m}});
+    path.pose.push_back({.hand = part(now.position, 0), .rotation = models::rotation_of(turned)});
     path.twist.push_back(
-        {.linear = {travel_m / stroke_s * across.speed, -travel_m / stroke_s * cut.speed, 0.0}});
-  }
-  return path;
-}
-/// T2: a turn about the main axis of the blade, 60 deg there and back.
-Path path_t2() {
-  Path path;
-  for (double t = 0.0; t < 2.2; t += period_s) {
-    const double turn = std::numbers::pi / 3.0;
-    const MinimumJerk there = MinimumJerk::at(t);
-    const MinimumJerk back = MinimumJerk::at(t - 1.2);
-    path.time_s.push_back(t);
-    path.pose.push_back({.hand = {0.0, 0.0, hand_height_m},
-                         .rotation = models::rotation_of({0.0, 0.0, turn * (there.place - back.place)})});
-    path.twist.push_back({.angular = {0.0, 0.0, turn * (there.speed - back.speed)}});
+        {.linear = part(now.velocity, 0), .angular = models::left_jacobian(turned) * part(now.velocity, 3)});
   }
   return path;
 }
@@ -101,7 +85,7 @@ Chart over_time(const Path& path, const std::string& title, const std::string& y
 }
 
 void cut_and_push(Reproduction& paper) {
-  const Path path = path_t1();
+  const Path path = sampled(scalpel_t1());
   const auto felt = feel(path, {BladeFidelity::Kind::paper, 16});
   const auto milli_newton = [&](std::size_t i, int axis) { return 1e3 * felt[i].force[axis]; };
   paper.figures.push_back(
@@ -143,7 +127,7 @@ void cut_and_push(Reproduction& paper) {
 }
 
 void turn(Reproduction& paper) {
-  const Path path = path_t2();
+  const Path path = sampled(scalpel_t2());
   const auto about_z = [](const models::Wrench& w) { return 1e6 * w.moment.z(); };
   const auto of_paper = series(feel(path, {BladeFidelity::Kind::paper, 16}), about_z);
   const auto of_strips = series(feel(path, {BladeFidelity::Kind::strips, 16}), about_z);

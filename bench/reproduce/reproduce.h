@@ -20,11 +20,6 @@ struct Claim {
   Verdict verdict = Verdict::holds;
 };
 
-struct Figure {
-  std::string name;  ///< file without ".svg"
-  Chart chart;
-};
-
 /// A paper's experiments, run in virtual time.
 struct Reproduction {
   std::string paper;  ///< "000"

@@ -1,25 +1,51 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include <kerf/drivers/device.h>
 
 #include "laws/law_file.h"
+#include "scene/trajectory.h"
 
 namespace kerf::bench {
 
-/// What a simulated tool meets: a tissue with known parameters, on one axis of the device, or on those of a
-/// law that brings its own (`blade` on sim:pose6).
+/// A tissue under another one, along the same axis.
+struct TissueLayer {
+  LawFile law;        ///< its penetration counts from where the layer begins
+  double from = 0.0;  ///< where it begins: penetration of the first layer's contact [unit of the axis]
+  double until = std::numeric_limits<double>::infinity();  ///< past it the layer has been cut through
+};
+
+/// The hand as mass, damper and spring about where it wants the tool to be; a stylus grip by default.
+struct HandImpedance {
+  double mass_kg = drivers::HandOptions{}.mass_kg;
+  double damping_n_s_per_m = drivers::HandOptions{}.damping_n_s_per_m;
+  double stiffness_n_per_m = drivers::HandOptions{}.stiffness_n_per_m;
+};
+
+/// What a simulated tool meets, the device and the hand that hold the tool, and what they do with it.
+/// docs/scenes.md has the file's format.
 ///
-///     name = "skin-like"
-///     [tissue]            # as a law file: model, axis, position_unit, force_unit
-///     [tissue.contact]
-///     [tissue.parameters]
-///     [tissue.fidelity]
+/// The tissue lies on one axis of the device, in one layer or several, or on those of a law that brings its
+/// own (`blade` on sim:pose6). All layers resist together,
+///
+///     F = sum of F_i(x - from_i) over the layers that are not cut through,
+///
+/// and a layer is cut through once x reaches its `until`; when the tool has left the tissue (x <= 0) it meets
+/// fresh tissue again, as scissors do that move on between two cuts.
 struct Scene {
   std::string name;
-  LawFile tissue;
+  LawFile tissue;  ///< the first layer, with the contact
+  double tissue_until = std::numeric_limits<double>::infinity();
+  std::vector<TissueLayer> deeper{};
+  std::string tool{};        ///< in words
+  std::string device_uri{};  ///< of a simulated device; empty: not said
+  HandImpedance hand{};
+  bool hand_given = false;  ///< there is a table [hand]
+  Trajectory trajectory{};
   std::string toml;  ///< as it was read, for the recording
 };
 
@@ -33,5 +59,21 @@ struct Scene {
 /// The tissue as a simulated device calls it. @throws std::invalid_argument if the device has no such axis,
 /// or one of other units.
 [[nodiscard]] drivers::Surroundings surroundings_of(const Scene& scene, const drivers::DeviceInfo& device);
+
+/// The URI that the scene's device is opened with: its own, or the first simulated device that its tissue
+/// fits, with hand and trajectory as options. @throws std::invalid_argument if no device fits the tissue.
+[[nodiscard]] std::string device_of(const Scene& scene);
+
+/// The tool's way by script alone, one entry a tick from t = 0 on: where the hand would have the tool if
+/// nothing resisted, and how fast. Strokes are taken without their variation.
+struct ToolPath {
+  double period_s = 0.0;
+  std::vector<drivers::Axes> position;  ///< of every axis of the scene's device
+  std::vector<drivers::Axes> velocity;  ///< its derivative
+};
+
+/// @throws std::invalid_argument: a scene that says nothing of what the hand does, on a device that is not a
+///         pair of scissors; a rate that is not from 1 Hz to 1 MHz; more than 20 million ticks.
+[[nodiscard]] ToolPath tool_path(const Scene& scene, double rate_hz);
 
 }  // namespace kerf::bench

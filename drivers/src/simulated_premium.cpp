@@ -127,6 +127,9 @@ SimulatedPremium::Options SimulatedPremium::parse_options(Uri uri) {
   options.reach_m = given.number("reach", {"m", options.reach_m, 0.0, 0.06});
   options.path.stroke_s = given.number("stroke", {"s", options.path.stroke_s, 0.05, 100.0});
   options.path.pause_s = given.number("pause", {"s", options.path.pause_s, 0.0, 100.0});
+  options.hand_mass_kg = given.number("mass", {"kg", options.hand_mass_kg, 0.0, 5.0});
+  options.hand_damping_n_s_per_m =
+      given.number("damping", {"Ns/m", options.hand_damping_n_s_per_m, 0.0, 500.0});
   options.hand_stiffness_n_per_m = given.number("grip", {"N/m", options.hand_stiffness_n_per_m, 0.0, 5000.0});
   given.allow("fault");
   given.refuse_others();

@@ -73,6 +73,8 @@ SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
   hand.stroke_s = given.number("stroke", {"s", hand.stroke_s, 0.05, 100.0});
   hand.pause_s = given.number("pause", {"s", hand.pause_s, 0.0, 100.0});
   hand.variation = given.number("variation", {"1", hand.variation, 0.0, 0.3});
+  hand.mass_kg = given.number("mass", {"kg", hand.mass_kg, 0.0, 5.0});
+  hand.damping_n_s_per_m = given.number("damping", {"Ns/m", hand.damping_n_s_per_m, 0.0, 500.0});
   hand.stiffness_n_per_m = given.number("grip", {"N/m", hand.stiffness_n_per_m, 0.0, 5000.0});
   given.allow("fault");
   given.refuse_others();

@@ -40,7 +40,7 @@ class SimulatedPremium final : public Device {
   SimulatedPremium(std::string_view uri, const Options& options, Surroundings surroundings);
 
   /// Reads the options of a URI: seed, hand, noise, encoder, truth, friction, gravity, payload, path, reach,
-  /// stroke, pause, grip; it leaves `fault` to open_device().
+  /// stroke, pause, mass, damping, grip; it leaves `fault` to open_device().
   /// @throws DeviceError for one that is unknown or out of range.
   static Options parse_options(Uri uri);
 

@@ -30,7 +30,7 @@ class SimulatedScissors final : public Device {
   SimulatedScissors(std::string_view uri, const Options& options, Surroundings surroundings);
 
   /// Reads the options of a URI: seed, hand, noise, encoder, truth, open, close, stroke, pause, variation,
-  /// grip; it leaves `fault` to open_device().
+  /// mass, damping, grip; it leaves `fault` to open_device().
   /// @throws DeviceError for one that is unknown or out of range.
   static Options parse_options(Uri uri);
 

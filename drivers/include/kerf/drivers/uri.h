@@ -24,7 +24,7 @@ class UriOptions {
   explicit UriOptions(Uri uri) : uri_(std::move(uri)) {}
 
   /// A number with its unit behind it ("40deg", "1.2s"), in SI; `standard` if it is not given.
-  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/m", "A", "1".
+  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/m", "Ns/m", "A", "1".
   /// @throws DeviceError if it is not such a number or not in [lower, upper], both in SI.
   struct Quantity {
     std::string_view unit;

@@ -1,0 +1,82 @@
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include <kerf/drivers/simulated_pose6.h>
+#include <kerf/drivers/simulated_scissors.h>
+#include <kerf/drivers/uri.h>
+
+#include "scene/scene.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr double ticks_at_most = 2e7;  // 2 GB
+
+ToolPath path_of(const ScissorsStrokes& strokes, std::size_t ticks, double period_s) {
+  drivers::Strokes hand({.open_rad = strokes.open_rad,
+                         .close_rad = strokes.close_rad,
+                         .stroke_s = strokes.stroke_s,
+                         .pause_s = strokes.pause_s,
+                         .variation = 0.0});
+  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const auto wish = hand.at(static_cast<double>(tick) * period_s);
+    path.position.push_back({wish.angle_rad});
+    path.velocity.push_back({wish.speed_rad_s});
+  }
+  return path;
+}
+
+ToolPath path_of(const drivers::PosePath::Options& options, std::size_t ticks, double period_s) {
+  const drivers::PosePath hand(options);
+  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const auto wish = hand.at(static_cast<double>(tick) * period_s);
+    path.position.push_back(wish.position);
+    path.velocity.push_back(wish.velocity);
+  }
+  return path;
+}
+
+ToolPath path_of(std::monostate, std::size_t, double) {
+  throw std::invalid_argument("the scene has no [trajectory]: it does not say what the hand does");
+}
+
+/// What the hand does: the scene's script, else what the device's URI says or leaves to its defaults.
+Script script_of(const Scene& scene) {
+  if (scene.trajectory.script.index() != 0) return scene.trajectory.script;
+  drivers::Uri uri = drivers::parse_uri(device_of(scene));
+  if (uri.name == "sim:scissors") {
+    const drivers::HandOptions hand = drivers::SimulatedScissors::parse_options(std::move(uri)).hand;
+    return ScissorsStrokes{.open_rad = hand.open_rad,
+                           .close_rad = hand.close_rad,
+                           .stroke_s = hand.stroke_s,
+                           .pause_s = hand.pause_s,
+                           .variation = hand.variation};
+  }
+  if (uri.name != "sim:pose6") return {};
+  const drivers::SimulatedPose6::Options options = drivers::SimulatedPose6::parse_options(std::move(uri));
+  if (options.path) return *options.path;
+  return {};
+}
+
+}  // namespace
+
+ToolPath tool_path(const Scene& scene, double rate_hz) {
+  if (!(rate_hz >= 1.0 && rate_hz <= 1e6)) {
+    throw std::invalid_argument(fmt::format("a rate of {} Hz is not from 1 Hz to 1 MHz", rate_hz));
+  }
+  const double ticks = std::round(scene.trajectory.seconds * rate_hz);
+  if (ticks > ticks_at_most) {
+    throw std::invalid_argument(fmt::format("{} s at {} Hz are {:.3g} ticks, more than {:.3g}",
+                                            scene.trajectory.seconds, rate_hz, ticks, ticks_at_most));
+  }
+  return std::visit(
+      [&](const auto& script) { return path_of(script, static_cast<std::size_t>(ticks), 1.0 / rate_hz); },
+      script_of(scene));
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,326 @@
+#include "stability/findings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "report/html.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+std::string text_of(const std::optional<double>& value, double factor, const char* unit,
+                    const char* without) {
+  return value ? fmt::format("{:.4g} {}", factor * *value, unit) : std::string(without);
+}
+
+/// Where the cells of a row or column begin and end: half-way between their middles.
+std::vector<double> edges_of(const std::vector<double>& middles, bool logarithmic_scale) {
+  std::vector<double> edges;
+  const auto between = [&](double a, double b) {
+    return logarithmic_scale ? std::sqrt(a * b) : 0.5 * (a + b);
+  };
+  edges.push_back(middles.front());
+  for (std::size_t i = 1; i < middles.size(); ++i) edges.push_back(between(middles[i - 1], middles[i]));
+  edges.push_back(middles.back());
+  return edges;
+}
+
+/// A map as boxes, runs of equal cells along the columns' number merged. That number is drawn upwards where
+/// `upwards`, else to the right.
+std::vector<Box> boxes_of(const Grid2& grid, const std::vector<Cell>& cells, bool upwards, bool log_first,
+                          bool log_second) {
+  std::vector<Box> boxes;
+  const auto first = edges_of(grid.first, log_first);
+  const auto second = edges_of(grid.second, log_second);
+  const std::size_t columns = grid.first.size();
+  for (std::size_t row = 0; row < grid.second.size(); ++row) {
+    const auto at = cells.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    for (std::size_t begin = 0, end = 0; begin < columns; begin = end) {
+      const bool stable = at[static_cast<std::ptrdiff_t>(begin)].stable;
+      while (end < columns && at[static_cast<std::ptrdiff_t>(end)].stable == stable) ++end;
+      const Range along{first[begin], first[end]};
+      const Range across{second[row], second[row + 1]};
+      const Range& x = upwards ? across : along;
+      const Range& y = upwards ? along : across;
+      boxes.push_back({x.begin, x.end, y.begin, y.end, stable ? Colour::sky : Colour::orange});
+    }
+  }
+  return boxes;
+}
+
+std::string device_table(const SampledDevice& device) {
+  const auto row = [](const char* what, double value, const char* unit) {
+    return std::vector<std::string>{what, fmt::format("{:.6g}", value), unit};
+  };
+  return html_table({{"device", "value", "unit"},
+                     row("mass", device.mass_kg, "kg"),
+                     row("viscous friction b", device.viscous_n_s_per_m, "N·s/m"),
+                     row("Coulomb friction", device.coulomb_n, "N"),
+                     row("encoder step", 1e6 * device.encoder_step_m, "um"),
+                     row("sampling rate", 1.0 / device.period_s, "Hz"),
+                     row("delay", 1e3 * device.delay_s, "ms"),
+                     row("corner of the velocity filter (0: none)", device.velocity_corner_rad_s, "rad/s"),
+                     row("mass of the hand", device.hand.mass_kg, "kg"),
+                     row("damping of the hand", device.hand.damping_n_s_per_m, "N·s/m"),
+                     row("stiffness of the hand", device.hand.stiffness_n_per_m, "N/m")});
+}
+
+Curve boundary(const WallMap& map, const char* label, Colour colour, double WallBoundary::*value) {
+  Curve curve{.label = label, .colour = colour, .width = 2.0};
+  for (const WallBoundary& at : map.boundaries) {
+    const bool drawn = at.*value > map.grid.first.front() && at.*value < map.grid.first.back();
+    curve.x.push_back(at.damping_n_s_per_m);
+    curve.y.push_back(drawn ? at.*value : std::nan(""));
+  }
+  return curve;
+}
+
+Chart chart_of(const WallMap& map) {
+  Chart chart{.title = "Virtual wall: where it comes to rest",
+              .x_label = "damping of the wall B [N·s/m]",
+              .y_label = "stiffness of the wall K [N/m]",
+              .x_range = {map.grid.second.front(), map.grid.second.back()},
+              .y_range = {map.grid.first.front(), map.grid.first.back()},
+              .log_y = true,
+              .legend_below = true,
+              .width_px = 1000,
+              .height_px = 560};
+  if (!map.cells.empty()) chart.boxes = boxes_of(map.grid, map.cells, true, true, false);
+  chart.curves = {boundary(map, "eigenvalues", Colour::black, &WallBoundary::eigenvalues),
+                  boundary(map, "simulated, linear", Colour::vermillion, &WallBoundary::simulated_linear),
+                  boundary(map, "simulated, as it is", Colour::blue, &WallBoundary::simulated),
+                  boundary(map, "passive, with filter and delay", Colour::green, &WallBoundary::passive),
+                  boundary(map, "Colgate and Schenkel", Colour::purple, &WallBoundary::colgate_schenkel)};
+  chart.curves[1].mark = Mark::points;
+  chart.curves[1].width = 3.0;
+  chart.curves[4].dashed = true;
+  chart.horizontal.push_back({.at = map.abbott_okamura, .label = "Abbott and Okamura (B = 0)"});
+  for (const auto& [colour, label] :
+       {std::pair{Colour::sky, "comes to rest"}, {Colour::orange, "does not"}}) {
+    chart.curves.push_back(
+        {.label = label, .x = {-1.0}, .y = {-1.0}, .colour = colour, .mark = Mark::points, .width = 8.0});
+  }
+  return chart;
+}
+
+/// In words what the lines say of each other.
+std::vector<std::string> comparison(const WallMap& map) {
+  std::vector<std::string> lines;
+  if (!map.cells.empty()) {
+    lines.push_back(fmt::format("{:.2f} % of {} cells: the wall as it was tried and the eigenvalues agree",
+                                100.0 * map.agreement(), map.cells.size()));
+  }
+  lines.push_back(fmt::format(
+      "without encoder and Coulomb friction, two-sided, the simulated boundary is within {:.2f} % of the "
+      "eigenvalues",
+      100.0 * map.boundary_error()));
+  double least = 1e9;
+  double most = 0.0;
+  for (const WallBoundary& at : map.boundaries) {
+    if (at.eigenvalues <= map.grid.first.front() || at.eigenvalues >= map.grid.first.back()) continue;
+    least = std::min(least, at.simulated / at.eigenvalues);
+    most = std::max(most, at.simulated / at.eigenvalues);
+  }
+  if (most > 0.0) {
+    lines.push_back(
+        fmt::format("as it was tried it comes to rest up to {:.2f} to {:.2f} times the stiffness of the "
+                    "eigenvalues: Coulomb "
+                    "friction adds, encoder steps and lifting off take away",
+                    least, most));
+  }
+  const WallBoundary& undamped = map.boundaries.front();
+  lines.push_back(fmt::format(
+      "without damping: stable to {:.4g} N/m, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}, Abbott and "
+      "Okamura {:.4g}); passivity must hold in any hand, stability in the one that was given",
+      undamped.eigenvalues, undamped.passive, undamped.colgate_schenkel, map.abbott_okamura));
+  return lines;
+}
+
+Chart chart_of(const LawStudy& study) {
+  const LawMap& map = study.map;
+  Chart chart{.title = fmt::format("{}: where strokes of up to {:.3g} m/s are given no energy", study.model,
+                                   map.speed_m_s),
+              .x_label = "depth, in travel of the device [mm]",
+              .y_label = "sampling rate [Hz]",
+              .log_y = true,
+              .legend_below = true,
+              .width_px = 1000,
+              .height_px = 480};
+  Grid2 drawn = map.grid;
+  for (double& depth : drawn.first) depth *= 1e3;
+  chart.x_range = {drawn.first.front(), drawn.first.back()};
+  chart.y_range = {drawn.second.front(), drawn.second.back()};
+  chart.boxes = boxes_of(drawn, map.cells, false, false, true);
+  Curve theory{.label = "local stiffness = passive stiffness", .colour = Colour::black, .width = 2.0};
+  const std::size_t columns = drawn.first.size();
+  for (std::size_t row = 0; row < drawn.second.size(); ++row) {
+    const auto begin = map.cells.begin() + static_cast<std::ptrdiff_t>(row * columns);
+    const auto beyond = std::find_if(begin, begin + static_cast<std::ptrdiff_t>(columns),
+                                     [](const Cell& cell) { return !cell.theory; });
+    const auto at = static_cast<std::size_t>(beyond - begin);
+    theory.x.push_back(at == 0 || at == columns ? std::nan("")
+                                                : 0.5 * (drawn.first[at - 1] + drawn.first[at]));
+    theory.y.push_back(drawn.second[row]);
+  }
+  chart.curves.push_back(std::move(theory));
+  for (const auto& [colour, label] : {std::pair{Colour::sky, "passive"}, {Colour::orange, "gains energy"}}) {
+    chart.curves.push_back(
+        {.label = label, .x = {-1.0}, .y = {-1.0}, .colour = colour, .mark = Mark::points, .width = 8.0});
+  }
+  chart.horizontal.push_back({.at = 1.0 / study.device.period_s, .label = "this device"});
+  return chart;
+}
+
+}  // namespace
+
+json as_json(const SampledDevice& device) {
+  return {{"mass_kg", device.mass_kg},
+          {"viscous_n_s_per_m", device.viscous_n_s_per_m},
+          {"coulomb_n", device.coulomb_n},
+          {"encoder_step_m", device.encoder_step_m},
+          {"period_s", device.period_s},
+          {"delay_s", device.delay_s},
+          {"velocity_corner_rad_s", device.velocity_corner_rad_s},
+          {"hand",
+           {{"mass_kg", device.hand.mass_kg},
+            {"damping_n_s_per_m", device.hand.damping_n_s_per_m},
+            {"stiffness_n_per_m", device.hand.stiffness_n_per_m}}}};
+}
+
+std::string page_body(const Findings& findings) {
+  std::string html = "<ul>\n";
+  for (const std::string& line : findings.lines) html += "<li>" + escaped(line) + "</li>\n";
+  html += "</ul>\n";
+  for (const Figure& figure : findings.figures) html += "<figure>" + draw(figure.chart) + "</figure>\n";
+  return html + findings.html;
+}
+
+Findings findings_of(const WallMap& map) {
+  Findings found;
+  json cells = json::array();
+  found.csv = "K_n_per_m,B_n_s_per_m,stable,theory\n";
+  for (std::size_t row = 0; row < map.grid.second.size() && !map.cells.empty(); ++row) {
+    for (std::size_t column = 0; column < map.grid.first.size(); ++column) {
+      const Cell& cell = map.cells[row * map.grid.first.size() + column];
+      cells.push_back({{"K", map.grid.first[column]},
+                       {"B", map.grid.second[row]},
+                       {"stable", cell.stable},
+                       {"theory", cell.theory}});
+      found.csv += fmt::format("{:.8g},{:.8g},{},{}\n", map.grid.first[column], map.grid.second[row],
+                               cell.stable ? 1 : 0, cell.theory ? 1 : 0);
+    }
+  }
+  json boundaries = json::array();
+  std::vector<std::vector<std::string>> table{{"B [N·s/m]", "simulated, as it is [N/m]", "simulated, linear",
+                                               "eigenvalues", "passive", "Colgate and Schenkel"}};
+  const std::size_t every = std::max<std::size_t>(1, map.boundaries.size() / 10);
+  for (const WallBoundary& at : map.boundaries) {
+    boundaries.push_back({{"B", at.damping_n_s_per_m},
+                          {"simulated", at.simulated},
+                          {"simulated_linear", at.simulated_linear},
+                          {"eigenvalues", at.eigenvalues},
+                          {"passive", at.passive},
+                          {"colgate_schenkel", at.colgate_schenkel}});
+    if (static_cast<std::size_t>(&at - map.boundaries.data()) % every != 0) continue;
+    std::vector<std::string> row{fmt::format("{:.3g}", at.damping_n_s_per_m)};
+    for (const double value :
+         {at.simulated, at.simulated_linear, at.eigenvalues, at.passive, at.colgate_schenkel}) {
+      row.push_back(value <= map.grid.first.front() ? "none" : fmt::format("{:.4g}", value));
+    }
+    table.push_back(std::move(row));
+  }
+  found.json = {{"study", "wall"},
+                {"device", as_json(map.device)},
+                {"push_n", map.trial.push_n},
+                {"seconds", map.trial.seconds},
+                {"agreement", map.agreement()},
+                {"boundary_error", map.boundary_error()},
+                {"abbott_okamura", map.abbott_okamura},
+                {"boundaries", std::move(boundaries)},
+                {"cells", std::move(cells)}};
+  found.lines = comparison(map);
+  found.figures.push_back({"wall", chart_of(map)});
+  found.html = device_table(map.device) + "<h2>Boundaries</h2>\n" + html_table(table);
+  return found;
+}
+
+Findings findings_of(const LawStudy& study) {
+  Findings found;
+  const LawLimits& limits = study.limits;
+  json cells = json::array();
+  found.csv = "depth_m,rate_hz,stable,theory\n";
+  const std::size_t columns = study.map.grid.first.size();
+  for (std::size_t i = 0; i < study.map.cells.size(); ++i) {
+    const Cell& cell = study.map.cells[i];
+    const double depth = study.map.grid.first[i % columns];
+    const double rate = study.map.grid.second[i / columns];
+    cells.push_back(
+        {{"depth_m", depth}, {"rate_hz", rate}, {"stable", cell.stable}, {"theory", cell.theory}});
+    found.csv += fmt::format("{:.8g},{:.8g},{},{}\n", depth, rate, cell.stable ? 1 : 0, cell.theory ? 1 : 0);
+  }
+  found.json = {{"study", "law"},
+                {"law", study.model},
+                {"device", as_json(study.device)},
+                {"range", {{"depth_m", study.range.depth_m}, {"speed_m_s", study.range.speed_m_s}}},
+                {"passive", study.passive},
+                {"deepest_m", or_null(limits.depth_m)},
+                {"deepest_by_local_stiffness_m", or_null(limits.local_depth_m)},
+                {"steepest_approach_m_s", or_null(limits.speed_m_s)},
+                {"lowest_rate_hz", or_null(limits.rate_hz)},
+                {"local_stiffness_n_per_m", limits.local.stiffness_n_per_m},
+                {"local_damping_n_s_per_m", limits.local.damping_n_s_per_m},
+                {"passive_stiffness_n_per_m", limits.passive_stiffness_n_per_m}};
+  if (study.pressed) {
+    found.json["press"] = {{"stable", study.pressed->stable},
+                           {"ripple_n", study.pressed->ripple_n},
+                           {"peak_n", study.pressed->peak_n}};
+  }
+  if (study.worst) {
+    found.json["worst_stroke"] = {{"from_m", study.worst->stroke.from_m},
+                                  {"to_m", study.worst->stroke.to_m},
+                                  {"ticks", study.worst->stroke.ticks},
+                                  {"energy_j", study.worst->energy_j}};
+  }
+  found.json["agreement"] = study.map.agreement();
+  found.json["cells"] = std::move(cells);
+
+  const char* const none = "no limit found";
+  found.lines = {
+      fmt::format("{}: {} to {:.4g} mm and {:.3g} m/s at {:.0f} Hz", study.model,
+                  study.passive ? "passive" : "NOT passive", 1e3 * study.range.depth_m, study.range.speed_m_s,
+                  1.0 / study.device.period_s),
+      fmt::format("deepest passive penetration: {}; by its local stiffness, against {:.4g} N/m: {}",
+                  text_of(limits.depth_m, 1e3, "mm", none), limits.passive_stiffness_n_per_m,
+                  text_of(limits.local_depth_m, 1e3, "mm", none)),
+      fmt::format("steepest passive approach: {}", text_of(limits.speed_m_s, 1.0, "m/s", none)),
+      fmt::format("lowest passive rate: {}", text_of(limits.rate_hz, 1.0, "Hz", none)),
+      fmt::format("strokes and local stiffness agree in {:.1f} % of {} cells", 100.0 * study.map.agreement(),
+                  study.map.cells.size())};
+  if (!limits.passive_at_all) {
+    found.lines[1] =
+        "gains energy however shallow and slow, at 100 kHz too: it is no passive law on this device";
+  }
+  if (study.worst) {
+    const Gain& worst = *study.worst;
+    found.lines.push_back(
+        fmt::format("the worst stroke: {:.3g} to {:.3g} mm in {} ticks ({:.3g} m/s) gains {:.2g} uJ",
+                    1e3 * worst.stroke.from_m, 1e3 * worst.stroke.to_m, worst.stroke.ticks,
+                    worst.stroke.speed_m_s(study.device.period_s), 1e6 * worst.energy_j));
+  }
+  if (study.pressed) {
+    found.lines.push_back(fmt::format(
+        "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
+        study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
+  }
+  found.figures.push_back({"law", chart_of(study)});
+  found.html = device_table(study.device);
+  return found;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "report/plot.h"
+#include "stability/maps.h"
+
+namespace kerf::bench {
+
+/// What a study leaves behind: the numbers, a table of them, pictures, a page, and lines for a terminal.
+struct Findings {
+  nlohmann::ordered_json json;
+  std::string csv;
+  std::vector<Figure> figures;
+  std::string html;  ///< body of a page, below the lines and the pictures
+  std::vector<std::string> lines;
+};
+
+/// A law's limits and its map together.
+struct LawStudy {
+  std::string model;
+  AxisLaw law;
+  SampledDevice device;
+  ToolRange range;
+  LawLimits limits;
+  LawMap map;
+  bool passive = true;                  ///< over the range, at the device's own rate
+  std::optional<Gain> worst;            ///< of the range, if it is not passive
+  std::optional<PressVerdict> pressed;  ///< in the hand, to the range's depth; none if there is no hand
+};
+
+[[nodiscard]] nlohmann::ordered_json as_json(const SampledDevice& device);
+/// The body of a page: the lines, the pictures (drawn here), and what else there is.
+[[nodiscard]] std::string page_body(const Findings& findings);
+[[nodiscard]] Findings findings_of(const WallMap& map);
+[[nodiscard]] Findings findings_of(const LawStudy& study);
+
+}  // namespace kerf::bench

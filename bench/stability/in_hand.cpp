@@ -1,0 +1,28 @@
+#include "stability/in_hand.h"
+
+#include <fmt/core.h>
+
+#include "laws/placement.h"
+#include "stability/law_limits.h"
+
+namespace kerf::bench {
+
+std::optional<std::string> hum_in_hand(const LawFile& law, const drivers::DeviceInfo& device, double rate_hz,
+                                       const HandImpedance& hand, double deepest) {
+  if (law.law.is_spatial()) return std::nullopt;
+  const std::size_t axis = axis_for(law, device);
+  if (!device.axes[axis].mechanics) return std::nullopt;
+  SampledDevice held = sampled_device(device, axis, rate_hz);
+  held.hand = hand;
+  const AxisLaw pressed{.law = law.law, .lever = device.axes[axis].lever};
+  for (const double part : {0.1, 0.5, 1.0}) {
+    const double depth_m = part * deepest * pressed.lever;
+    const PressVerdict verdict = press(held, pressed, {.depth_m = depth_m});
+    if (verdict.stable) continue;
+    return fmt::format("pressed to {:.3g} {} and held, its force swings by {:.2g} N rms", part * deepest,
+                       law.position_unit, verdict.ripple_n);
+  }
+  return std::nullopt;
+}
+
+}  // namespace kerf::bench

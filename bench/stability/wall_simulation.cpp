@@ -1,0 +1,124 @@
+#include "stability/wall_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "stability/bisection.h"
+#include "stability/sampled_loop.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr double lost_m = 10.0;            // farther than that nothing comes back
+constexpr double limit_cycle_decay = 0.9;  // of the energy, from the second to the last quarter
+constexpr double at_rest_share = 1e-9;     // of the first displacement
+constexpr double periods_of_soft_walls = 20.0;
+
+struct WallForce {
+  Wall wall;
+  bool one_sided;
+  double operator()(const AxisReading& reading) const noexcept {
+    if (one_sided && reading.place_m <= 0.0) return 0.0;
+    const double force =
+        -wall.stiffness_n_per_m * reading.place_m - wall.damping_n_s_per_m * reading.speed_m_s;
+    return one_sided ? std::min(force, 0.0) : force;
+  }
+};
+
+/// Sums over a stretch of time, for the energy about the mean.
+struct Stretch {
+  double place = 0.0, place_squared = 0.0, speed_squared = 0.0;
+  std::size_t ticks = 0;
+
+  void add(const AxisMotion& motion) noexcept {
+    place += motion.place_m;
+    place_squared += motion.place_m * motion.place_m;
+    speed_squared += motion.speed_m_s * motion.speed_m_s;
+    ++ticks;
+  }
+  [[nodiscard]] double variance() const noexcept {
+    const auto count = static_cast<double>(ticks);
+    return std::max(0.0, place_squared / count - place * place / (count * count));
+  }
+  [[nodiscard]] double energy(double mass, double stiffness) const noexcept {
+    return mass * speed_squared / static_cast<double>(ticks) + stiffness * variance();
+  }
+};
+
+/// One wall's trial while it runs.
+class Trial {
+ public:
+  Trial(const SampledDevice& device, const std::shared_ptr<const DeviceMotion>& moves, const Wall& wall,
+        const WallTrial& trial)
+      : trial_(trial),
+        start_m_(trial.start_m + (trial.push_n > 0.0 ? trial.push_n / wall.stiffness_n_per_m : 0.0)),
+        loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.place_m = start_m_}) {}
+
+  /// A tick of a quarter of the time; of no effect once the device is lost.
+  void step(int quarter) noexcept {
+    if (lost_) return;
+    loop_.step(trial_.push_n);
+    if (quarter == 1) second_.add(loop_.motion());
+    if (quarter == 3) last_.add(loop_.motion());
+    lost_ = !(std::abs(loop_.motion().place_m) < lost_m + start_m_);
+  }
+  [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
+    if (lost_) return false;
+    const double floor_m = std::max(device.encoder_step_m, at_rest_share * trial_.start_m);
+    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
+    const double energy = last_.energy(device.moving_mass_kg(), stiffness);
+    if (energy <= 2.0 * stiffness * floor_m * floor_m) return true;
+    const bool exact = device.is_linear() && trial_.push_n == 0.0;
+    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(device.moving_mass_kg(), stiffness);
+  }
+
+ private:
+  WallTrial trial_;
+  double start_m_;
+  SampledLoop<WallForce> loop_;
+  Stretch second_;
+  Stretch last_;
+  bool lost_ = false;
+};
+
+}  // namespace
+
+WallSimulation::WallSimulation(const SampledDevice& device)
+    : device_(device), moves_(std::make_shared<const DeviceMotion>(device)) {}
+
+bool WallSimulation::comes_to_rest(const Wall& wall, const WallTrial& trial) const {
+  return come_to_rest(std::span(&wall, 1), trial).front();
+}
+
+std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, const WallTrial& trial) const {
+  constexpr std::size_t together = 8;  // more no longer fit beside each other
+  const auto quarter =
+      std::max<std::size_t>(static_cast<std::size_t>(0.25 * trial.seconds / device_.period_s), 4);
+  std::vector<bool> rest;
+  for (std::size_t begin = 0; begin < walls.size(); begin += together) {
+    std::vector<Trial> trials;
+    for (const Wall& wall : walls.subspan(begin, std::min(together, walls.size() - begin))) {
+      trials.emplace_back(device_, moves_, wall, trial);
+    }
+    for (int part = 0; part < 4; ++part) {
+      for (std::size_t tick = 0; tick < quarter; ++tick) {
+        for (Trial& one : trials) one.step(part);
+      }
+    }
+    for (Trial& one : trials) rest.push_back(one.came_to_rest(device_));
+  }
+  return rest;
+}
+
+double WallSimulation::boundary(double wall_damping, double softest, double stiffest, const WallTrial& trial,
+                                double share) const {
+  return first_change({.lower = softest, .upper = stiffest, .share = share}, [&](double stiffness) {
+    const double rate = std::sqrt((stiffness + device_.hand.stiffness_n_per_m) / device_.moving_mass_kg());
+    WallTrial longer = trial;
+    longer.seconds = std::max(trial.seconds, periods_of_soft_walls * 2.0 * std::numbers::pi / rate);
+    return comes_to_rest({.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}, longer);
+  });
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,63 @@
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/program.h"
+
+namespace kerf::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string examples = std::string(KERF_SOURCE_DIR) + "/examples/";
+
+TEST(KerfStability, MapsAWallAgainstItsEigenvalues) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "wall").string();
+  const Outcome run = run_kerf(
+      {"stability", "--coulomb", "0", "--encoder", "0", "--push", "0", "--cells", "20", "--json", "-o", out});
+  ASSERT_EQ(run.exit_status, 0) << run.errors;
+  const json found = json::parse(run.output);
+  EXPECT_EQ(found["cells"].size(), 400U);
+  for (const auto* key : {"K", "B", "stable", "theory"}) EXPECT_TRUE(found["cells"][0].contains(key)) << key;
+  EXPECT_GT(found["agreement"].get<double>(), 0.99);
+  EXPECT_LT(found["boundary_error"].get<double>(), 0.01);
+  for (const auto* name : {"wall.svg", "stability.csv", "stability.json", "stability.html"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "wall" / name)) << name;
+  }
+  const Outcome again = run_kerf({"stability", "--cells", "2", "-o", out});
+  EXPECT_EQ(again.exit_status, 2);
+  EXPECT_THAT(again.errors, HasSubstr("--force"));
+}
+
+TEST(KerfStability, SaysHowDeepAnExponentialLawMayGo) {
+  const Outcome run =
+      run_kerf({"stability", examples + "exponential.law.toml", "--viscous", "0.4", "--coulomb", "0",
+                "--encoder", "0", "--depth", "0.03", "--cells", "8", "--json"});
+  EXPECT_EQ(run.exit_status, 1) << "it is not passive so deep";
+  const json found = json::parse(run.output);
+  EXPECT_FALSE(found["passive"].get<bool>());
+  EXPECT_GT(found["worst_stroke"]["energy_j"].get<double>(), 0.0);
+}
+
+TEST(KerfStability, RefusesWhatItCannotStudy) {
+  const auto refusal = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "stability");
+    const Outcome run = run_kerf(std::move(arguments));
+    EXPECT_EQ(run.exit_status, 2);
+    EXPECT_EQ(run.output, "");
+    return run.errors;
+  };
+  EXPECT_THAT(refusal({"--mass", "-1"}), HasSubstr("-1 is not greater than 0"));
+  EXPECT_THAT(refusal({"--axis", "q"}), HasSubstr("it has theta, x_s"));
+  EXPECT_THAT(refusal({"--stiffness", "10", "1"}), HasSubstr("a lower and a greater upper end"));
+  EXPECT_THAT(refusal({"--delay", "1"}), HasSubstr("0 to 32 periods"));
+  EXPECT_THAT(refusal({"--device", "sim:premium"}), HasSubstr("--mass, --viscous and --coulomb"));
+  EXPECT_THAT(refusal({examples + "blade.law.toml"}), HasSubstr("several axes at once"));
+}
+
+}  // namespace
+}  // namespace kerf::test
