@@ -11,10 +11,12 @@
 #include <fmt/core.h>
 
 #include "chart/chart_files.h"
+#include "chart/held_loop.h"
 #include "chart/speed_accuracy.h"
 #include "cli/progress.h"
 #include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "laws/placement.h"
 #include "laws/render.h"
 #include "loop/run.h"
 #include "recordings/axes.h"
@@ -68,11 +70,28 @@ SpeedAccuracy chart_of_recording(const Arguments& arguments, const ChartOptions&
   }
 }
 
-SpeedAccuracy chart_of_scene(const Arguments& arguments, const ChartOptions& options) {
+/// How deep the tool goes by the scene's script, past the tissue's contact.
+double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) {
+  if (scene.tissue.law.is_spatial()) return 0.0;
+  const std::size_t axis = axis_for(scene.tissue, path.device);
+  double deepest = 0.0;
+  for (const drivers::Axes& position : path.at(rate_hz).position)
+    deepest = std::max(deepest, scene.tissue.contact.motion(position[axis], 0.0).penetration);
+  return deepest;
+}
+
+SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
   const Scene scene = read_scene(arguments.scene);
   try {
-    SpeedAccuracy chart = chart_scene(scene.tissue, scripted_path(scene), options);
+    const ScriptedPath path = scripted_path(scene);
+    options.unstable = hum_of({.device = path.device,
+                               .hand_mass_kg = scene.hand.mass_kg,
+                               .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
+                               .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
+                               .deepest = deepest_of(scene, path, options.rate_hz)});
+    SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
+    if (!scene.deeper.empty()) chart.notes.push_back("only the first layer of the scene's tissue is charted");
     return chart;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.scene, error.what()));
@@ -142,7 +161,7 @@ void add_chart(CLI::App& app, Context& context) {
   Verb verb = add_verb(
       app, context, "chart", "Chart what a tick of each law costs against how wrong its force is",
       "kerf chart cut.h5 -o chart\n"
-      "  kerf chart --scene examples/blade.scene.toml -o chart\n\n"
+      "  kerf chart --scene examples/scenes/scalpel-t2.scene.toml -o chart\n\n"
       "Of a recording every law is fitted in every size, and judged by held-out cycles. Of a scene the\n"
       "tissue's law is computed at every fidelity, and judged by the finest. docs/charts.md says more.\n"
       "Costs are measured: leave the machine in peace meanwhile. Ctrl-C ends it without files.",
