@@ -82,6 +82,20 @@ bool within_units(const FitPlan& plan, const LawFile& law) {
          (info.position_unit == law.position_unit && info.force_unit == law.force_unit);
 }
 
+/// What a law with two branches is rendered with, if it says nothing of that itself.
+void add_aids(LawFile& file, const std::vector<drivers::Sample>& samples, std::size_t axis) {
+  for (const auto* aid : {"velocity_corner", "ramp_band", "reversal_scale"}) {
+    if (file.law.options().count(aid) > 0) return;
+  }
+  AxisSeries met;
+  for (const drivers::Sample& sample : samples) {
+    const models::Motion motion = file.contact.motion(sample.position[axis], sample.velocity[axis]);
+    met.penetration.push_back(motion.penetration);
+    met.velocity.push_back(motion.velocity);
+  }
+  file = with_options(file, with_rendering_aids(file.law.options(), met));
+}
+
 /// The other laws, as fitted to the reference of this one.
 void add_fitted(const LawFile& law, const ReferenceSeries& series, const ChartOptions& options,
                 SpeedAccuracy& chart) {
@@ -139,7 +153,19 @@ void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
 
 ScriptedPath scripted_path(const Scene& scene) {
   const auto device = drivers::open_device(device_of(scene));
-  return {.device = device->info(), .at = [scene](double rate_hz) { return tool_path(scene, rate_hz); }};
+  const bool ends = std::isfinite(scene.tissue_until) && !scene.tissue.law.is_spatial();
+  const std::size_t axis = ends ? axis_for(scene.tissue, device->info()) : 0;
+  return {.device = device->info(), .at = [scene, ends, axis](double rate_hz) {
+            ToolPath path = tool_path(scene, rate_hz);
+            const models::Contact& contact = scene.tissue.contact;
+            for (std::size_t i = 0; ends && i < path.position.size(); ++i) {
+              const double depth = contact.direction * (path.position[i][axis] - contact.position);
+              if (depth < scene.tissue_until) continue;
+              path.position[i][axis] = contact.position + contact.direction * scene.tissue_until;
+              path.velocity[i][axis] = 0.0;
+            }
+            return path;
+          }};
 }
 
 SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const ChartOptions& options) {
@@ -165,6 +191,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   for (ChartPoint& point : chart.points) {
     if (stopped(options)) break;
     judge.judge(rendered(point.file, judge.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz), point);
+    if (!law.law.is_spatial()) add_aids(point.file, samples.at(options.rate_hz), judge.axes().front());
     if (!point.stable || !options.unstable) continue;
     if (const auto why = options.unstable(point.file, point.rate_hz)) {
       point.stable = false;

@@ -65,7 +65,8 @@ struct ScriptedPath {
   std::function<ToolPath(double rate_hz)> at;
 };
 
-/// The script of a scene, on its device. @throws as tool_path() and device_of() do, drivers::DeviceError.
+/// The script of a scene, on its device; no deeper than where its first layer is cut through. @throws as
+/// tool_path() and device_of() do, drivers::DeviceError.
 [[nodiscard]] ScriptedPath scripted_path(const Scene& scene);
 
 /// A law of a scene at all its fidelities along a path, and, for a law along one axis, the other laws as
@@ -75,7 +76,8 @@ struct ScriptedPath {
 /// Each axis is judged by its own JND at the root mean square of its reference; a torque in N·m counts as the
 /// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
-/// what options.unstable says. Only points at the chart's own rate compete for the front.
+/// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
+/// rendering aids of 004 where they have none. Only points at the chart's own rate compete for the front.
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);
