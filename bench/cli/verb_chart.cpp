@@ -35,6 +35,7 @@ struct Arguments {
   double rate_hz = 0.0;  ///< 0: not given
   bool no_folds = false;
   bool no_cold = false;
+  bool no_hold = false;
   bool force = false;
 };
 
@@ -84,11 +85,12 @@ SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
   const Scene scene = read_scene(arguments.scene);
   try {
     const ScriptedPath path = scripted_path(scene);
-    options.unstable = hum_of({.device = path.device,
-                               .hand_mass_kg = scene.hand.mass_kg,
-                               .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
-                               .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
-                               .deepest = deepest_of(scene, path, options.rate_hz)});
+    if (!arguments.no_hold)
+      options.unstable = hum_of({.device = path.device,
+                                 .hand_mass_kg = scene.hand.mass_kg,
+                                 .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
+                                 .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
+                                 .deepest = deepest_of(scene, path, options.rate_hz)});
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
     if (!scene.deeper.empty()) chart.notes.push_back("only the first layer of the scene's tissue is charted");
@@ -175,6 +177,8 @@ void add_chart(CLI::App& app, Context& context) {
   verb.add_option("--rate", arguments->rate_hz, "Rate of the loop for a scene (default: 1000) [Hz]")
       .within(100.0, 10000.0);
   verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");
+  verb.add_flag("--no-hold", arguments->no_hold,
+                "Cross out nothing because it hums when the scene's hand presses it and holds still");
   verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
   verb.add_option("-o,--output", arguments->output, "Folder for chart.svg, .csv, .json and .html");
   verb.add_flag("--force", arguments->force, "Replace existing files");
