@@ -66,17 +66,17 @@ std::string force_table(const json& all) {
                                               "worst", "at [s]", "worst [JND]", "identical rows"}};
   for (const json& law : all.at("laws")) {
     for (const json& one : law.at("axes")) {
-      const std::string unit = " " + one.at("unit").get<std::string>();
-      rows.push_back({law.at("name").get<std::string>(), one.at("axis").get<std::string>(),
-                      one.at("against").get<std::string>(),
-                      fmt::format("{}", one.at("samples").get<std::size_t>()),
-                      number(one.at("rms"), "{:.3g}") + unit, number(one.at("rms_jnd"), "{:.2f}"),
-                      number(one.at("worst"), "{:.3g}") + unit, number(one.at("worst_at_s"), "{:.3f}"),
-                      number(one.at("worst_jnd"), "{:.2f}"),
-                      one.contains("identical_rows")
-                          ? fmt::format("{} of {}", one.at("identical_rows").get<std::size_t>(),
-                                        one.at("untouched_rows").get<std::size_t>())
-                          : "-"});
+      const auto unit = one.at("unit").get<std::string>();
+      rows.push_back(
+          {law.at("name").get<std::string>(), one.at("axis").get<std::string>(),
+           one.at("against").get<std::string>(), fmt::format("{}", one.at("samples").get<std::size_t>()),
+           fmt::format("{:.3g} {}", one.at("rms").get<double>(), unit), number(one.at("rms_jnd"), "{:.2f}"),
+           fmt::format("{:.3g} {}", one.at("worst").get<double>(), unit),
+           number(one.at("worst_at_s"), "{:.3f}"), number(one.at("worst_jnd"), "{:.2f}"),
+           one.contains("identical_rows")
+               ? fmt::format("{} of {}", one.at("identical_rows").get<std::size_t>(),
+                             one.at("untouched_rows").get<std::size_t>())
+               : "-"});
     }
   }
   return html_table(rows);
