@@ -61,8 +61,9 @@ TEST(PathPlayer, ScalesTheVelocityWithTheSpeed) {
     double before = recording.position[0];
     for (int tick = 0; tick < static_cast<int>(2000.0 / speed) - 1; ++tick) {
       const Reference reference = player.step(1, {before});
-      if (tick > 0)
+      if (tick > 0) {
         EXPECT_NEAR(reference.velocity[0], 1e3 * (reference.position[0] - before), 0.02 * speed * speed);
+      }
       before = reference.position[0];
     }
     EXPECT_NEAR(before, recording.position.back(), 1e-3);
