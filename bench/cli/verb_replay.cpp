@@ -274,6 +274,8 @@ void replay_as_path(const Arguments& arguments, Context& context, Source source)
         one["axis"].get<std::string>(), one["error_rms"].get<double>(), one["unit"].get<std::string>(),
         one["error_worst"].get<double>(), one["ticks_at_force_limit"].get<std::uint64_t>()));
   }
+  if (!report.finished && result.report.end == LoopEnd::completed && !path.loop)
+    warn("the time was over before the path was played to its end");
   finish_run(arguments, context, result);
 }
 

@@ -92,7 +92,8 @@ void find_longest_pass(Path& path, const drivers::DeviceInfo& device) {
   drivers::Axes lower{};
   drivers::Axes upper{};
   for (const std::size_t axis : path.axes) {
-    lower[axis] = device.axes[axis].lower;
+    // A device may begin beyond its own range, and a tick that is not rendered delays the rest.
+    lower[axis] = 2.0 * device.axes[axis].lower - device.axes[axis].upper;
     upper[axis] = device.axes[axis].upper;
   }
   for (const Path::Piece& piece : path.pieces)
@@ -112,6 +113,11 @@ Path make_path(const Source& source, const drivers::DeviceInfo& device, double p
     path.axes.push_back(axis_on(device, axis, recording.dimensions() == 1));
   for (const std::size_t axis : path.axes) {
     const drivers::AxisInfo& info = device.axes[axis];
+    if (!(info.upper > info.lower)) {
+      throw std::invalid_argument(fmt::format(
+          "axis '{}' of {} says nothing of its range, so that nothing can be moved along it safely",
+          info.name, device.model));
+    }
     path.move_limit[axis] = options.move_share_per_s * (info.upper - info.lower);
     if (info.speed_limit > 0.0) path.move_limit[axis] = std::min(path.move_limit[axis], info.speed_limit);
   }

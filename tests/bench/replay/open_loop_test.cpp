@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "laws/placement.h"
 #include "loop/run.h"
 #include "motion.h"
 #include "support/program.h"
@@ -57,6 +58,37 @@ TEST(OpenLoop, GivesAgainWhatTheLawGaveInClosedLoopToTheLastBit) {
     EXPECT_EQ(theta.worst, 0.0);
     EXPECT_GT(theta.force_rms, 0.5);
   }
+}
+
+/// A device that has the axes of a law.
+std::string device_for(const LawFile& law) {
+  for (const std::string uri : {"sim:scissors", "sim:pose6", "sim:premium"}) {
+    try {
+      (void)axes_for(law, drivers::open_device(uri)->info());
+      return uri;
+    } catch (const std::invalid_argument&) {
+      continue;
+    }
+  }
+  return "";
+}
+
+TEST(OpenLoop, IsExactForEveryLawOfTheExamples) {
+  std::size_t exact = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(KERF_SOURCE_DIR "/examples")) {
+    if (!entry.path().string().ends_with(".law.toml")) continue;
+    const LawFile law = read_law_file(entry.path());
+    const std::string uri = device_for(law);
+    ASSERT_NE(uri, "") << entry.path();
+    const schema::Recording recording = closed_loop(law, uri, 0.0);
+    for (const AxisComparison& one : through(recording, {{.name = "law", .file = law}}).laws.at(0).axes) {
+      if (!one.exact) continue;  // it met nothing on this axis
+      EXPECT_EQ(one.exact->identical, one.exact->untouched) << entry.path();
+      EXPECT_GT(one.exact->untouched, 2500U) << entry.path();
+      ++exact;
+    }
+  }
+  EXPECT_GT(exact, 20U);
 }
 
 TEST(OpenLoop, LeavesTheRampOfASoftStartOutOfWhatMustBeIdentical) {

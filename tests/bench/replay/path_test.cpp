@@ -127,6 +127,15 @@ TEST(Path, RefusesWhatTheDeviceCannotDo) {
   EXPECT_THAT(refusal(recording), HasSubstr("has none such"));
 }
 
+TEST(Path, RefusesAnAxisWithoutARange) {
+  drivers::DeviceInfo boundless = scissors();
+  boundless.axes[0].lower = boundless.axes[0].upper = 0.4;
+  EXPECT_THROW(
+      (void)make_path(select_rows(test::without_rows(test::sine_of_scissors(), 1, 2000), {}, "cut.h5"),
+                      boundless, 1e-3, {}),
+      std::invalid_argument);
+}
+
 TEST(PathCoupling, IsThatOfAHandWithinHalfOfWhatTheDeviceMayExert) {
   const auto usual = couplings({}, scissors());
   EXPECT_NEAR(usual[0].stiffness, 500.0 * 0.28 / 7.58, 1e-9);
