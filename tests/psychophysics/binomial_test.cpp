@@ -1,0 +1,3 @@
+#include <kerf/psychophysics/binomial.h>
+#include <gtest/gtest.h>
+TEST(Binomial, IsThere) { EXPECT_TRUE(true); }
