@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string law;
+  bool all_cases = false;
+  std::vector<std::string> cases;
   std::string device = "sim:scissors";
   std::string axis;
   std::string grip = "none";
@@ -144,6 +146,23 @@ Findings study_law(const Arguments& given, std::size_t threads, Context& context
   return findings_of(study);
 }
 
+Findings study_cases(const Arguments& given, Context& context) {
+  const auto cases = run_cases(given.all_cases ? std::vector<std::string>{} : given.cases, context.seed);
+  if (!behave(cases)) context.exit = Exit::check_failed;
+  return findings_of(cases, given.all_cases ? std::optional(control_costs()) : std::nullopt);
+}
+
+Findings study(const Arguments& given, Context& context) {
+  const bool cases = given.all_cases || !given.cases.empty();
+  if (cases && !given.law.empty()) {
+    throw std::invalid_argument("a law and the named cases are studies of their own; give LAW or --cases");
+  }
+  if (cases) return study_cases(given, context);
+  const std::size_t threads =
+      given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
+  return given.law.empty() ? study_wall(given, threads) : study_law(given, threads, context);
+}
+
 void write(const Findings& findings, const fs::path& folder) {
   fs::create_directories(folder);
   for (const Figure& figure : findings.figures) {
@@ -161,10 +180,7 @@ void run_stability(const Arguments& given, Context& context) {
       refuse_to_replace(fs::path(given.output) / name, given.force);
     }
   }
-  const std::size_t threads =
-      given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
-  const Findings findings =
-      given.law.empty() ? study_wall(given, threads) : study_law(given, threads, context);
+  const Findings findings = study(given, context);
   context.result = findings.json;
   for (const std::string& line : findings.lines) say(line);
   if (given.output.empty()) return;
@@ -180,14 +196,19 @@ void add_stability(CLI::App& app, Context& context) {
   Verb verb = add_verb(
       app, context, "stability", "Map where virtual walls and laws go unstable, against theory",
       "kerf stability --device sim:scissors --grip light -o wall\n"
-      "  kerf stability fits/exponential.law.toml --depth 0.01 --speed 0.3 -o limits\n\n"
+      "  kerf stability fits/exponential.law.toml --depth 0.01 --speed 0.3 -o limits\n"
+      "  kerf stability --cases -o failures\n\n"
       "Without a law: virtual walls over stiffness and damping, simulated in virtual time, with the\n"
       "boundaries of the eigenvalues, of Colgate and Schenkel, and of Abbott and Okamura. With a law: the\n"
       "deepest penetration, the steepest approach and the lowest rate at which it is passive; exit\n"
-      "status 1 if it is not passive over --depth and --speed, or hums in the hand that was given.\n"
+      "status 1 if it is not passive over --depth and --speed, or hums in the hand that was given. With\n"
+      "--cases: failures that the papers met, each of which must fail without its remedy and hold with it.\n"
       "docs/stability.md says what is simulated and what the lines mean.",
       [arguments, &context] { run_stability(*arguments, context); });
   verb.add_option("LAW", arguments->law, "Law file; without one, a virtual wall is mapped");
+  verb.add_flag("--cases", arguments->all_cases,
+                "Run every failure that the papers met, without and with its remedy");
+  verb.add_option("--case", arguments->cases, "Run one of them by name; may be repeated").one_value_each();
   verb.add_option("--device", arguments->device, "Device whose axis it is, as far as its driver knows it")
       .with_default();
   verb.add_option("--axis", arguments->axis, "Axis (default: the law's, else the first)");

@@ -103,9 +103,9 @@ void read_layers(const Place& place, toml::table& root, const std::string& name,
   }
 }
 
-HandImpedance read_hand(const Place& place, const toml::table& table) {
+drivers::HandImpedance read_hand(const Place& place, const toml::table& table) {
   place.allow_only(table, {"mass", "damping", "stiffness"}, "[hand]");
-  const HandImpedance standard;
+  const drivers::HandImpedance& standard = drivers::usual_grip;
   const auto read = [&](std::string_view key, std::string_view unit, double value, double upper) {
     return read_number(place, table,
                        {.key = key, .unit = unit, .standard = value, .lower = 0.0, .upper = upper});

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/hand.h>
 
 #include "laws/law_file.h"
 #include "scene/trajectory.h"
@@ -17,13 +18,6 @@ struct TissueLayer {
   LawFile law;        ///< its penetration counts from where the layer begins
   double from = 0.0;  ///< where it begins: penetration of the first layer's contact [unit of the axis]
   double until = std::numeric_limits<double>::infinity();  ///< past it the layer has been cut through
-};
-
-/// The hand as mass, damper and spring about where it wants the tool to be; a stylus grip by default.
-struct HandImpedance {
-  double mass_kg = drivers::HandOptions{}.mass_kg;
-  double damping_n_s_per_m = drivers::HandOptions{}.damping_n_s_per_m;
-  double stiffness_n_per_m = drivers::HandOptions{}.stiffness_n_per_m;
 };
 
 /// What a simulated tool meets, the device and the hand that hold the tool, and what they do with it.
@@ -43,7 +37,7 @@ struct Scene {
   std::vector<TissueLayer> deeper{};
   std::string tool{};        ///< in words
   std::string device_uri{};  ///< of a simulated device; empty: not said
-  HandImpedance hand{};
+  drivers::HandImpedance hand = drivers::usual_grip;
   bool hand_given = false;  ///< there is a table [hand]
   Trajectory trajectory{};
   std::string toml;  ///< as it was read, for the recording

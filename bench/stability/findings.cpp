@@ -197,8 +197,21 @@ std::string page_body(const Findings& findings) {
   std::string html = "<ul>\n";
   for (const std::string& line : findings.lines) html += "<li>" + escaped(line) + "</li>\n";
   html += "</ul>\n";
-  for (const Figure& figure : findings.figures) html += "<figure>" + draw(figure.chart) + "</figure>\n";
-  return html + findings.html;
+  std::string rest = findings.html;
+  std::vector<Chart> charts;
+  for (const Figure& figure : findings.figures) charts.push_back(figure.chart);
+  const std::vector<std::string> drawings = draw_all(charts);
+  for (std::size_t i = 0; i < drawings.size(); ++i) {
+    const std::string place = "<!--" + findings.figures[i].name + "-->";
+    const std::string picture = "<figure>" + drawings[i] + "</figure>\n";
+    const std::size_t at = rest.find(place);
+    if (at == std::string::npos) {
+      html += picture;
+    } else {
+      rest.replace(at, place.size(), picture);
+    }
+  }
+  return html + rest;
 }
 
 Findings findings_of(const WallMap& map) {

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "report/plot.h"
+#include "stability/cases/cases.h"
+#include "stability/cases/control_cost.h"
 #include "stability/maps.h"
 
 namespace kerf::bench {
@@ -15,7 +18,8 @@ struct Findings {
   nlohmann::ordered_json json;
   std::string csv;
   std::vector<Figure> figures;
-  std::string html;  ///< body of a page, below the lines and the pictures
+  std::string
+      html;  ///< of a page, below the lines; a picture stands where its name is in a comment, or above
   std::vector<std::string> lines;
 };
 
@@ -37,5 +41,10 @@ struct LawStudy {
 [[nodiscard]] std::string page_body(const Findings& findings);
 [[nodiscard]] Findings findings_of(const WallMap& map);
 [[nodiscard]] Findings findings_of(const LawStudy& study);
+[[nodiscard]] Findings findings_of(const std::vector<NamedCase>& cases,
+                                   const std::optional<ControlCosts>& costs);
+
+/// Whether every case fails without its remedy and holds with it.
+[[nodiscard]] bool behave(const std::vector<NamedCase>& cases);
 
 }  // namespace kerf::bench

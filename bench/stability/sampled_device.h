@@ -3,15 +3,11 @@
 #include <cstddef>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/hand.h>
 
 namespace kerf::bench {
 
-/// How a hand holds a device: a mass, and a spring and a damper to where the hand wants to be.
-struct HandImpedance {
-  double mass_kg = 0.0;
-  double damping_n_s_per_m = 0.0;
-  double stiffness_n_per_m = 0.0;
-};
+using drivers::HandImpedance;
 
 /// One axis of a device with the hand on it and all that lies between its motion and the force it renders:
 ///

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "stability/bisection.h"
-#include "stability/sampled_loop.h"
+#include "stability/wall_force.h"
 
 namespace kerf::bench {
 namespace {
@@ -14,17 +14,6 @@ constexpr double lost_m = 10.0;            // farther than that nothing comes ba
 constexpr double limit_cycle_decay = 0.9;  // of the energy, from the second to the last quarter
 constexpr double at_rest_share = 1e-9;     // of the first displacement
 constexpr double periods_of_soft_walls = 20.0;
-
-struct WallForce {
-  Wall wall;
-  bool one_sided;
-  double operator()(const AxisReading& reading) const noexcept {
-    if (one_sided && reading.place_m <= 0.0) return 0.0;
-    const double force =
-        -wall.stiffness_n_per_m * reading.place_m - wall.damping_n_s_per_m * reading.speed_m_s;
-    return one_sided ? std::min(force, 0.0) : force;
-  }
-};
 
 /// Sums over a stretch of time, for the energy about the mean.
 struct Stretch {

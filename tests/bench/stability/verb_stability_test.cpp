@@ -43,6 +43,20 @@ TEST(KerfStability, SaysHowDeepAnExponentialLawMayGo) {
   EXPECT_GT(found["worst_stroke"]["energy_j"].get<double>(), 0.0);
 }
 
+TEST(KerfStability, RunsTheNamedCases) {
+  const TemporaryFolder folder;
+  const Outcome run = run_kerf(
+      {"stability", "--case", "delay", "--case", "euler_lattice", "--json", "-o", folder.path() / "out"});
+  ASSERT_EQ(run.exit_status, 0) << run.errors;
+  const json found = json::parse(run.output);
+  ASSERT_EQ(found["cases"].size(), 2U);
+  for (const json& each : found["cases"]) {
+    EXPECT_FALSE(each["without"]["holds"].get<bool>()) << each["name"];
+    EXPECT_TRUE(each["with"]["holds"].get<bool>()) << each["name"];
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / "delay.svg"));
+}
+
 TEST(KerfStability, RefusesWhatItCannotStudy) {
   const auto refusal = [](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "stability");
@@ -57,6 +71,7 @@ TEST(KerfStability, RefusesWhatItCannotStudy) {
   EXPECT_THAT(refusal({"--delay", "1"}), HasSubstr("0 to 32 periods"));
   EXPECT_THAT(refusal({"--device", "sim:premium"}), HasSubstr("--mass, --viscous and --coulomb"));
   EXPECT_THAT(refusal({examples + "blade.law.toml"}), HasSubstr("several axes at once"));
+  EXPECT_THAT(refusal({"--case", "warp"}), HasSubstr("velocity_sign"));
 }
 
 }  // namespace

@@ -17,6 +17,18 @@ struct MinimumJerk {
   static MinimumJerk at(double s) noexcept;
 };
 
+/// How a hand holds a device: a mass, and a spring and a damper to where the hand wants to be.
+struct HandImpedance {
+  double mass_kg = 0.0;
+  double damping_n_s_per_m = 0.0;
+  double stiffness_n_per_m = 0.0;
+};
+
+/// A stylus held as usual: within what Fu and Cavusoglu (2012) give, 0.1 to 0.2 kg, 2 to 8 N·s/m, 200 to 600
+/// N/m.
+inline constexpr HandImpedance usual_grip{
+    .mass_kg = 0.15, .damping_n_s_per_m = 5.0, .stiffness_n_per_m = 500.0};
+
 /// What a hand wants to do with a pair of scissors, and how firmly it holds them.
 struct HandOptions {
   double open_rad = 0.61;   ///< equilibrium angle when open, 35 deg
@@ -24,9 +36,9 @@ struct HandOptions {
   double stroke_s = 0.8;    ///< duration of an opening or a closing
   double pause_s = 0.25;    ///< between strokes
   double variation = 0.05;  ///< standard deviation of angles and durations from stroke to stroke, as a share
-  double mass_kg = 0.15;    ///< stylus grip of Fu and Cavusoglu 2012: 0.1 to 0.2 kg
-  double damping_n_s_per_m = 5.0;    ///< 2 to 8 N·s/m
-  double stiffness_n_per_m = 500.0;  ///< 200 to 600 N/m
+  double mass_kg = usual_grip.mass_kg;
+  double damping_n_s_per_m = usual_grip.damping_n_s_per_m;
+  double stiffness_n_per_m = usual_grip.stiffness_n_per_m;
   std::uint64_t seed = 1;
 };
 

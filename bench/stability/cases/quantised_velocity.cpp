@@ -1,0 +1,82 @@
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "stability/cases/devices.h"
+#include "stability/cases/each_case.h"
+#include "stability/cases/trace.h"
+#include "stability/wall_force.h"
+
+namespace kerf::bench::cases {
+namespace {
+
+constexpr Wall wall{.stiffness_n_per_m = 500.0, .damping_n_s_per_m = 20.0};
+constexpr double corner_rad_s = 60.0;
+constexpr double seconds = 1.5;
+constexpr double into_wall_m_s = 10e-3;
+
+/// A hand that goes into the wall at 10 mm/s for a second and stays.
+Trace slow_press(const SampledDevice& device) {
+  return run_loop(device, WallForce{wall}, {}, seconds,
+                  [](double time_s) { return HandPush{.place_m = into_wall_m_s * std::min(time_s, 1.0)}; });
+}
+
+struct Hum {
+  Trace trace;
+  double rms_n = 0.0;
+};
+
+/// Against the same loop with an encoder without steps.
+Hum hum_of(SampledDevice device) {
+  Hum hum{.trace = slow_press(device)};
+  device.encoder_step_m = 0.0;
+  const Trace smooth = slow_press(device);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < smooth.force_n.size(); ++i) {
+    squares += std::pow(hum.trace.force_n[i] - smooth.force_n[i], 2);
+  }
+  hum.rms_n = std::sqrt(squares / static_cast<double>(smooth.force_n.size()));
+  return hum;
+}
+
+CaseOutcome judged(double rms_n, std::string figure) {
+  return {.holds = rms_n <= felt_n, .measured = rms_n, .unit = "N", .figure = std::move(figure)};
+}
+
+}  // namespace
+
+NamedCase quantised_velocity(std::uint64_t) {
+  SampledDevice device = scissors_handle();
+  device.hand = stylus_grip;
+  device.velocity_corner_rad_s = 0.0;
+  const Hum failing = hum_of(device);
+  SampledDevice finer = device;
+  finer.encoder_step_m /= 16.0;
+  const Hum fine = hum_of(finer);
+  SampledDevice filtered = device;
+  filtered.velocity_corner_rad_s = corner_rad_s;
+  const Hum holding = hum_of(filtered);
+  const double count_n = wall.damping_n_s_per_m * device.encoder_step_m / device.period_s;
+  return {
+      .where = "literature (Colgate and Brown 1994); the encoder of 004",
+      .what =
+          "A damped wall on the plain difference of a coarse encoder rattles as soon as the hand moves: one "
+          "count reads as a speed "
+          "of a step over a period.",
+      .remedy = fmt::format("A first-order filter of the velocity, corner {} rad/s, at which the loop still "
+                            "damps; or an encoder 16 times as fine.",
+                            corner_rad_s),
+      .limit = felt_n,
+      .quantity = "rms of the force about that of the same loop with a perfect encoder",
+      .without = judged(failing.rms_n, fmt::format("{} rms", newtons(failing.rms_n))),
+      .with = judged(holding.rms_n, fmt::format("{} rms; the finer encoder unfiltered {}",
+                                                newtons(holding.rms_n), newtons(fine.rms_n))),
+      .theory = fmt::format("One count is a force B delta / T = {:.2f} N; through the filter {:.3f} N, the "
+                            "share 1 - exp(-w T). Eigenvalues of the loop: {:.4f} plain, {:.4f} filtered.",
+                            count_n, count_n * filtered.velocity_gain(), spectral_radius(device, wall),
+                            spectral_radius(filtered, wall)),
+      .picture = two_traces("Into a damped wall at 10 mm/s", failing.trace, "plain difference", holding.trace,
+                            "filtered")};
+}
+
+}  // namespace kerf::bench::cases
