@@ -12,14 +12,30 @@ constexpr double least_probability = 1e-300;
 
 struct CellTerms {
   double value = 0.0;
-  double slope = 0.0;  ///< d/dpsi
+  double slope = 0.0;           ///< d/dpsi
+  double per_dispersion = 0.0;  ///< d/dtheta
+  double curvature = 0.0;       ///< -d2/dtheta2
 };
 
-/// Beta-binomial as the product that Polya's urn gives, binomial for theta = 0.
-CellTerms cell_terms(const Count& answers, double right, double wrong, double theta) {
+/// The part of the urn's product that belongs to `count` answers of a kind: (p + 0) (p + theta) (p + 2 theta)
+/// ...
+CellTerms urn(int count, double p, double theta) {
+  CellTerms terms;
+  for (int j = 0; j < count; ++j) {
+    const double inverse = 1.0 / (p + j * theta);
+    terms.value -= std::log(inverse);
+    terms.slope += inverse;
+    terms.per_dispersion += j * inverse;
+    terms.curvature += j * inverse * (j * inverse);
+  }
+  return terms;
+}
+
+/// Beta-binomial as the product that Polya's urn gives, binomial where the dispersion is held at zero.
+CellTerms cell_terms(const Count& answers, double right, double wrong, double theta, bool is_dispersed) {
   const auto [k, n] = answers;
   CellTerms terms;
-  if (theta == 0.0) {
+  if (!is_dispersed) {
     if (k > 0) terms = {.value = k * std::log(right), .slope = k / right};
     if (k < n) {
       terms.value += (n - k) * std::log(wrong);
@@ -27,17 +43,16 @@ CellTerms cell_terms(const Count& answers, double right, double wrong, double th
     }
     return terms;
   }
-  for (int j = 0; j < k; ++j) {
-    terms.value += std::log(right + j * theta);
-    terms.slope += 1.0 / (right + j * theta);
-  }
-  for (int j = 0; j < n - k; ++j) {
-    terms.value += std::log(wrong + j * theta);
-    terms.slope -= 1.0 / (wrong + j * theta);
-  }
-  for (int j = 0; j < n; ++j) terms.value -= std::log1p(j * theta);
-  return terms;
+  const CellTerms of_right = urn(k, right, theta);
+  const CellTerms of_wrong = urn(n - k, wrong, theta);
+  const CellTerms of_all = urn(n, 1.0, theta);
+  return {.value = of_right.value + of_wrong.value - of_all.value,
+          .slope = of_right.slope - of_wrong.slope,
+          .per_dispersion = of_right.per_dispersion + of_wrong.per_dispersion - of_all.per_dispersion,
+          .curvature = of_right.curvature + of_wrong.curvature - of_all.curvature};
 }
+
+bool is_dispersed(const Problem& problem) { return problem.upper[dispersion_index] > 0.0; }
 
 struct Curve {
   double quantile = 0.0;
@@ -73,9 +88,9 @@ Probabilities probabilities(const Problem& problem, const Curve& curve, const Po
 /// Solves the part of (information + damping) x = gradient that is free, by Cholesky; false where it has no
 /// solution.
 bool solve(const Score& s, const Held& fixed, double damping, Point& step) {
-  std::array<Point, 3> root{};
+  std::array<Point, parameters> root{};
   step = {};
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < parameters; ++i) {
     if (fixed[i]) continue;
     for (std::size_t j = 0; j <= i; ++j) {
       if (fixed[j]) continue;
@@ -86,15 +101,15 @@ bool solve(const Score& s, const Held& fixed, double damping, Point& step) {
       root[i][j] = i == j ? std::sqrt(sum) : sum / root[j][j];
     }
   }
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < parameters; ++i) {
     if (fixed[i]) continue;
     double sum = s.gradient[i];
     for (std::size_t k = 0; k < i; ++k) sum -= fixed[k] ? 0.0 : root[i][k] * step[k];
     step[i] = sum / root[i][i];
   }
-  for (std::size_t i = 3; i-- > 0;) {
+  for (std::size_t i = parameters; i-- > 0;) {
     if (fixed[i]) continue;
-    for (std::size_t k = i + 1; k < 3; ++k) step[i] -= fixed[k] ? 0.0 : root[k][i] * step[k];
+    for (std::size_t k = i + 1; k < parameters; ++k) step[i] -= fixed[k] ? 0.0 : root[k][i] * step[k];
     step[i] /= root[i][i];
   }
   return true;
@@ -103,7 +118,7 @@ bool solve(const Score& s, const Held& fixed, double damping, Point& step) {
 /// Held, or at a bound that the likelihood presses against.
 Held fixed_at(const Problem& problem, const Point& point, const Point& gradient, const Held& held) {
   Held fixed = held;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < parameters; ++i) {
     if (point[i] <= problem.lower[i] && gradient[i] <= 0.0) fixed[i] = true;
     if (point[i] >= problem.upper[i] && gradient[i] >= 0.0) fixed[i] = true;
   }
@@ -118,33 +133,42 @@ double criterion_quantile(const Problem& problem, double lapse) {
 
 double log_likelihood(const Problem& problem, const Point& point) {
   const Curve curve = curve_at(problem, point);
+  const bool dispersed = is_dispersed(problem);
   double sum = 0.0;
   for (const Cell& cell : problem.cells) {
     const Probabilities p = probabilities(problem, curve, point, cell.at);
-    sum += cell_terms(cell.answers, p.right, p.wrong, problem.dispersion).value;
+    sum += cell_terms(cell.answers, p.right, p.wrong, point[dispersion_index], dispersed).value;
   }
   return sum;
 }
 
 Score score(const Problem& problem, const Point& point) {
   const Curve curve = curve_at(problem, point);
+  const bool dispersed = is_dispersed(problem);
+  const double rho = point[dispersion_index] / (1.0 + point[dispersion_index]);
+  double curvature = 0.0;
   Score result;
   for (const Cell& cell : problem.cells) {
     const Probabilities p = probabilities(problem, curve, point, cell.at);
-    const CellTerms terms = cell_terms(cell.answers, p.right, p.wrong, problem.dispersion);
+    const CellTerms terms = cell_terms(cell.answers, p.right, p.wrong, point[dispersion_index], dispersed);
     result.log_likelihood += terms.value;
     const double steepness = curve.range * p.shape.density;
     const Point change{-curve.slope * steepness,
                        steepness == 0.0 ? 0.0 : curve.slope * (cell.at - point[threshold_index]) * steepness,
-                       -p.shape.below + steepness * curve.quantile_per_lapse};
+                       -p.shape.below + steepness * curve.quantile_per_lapse, 0.0};
+    result.gradient[dispersion_index] += terms.per_dispersion;
+    curvature += terms.curvature;
     const double n = cell.answers.trials;
-    const double rho = problem.dispersion / (1.0 + problem.dispersion);
     const double weight = n / (p.right * p.wrong) / (1.0 + (n - 1.0) * rho);
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < parameters; ++i) {
       result.gradient[i] += terms.slope * change[i];
       for (std::size_t j = 0; j <= i; ++j) result.information[i][j] += weight * change[i] * change[j];
     }
   }
+  // Far from the maximum the curvature may be of the wrong sign; the damping then finds the length of the
+  // step.
+  result.information[dispersion_index][dispersion_index] =
+      std::max(curvature, 0.1 * std::abs(result.gradient[dispersion_index]) + 1e-6);
   return result;
 }
 
@@ -152,7 +176,7 @@ Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
   constexpr int most_rounds = 300;
   constexpr double least_gain = 1e-12;
   Point at = start;
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < parameters; ++i)
     at[i] = held[i] ? at[i] : std::clamp(at[i], problem.lower[i], problem.upper[i]);
   Score now = score(problem, at);
   double damping = 1e-3;
@@ -165,7 +189,7 @@ Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
       continue;
     }
     Point next = at;
-    for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t i = 0; i < parameters; ++i)
       next[i] = fixed[i] ? at[i] : std::clamp(at[i] + step[i], problem.lower[i], problem.upper[i]);
     const Score there = score(problem, next);
     const double gain = there.log_likelihood - now.log_likelihood;
@@ -192,7 +216,7 @@ Maximum maximise_from_many(const Problem& problem, const Point& like, const Held
     for (const double slope : values(slope_index, {0.0, 0.8, 1.5, 2.2, 3.0, 4.0})) {
       for (const double lapse :
            values(lapse_index, {0.25 * problem.upper[lapse_index], 0.75 * problem.upper[lapse_index]})) {
-        const Point at{threshold, slope, lapse};
+        const Point at{threshold, slope, lapse, like[dispersion_index]};
         starts.push_back({.at = at, .log_likelihood = log_likelihood(problem, at)});
       }
     }

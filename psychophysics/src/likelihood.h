@@ -9,9 +9,12 @@
 
 namespace kerf::psychophysics {
 
-/// Threshold at the criterion on the axis of the curve, log of the slope, lapse rate.
-using Point = std::array<double, 3>;
-enum : std::size_t { threshold_index, slope_index, lapse_index };
+inline constexpr std::size_t parameters = 4;
+
+/// Threshold at the criterion on the axis of the curve, log of the slope, lapse rate, and the dispersion
+/// theta = rho / (1 - rho).
+using Point = std::array<double, parameters>;
+enum : std::size_t { threshold_index, slope_index, lapse_index, dispersion_index };
 
 struct Cell {
   double at = 0.0;  ///< intensity or its logarithm; minus infinity allowed
@@ -24,7 +27,6 @@ struct Problem {
   double guess = 0.5;
   double criterion = 0.75;
   std::vector<Cell> cells;
-  double dispersion = 0.0;  ///< theta = rho / (1 - rho)
   Point lower{};
   Point upper{};
 };
@@ -32,7 +34,7 @@ struct Problem {
 struct Score {
   double log_likelihood = 0.0;
   Point gradient{};
-  std::array<Point, 3> information{};
+  std::array<Point, parameters> information{};
 };
 
 [[nodiscard]] double log_likelihood(const Problem& problem, const Point& point);
@@ -44,9 +46,9 @@ struct Maximum {
 };
 
 /// Which parameters stay where they are.
-using Held = std::array<bool, 3>;
+using Held = std::array<bool, parameters>;
 
-/// Fisher scoring with Levenberg's damping inside the bounds.
+/// Fisher scoring with Levenberg's damping inside the bounds; the dispersion by its own second derivative.
 [[nodiscard]] Maximum maximise(const Problem& problem, const Point& start, const Held& held);
 
 /// The best from a grid of starts.

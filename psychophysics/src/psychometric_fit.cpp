@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/students_t.hpp>
-#include <boost/math/tools/minima.hpp>
 
 #include <kerf/psychophysics/psychometric_fit.h>
 
@@ -20,82 +20,86 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double most_dispersion = 9.0;  ///< rho = 0.9
 
-double dispersion_of(double rho) { return rho / (1.0 - rho); }
-
-struct Best {
-  Maximum maximum;
-  double rho = 0.0;
-};
-
-/// Over the parameters that are not held, and over the overdispersion where there is one. The search for the
-/// latter walks on from the point last found.
-Best best_of(Problem& problem, const Point& like, const Held& held, bool from_many, bool overdispersed) {
-  problem.dispersion = 0.0;
-  Best best{.maximum = from_many ? maximise_from_many(problem, like, held) : maximise(problem, like, held)};
-  if (!overdispersed) return best;
-  Point last = best.maximum.at;
-  const auto loss = [&](double rho) {
-    problem.dispersion = dispersion_of(rho);
-    const Maximum found = maximise(problem, last, held);
-    last = found.at;
-    if (found.log_likelihood > best.maximum.log_likelihood) best = {.maximum = found, .rho = rho};
-    return -found.log_likelihood;
-  };
-  // In the square root, for rho is small where it matters.
-  boost::math::tools::brent_find_minima([&](double root) { return loss(root * root); }, 0.0,
-                                        std::sqrt(most_dispersion / (1.0 + most_dispersion)), 26);
-  return best;
-}
-
 /// Walks from the estimate until the loss of likelihood reaches the quantile, then halves.
 class Profile {
  public:
-  Profile(Problem problem, const Best& best, const Held& held, bool overdispersed, double confidence)
-      : problem_(std::move(problem)),
-        best_(best),
-        held_(held),
-        overdispersed_(overdispersed),
-        loss_(boost::math::quantile(boost::math::chi_squared(1.0), confidence)) {}
+  Profile(const Problem& problem, const Maximum& best, const Held& held, double loss)
+      : problem_(problem), best_(best), held_(held), loss_(loss) {}
 
   /// Minus or plus infinity where the bound is reached first.
-  double end(std::size_t index, double direction) {
-    Held held = held_;
-    held[index] = true;
-    Point like = best_.maximum.at;
-    const double centre = like[index];
+  double end(std::size_t index, double direction) const {
     const double bound = direction < 0.0 ? problem_.lower[index] : problem_.upper[index];
-    double inside = centre;
-    double outside = centre;
+    Point like = best_.at;
+    double inside = like[index];
+    double below = -loss_;
     double step = 0.05;
     while (true) {
-      outside = inside + direction * step;
-      if ((outside - bound) * direction >= 0.0) outside = bound;
-      if (excess(index, outside, held, like) > 0.0) break;
-      if (outside == bound) return direction * infinite;
-      inside = outside;
+      const double next = direction < 0.0 ? std::max(bound, inside - step) : std::min(bound, inside + step);
+      const double here = excess(index, next, like);
+      if (here > 0.0) return crossing(index, like, inside, below, next, here);
+      if (next == bound) return direction * infinite;
+      inside = next;
+      below = here;
       step *= 1.5;
     }
-    for (int i = 0; i < 60 && std::abs(outside - inside) > 1e-9; ++i) {
-      const double middle = 0.5 * (inside + outside);
-      (excess(index, middle, held, like) > 0.0 ? outside : inside) = middle;
+  }
+
+ private:
+  /// False position after Illinois. It keeps the signs that it was given, since what is found from another
+  /// start may differ by more than nothing.
+  double crossing(std::size_t index, Point& like, double inside, double below, double outside,
+                  double above) const {
+    for (int i = 0; i < 80 && std::abs(outside - inside) > 1e-9; ++i) {
+      const double share = std::clamp(below / (below - above), 0.01, 0.99);
+      const double middle = inside + share * (outside - inside);
+      const double here = excess(index, middle, like);
+      if (std::abs(here) < 1e-9) return middle;
+      if (here > 0.0) {
+        outside = middle;
+        above = here;
+        below *= 0.5;
+      } else {
+        inside = middle;
+        below = here;
+        above *= 0.5;
+      }
     }
     return 0.5 * (inside + outside);
   }
 
- private:
-  double excess(std::size_t index, double value, const Held& held, Point& like) {
+  /// Begins at the point last found, which it moves.
+  double excess(std::size_t index, double value, Point& like) const {
+    Held held = held_;
+    held[index] = true;
     like[index] = value;
-    const Best found = best_of(problem_, like, held, false, overdispersed_);
-    like = found.maximum.at;
-    return 2.0 * (best_.maximum.log_likelihood - found.maximum.log_likelihood) - loss_;
+    const Maximum found = maximise(problem_, like, held);
+    like = found.at;
+    return 2.0 * (best_.log_likelihood - found.log_likelihood) - loss_;
   }
 
   Problem problem_;
-  Best best_;
+  Maximum best_;
   Held held_;
-  bool overdispersed_;
   double loss_;
 };
+
+/// Twice the loss of log-likelihood at the ends of an interval. A dispersion that is itself estimated makes
+/// it a quantile of F rather than of chi-squared.
+double loss_of(const FitOptions& options, int degrees_of_freedom) {
+  if (options.overdispersed && degrees_of_freedom > 0)
+    return boost::math::quantile(boost::math::fisher_f(1.0, degrees_of_freedom), options.confidence);
+  return boost::math::quantile(boost::math::chi_squared(1.0), options.confidence);
+}
+
+Held held_in(const FitOptions& options) {
+  return {false, false, options.lapse.has_value(), !options.overdispersed};
+}
+
+/// The same without overdispersion.
+Problem binomial(Problem problem) {
+  problem.upper[dispersion_index] = 0.0;
+  return problem;
+}
 
 double deviance_of(const Problem& problem, double log_likelihood) {
   double saturated = 0.0;
@@ -105,6 +109,16 @@ double deviance_of(const Problem& problem, double log_likelihood) {
     if (k < n) saturated += (n - k) * std::log(static_cast<double>(n - k) / n);
   }
   return std::max(0.0, 2.0 * (saturated - log_likelihood));
+}
+
+double overdispersion_p(const Problem& problem, const Maximum& best, Held held) {
+  held[dispersion_index] = true;
+  Point start = best.at;
+  start[dispersion_index] = 0.0;
+  const double without = maximise(binomial(problem), start, held).log_likelihood;
+  const double ratio = 2.0 * (best.log_likelihood - without);
+  if (ratio <= 0.0) return 1.0;
+  return 0.5 * boost::math::cdf(boost::math::complement(boost::math::chi_squared(1.0), ratio));
 }
 
 }  // namespace
@@ -147,60 +161,52 @@ ScaledProblem scaled_problem(std::span<const Level> levels, const FitOptions& op
   require(most > least, "a psychometric function needs answers at two intensities at least");
   result.axis = {.axis = options.axis, .first = least, .span = most - least};
   for (Cell& cell : problem.cells) cell.at = (cell.at - least) / (most - least);
-  problem.lower = {-5.0, std::log(0.05), options.lapse.value_or(0.0)};
-  problem.upper = {6.0, std::log(1000.0), lapse};
+  problem.lower = {-5.0, std::log(0.05), options.lapse.value_or(0.0), 0.0};
+  problem.upper = {6.0, std::log(1000.0), lapse, options.overdispersed ? most_dispersion : 0.0};
   return result;
 }
 
 FoundCurve best_curve(const ScaledProblem& scaled, const FitOptions& options) {
-  Problem problem = scaled.problem;
-  const Held held{false, false, options.lapse.has_value()};
-  const Best best =
-      best_of(problem, {0.5, 1.5, options.lapse.value_or(0.0)}, held, true, options.overdispersed);
-  problem.dispersion = 0.0;
-  const double binomial = log_likelihood(problem, best.maximum.at);
-  return {.maximum = best.maximum, .rho = best.rho, .deviance = deviance_of(problem, binomial)};
+  const Point like{0.5, 1.5, options.lapse.value_or(0.0), options.overdispersed ? 0.02 : 0.0};
+  const Maximum best = maximise_from_many(scaled.problem, like, held_in(options));
+  const Problem plain = binomial(scaled.problem);
+  Point without = best.at;
+  without[dispersion_index] = 0.0;
+  return {.maximum = best, .deviance = deviance_of(plain, log_likelihood(plain, without))};
 }
 
 PsychometricFit fit_psychometric(std::span<const Level> levels, const FitOptions& options) {
   const ScaledProblem scaled = scaled_problem(levels, options);
   const FoundCurve found = best_curve(scaled, options);
-  const auto [threshold, log_slope, lapse] = found.maximum.at;
-  const Held held{false, false, options.lapse.has_value()};
+  const auto [threshold, log_slope, lapse, dispersion] = found.maximum.at;
   const double slope = std::exp(log_slope);
   PsychometricFit fit;
-  const double location = threshold - criterion_quantile(scaled.problem, lapse) / slope;
-  fit.curve = {.shape = options.shape,
-               .axis = options.axis,
-               .threshold = scaled.axis.intensity(location),
-               .slope = slope / scaled.axis.span,
-               .guess = options.guess,
-               .lapse = lapse};
+  fit.curve = {
+      .shape = options.shape,
+      .axis = options.axis,
+      .threshold = scaled.axis.intensity(threshold - criterion_quantile(scaled.problem, lapse) / slope),
+      .slope = slope / scaled.axis.span,
+      .guess = options.guess,
+      .lapse = lapse};
   fit.slope = fit.curve.slope;
   fit.confidence = options.confidence;
   fit.log_likelihood = found.maximum.log_likelihood;
   fit.deviance = found.deviance;
   fit.degrees_of_freedom = static_cast<int>(scaled.problem.cells.size()) - (options.lapse ? 2 : 3) -
                            (options.overdispersed ? 1 : 0);
-  fit.overdispersion = found.rho;
+  fit.overdispersion = dispersion / (1.0 + dispersion);
   fit.slope_at_bound =
       log_slope <= scaled.problem.lower[slope_index] || log_slope >= scaled.problem.upper[slope_index];
-  Profile profile(scaled.problem, {.maximum = found.maximum, .rho = found.rho}, held, options.overdispersed,
-                  options.confidence);
+  const Profile profile(scaled.problem, found.maximum, held_in(options),
+                        loss_of(options, fit.degrees_of_freedom));
   fit.threshold = {.value = scaled.axis.intensity(threshold),
                    .criterion = scaled.problem.criterion,
                    .interval = {.lower = scaled.axis.intensity(profile.end(threshold_index, -1.0)),
                                 .upper = scaled.axis.intensity(profile.end(threshold_index, 1.0))}};
   fit.slope_interval = {.lower = std::exp(profile.end(slope_index, -1.0)) / scaled.axis.span,
                         .upper = std::exp(profile.end(slope_index, 1.0)) / scaled.axis.span};
-  if (options.overdispersed) {
-    Problem plain = scaled.problem;
-    const double without = maximise(plain, found.maximum.at, held).log_likelihood;
-    const double ratio = std::max(0.0, 2.0 * (found.maximum.log_likelihood - without));
-    if (ratio > 0.0)
-      fit.overdispersion_p =
-          0.5 * boost::math::cdf(boost::math::complement(boost::math::chi_squared(1.0), ratio));
-  }
+  if (options.overdispersed)
+    fit.overdispersion_p = overdispersion_p(scaled.problem, found.maximum, held_in(options));
   return fit;
 }
 

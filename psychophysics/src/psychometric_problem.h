@@ -28,7 +28,6 @@ struct ScaledProblem {
 
 struct FoundCurve {
   Maximum maximum;
-  double rho = 0.0;
   double deviance = 0.0;
 };
 
