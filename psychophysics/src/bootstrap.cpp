@@ -11,17 +11,6 @@
 namespace kerf::psychophysics {
 namespace {
 
-/// Polya's urn: each answer makes the next of its kind more likely.
-int drawn(Random& random, int trials, double probability, double rho) {
-  if (rho == 0.0) return random.successes(trials, probability);
-  const double theta = rho / (1.0 - rho);
-  int count = 0;
-  for (int i = 0; i < trials; ++i) {
-    count += random.chance((probability + count * theta) / (1.0 + i * theta)) ? 1 : 0;
-  }
-  return count;
-}
-
 Interval percentiles(std::vector<double> values, double confidence) {
   std::sort(values.begin(), values.end());
   const auto last = static_cast<double>(values.size() - 1);
@@ -51,7 +40,7 @@ Bootstrap bootstrap(const PsychometricFit& fit, std::span<const Level> levels, c
   for (int sample = 0; sample < how.samples; ++sample) {
     for (std::size_t i = 0; i < probabilities.size(); ++i) {
       Count& answers = scaled.problem.cells[i].answers;
-      answers.successes = drawn(random, answers.trials, probabilities[i], fit.overdispersion);
+      answers.successes = random.successes(answers.trials, probabilities[i], fit.overdispersion);
     }
     const FoundCurve found = best_curve(scaled, options);
     thresholds.push_back(scaled.axis.intensity(found.maximum.at[threshold_index]));

@@ -131,6 +131,10 @@ double criterion_quantile(const Problem& problem, double lapse) {
   return shape_quantile(problem.shape, (problem.criterion - problem.guess) / (1.0 - problem.guess - lapse));
 }
 
+double probability_at(const Problem& problem, const Point& point, double at) {
+  return probabilities(problem, curve_at(problem, point), point, at).right;
+}
+
 double log_likelihood(const Problem& problem, const Point& point) {
   const Curve curve = curve_at(problem, point);
   const bool dispersed = is_dispersed(problem);

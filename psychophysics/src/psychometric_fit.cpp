@@ -11,6 +11,7 @@
 
 #include "checks.h"
 #include "likelihood.h"
+#include "profile.h"
 #include "psychometric_problem.h"
 #include "shape.h"
 
@@ -19,69 +20,6 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double most_dispersion = 9.0;  ///< rho = 0.9
-
-/// Walks from the estimate until the loss of likelihood reaches the quantile, then halves.
-class Profile {
- public:
-  Profile(const Problem& problem, const Maximum& best, const Held& held, double loss)
-      : problem_(problem), best_(best), held_(held), loss_(loss) {}
-
-  /// Minus or plus infinity where the bound is reached first.
-  double end(std::size_t index, double direction) const {
-    const double bound = direction < 0.0 ? problem_.lower[index] : problem_.upper[index];
-    Point like = best_.at;
-    double inside = like[index];
-    double below = -loss_;
-    double step = 0.05;
-    while (true) {
-      const double next = direction < 0.0 ? std::max(bound, inside - step) : std::min(bound, inside + step);
-      const double here = excess(index, next, like);
-      if (here > 0.0) return crossing(index, like, inside, below, next, here);
-      if (next == bound) return direction * infinite;
-      inside = next;
-      below = here;
-      step *= 1.5;
-    }
-  }
-
- private:
-  /// False position after Illinois. It keeps the signs that it was given, since what is found from another
-  /// start may differ by more than nothing.
-  double crossing(std::size_t index, Point& like, double inside, double below, double outside,
-                  double above) const {
-    for (int i = 0; i < 80 && std::abs(outside - inside) > 1e-9; ++i) {
-      const double share = std::clamp(below / (below - above), 0.01, 0.99);
-      const double middle = inside + share * (outside - inside);
-      const double here = excess(index, middle, like);
-      if (std::abs(here) < 1e-9) return middle;
-      if (here > 0.0) {
-        outside = middle;
-        above = here;
-        below *= 0.5;
-      } else {
-        inside = middle;
-        below = here;
-        above *= 0.5;
-      }
-    }
-    return 0.5 * (inside + outside);
-  }
-
-  /// Begins at the point last found, which it moves.
-  double excess(std::size_t index, double value, Point& like) const {
-    Held held = held_;
-    held[index] = true;
-    like[index] = value;
-    const Maximum found = maximise(problem_, like, held);
-    like = found.at;
-    return 2.0 * (best_.log_likelihood - found.log_likelihood) - loss_;
-  }
-
-  Problem problem_;
-  Maximum best_;
-  Held held_;
-  double loss_;
-};
 
 /// Twice the loss of log-likelihood at the ends of an interval. A dispersion that is itself estimated makes
 /// it a quantile of F rather than of chi-squared.
@@ -197,16 +135,18 @@ PsychometricFit fit_psychometric(std::span<const Level> levels, const FitOptions
   fit.overdispersion = dispersion / (1.0 + dispersion);
   fit.slope_at_bound =
       log_slope <= scaled.problem.lower[slope_index] || log_slope >= scaled.problem.upper[slope_index];
-  const Profile profile(scaled.problem, found.maximum, held_in(options),
-                        loss_of(options, fit.degrees_of_freedom));
+  const Held held = held_in(options);
+  const double loss = loss_of(options, fit.degrees_of_freedom);
+  const Calibration factor = calibration(scaled.problem, found.maximum, held, options);
+  const Profile of_threshold(scaled.problem, found.maximum, held, factor.threshold * loss);
+  const Profile of_slope(scaled.problem, found.maximum, held, factor.slope * loss);
   fit.threshold = {.value = scaled.axis.intensity(threshold),
                    .criterion = scaled.problem.criterion,
-                   .interval = {.lower = scaled.axis.intensity(profile.end(threshold_index, -1.0)),
-                                .upper = scaled.axis.intensity(profile.end(threshold_index, 1.0))}};
-  fit.slope_interval = {.lower = std::exp(profile.end(slope_index, -1.0)) / scaled.axis.span,
-                        .upper = std::exp(profile.end(slope_index, 1.0)) / scaled.axis.span};
-  if (options.overdispersed)
-    fit.overdispersion_p = overdispersion_p(scaled.problem, found.maximum, held_in(options));
+                   .interval = {.lower = scaled.axis.intensity(of_threshold.end(threshold_index, -1.0)),
+                                .upper = scaled.axis.intensity(of_threshold.end(threshold_index, 1.0))}};
+  fit.slope_interval = {.lower = std::exp(of_slope.end(slope_index, -1.0)) / scaled.axis.span,
+                        .upper = std::exp(of_slope.end(slope_index, 1.0)) / scaled.axis.span};
+  if (options.overdispersed) fit.overdispersion_p = overdispersion_p(scaled.problem, found.maximum, held);
   return fit;
 }
 

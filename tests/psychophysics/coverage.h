@@ -60,20 +60,12 @@ inline std::vector<Experiment> experiments() {
           {"2IFC, Weibull, 6 subjects x 6 levels x 20, rho 0.05", weibull, six, 20, pooled, 6, 0.05}};
 }
 
-inline int answers(psy::Random& random, int trials, double probability, double rho) {
-  const double theta = rho / (1.0 - rho);
-  int count = 0;
-  for (int i = 0; i < trials; ++i)
-    count += random.chance((probability + count * theta) / (1.0 + i * theta)) ? 1 : 0;
-  return count;
-}
-
 inline std::vector<psy::Level> simulated(const Experiment& experiment, psy::Random& random) {
   std::vector<psy::Level> levels;
   for (int subject = 0; subject < experiment.subjects; ++subject) {
     for (const double x : experiment.intensities) {
       const int k =
-          answers(random, experiment.trials_per_level, experiment.observer.probability(x), experiment.rho);
+          random.successes(experiment.trials_per_level, experiment.observer.probability(x), experiment.rho);
       levels.push_back({.intensity = x, .answers = {k, experiment.trials_per_level}});
     }
   }

@@ -34,6 +34,16 @@ class Random {
     return count;
   }
 
+  /// Beta-binomial, by Polya's urn: each answer makes the next of its kind more likely. `correlation` is that
+  /// of two answers, in [0, 1).
+  [[nodiscard]] int successes(int trials, double probability, double correlation) {
+    const double theta = correlation / (1.0 - correlation);
+    int count = 0;
+    for (int i = 0; i < trials; ++i)
+      count += chance((probability + count * theta) / (1.0 + i * theta)) ? 1 : 0;
+    return count;
+  }
+
   template <typename T>
   void shuffle(std::vector<T>& values) {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
