@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <kerf/psychophysics/dprime.h>
@@ -38,11 +39,12 @@ double forced_choice(double d, int intervals) {
 
 double oddity(double d) {
   const double shift = d * sqrt2 / sqrt3;
-  // Even in x together with the sign of d, so that half the line is half of the whole.
-  return integral(-9.0, 9.0, [&](double x) {
-    const double far = std::abs(x) * sqrt3;
-    return normal_density(x) * (normal_probability(shift - far) + normal_probability(-shift - far));
-  });
+  return 2.0 * boost::math::quadrature::gauss<double, 60>::integrate(
+                   [&](double x) {
+                     return normal_density(x) *
+                            (normal_probability(shift - x * sqrt3) + normal_probability(-shift - x * sqrt3));
+                   },
+                   0.0, 9.0);
 }
 
 double product(double a, double b) {
@@ -159,8 +161,9 @@ double chance_of(const Task& task) {
 
 double proportion_correct(const Task& task, double d) {
   require_task(task);
-  require(d >= 0.0 || (task.decision == Decision::forced_choice && d < 0.0),
-          "d' is " + std::to_string(d) + "; only that of a forced choice may be negative");
+  require(!std::isnan(d) && (d >= 0.0 || task.decision == Decision::forced_choice),
+          "d' is " + std::to_string(d) +
+              "; it must be a number, and only that of a forced choice may be negative");
   d = std::clamp(d, -2.0 * largest, 2.0 * largest);
   switch (task.decision) {
     case Decision::forced_choice:

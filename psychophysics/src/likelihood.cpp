@@ -8,7 +8,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-constexpr double least_probability = 1e-300;
+constexpr double least_probability = 1e-150;
 
 struct CellTerms {
   double value = 0.0;
@@ -21,13 +21,20 @@ struct CellTerms {
 /// ...
 CellTerms urn(int count, double p, double theta) {
   CellTerms terms;
+  double product = 1.0;  // one logarithm for many factors
   for (int j = 0; j < count; ++j) {
-    const double inverse = 1.0 / (p + j * theta);
-    terms.value -= std::log(inverse);
+    const double factor = p + j * theta;
+    const double inverse = 1.0 / factor;
+    product *= factor;
+    if (product < 1e-100 || product > 1e100) {
+      terms.value += std::log(product);
+      product = 1.0;
+    }
     terms.slope += inverse;
     terms.per_dispersion += j * inverse;
     terms.curvature += j * inverse * (j * inverse);
   }
+  terms.value += std::log(product);
   return terms;
 }
 
@@ -131,10 +138,6 @@ double criterion_quantile(const Problem& problem, double lapse) {
   return shape_quantile(problem.shape, (problem.criterion - problem.guess) / (1.0 - problem.guess - lapse));
 }
 
-double probability_at(const Problem& problem, const Point& point, double at) {
-  return probabilities(problem, curve_at(problem, point), point, at).right;
-}
-
 double log_likelihood(const Problem& problem, const Point& point) {
   const Curve curve = curve_at(problem, point);
   const bool dispersed = is_dispersed(problem);
@@ -178,7 +181,8 @@ Score score(const Problem& problem, const Point& point) {
 
 Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
   constexpr int most_rounds = 300;
-  constexpr double least_gain = 1e-12;
+  constexpr double least_gain = 1e-11;
+  const double rounding = 1e-14 * std::abs(log_likelihood(problem, start));
   Point at = start;
   for (std::size_t i = 0; i < parameters; ++i)
     at[i] = held[i] ? at[i] : std::clamp(at[i], problem.lower[i], problem.upper[i]);
@@ -198,7 +202,7 @@ Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
     const Score there = score(problem, next);
     const double gain = there.log_likelihood - now.log_likelihood;
     if (next == at) break;
-    if (gain >= 0.0) {
+    if (gain >= -rounding) {
       at = next;
       now = there;
       damping = std::max(1e-9, damping * 0.2);
@@ -217,7 +221,8 @@ Maximum maximise_from_many(const Problem& problem, const Point& like, const Held
     return held[i] || problem.lower[i] == problem.upper[i] ? std::vector<double>{like[i]} : all;
   };
   for (const double threshold : values(threshold_index, {-0.2, 0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.1})) {
-    for (const double slope : values(slope_index, {0.0, 0.8, 1.5, 2.2, 3.0, 4.0})) {
+    for (const double slope :
+         values(slope_index, {0.0, 0.8, 1.5, 2.2, 3.0, 4.0, 5.3, problem.upper[slope_index]})) {
       for (const double lapse :
            values(lapse_index, {0.25 * problem.upper[lapse_index], 0.75 * problem.upper[lapse_index]})) {
         const Point at{threshold, slope, lapse, like[dispersion_index]};

@@ -31,9 +31,6 @@ struct Problem {
   Point upper{};
 };
 
-/// psi
-[[nodiscard]] double probability_at(const Problem& problem, const Point& point, double at);
-
 struct Score {
   double log_likelihood = 0.0;
   Point gradient{};

@@ -4,25 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <kerf/psychophysics/random.h>
-
-#include "checks.h"
-
 namespace kerf::psychophysics {
-namespace {
-
-double ratio_at(const Problem& problem, const Maximum& best, Held held, const Point& truth,
-                std::size_t index) {
-  held[index] = true;
-  Point start = best.at;
-  start[index] = truth[index];
-  const Maximum found = maximise(problem, start, held);
-  const Maximum other = maximise(problem, truth, held);
-  return std::max(0.0, 2.0 * (best.log_likelihood - std::max(found.log_likelihood, other.log_likelihood)));
-}
-
-}  // namespace
-
 double Profile::end(std::size_t index, double direction) const {
   const double bound = direction < 0.0 ? problem_.lower[index] : problem_.upper[index];
   Point like = best_.at;
@@ -75,28 +57,6 @@ double Profile::excess(std::size_t index, double value, Point& like) const {
   }
   like = found.at;
   return 2.0 * (best_.log_likelihood - found.log_likelihood) - loss_;
-}
-
-Calibration calibration(const Problem& problem, const Maximum& best, const Held& held,
-                        const FitOptions& options) {
-  require(options.calibration >= 0 && options.calibration <= 100000,
-          "a calibration takes 0 to 100,000 experiments");
-  if (options.calibration == 0) return {};
-  Random random(options.seed);
-  Problem drawn = problem;
-  const double rho = best.at[dispersion_index] / (1.0 + best.at[dispersion_index]);
-  double threshold = 0.0;
-  double slope = 0.0;
-  for (int i = 0; i < options.calibration; ++i) {
-    for (Cell& cell : drawn.cells)
-      cell.answers.successes =
-          random.successes(cell.answers.trials, probability_at(problem, best.at, cell.at), rho);
-    const Maximum found = maximise_from_many(drawn, best.at, held);
-    threshold += ratio_at(drawn, found, held, best.at, threshold_index);
-    slope += ratio_at(drawn, found, held, best.at, slope_index);
-  }
-  return {.threshold = std::max(1.0, threshold / options.calibration),
-          .slope = std::max(1.0, slope / options.calibration)};
 }
 
 }  // namespace kerf::psychophysics

@@ -28,14 +28,4 @@ class Profile {
   double loss_;
 };
 
-/// Means of the likelihood ratio at the truth over experiments simulated from the estimate; 1 where
-/// chi-squared holds.
-struct Calibration {
-  double threshold = 1.0;
-  double slope = 1.0;
-};
-
-[[nodiscard]] Calibration calibration(const Problem& problem, const Maximum& best, const Held& held,
-                                      const FitOptions& options);
-
 }  // namespace kerf::psychophysics

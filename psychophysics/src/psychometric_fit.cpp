@@ -136,16 +136,13 @@ PsychometricFit fit_psychometric(std::span<const Level> levels, const FitOptions
   fit.slope_at_bound =
       log_slope <= scaled.problem.lower[slope_index] || log_slope >= scaled.problem.upper[slope_index];
   const Held held = held_in(options);
-  const double loss = loss_of(options, fit.degrees_of_freedom);
-  const Calibration factor = calibration(scaled.problem, found.maximum, held, options);
-  const Profile of_threshold(scaled.problem, found.maximum, held, factor.threshold * loss);
-  const Profile of_slope(scaled.problem, found.maximum, held, factor.slope * loss);
+  const Profile profile(scaled.problem, found.maximum, held, loss_of(options, fit.degrees_of_freedom));
   fit.threshold = {.value = scaled.axis.intensity(threshold),
                    .criterion = scaled.problem.criterion,
-                   .interval = {.lower = scaled.axis.intensity(of_threshold.end(threshold_index, -1.0)),
-                                .upper = scaled.axis.intensity(of_threshold.end(threshold_index, 1.0))}};
-  fit.slope_interval = {.lower = std::exp(of_slope.end(slope_index, -1.0)) / scaled.axis.span,
-                        .upper = std::exp(of_slope.end(slope_index, 1.0)) / scaled.axis.span};
+                   .interval = {.lower = scaled.axis.intensity(profile.end(threshold_index, -1.0)),
+                                .upper = scaled.axis.intensity(profile.end(threshold_index, 1.0))}};
+  fit.slope_interval = {.lower = std::exp(profile.end(slope_index, -1.0)) / scaled.axis.span,
+                        .upper = std::exp(profile.end(slope_index, 1.0)) / scaled.axis.span};
   if (options.overdispersed) fit.overdispersion_p = overdispersion_p(scaled.problem, found.maximum, held);
   return fit;
 }

@@ -28,8 +28,6 @@ struct FitOptions {
   std::optional<double> criterion;  ///< psi at the threshold; standard: guess + (1 - guess) / 2
   double confidence = 0.95;
   bool overdispersed = false;  ///< beta-binomial: for answers pooled over subjects or sessions
-  int calibration = 0;  ///< simulated experiments that calibrate the intervals; 0: none, 200: for few trials
-  std::uint64_t seed = 1;  ///< of the calibration
 };
 
 /// Where the curve reaches a probability: in a discrimination from a standard this is the JND at that
@@ -62,10 +60,6 @@ struct PsychometricFit {
 ///
 /// so that the variance of k is n psi (1 - psi) (1 + (n - 1) rho). Rows are taken as independent: subjects
 /// who differ in their thresholds at all levels alike call for `across_subjects` besides.
-///
-/// Under some 200 trials these intervals are a little short (docs/psychophysics.md). Calibrated, the quantile
-/// is multiplied by the mean of the same statistic over experiments simulated from the estimate (Bartlett's
-/// correction by bootstrap).
 [[nodiscard]] PsychometricFit fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 
 /// Half the way between the points where F is 25 and 75 %: the JND of a curve that goes from "less" to "more"
