@@ -60,7 +60,7 @@ class Likelihood:
     def shape(self, z):
         name = self.row["shape"]
         if name == "weibull":
-            return -numpy.expm1(-numpy.exp(z))
+            return -numpy.expm1(-numpy.exp(numpy.minimum(z, 50.0)))
         return special.expit(z) if name == "logistic" else special.ndtr(z)
 
     def quantile(self, lapse):
@@ -81,7 +81,7 @@ class Likelihood:
                           - special.betaln(p * nu, (1 - p) * nu))
 
     def best(self, threshold=None):
-        """Least loss; with a threshold, over curves that reach the criterion there. From many starts by Nelder and Mead."""
+        """Least loss; with a threshold, over curves that reach the criterion there. From seven starts by Nelder and Mead."""
         def loss(free):
             log_slope, lapse, rho = free[-3:]
             location = free[0] if threshold is None else threshold - self.quantile(lapse) / math.exp(log_slope)
@@ -92,6 +92,7 @@ class Likelihood:
             start = [log_slope, sum(self.bounds[2]) / 2, 0.03 if self.row["overdispersed"] else 0.0]
             if threshold is None:
                 start.insert(0, float(numpy.average(self.x)))
+            start = [value if low is None else min(max(value, low), high) for value, (low, high) in zip(start, bounds)]
             found = optimize.minimize(loss, start, method="Nelder-Mead", bounds=bounds,
                                       options={"xatol": 1e-9, "fatol": 1e-11, "maxiter": 8000, "maxfev": 8000})
             found = optimize.minimize(loss, found.x, method="Nelder-Mead", bounds=bounds,

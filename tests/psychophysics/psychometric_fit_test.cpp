@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -66,6 +67,39 @@ TEST(PsychometricFit, WidensItsIntervalWithTheConfidence) {
   EXPECT_LT(usual.threshold.interval.lower, usual.threshold.value);
   EXPECT_LT(usual.threshold.value, usual.threshold.interval.upper);
   EXPECT_LT(usual.threshold.interval.upper, wide.threshold.interval.upper);
+}
+
+/// Largest log-likelihood of Weibull curves that reach 75 % at a threshold, by trying 60,000 slopes and lapse
+/// rates.
+double best_by_trying(const std::vector<Level>& levels, double threshold) {
+  double best = -1e9;
+  for (int i = 0; i <= 1200; ++i) {
+    const double slope = 0.04 * std::pow(600.0 / 0.04, i / 1200.0);
+    for (int j = 0; j <= 50; ++j) {
+      const double lapse = 0.06 * j / 50.0;
+      const double z = std::log(-std::log(1.0 - 0.25 / (0.5 - lapse)));
+      const Psychometric curve{.threshold = threshold * std::exp(-z / slope), .slope = slope, .lapse = lapse};
+      double sum = 0.0;
+      for (const Level& level : levels) {
+        const double p = std::min(curve.probability(level.intensity), 1.0 - 1e-12);
+        sum += level.answers.successes * std::log(p) +
+               (level.answers.trials - level.answers.successes) * std::log(1.0 - p);
+      }
+      best = std::max(best, sum);
+    }
+  }
+  return best;
+}
+
+// In these answers a step between two levels is nearly as likely as a gentle slope, and one start does not
+// find both.
+TEST(PsychometricFit, EndsItsIntervalWhereNoCurveIsLikelyEnough) {
+  const std::vector<Level> levels{{0.5, {13, 20}}, {0.7, {13, 20}}, {0.9, {13, 20}},
+                                  {1.2, {18, 20}}, {1.6, {20, 20}}, {2.2, {20, 20}}};
+  const PsychometricFit fit = fit_psychometric(levels, {});
+  for (const double end : {fit.threshold.interval.lower, fit.threshold.interval.upper}) {
+    EXPECT_NEAR(2.0 * (fit.log_likelihood - best_by_trying(levels, end)), 3.841, 0.02);
+  }
 }
 
 TEST(PsychometricFit, DoesNotDependOnTheUnitOfTheIntensity) {
