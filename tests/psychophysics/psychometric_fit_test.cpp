@@ -72,9 +72,10 @@ TEST(PsychometricFit, WidensItsIntervalWithTheConfidence) {
 /// Largest log-likelihood of Weibull curves that reach 75 % at a threshold, by trying 60,000 slopes and lapse
 /// rates.
 double best_by_trying(const std::vector<Level>& levels, double threshold) {
+  const double steepest = 1000.0 / std::log(2.2 / 0.5);  // what counts as a step: 1 / 1000 of the levels
   double best = -1e9;
   for (int i = 0; i <= 1200; ++i) {
-    const double slope = 0.04 * std::pow(600.0 / 0.04, i / 1200.0);
+    const double slope = 0.04 * std::pow(steepest / 0.04, i / 1200.0);
     for (int j = 0; j <= 50; ++j) {
       const double lapse = 0.06 * j / 50.0;
       const double z = std::log(-std::log(1.0 - 0.25 / (0.5 - lapse)));
