@@ -7,7 +7,9 @@ namespace kerf::bench {
 
 // One function a verb, each in the file cli/verb_NAME.cpp.
 void add_blade(CLI::App& app, Context& context);
+void add_chart(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
+void add_choose(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_fit(CLI::App& app, Context& context);

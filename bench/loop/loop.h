@@ -185,7 +185,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     Command command = wrong == 0 ? rendering(sample, elapsed_s) : Command{.flags = wrong};
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
     if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
-    safety.apply(time_s, sample, command);
+    safety.apply(time_s, command);
     if (measures_cpu) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
     times.mark(Stage::compute, clock.now_ns());
 

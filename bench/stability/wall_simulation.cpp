@@ -11,27 +11,32 @@ namespace kerf::bench {
 namespace {
 
 constexpr double lost_m = 10.0;            // farther than that nothing comes back
-constexpr double limit_cycle_decay = 0.9;  // of the energy, from the second to the last quarter
+constexpr double limit_cycle_decay = 0.5;  // of the energy, from the second to the last quarter
 constexpr double at_rest_share = 1e-9;     // of the first displacement
 constexpr double periods_of_soft_walls = 20.0;
 
 /// Sums over a stretch of time, for the energy about the mean.
 struct Stretch {
-  double place = 0.0, place_squared = 0.0, speed_squared = 0.0;
+  double place = 0.0, place_squared = 0.0, speed_squared = 0.0, force = 0.0, force_squared = 0.0;
   std::size_t ticks = 0;
 
-  void add(const AxisMotion& motion) noexcept {
+  void add(const AxisMotion& motion, double force_n) noexcept {
+    force += force_n;
+    force_squared += force_n * force_n;
     place += motion.place_m;
     place_squared += motion.place_m * motion.place_m;
     speed_squared += motion.speed_m_s * motion.speed_m_s;
     ++ticks;
   }
-  [[nodiscard]] double variance() const noexcept {
-    const auto count = static_cast<double>(ticks);
-    return std::max(0.0, place_squared / count - place * place / (count * count));
-  }
   [[nodiscard]] double energy(double mass, double stiffness) const noexcept {
-    return mass * speed_squared / static_cast<double>(ticks) + stiffness * variance();
+    return mass * speed_squared / static_cast<double>(ticks) + stiffness * variance(place, place_squared);
+  }
+  [[nodiscard]] double ripple_n() const noexcept { return std::sqrt(variance(force, force_squared)); }
+
+ private:
+  [[nodiscard]] double variance(double sum, double squares) const noexcept {
+    const auto count = static_cast<double>(ticks);
+    return std::max(0.0, squares / count - sum * sum / (count * count));
   }
 };
 
@@ -48,18 +53,19 @@ class Trial {
   void step(int quarter) noexcept {
     if (lost_) return;
     loop_.step(trial_.push_n);
-    if (quarter == 1) second_.add(loop_.motion());
-    if (quarter == 3) last_.add(loop_.motion());
+    if (quarter == 1) second_.add(loop_.motion(), loop_.held_n());
+    if (quarter == 3) last_.add(loop_.motion(), loop_.held_n());
     lost_ = !(std::abs(loop_.motion().place_m) < lost_m + start_m_);
   }
   [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
     if (lost_) return false;
-    const double floor_m = std::max(device.encoder_step_m, at_rest_share * trial_.start_m);
-    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
-    const double energy = last_.energy(device.moving_mass_kg(), stiffness);
-    if (energy <= 2.0 * stiffness * floor_m * floor_m) return true;
     const bool exact = device.is_linear() && trial_.push_n == 0.0;
-    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(device.moving_mass_kg(), stiffness);
+    if (!exact && last_.ripple_n() <= trial_.felt_n) return true;
+    const double mass = device.moving_mass_kg();
+    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
+    const double energy = last_.energy(mass, stiffness);
+    if (energy <= stiffness * std::pow(at_rest_share * trial_.start_m, 2)) return true;
+    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(mass, stiffness);
   }
 
  private:

@@ -15,13 +15,15 @@ struct WallTrial {
   double seconds = 2.0;
   double start_m = 1e-3;
   double push_n = 0.0;
+  double felt_n = 0.05;  ///< rms of a force about its mean that a hand feels
 };
 
 /// Whether simulated walls come to rest.
 ///
 /// The energy of the motion about its mean, M v^2 + K (x - mean)^2, is averaged over the second and the last
-/// quarter of the time. It came to rest if it fell from the one to the other, or was small in the last: below
-/// an encoder step. A limit cycle does not fall: with an encoder or Coulomb friction it has to fall by 10 %.
+/// quarter of the time. A linear wall comes to rest if it falls from the one to the other. With an encoder,
+/// Coulomb friction or one side there are limit cycles, which neither grow nor fall: such a wall comes to
+/// rest if the force in the last quarter varies by less than a hand feels, or the energy fell to a half.
 class WallSimulation {
  public:
   explicit WallSimulation(const SampledDevice& device);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,8 @@
 
 namespace kerf::fitting {
 
+class SegmentedMemory;
+
 /// What is searched: a law's parameters, some of them held, some of them each recording's own.
 struct Problem {
   std::string_view model;
@@ -19,6 +22,7 @@ struct Problem {
   std::vector<bool> own;   ///< one a parameter: each recording has its own
   std::size_t runs = 1;
   std::vector<double> breakpoints;  ///< inner knots that were given by hand
+  std::shared_ptr<SegmentedMemory> segmented_memory{};
 
   /// How many numbers are searched: one a free parameter, or one a recording where it is its own.
   [[nodiscard]] Eigen::Index coordinates() const;

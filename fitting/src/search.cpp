@@ -96,6 +96,7 @@ Problem make_problem(std::string_view model, const FitOptions& given, const Samp
   if (is_staged(model)) prepare_staged(model, options, samples);
   if (model == "piecewise") {
     problem.breakpoints = given.breakpoints;
+    problem.segmented_memory = given.segmented_memory;
     prepare_segments(options, given, samples);
   }
   problem.parameters = models::Law::parameters(model, options);

@@ -10,6 +10,7 @@
 #include <kerf/models/piecewise.h>
 
 #include "kerf/fitting/segmented.h"
+#include "segmented_memory.h"
 #include "statistics.h"
 
 namespace kerf::fitting {
@@ -37,6 +38,17 @@ std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& sam
     left.push_back(law.branch_force(branch[i] == 0, samples.motion[i].penetration) - samples.force[i]);
   }
   return left;
+}
+
+/// The curves up to so many segments, remembered ones where there are.
+std::vector<SegmentedCurve> curves_of(const Problem& problem, const Curve& points, std::size_t segments) {
+  if (!problem.breakpoints.empty() || !problem.segmented_memory ||
+      problem.segmented_memory->most_segments() < segments) {
+    return fit_segments(points, {.most_segments = segments, .breakpoints = problem.breakpoints});
+  }
+  std::vector<SegmentedCurve> curves = problem.segmented_memory->curves(points);
+  std::erase_if(curves, [&](const SegmentedCurve& curve) { return curve.segments() > segments; });
+  return curves;
 }
 
 double segments_in(const models::Options& options) {
@@ -106,12 +118,12 @@ Solution solve_segments(const Problem& problem, const Samples& samples, const We
   for (int round = 0; round < most_reweighings; ++round) {
     std::vector<SegmentedCurve> curves;
     try {
-      curves = fit_segments(
-          {.position = position,
-           .force = samples.force,
-           .weight = robust,
-           .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()},
-          {.most_segments = segments, .breakpoints = problem.breakpoints});
+      const Curve points{
+          .position = position,
+          .force = samples.force,
+          .weight = robust,
+          .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()};
+      curves = curves_of(problem, points, segments);
     } catch (const std::invalid_argument& error) {
       solution.message = error.what();
     }

@@ -259,6 +259,19 @@ TEST(PassivityControlled, AddsOnlyTheDampingThatIsMissing) {
   EXPECT_NEAR(sum, (0.5 * 1600.0 * 1e-3 - 0.2) * 0.1, 0.02 * 0.06) << "(K T / 2 - b) v";
 }
 
+TEST(PassivityControlled, SavesNothingUpOnTheWayThroughFreeAir) {
+  const SampledDevice device = perfect_handle();
+  const WallForce wall{{.stiffness_n_per_m = 1600.0}};
+  ControlledWall controlled(wall, device, {1600.0});
+  AxisSensor sensor(device);
+  double added_n = 0.0;
+  for (int tick = -500; tick < 20; ++tick) {
+    const AxisReading reading = sensor.read(0.1e-3 * tick);
+    added_n += std::abs(controlled(reading) - wall(reading)) / 20.0;
+  }
+  EXPECT_NEAR(added_n, 0.06, 0.015);
+}
+
 TEST(PassivityControlled, RefusesADeviceWithADelay) {
   SampledDevice late = perfect_handle();
   late.delay_s = 1e-3;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +52,11 @@ enum class Intervals : std::uint8_t {
   white        ///< independent from sample to sample: s^2 (J'J)^-1, at no cost; too narrow at 1 kHz
 };
 
+/// Piecewise curves that were found for every number of segments up to a limit, so that fits of the same
+/// samples with other numbers of segments find them again. Fits on several threads may share one.
+class SegmentedMemory;
+[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t most_segments);
+
 struct FitOptions {
   models::Options
       law_options;  ///< integrator, thickness, segments, points, loop, ...; the rest from the data
@@ -67,6 +73,7 @@ struct FitOptions {
   CountBy segments = CountBy::given;
   std::vector<double> breakpoints;         ///< inner knots of a piecewise law by hand, as penetrations
   std::vector<std::string> per_recording;  ///< parameters that each recording has of its own
+  std::shared_ptr<SegmentedMemory> segmented_memory;  ///< none: curves are found anew each time
 };
 
 /// A parameter with its uncertainty. A parameter that was not searched (the ends of a piecewise law's knots)

@@ -1,0 +1,153 @@
+#include "choose/choice_files.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "choose/choice_page.h"
+#include "files/whole_file.h"
+#include "recordings/provenance.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+std::string text_of(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
+
+json names_of(const Effects& effects) {
+  json names = json::array();
+  for (const Effect effect : effects) names.push_back(name_of(effect));
+  return names;
+}
+
+json deadline_as_json(const std::optional<Deadline>& deadline) {
+  if (!deadline) return nullptr;
+  return {{"held", deadline->held},
+          {"machine_late", deadline->machine_late},
+          {"compute_p999_us", deadline->p999_us},
+          {"missed", deadline->missed},
+          {"ticks", deadline->ticks},
+          {"why", deadline->why}};
+}
+
+json candidate_as_json(const Candidate& candidate) {
+  json result{{"law", candidate.law.name},
+              {"model", candidate.law.model},
+              {"options", candidate.law.law_options},
+              {"parameters", candidate.law.parameters},
+              {"effects", names_of(candidate.law.effects)},
+              {"converged", candidate.converged},
+              {"rmse", candidate.fit ? number(candidate.fit->result.rmse) : json(nullptr)},
+              {"held_out", number(candidate.error_n)},
+              {"held_out_jnd", number(candidate.error_jnd)},
+              {"within_jnd", candidate.within_jnd},
+              {"tick_us", candidate.tick_us},
+              {"deadline", deadline_as_json(candidate.deadline)},
+              {"stable", candidate.stable ? json(*candidate.stable) : json(nullptr)},
+              {"passed_over", candidate.why}};
+  if (std::isfinite(candidate.error_torque_n_m)) result["held_out_torque"] = candidate.error_torque_n_m;
+  return result;
+}
+
+json effect_as_json(const EffectVerdict& verdict) {
+  return {{"effect", name_of(verdict.effect)},
+          {"verdict", name_of(verdict.matter)},
+          {"without", number(verdict.without_n)},
+          {"without_law", verdict.without_law},
+          {"with", number(verdict.with_n)},
+          {"with_law", verdict.with_law},
+          {"why", verdict.why}};
+}
+
+json parameters_of(const Candidate& candidate) {
+  json parameters = json::object();
+  if (!candidate.fit) return parameters;
+  for (const fitting::Estimate& estimate : candidate.fit->result.parameters) {
+    parameters[estimate.info.name] = {
+        {"value", estimate.value},
+        {"std_error", number(estimate.std_error)},
+        {"lower", number(estimate.lower)},
+        {"upper", number(estimate.upper)},
+        {"unit", models::unit_of(estimate.info.quantity, candidate.fit->file.force_unit,
+                                 candidate.fit->file.position_unit)}};
+  }
+  return parameters;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return result + "\"";
+}
+
+}  // namespace
+
+json choice_as_json(const LawChoice& choice) {
+  json candidates = json::array();
+  for (const Candidate& candidate : choice.candidates) candidates.push_back(candidate_as_json(candidate));
+  json effects = json::array();
+  for (const EffectVerdict& verdict : choice.effects) effects.push_back(effect_as_json(verdict));
+  const auto name_at = [&](const std::optional<std::size_t>& place) {
+    return place ? json(choice.candidates.at(*place).law.name) : json(nullptr);
+  };
+  return {
+      {"jnd", choice.jnd_n},
+      {"force_rms", choice.force_rms_n},
+      {"weber_fraction", choice.settings.jnd.weber_fraction},
+      {"threshold", choice.settings.jnd.threshold_n},
+      {"held_out_by", choice.held_out},
+      {"choice",
+       {{"law", name_at(choice.taken)},
+        {"serves", choice.serves},
+        {"in_doubt", choice.in_doubt},
+        {"as_good", name_at(choice.as_good)},
+        {"parameters", choice.taken ? parameters_of(choice.candidates.at(*choice.taken)) : json::object()},
+        {"why", choice.why}}},
+      {"effects", effects},
+      {"candidates", candidates},
+      {"warnings", choice.warnings}};
+}
+
+std::string choice_csv(const LawChoice& choice) {
+  std::string text =
+      "law,model,parameters,held_out,held_out_jnd,within_jnd,tick_us,compute_p999_us,missed,ticks,deadline,"
+      "stable,passed_over\n";
+  const auto yes = [](bool value) { return value ? "yes" : "no"; };
+  for (const Candidate& one : choice.candidates) {
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", one.law.name, one.law.model, one.law.parameters,
+        text_of(one.error_n), text_of(one.error_jnd), yes(one.within_jnd), one.tick_us,
+        one.deadline ? text_of(one.deadline->p999_us) : "",
+        one.deadline ? fmt::format("{}", one.deadline->missed) : "",
+        one.deadline ? fmt::format("{}", one.deadline->ticks) : "",
+        one.deadline ? (one.deadline->machine_late ? "machine late" : yes(one.deadline->held)) : "",
+        one.stable ? yes(*one.stable) : "", quoted(one.why));
+  }
+  return text;
+}
+
+void refuse_to_replace_choice(const std::filesystem::path& folder, bool replace) {
+  for (const auto* name : {"choose.json", "choose.csv", "choose.html"})
+    refuse_to_replace(folder / name, replace);
+}
+
+void write_choice(LawChoice& choice, const json& json, const std::filesystem::path& recording,
+                  const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const auto& place : {choice.taken, choice.as_good}) {
+    if (!place) continue;
+    Candidate& law = choice.candidates.at(*place);
+    if (!recording.empty()) law.file->fit.recording_sha256 = sha256_of(recording);
+    write_law_file(folder / (law.law.name + ".law.toml"), *law.file);
+  }
+  write_whole_file(folder / "choose.csv", choice_csv(choice));
+  write_whole_file(folder / "choose.html", choice_page(json, recording, choice));
+  write_whole_file(folder / "choose.json", json.dump(2) + "\n");
+}
+
+}  // namespace kerf::bench

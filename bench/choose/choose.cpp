@@ -1,0 +1,176 @@
+#include "choose/choose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "choose/step_cost.h"
+#include "fits/choice.h"
+#include "fits/fit_series.h"
+
+namespace kerf::bench {
+namespace {
+
+std::size_t cycles_in(const schema::Recording& recording, std::size_t axis) {
+  if (!recording.cycles || recording.cycles->axis != axis) return 0;
+  std::size_t most = 0;
+  for (const schema::PhaseSpan& phase : recording.cycles->phases)
+    most = std::max<std::size_t>(most, phase.cycle);
+  return most;
+}
+
+/// A choice while it is made.
+class Making {
+ public:
+  Making(const schema::Recording& recording, const ChooseOptions& options, const std::atomic<bool>& stop)
+      : recording_(recording), options_(options), stop_(stop), walk_(choice_, options.walk, recording, stop) {
+    if (options.axis >= recording.dimensions()) throw std::invalid_argument("the recording has no such axis");
+    if (options.fit.folds < 2)
+      throw std::invalid_argument("a law is chosen by held-out data: at least 2 folds are needed");
+    choice_.settings = options.fit;
+    choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
+    if (options.richer_too) memory_ = fitting::remember_segments(options.candidates.most_segments);
+    const FitSeries series = fit_series(recording, options.axis, choice_.contact);
+    if (series.axis.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
+    look_at(series.axis);
+    const std::size_t cycles = cycles_in(recording, options.axis);
+    say_folds(cycles);
+    const schema::Axis& axis = recording.axes[options.axis];
+    for (CandidateLaw& law : candidates_for(axis, cycles > 0, options.candidates)) {
+      choice_.candidates.emplace_back();
+      choice_.candidates.back().law = std::move(law);
+    }
+  }
+
+  LawChoice make() {
+    std::vector<Candidate>& all = choice_.candidates;
+    if (options_.richer_too) fit_all(all);
+    std::size_t begin = 0;
+    while (begin < all.size() && !(choice_.taken && !options_.richer_too)) {
+      const std::size_t end = walk_.end_of_group(begin);
+      const auto group = std::span(all).subspan(begin, end - begin);
+      if (!options_.richer_too) fit_all(group);
+      for (Candidate& one : group) {
+        if (one.file) one.tick_us = step_cost_us(one.file->law, motion_, period_s_);
+      }
+      walk_.over_group(begin, end);
+      begin = end;
+    }
+    all.resize(begin);
+    if (std::ranges::none_of(all, [](const Candidate& one) { return one.file.has_value(); }))
+      throw std::invalid_argument(all.empty() ? "no law fits the axis" : all.front().why);
+    choice_.effects = judge_effects(all, choice_.taken, choice_.jnd_n);
+    walk_.finish();
+    if (choice_.taken) fit_with_intervals(all[*choice_.taken]);
+    return std::move(choice_);
+  }
+
+ private:
+  void look_at(const AxisSeries& series) {
+    choice_.jnd_n = jnd_of(series.force, options_.fit.jnd);
+    const double squares =
+        std::inner_product(series.force.begin(), series.force.end(), series.force.begin(), 0.0);
+    choice_.force_rms_n = std::sqrt(squares / static_cast<double>(series.force.size()));
+    const double duration_s = series.time_s.back() - series.time_s.front();
+    const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
+    period_s_ = std::max(1e-6, duration_s / periods);
+    for (std::size_t i = 0; i < series.force.size(); ++i)
+      motion_.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
+  }
+
+  void say_folds(std::size_t cycles) {
+    const std::size_t folds = options_.fit.folds;
+    if (cycles >= 2) {
+      choice_.held_out = fmt::format("{} cycles, held out in {} folds", cycles, std::min(folds, cycles));
+      return;
+    }
+    choice_.held_out = fmt::format("{} blocks of time, held out by turns", folds);
+    if (cycles > 0) return;
+    choice_.warnings.emplace_back(
+        "the recording has no cycles along this axis: errors are held out by blocks of time, and laws with a "
+        "branch for each way are left out; 'kerf segment' finds cycles");
+  }
+
+  [[nodiscard]] RecordingFit fit_of(const CandidateLaw& law, fitting::FitOptions settings) const {
+    return fit_recording(recording_, {.models = {law.model},
+                                      .axis = options_.axis,
+                                      .contact = choice_.contact,
+                                      .law_options = law.law_options,
+                                      .fit = std::move(settings)});
+  }
+
+  void fit_one(Candidate& candidate) const {
+    fitting::FitOptions settings = options_.fit;
+    settings.threads = 1;
+    settings.intervals = fitting::Intervals::white;  // those of the law that is taken follow
+    settings.profile = false;
+    settings.segmented_memory = memory_;
+    RecordingFit fit = fit_of(candidate.law, std::move(settings));
+    if (fit.laws.empty()) {
+      candidate.why = fit.refusals.empty() ? "it could not be fitted" : fit.refusals.front().why;
+      return;
+    }
+    candidate.file = fit.laws.front().file;
+    candidate.fit = std::move(fit.laws.front());
+    const fitting::FitResult& result = candidate.fit->result;
+    candidate.converged = result.converged;
+    if (!result.converged) candidate.why = fmt::format("its fit did not converge: {}", result.message);
+    if (std::isfinite(result.cv_rmse)) candidate.error_n = result.cv_rmse;
+    candidate.error_jnd = candidate.error_n / choice_.jnd_n;
+    candidate.within_jnd = result.converged && candidate.error_n <= choice_.jnd_n;
+  }
+
+  /// The richest first: they take longest.
+  void fit_all(std::span<Candidate> candidates) const {
+    std::atomic<std::size_t> begun{0};
+    const auto work = [&] {
+      for (std::size_t i = begun++; i < candidates.size() && !stop_; i = begun++)
+        fit_one(candidates[candidates.size() - 1 - i]);
+    };
+    {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < std::min(options_.threads, candidates.size()); ++i)
+        others.emplace_back(work);
+      work();
+    }
+    walk_.end_if_stopped();
+  }
+
+  void fit_with_intervals(Candidate& taken) const {
+    if (options_.fit.intervals == fitting::Intervals::white) return;
+    fitting::FitOptions settings = options_.fit;
+    settings.folds = 0;
+    settings.threads = options_.threads;
+    settings.segmented_memory = memory_;
+    RecordingFit fit = fit_of(taken.law, std::move(settings));
+    if (fit.laws.empty()) return;
+    fit.laws.front().result.cv_rmse = taken.fit->result.cv_rmse;
+    taken.file = fit.laws.front().file;
+    taken.fit = std::move(fit.laws.front());
+  }
+
+  const schema::Recording& recording_;
+  const ChooseOptions& options_;
+  const std::atomic<bool>& stop_;
+  LawChoice choice_;
+  Walk walk_;
+  std::vector<models::Motion> motion_;
+  double period_s_ = 1e-3;
+  std::shared_ptr<fitting::SegmentedMemory> memory_;
+};
+
+}  // namespace
+
+LawChoice choose_law(const schema::Recording& recording, const ChooseOptions& options,
+                     const std::atomic<bool>& stop) {
+  return Making(recording, options, stop).make();
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <optional>
+
+#include <kerf/fitting/fit.h>
+#include <kerf/schema/recording.h>
+
+#include "choose/candidates.h"
+#include "choose/walk.h"
+
+namespace kerf::bench {
+
+struct ChooseOptions {
+  std::size_t axis = 0;
+  std::optional<models::Contact> contact;  ///< by default contact_of() the recording
+  CandidateOptions candidates;
+  fitting::FitOptions fit;  ///< JND and folds
+  std::size_t threads = 1;  ///< among which the candidates are shared out; the choice does not depend on it
+  bool richer_too = true;   ///< also fit what is richer than the law that serves, for the table
+  WalkOptions walk;
+};
+
+/// Fits every candidate to an axis of a recording and takes the simplest that serves (walk.h), by its error
+/// on held-out data and the JND at the recording's root mean square force. So a richer law is taken only if
+/// the simpler ones leave out more than the JND.
+/// @throws std::invalid_argument for a recording without force, a missing axis, or one that no law can be
+/// fitted to; std::system_error if it was stopped.
+[[nodiscard]] LawChoice choose_law(const schema::Recording& recording, const ChooseOptions& options,
+                                   const std::atomic<bool>& stop);
+
+}  // namespace kerf::bench

@@ -1,0 +1,176 @@
+#include "choose/fidelity.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "laws/placement.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::array strip_counts{1, 2, 4, 8, 16, 32, 64};
+
+std::vector<models::SpatialMotion> motion_of(const Scene& scene, double rate_hz) {
+  const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
+  const std::vector<std::size_t> axes = axes_for(scene.tissue, device);
+  const ToolPath path = tool_path(scene, rate_hz);
+  std::vector<models::SpatialMotion> all(path.position.size());
+  for (std::size_t tick = 0; tick < all.size(); ++tick) {
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      all[tick].position[i] = path.position[tick][axes[i]];
+      all[tick].velocity[i] = path.velocity[tick][axes[i]];
+    }
+  }
+  return all;
+}
+
+LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
+  models::Options options = law.law.options();
+  options["fidelity"] = kind;
+  options["strips"] = static_cast<double>(strips);
+  LawFile other = law;
+  other.law = models::Law::make(law.law.model(), law.law.values(), options);
+  return other;
+}
+
+/// The forces of a law along a motion, and the median of what a step takes [us], over a few rounds.
+struct Rendered {
+  std::vector<models::AxisValues> force;
+  double tick_us = 0.0;
+};
+
+Rendered render(const models::Law& law, const std::vector<models::SpatialMotion>& motion, double period_s) {
+  constexpr std::size_t batch = 64;
+  Rendered rendered;
+  rendered.force.reserve(motion.size());
+  std::vector<double> batches_us;
+  models::Law::State state = law.initial_state();
+  for (std::size_t begin = 0; begin < motion.size(); begin += batch) {
+    const std::size_t end = std::min(begin + batch, motion.size());
+    const auto from = std::chrono::steady_clock::now();
+    for (std::size_t tick = begin; tick < end; ++tick)
+      rendered.force.push_back(law.step(state, motion[tick], period_s).force);
+    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - from;
+    batches_us.push_back(spent.count() / static_cast<double>(end - begin));
+  }
+  // Above the median: a blade costs next to nothing while it is in the air.
+  const auto place = batches_us.begin() + static_cast<std::ptrdiff_t>(batches_us.size() * 3 / 4);
+  std::ranges::nth_element(batches_us, place);
+  rendered.tick_us = *place;
+  return rendered;
+}
+
+/// Root mean squares of a force and a torque, or of their differences.
+struct Size {
+  double force_n = 0.0;
+  double torque_n_m = 0.0;
+};
+
+Size size_of(const std::vector<models::AxisValues>& force, const std::vector<models::AxisValues>& less,
+             const std::vector<bool>& counts) {
+  Size squares;
+  double ticks = 0.0;
+  for (std::size_t tick = 0; tick < force.size(); ++tick) {
+    if (!counts[tick]) continue;
+    ticks += 1.0;
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      const double value = force[tick][axis] - (less.empty() ? 0.0 : less[tick][axis]);
+      (axis < 3 ? squares.force_n : squares.torque_n_m) += value * value;
+    }
+  }
+  return {.force_n = std::sqrt(squares.force_n / ticks), .torque_n_m = std::sqrt(squares.torque_n_m / ticks)};
+}
+
+EffectVerdict rotation_of(const Candidate& paper, const Candidate& exact, bool matters) {
+  return {
+      .effect = Effect::rotation,
+      .matter = matters ? Matter::matters : Matter::does_not,
+      .without_n = paper.error_n,
+      .with_n = exact.error_n,
+      .without_law = paper.law.name,
+      .with_law = exact.law.name,
+      .why = fmt::format("{:.2g} JND ({}: {:.3g} N and {:.3g} N·m) without, 0 JND ({}) with", paper.error_jnd,
+                         paper.law.name, paper.error_n, paper.error_torque_n_m, exact.law.name)};
+}
+
+Candidate candidate(const LawFile& file, const std::string& kind, int strips) {
+  Candidate one;
+  one.law.name = kind == "exact" ? "blade-exact" : fmt::format("blade-{}-{}", kind, strips);
+  one.law.model = file.law.model();
+  one.law.law_options = {fmt::format("fidelity={}", kind)};
+  if (kind != "exact") one.law.law_options.push_back(fmt::format("strips={}", strips));
+  one.law.parameters = file.law.values().size();
+  if (kind != "paper") one.law.effects = {Effect::rotation};
+  one.file = with_fidelity(file, kind, strips);
+  one.converged = true;
+  return one;
+}
+
+}  // namespace
+
+double TorqueJnd::at(double torque_n_m) const noexcept {
+  return std::max(weber_fraction * std::abs(torque_n_m), threshold_n_m);
+}
+
+LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, const std::atomic<bool>& stop) {
+  if (scene.tissue.law.model() != "blade") {
+    throw std::invalid_argument(
+        fmt::format("law '{}' acts on several axes and has no fidelities to choose among; of such laws only "
+                    "'blade' has",
+                    scene.tissue.law.model()));
+  }
+  const double period_s = 1.0 / options.rate_hz;
+  const auto motion = motion_of(scene, options.rate_hz);
+  if (motion.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
+  LawChoice choice;
+  choice.settings.jnd = options.jnd;
+  choice.candidates.push_back(candidate(scene.tissue, "exact", 16));
+  for (const char* kind : {"paper", "strips"}) {
+    for (const int strips : strip_counts) choice.candidates.push_back(candidate(scene.tissue, kind, strips));
+  }
+  const Rendered reference = render(choice.candidates.front().file->law, motion, period_s);
+  std::vector<bool> pushes;
+  for (const models::AxisValues& force : reference.force)
+    pushes.push_back(std::ranges::any_of(force, [](double value) { return value != 0.0; }));
+  const auto ticks = std::ranges::count(pushes, true);
+  if (ticks == 0) throw std::invalid_argument("along the scene's path the blade never pushes on anything");
+  const Size whole = size_of(reference.force, {}, pushes);
+  choice.force_rms_n = whole.force_n;
+  choice.jnd_n = options.jnd.at(whole.force_n);
+  const double jnd_n_m = options.torque_jnd.at(whole.torque_n_m);
+  choice.held_out = fmt::format("the scene's path, {} ticks of {} in the tissue", ticks, pushes.size());
+  for (Candidate& one : choice.candidates) {
+    const Rendered rendered = render(one.file->law, motion, period_s);
+    const Size error = size_of(rendered.force, reference.force, pushes);
+    one.tick_us = rendered.tick_us;
+    one.error_n = error.force_n;
+    one.error_torque_n_m = error.torque_n_m;
+    one.error_jnd = std::max(error.force_n / choice.jnd_n, error.torque_n_m / jnd_n_m);
+    one.within_jnd = one.error_jnd <= 1.0;
+  }
+  choice.warnings.push_back(
+      fmt::format("errors are those to the exact blade: forces against a JND of {:.3g} N, torques against "
+                  "one of {:.3g} N·m "
+                  "(root mean square torque {:.3g} N·m), and the larger counts; other effects than rotation "
+                  "are not judged",
+                  choice.jnd_n, jnd_n_m, whole.torque_n_m));
+  const auto named = [&](const char* name) {
+    return *std::ranges::find_if(choice.candidates,
+                                 [&](const Candidate& one) { return one.law.name == name; });
+  };
+  const Candidate paper = named("blade-paper-64");
+  choice.effects = {rotation_of(paper, named("blade-exact"), !paper.within_jnd)};
+  const schema::Recording none;
+  Walk walk(choice, options.walk, none, stop);
+  walk.over_group(0, choice.candidates.size());
+  walk.finish();
+  return choice;
+}
+
+}  // namespace kerf::bench

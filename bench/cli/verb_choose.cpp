@@ -1,0 +1,249 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "choose/choice_files.h"
+#include "choose/choose.h"
+#include "choose/fidelity.h"
+#include "choose/loop_checks.h"
+#include "choose/scene_cut.h"
+#include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "loop/run.h"
+#include "recordings/axes.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string recording;
+  std::string scene;
+  std::string output;
+  std::string axis;
+  std::string direction;
+  std::optional<double> contact;
+  bool no_loop = false;
+  bool force = false;
+  std::optional<double> record_s;
+  LoopCheckOptions loop;
+  ChooseOptions choose;
+};
+
+std::size_t axis_of(const Arguments& arguments, const schema::Recording& recording) {
+  if (arguments.axis.empty() && recording.cycles) return recording.cycles->axis;
+  return find_axis(recording, arguments.axis);
+}
+
+models::Contact contact_for(const Arguments& arguments, const schema::Recording& recording,
+                            std::size_t axis) {
+  models::Contact contact = contact_of(recording, axis);
+  if (arguments.contact) contact.position = *arguments.contact;
+  if (!arguments.direction.empty()) contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+  return contact;
+}
+
+std::string deadline_in_short(const std::optional<Deadline>& deadline) {
+  if (!deadline) return "-";
+  if (deadline->held) return fmt::format("{:.1f} us", deadline->p999_us);
+  return deadline->machine_late ? "machine" : "NO";
+}
+
+void say_choice(const LawChoice& choice) {
+  say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>6}  {}", "law", "free", "held-out N", "JND",
+                  "tick us", "deadline", "stable", "why passed over"));
+  for (const Candidate& one : choice.candidates) {
+    const std::string error = one.file ? fmt::format("{:.4g}", one.error_n) : "-";
+    const std::string jnd = one.file ? fmt::format("{:.3g}", one.error_jnd) : "-";
+    say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>6}  {}", one.law.name, one.law.parameters,
+                    error, jnd, one.tick_us, deadline_in_short(one.deadline),
+                    one.stable ? (*one.stable ? "yes" : "NO") : "-", one.why.empty() ? "taken" : one.why));
+  }
+  say("");
+  for (const EffectVerdict& effect : choice.effects)
+    say(fmt::format("  {:12} {:15} {}", name_of(effect.effect), name_of(effect.matter), effect.why));
+  say("");
+}
+
+/// Says, keeps and prints what was chosen; `about` names it.
+void finish(const Arguments& arguments, Context& context, LawChoice& choice,
+            const nlohmann::ordered_json& about, const fs::path& recording) {
+  context.result = about;
+  context.result.update(choice_as_json(choice));
+  for (const std::string& warning : choice.warnings) warn(warning);
+  say_choice(choice);
+  say(choice.why);
+  if (!arguments.output.empty()) {
+    write_choice(choice, context.result, recording, arguments.output);
+    say(fmt::format("choose.json, choose.csv, choose.html{} are in {}",
+                    choice.taken ? " and the law's file" : "", arguments.output));
+  }
+  if (!choice.serves) context.exit = Exit::check_failed;
+}
+
+/// The closed loop with a device, unless there is to be none.
+std::optional<LoopChecks> checks_for(const Arguments& arguments, const std::string& device_uri,
+                                     WalkOptions& walk, const std::atomic<bool>& stop) {
+  std::optional<LoopChecks> checks;
+  if (arguments.no_loop) return checks;
+  LoopCheckOptions options = arguments.loop;
+  options.device_uri = device_uri;
+  checks.emplace(std::move(options), stop);
+  walk.begins = [device_uri](const std::string& law) {
+    say(fmt::format("{} in closed loop with {} ...", law, device_uri));
+  };
+  return checks;
+}
+
+void connect(const LoopChecks& checks, WalkOptions& walk) {
+  walk.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
+  walk.stability = [&checks](const LawFile& law, const schema::Recording&) {
+    return checks.instability(law);
+  };
+}
+
+void choose_for_recording(const Arguments& arguments, Context& context, const schema::Recording& recording,
+                          const fs::path& file, const std::atomic<bool>& stop) {
+  ChooseOptions options = arguments.choose;
+  options.axis = axis_of(arguments, recording);
+  options.contact = contact_for(arguments, recording, options.axis);
+  options.threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string uri = arguments.loop.device_uri;
+  if (uri.empty() && !arguments.no_loop) uri = device_for(recording, options.axis);
+  std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
+  if (checks) {
+    checks->place(recording, options.axis, *options.contact);
+    connect(*checks, options.walk);
+  }
+  LawChoice choice = choose_law(recording, options, stop);
+  if (checks && !checks->placed_in_words().empty()) choice.warnings.push_back(checks->placed_in_words());
+  if (checks && !checks->simulated()) {
+    choice.warnings.emplace_back(
+        "on a real device the closed loop is judged by its deadlines alone, and stability by what is known "
+        "of "
+        "its mass and friction");
+  }
+  finish(arguments, context, choice,
+         {{"name", file.stem().string()},
+          {"recording", file.string()},
+          {"uuid", recording.header.uuid},
+          {"axis", recording.axes[options.axis].name},
+          {"device", checks ? nlohmann::ordered_json(checks->device_uri()) : nullptr}},
+         file);
+}
+
+void choose_for_blade(const Arguments& arguments, Context& context, const Scene& scene,
+                      const std::atomic<bool>& stop) {
+  FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
+  const std::string uri = arguments.loop.device_uri.empty() ? device_of(scene) : arguments.loop.device_uri;
+  const std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
+  if (checks) connect(*checks, options.walk);
+  LawChoice choice = choose_fidelity(scene, options, stop);
+  finish(arguments, context, choice,
+         {{"name", scene.name},
+          {"scene", arguments.scene},
+          {"device", checks ? nlohmann::ordered_json(uri) : nullptr}},
+         {});
+}
+
+void choose_for_scene(const Arguments& arguments, Context& context, const std::atomic<bool>& stop) {
+  const Scene scene = read_scene(arguments.scene);
+  if (scene.tissue.law.is_spatial()) return choose_for_blade(arguments, context, scene, stop);
+  if (arguments.output.empty())
+    throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
+  const fs::path file = fs::path(arguments.output) / "cut.h5";
+  refuse_to_replace(file, arguments.force);
+  fs::create_directories(file.parent_path());
+  const SceneCut cut{.device_uri = arguments.loop.device_uri,
+                     .seconds = arguments.record_s.value_or(0.0),
+                     .seed = context.seed};
+  const schema::Recording recording = record_scene(scene, cut, file, stop);
+  say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.string(), scene.name,
+                  recording.time.empty() ? 0.0 : recording.time.back(), recording.header.device_uri));
+  choose_for_recording(arguments, context, recording, file, stop);
+}
+
+void run_choose(const Arguments& arguments, Context& context) {
+  if (arguments.recording.empty() == arguments.scene.empty())
+    throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
+  if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
+  const StopOnSignal signals;
+  const std::string& name = arguments.scene.empty() ? arguments.recording : arguments.scene;
+  if (!arguments.scene.empty()) return choose_for_scene(arguments, context, signals.requested());
+  const schema::Recording recording = schema::read_recording(name);
+  try {
+    choose_for_recording(arguments, context, recording, name, signals.requested());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    throw std::invalid_argument(what.starts_with(name) ? what : name + ": " + what);
+  }
+}
+
+}  // namespace
+
+void add_choose(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      app, context, "choose", "The simplest law that serves: within the JND, in time and stable",
+      "kerf choose cut.h5 -o choice\n"
+      "  kerf choose punch.h5 --device sim:scissors?grip=300 --most-segments 7 -o choice\n"
+      "  kerf choose --scene examples/scenes/palpation.scene.toml -o choice\n\n"
+      "Fits every law that fits the axis, walks from the fewest parameters and the cheapest tick up,\n"
+      "and takes the first whose error on held-out cycles is within the force JND, that holds its\n"
+      "deadlines in closed loop with the device, and that is stable there. Segment a recording of\n"
+      "cycles first. Exit status 1 if no law serves. docs/choosing.md says more.",
+      [arguments, &context] { run_choose(*arguments, context); });
+  verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
+  verb.add_option("--scene", arguments->scene, "Make a recording of this scene first, in virtual time");
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder for choose.json, choose.csv, choose.html and the law file");
+  verb.add_option("--axis", arguments->axis, "Axis (default: that of the cycles, or the first)");
+  verb.add_option("--contact", arguments->contact,
+                  "Position where the penetration is zero, in m or rad (default: from the recording)");
+  verb.add_option("--direction", arguments->direction, "Way into the tissue (default: from the recording)")
+      .one_of({"increasing", "decreasing"});
+  verb.add_option("--device", arguments->loop.device_uri,
+                  "Device for the closed loop (default: that of the recording if it was simulated, else the "
+                  "first simulated one with such an axis)");
+  verb.add_option("--seconds", arguments->loop.seconds, "Duration of a closed loop by the wall clock [s]")
+      .within(0.1, 3600.0)
+      .with_default();
+  verb.add_option("--rate", arguments->loop.rate_hz, "Rate of the loop [Hz]")
+      .within(100.0, 10000.0)
+      .with_default();
+  verb.add_option("--margin", arguments->loop.margin,
+                  "Share of the period that 99.9 % of the ticks may compute for")
+      .within(0.001, 0.5)
+      .with_default();
+  verb.add_flag("--no-loop", arguments->no_loop, "No closed loop: judge by held-out data alone");
+  verb.add_option("--most-segments", arguments->choose.candidates.most_segments,
+                  "Most segments of the piecewise law")
+      .within(1, 16)
+      .with_default();
+  verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by block of time")
+      .within(2, 100)
+      .with_default();
+  verb.add_option("--weber", arguments->choose.fit.jnd.weber_fraction, "Weber fraction of the force JND")
+      .within(0.0, 1.0)
+      .with_default();
+  verb.add_option("--threshold", arguments->choose.fit.jnd.threshold_n, "Smallest force JND [N]")
+      .positive()
+      .with_default();
+  verb.add_option("--record-seconds", arguments->record_s,
+                  "How long a scene is cut (default: as it says) [s]")
+      .within(1.0, 600.0);
+  verb.add_option("--grip", arguments->loop.grip,
+                  "Hand that presses a law and holds: stability is judged in it")
+      .one_of({"light", "firm", "arm"})
+      .with_default();
+  verb.add_flag("--force", arguments->force, "Replace an earlier choice");
+}
+
+}  // namespace kerf::bench

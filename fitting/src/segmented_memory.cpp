@@ -1,0 +1,36 @@
+#include "segmented_memory.h"
+
+#include <algorithm>
+
+#include "kerf/fitting/fit.h"
+
+namespace kerf::fitting {
+
+SegmentedMemory::Entry::Entry(const Curve& points)
+    : position(points.position.begin(), points.position.end()),
+      force(points.force.begin(), points.force.end()),
+      weight(points.weight.begin(), points.weight.end()),
+      branch(points.branch.begin(), points.branch.end()) {}
+
+bool SegmentedMemory::Entry::is_of(const Curve& points) const {
+  return std::ranges::equal(weight, points.weight) && std::ranges::equal(branch, points.branch) &&
+         std::ranges::equal(force, points.force) && std::ranges::equal(position, points.position);
+}
+
+SegmentedMemory::Entry& SegmentedMemory::entry_of(const Curve& points) {
+  const std::scoped_lock lock(mutex_);
+  const auto found = std::ranges::find_if(entries_, [&](const Entry& one) { return one.is_of(points); });
+  return found != entries_.end() ? *found : entries_.emplace_back(points);
+}
+
+std::vector<SegmentedCurve> SegmentedMemory::curves(const Curve& points) {
+  Entry& entry = entry_of(points);
+  std::call_once(entry.once, [&] { entry.curves = fit_segments(points, {.most_segments = most_segments_}); });
+  return entry.curves;
+}
+
+std::shared_ptr<SegmentedMemory> remember_segments(std::size_t most_segments) {
+  return std::make_shared<SegmentedMemory>(most_segments);
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,107 @@
+#include "choose/loop_checks.h"
+
+#include <array>
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "known_cuts.h"
+#include "known_laws.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+
+const std::atomic<bool> go_on{false};
+const models::Contact at_30_degrees{.position = 0.52, .direction = -1.0};
+
+/// A Kelvin law between the blades of the simulated scissors.
+LawFile kelvin(double stiffness_n_per_rad) {
+  const std::array values{stiffness_n_per_rad, stiffness_n_per_rad, 0.2 * stiffness_n_per_rad};
+  return {.law = models::Law::make("kelvin", values),
+          .contact = at_30_degrees,
+          .axis = "theta",
+          .position_unit = "rad",
+          .force_unit = "N"};
+}
+
+/// Where scissors that close were recorded, up to a depth.
+schema::Recording recorded(double contact, double depth) {
+  schema::Recording recording = test::cut_of(test::known_kelvin(), {.seconds = 2.0, .depth = depth / 1.2});
+  for (double& position : recording.position) position = contact - position;
+  return recording;
+}
+
+LoopChecks checks_on(const std::string& uri, double deepest, LoopCheckOptions options = {}) {
+  options.device_uri = uri;
+  LoopChecks checks(std::move(options), go_on);
+  checks.place(recorded(at_30_degrees.position, deepest), 0, at_30_degrees);
+  return checks;
+}
+
+TEST(DeviceFor, IsTheSimulatedOneOrTheFirstWithSuchAnAxis) {
+  schema::Recording recording = recorded(0.5, 0.3);
+  EXPECT_EQ(device_for(recording, 0), "sim:scissors");
+  recording.header.device_uri = "sim:scissors?seed=4";
+  EXPECT_EQ(device_for(recording, 0), "sim:scissors?seed=4");
+  recording.header.device_uri = "falcon:0";
+  recording.axes[0].position_unit = "m";
+  EXPECT_EQ(device_for(recording, 0), "sim:scissors") << "whose x_s is a length";
+  recording.axes[0].force_unit = "K";
+  EXPECT_THROW((void)device_for(recording, 0), std::invalid_argument);
+}
+
+TEST(LoopChecks, FindASoftTissueStable) {
+  const LoopChecks checks = checks_on("sim:scissors?noise=off", 0.4);
+  EXPECT_EQ(checks.instability(kelvin(5.0)), std::nullopt);
+  EXPECT_EQ(checks.placed_in_words(), "");
+}
+
+TEST(LoopChecks, FindAWallThatIsTooStiffUnstable) {
+  const LoopChecks checks = checks_on("sim:scissors?noise=off", 0.02);
+  const auto why = checks.instability(kelvin(3e4));
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("on sim:scissors"));
+}
+
+TEST(LoopChecks, FindALawThatGivesEnergyUnstable) {
+  LawFile law = kelvin(5.0);
+  law.law = models::Law::make("exponential", std::array{0.2, 0.5, -0.1}, {{"thickness", 0.1}});
+  const auto why = checks_on("sim:scissors?noise=off", 0.4).instability(law);
+  ASSERT_TRUE(why);
+  EXPECT_THAT(*why, HasSubstr("gives energy to the hand again and again"));
+}
+
+TEST(LoopChecks, PlaceALawWhereTheHandMeetsIt) {
+  LoopChecks checks({.device_uri = "sim:scissors"}, go_on);
+  const models::Contact far_away{.position = 2.0, .direction = -1.0};
+  checks.place(recorded(2.0, 0.3), 0, far_away);
+  EXPECT_THAT(checks.placed_in_words(), HasSubstr("of theta"));
+}
+
+TEST(LoopChecks, RefuseADeviceWithoutSuchAnAxis) {
+  LoopChecks checks({.device_uri = "sim:premium"}, go_on);
+  EXPECT_THROW(checks.place(recorded(0.5, 0.3), 0, at_30_degrees), std::invalid_argument);
+  EXPECT_THROW(LoopChecks({.device_uri = "sim:spoon"}, go_on), drivers::DeviceError);
+}
+
+TEST(LoopChecks, SayWhatALawTookOfItsDeadlines) {
+  const Deadline deadline = checks_on("sim:scissors", 0.4, {.seconds = 0.3}).deadline(kelvin(5.0));
+  EXPECT_EQ(deadline.ticks, 300U);
+  EXPECT_GT(deadline.p999_us, 0.0);
+  EXPECT_TRUE(deadline.held || !deadline.why.empty());
+}
+
+TEST(LoopChecks, HoldALawToTheMarginThatIsAskedFor) {
+  const Deadline deadline =
+      checks_on("sim:scissors", 0.4, {.seconds = 0.3, .margin = 1e-6}).deadline(kelvin(5.0));
+  EXPECT_FALSE(deadline.held);
+  EXPECT_FALSE(deadline.why.empty());
+}
+
+}  // namespace
+}  // namespace kerf::bench
