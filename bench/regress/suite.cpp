@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -27,6 +26,14 @@ std::vector<std::string_view> with_settings(Names... names) {
   std::vector<std::string_view> all{names...};
   all.insert(all.end(), settings.begin(), settings.end());
   return all;
+}
+
+/// The names of axes or of cases. Clang 14 does not take the views of GCC's library.
+template <typename Named>
+std::string names_in(const std::vector<Named>& all) {
+  std::string text;
+  for (const Named& one : all) text += (text.empty() ? "" : ", ") + one.name;
+  return text;
 }
 
 /// A bare number within bounds.
@@ -81,8 +88,7 @@ AxisMotion read_motion(const Place& place, const toml::table& table, const Regre
   const std::string name = place.text(table, "axis", axes.front().name);
   const auto axis = std::ranges::find(axes, name, &models::LawAxis::name);
   if (axis == axes.end()) {
-    place.refuse(*table.get("axis"), "'axis' is \"{}\", and the law has {}", name,
-                 fmt::join(axes | std::views::transform(&models::LawAxis::name), ", "));
+    place.refuse(*table.get("axis"), "'axis' is \"{}\", and the law has {}", name, names_in(axes));
   }
   const auto position = [&](std::string_view key) {
     return read_number(place, table, {.key = key, .unit = axis->position_unit, .required = true});
@@ -233,8 +239,7 @@ Suite only(const Suite& suite, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (known(name)) continue;
     throw std::invalid_argument(
-        fmt::format("{} has no case '{}'; it has {}", suite.file.string(), name,
-                    fmt::join(suite.cases | std::views::transform(&RegressionCase::name), ", ")));
+        fmt::format("{} has no case '{}'; it has {}", suite.file.string(), name, names_in(suite.cases)));
   }
   Suite some = suite;
   std::erase_if(some.cases, [&](const RegressionCase& one) { return !std::ranges::count(names, one.name); });
