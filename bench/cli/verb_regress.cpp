@@ -35,7 +35,7 @@ void say_case(const CaseOutcome& one) {
                                                 one.stored.channels[worst->channel].unit)
                                   : "none";
   const std::string cost = one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : "";
-  say(fmt::format("  {:24} {:6}  {:>6} ticks  largest difference {:10}  {}", one.about.name,
+  say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
                   one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
   if (!one.note.empty()) say(fmt::format("      {}", one.note));
   if (one.passed()) return;
@@ -104,6 +104,7 @@ void update_forces(const Arguments& arguments, const Suite& suite, Context& cont
   context.result = {{"suite", suite.file.string()}, {"stored", suite.stored.string()}, {"written", false}};
   context.result["changes"] = nlohmann::ordered_json::array();
   for (const StoredChange& one : changes) {
+    if (!one.asked) continue;
     context.result["changes"].push_back(
         {{"name", one.name}, {"change", name_of(one.kind)}, {"what", one.what}, {"why", one.why}});
     say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what, one.why.empty() ? "" : "; ",

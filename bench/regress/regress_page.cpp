@@ -63,7 +63,7 @@ std::string context_section(const CaseOutcome& outcome) {
 
 std::string summary_table(const SuiteOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "ticks that differ",
-                                              "largest difference", "JND", "tick cost", "stored"}};
+                                              "worst difference", "JND", "tick cost", "stored"}};
   for (const CaseOutcome& one : outcome.cases) {
     const auto& worst = one.comparison.worst;
     rows.push_back({one.about.name, std::string(one.about.law.law.model()),

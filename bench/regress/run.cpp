@@ -177,15 +177,16 @@ std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& op
     if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) > 0) {
       changes.push_back(change_of(one, before, options.tick_costs));
     } else if (before != nullptr) {
-      changes.push_back({.name = one.name, .what = "not asked for", .now = *before});
+      changes.push_back({.name = one.name, .asked = false, .now = *before});
     }
   }
   for (const std::string& name : dropped_from(suite, stored)) {
-    const bool stays = !options.only.empty();
+    const bool asked = options.only.empty();
     changes.push_back({.name = name,
-                       .kind = stays ? ChangeKind::unchanged : ChangeKind::removed,
-                       .what = stays ? "not asked for" : "its forces are removed",
+                       .kind = asked ? ChangeKind::removed : ChangeKind::unchanged,
+                       .what = "its forces are removed",
                        .why = "the suite has no such case any more",
+                       .asked = asked,
                        .now = *find(stored, name)});
   }
   return changes;

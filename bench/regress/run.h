@@ -53,6 +53,7 @@ struct StoredChange {
   ChangeKind kind = ChangeKind::unchanged;
   std::string what;          ///< by how much
   std::string why;           ///< what is behind it
+  bool asked = true;         ///< one of the cases that were named
   schema::StoredForces now;  ///< as it would stand in the file, without the reason
 };
 
