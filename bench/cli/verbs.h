@@ -18,6 +18,7 @@ void add_info(CLI::App& app, Context& context);
 void add_laws(CLI::App& app, Context& context);
 void add_prepare(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);
+void add_regress(CLI::App& app, Context& context);
 void add_repair(CLI::App& app, Context& context);
 void add_replay(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);

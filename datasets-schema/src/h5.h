@@ -134,6 +134,7 @@ struct DatasetOptions {
   Extent extent;
   hsize_t chunk_rows = 1;
   const void* fill = nullptr;  ///< value of rows that never reached the file
+  bool compressed = false;     ///< shuffle and deflate, without loss
 };
 [[nodiscard]] Handle create_dataset(hid_t parent, const std::string& path, hid_t type,
                                     const DatasetOptions& options);

@@ -1,0 +1,160 @@
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "regress/context.h"
+#include "regress/junit.h"
+#include "regress/regress_page.h"
+#include "regress/run.h"
+
+namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string action;
+  std::string suite;
+  SuiteOptions options;
+  std::string junit;
+  std::string output;
+  std::string reason;
+  bool no_cost = false;
+  bool yes = false;
+};
+
+void say_case(const PinnedOutcome& one) {
+  const auto& worst = one.comparison.worst;
+  const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
+                                                one.stored.channels[worst->channel].unit)
+                                  : "none";
+  const std::string cost = one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : "";
+  say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
+                  one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
+  if (!one.note.empty()) say(fmt::format("      {}", one.note));
+  if (one.passed()) return;
+  for (const std::string& message : one.messages) say(fmt::format("      {}", message));
+  say(fmt::format("      {}", one.why));
+  std::string table = context_table(one);
+  if (!table.empty()) table.pop_back();
+  if (!table.empty()) say(table);
+}
+
+void refuse(bool given, std::string_view option, std::string_view action) {
+  if (given) throw std::invalid_argument(fmt::format("{} is for 'kerf regress {}'", option, action));
+}
+
+void run_cases(const Arguments& arguments, const Suite& suite, Context& context) {
+  refuse(!arguments.reason.empty(), "--reason", "update");
+  refuse(arguments.yes, "--yes", "update");
+  const SuiteOutcome outcome = run_suite(suite, arguments.options);
+  context.result = outcome_as_json(suite, outcome);
+  for (const PinnedOutcome& one : outcome.cases) say_case(one);
+  for (const std::string& name : outcome.dropped) {
+    say(fmt::format("  {:24} FAILED", name));
+    say("      its forces are stored, and the suite has no such case any more; 'kerf regress update' removes "
+        "them");
+  }
+  const std::size_t all = outcome.cases.size() + outcome.dropped.size();
+  say(outcome.failed() == 0
+          ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
+          : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
+  if (!arguments.junit.empty()) write_whole_file(arguments.junit, junit_xml(suite, outcome));
+  if (!arguments.output.empty()) {
+    write_regress_page(suite, outcome, arguments.output);
+    say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
+  }
+  if (outcome.failed() > 0) context.exit = Exit::check_failed;
+}
+
+std::string_view name_of(ChangeKind kind) {
+  switch (kind) {
+    case ChangeKind::added:
+      return "new";
+    case ChangeKind::changed:
+      return "changes";
+    case ChangeKind::removed:
+      return "goes";
+    case ChangeKind::unchanged:
+      break;
+  }
+  return "stays";
+}
+
+bool confirmed(bool yes) {
+  if (yes) return true;
+  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) return false;
+  fmt::print(stderr, "Store this? [y/N] ");
+  std::string answer;
+  return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
+}
+
+void update_forces(const Arguments& arguments, const Suite& suite, Context& context) {
+  refuse(!arguments.junit.empty(), "--junit", "run");
+  refuse(!arguments.output.empty(), "-o", "run");
+  if (arguments.reason.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw std::invalid_argument("say why the forces change: --reason WHY");
+  const auto changes = plan_update(suite, arguments.options);
+  context.result = {{"suite", suite.file.string()}, {"stored", suite.stored.string()}, {"written", false}};
+  context.result["changes"] = nlohmann::ordered_json::array();
+  for (const StoredChange& one : changes) {
+    if (!one.asked) continue;
+    context.result["changes"].push_back(
+        {{"name", one.name}, {"change", name_of(one.kind)}, {"what", one.what}, {"why", one.why}});
+    say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what, one.why.empty() ? "" : "; ",
+                    one.why));
+  }
+  if (!changes_anything(changes)) {
+    say(fmt::format("{} stays as it is", suite.stored.string()));
+    return;
+  }
+  if (!confirmed(arguments.yes))
+    throw std::invalid_argument(
+        fmt::format("{} was not touched; --yes stores what is shown", suite.stored.string()));
+  write_update(suite, changes, arguments.reason);
+  context.result["written"] = true;
+  say(fmt::format("{} is written, {:.1f} kB", suite.stored.string(),
+                  1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
+}
+
+void run_regress(Arguments& arguments, Context& context) {
+  arguments.options.tick_costs = !arguments.no_cost;
+  const Suite suite = read_suite(arguments.suite);
+  if (arguments.action == "run") {
+    run_cases(arguments, suite, context);
+  } else {
+    update_forces(arguments, suite, context);
+  }
+}
+
+}  // namespace
+
+void add_regress(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb =
+      add_verb(app, context, "regress", "Compares rendered forces with stored ones, tick by tick",
+               "kerf regress update suite.toml --reason 'first forces' --yes\n"
+               "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
+               "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
+               "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
+               "not as it was. 'update' says what would change and why, and asks before it writes.\n"
+               "docs/regress.md says more.",
+               [arguments, &context] { run_regress(*arguments, context); });
+  verb.add_option("ACTION", arguments->action, "run or update").required().one_of({"run", "update"});
+  verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
+  verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();
+  verb.add_option("--junit", arguments->junit, "Write the results as JUnit XML");
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder for regress.html, regress.json and pictures of what differs");
+  verb.add_flag("--no-cost", arguments->no_cost, "Do not measure what a tick costs");
+  verb.add_option("--reason", arguments->reason, "Why the forces change; kept in the file");
+  verb.add_flag("--yes", arguments->yes, "Store what changes without asking");
+}
+
+}  // namespace kerf::bench

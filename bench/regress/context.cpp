@@ -1,0 +1,123 @@
+#include "regress/context.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json number(const std::optional<double>& value) { return value ? number(*value) : json(nullptr); }
+
+json difference_as_json(const PinnedOutcome& outcome, const ForceDifference& worst) {
+  const schema::ForceChannel& channel = outcome.stored.channels[worst.channel];
+  json result{{"tick", worst.tick},
+              {"time_s", outcome.path.time_s[worst.tick]},
+              {"channel", channel.name},
+              {"unit", channel.unit},
+              {"expected", number(worst.expected)},
+              {"got", number(worst.got)},
+              {"allowed", number(worst.allowed)},
+              {"jnds", number(worst.jnds)},
+              {"context", json::array()}};
+  for (const ContextRow& row : context_of(outcome)) {
+    result["context"].push_back({{"tick", row.tick},
+                                 {"time_s", number(row.time_s)},
+                                 {"position", number(row.position)},
+                                 {"velocity", number(row.velocity)},
+                                 {"expected", number(row.expected)},
+                                 {"got", number(row.got)}});
+  }
+  return result;
+}
+
+json case_as_json(const PinnedOutcome& outcome) {
+  json channels = json::array();
+  for (const ChannelComparison& one : outcome.comparison.channels) {
+    channels.push_back({{"name", one.channel.name},
+                        {"unit", one.channel.unit},
+                        {"outside", one.outside},
+                        {"largest_difference", number(one.largest_difference)},
+                        {"largest_jnds", number(one.largest_jnds)},
+                        {"largest_expected", number(one.largest_expected)}});
+  }
+  return {{"name", outcome.about.name},
+          {"model", outcome.about.law.law.model()},
+          {"passed", outcome.passed()},
+          {"messages", outcome.messages},
+          {"why", outcome.why},
+          {"note", outcome.note},
+          {"samples", outcome.comparison.got_rows},
+          {"stored_samples", outcome.comparison.expected_rows},
+          {"differing", outcome.comparison.differing},
+          {"outside", outcome.comparison.outside},
+          {"channels", channels},
+          {"worst",
+           outcome.comparison.worst ? difference_as_json(outcome, *outcome.comparison.worst) : json(nullptr)},
+          {"tick_cost", number(outcome.tick_cost)},
+          {"stored_tick_cost", number(outcome.stored.tick_cost)},
+          {"seconds", outcome.seconds}};
+}
+
+std::string cell(double value) { return std::isnan(value) ? "-" : fmt::format("{:.9g}", value); }
+
+}  // namespace
+
+std::vector<ContextRow> context_of(const PinnedOutcome& outcome, std::size_t ticks) {
+  std::vector<ContextRow> rows;
+  if (!outcome.comparison.worst) return rows;
+  const ForceDifference& worst = *outcome.comparison.worst;
+  const std::size_t columns = outcome.stored.channels.size();
+  const std::size_t end =
+      std::min(worst.tick + ticks + 1, std::max(outcome.stored.rows(), outcome.got.rows()));
+  for (std::size_t tick = worst.tick - std::min(worst.tick, ticks); tick < end; ++tick) {
+    ContextRow row{.tick = tick};
+    if (tick < outcome.path.ticks()) {
+      row.time_s = outcome.path.time_s[tick];
+      row.position = outcome.path.position[tick][worst.channel];
+      row.velocity = outcome.path.velocity[tick][worst.channel];
+    }
+    if (tick < outcome.stored.rows()) row.expected = outcome.stored.force[tick * columns + worst.channel];
+    if (tick < outcome.got.rows()) row.got = outcome.got.force[tick * columns + worst.channel];
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string context_table(const PinnedOutcome& outcome) {
+  const auto rows = context_of(outcome);
+  if (rows.empty()) return {};
+  const ForceDifference& worst = *outcome.comparison.worst;
+  const models::LawAxis& axis = outcome.path.axes[worst.channel];
+  const auto line = [](const auto&... cells) {
+    std::string text;
+    ((text += fmt::format("{:>18}", cells)), ...);
+    return text + '\n';
+  };
+  std::string table =
+      fmt::format("  {:>6}", "tick") +
+      line("time [s]", fmt::format("{} [{}]", axis.name, axis.position_unit),
+           fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),
+           fmt::format("got [{}]", axis.force_unit), fmt::format("apart [{}]", axis.force_unit));
+  for (const ContextRow& row : rows) {
+    table += fmt::format("{} {:>6}", row.tick == worst.tick ? ">" : " ", row.tick) +
+             line(cell(row.time_s), cell(row.position), cell(row.velocity), cell(row.expected), cell(row.got),
+                  cell(row.got - row.expected));
+  }
+  return table;
+}
+
+json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome) {
+  json result{{"suite", suite.file.string()},    {"name", suite.name},
+              {"stored", suite.stored.string()}, {"passed", outcome.failed() == 0},
+              {"failed", outcome.failed()},      {"dropped", outcome.dropped},
+              {"seconds", outcome.seconds},      {"cases", json::array()}};
+  for (const PinnedOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
+  return result;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <kerf/schema/regression.h>
+
+#include "regress/path.h"
+
+namespace kerf::bench {
+
+/// The forces of a law along a path, as it gives them itself: resisting for a scalar law, those of the axes
+/// for a spatial one.
+struct RenderedForces {
+  std::vector<schema::ForceChannel> channels;
+  std::vector<double> force;  ///< N x D, row-major
+  std::uint64_t faults = 0;
+  std::optional<std::size_t> first_fault;  ///< its tick
+
+  [[nodiscard]] std::size_t rows() const noexcept {
+    return channels.empty() ? 0 : force.size() / channels.size();
+  }
+};
+
+[[nodiscard]] RenderedForces render_forces(const models::Law& law, const models::Contact& contact,
+                                           const RegressionPath& path);
+
+/// What a tick of a law costs, in rounds of a calibration loop: a chain of multiplications, divisions and
+/// square roots that a processor cannot shorten. Both are measured by turns, so that what slows the machine
+/// slows both; the median of the ratios. @throws std::invalid_argument for a path without a tick.
+[[nodiscard]] double tick_cost(const models::Law& law, const models::Contact& contact,
+                               const RegressionPath& path);
+
+/// What a tick's cost depends on beside the code: "optimised" or "not optimised".
+[[nodiscard]] std::string build_kind();
+
+}  // namespace kerf::bench

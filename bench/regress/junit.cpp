@@ -1,0 +1,81 @@
+#include "regress/junit.h"
+
+#include <fmt/ranges.h>
+
+#include "regress/context.h"
+#include "report/html.h"
+
+namespace kerf::bench {
+namespace {
+
+/// Bytes of the UTF-8 character at `at`; 0 if there is none, or one that XML forbids.
+std::size_t character_at(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : std::uint8_t{0};
+  };
+  const unsigned char first = byte(at);
+  if (first < 0x80U) return first >= 0x20U || first == '\t' || first == '\n' || first == '\r' ? 1 : 0;
+  const std::size_t length = first >= 0xC2U && first < 0xE0U   ? 2
+                             : first >= 0xE0U && first < 0xF0U ? 3
+                             : first >= 0xF0U && first < 0xF5U ? 4
+                                                               : 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
+  }
+  const bool too_long = (first == 0xE0U && byte(at + 1) < 0xA0U) || (first == 0xF0U && byte(at + 1) < 0x90U);
+  const bool surrogate = first == 0xEDU && byte(at + 1) >= 0xA0U;
+  const bool too_large = first == 0xF4U && byte(at + 1) >= 0x90U;
+  const bool no_character = first == 0xEFU && byte(at + 1) == 0xBFU && byte(at + 2) >= 0xBEU;
+  return too_long || surrogate || too_large || no_character ? 0 : length;
+}
+
+std::string failure(const std::string& message, const std::string& more) {
+  return fmt::format("    <failure message=\"{}\" type=\"regression\">{}</failure>\n", xml_escaped(message),
+                     xml_escaped(more));
+}
+
+}  // namespace
+
+std::string xml_escaped(const std::string& text) {
+  std::string sound;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_at(text, at);
+    if (length == 0) {
+      sound += '?';
+    } else {
+      sound.append(text, at, length);
+    }
+    at += std::max<std::size_t>(length, 1);
+  }
+  return escaped(sound);
+}
+
+std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome) {
+  const std::string name = xml_escaped(suite.name);
+  const std::size_t tests = outcome.cases.size() + outcome.dropped.size();
+  const std::string counts =
+      fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.6f}\"", name, tests,
+                  outcome.failed(), outcome.seconds);
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n", counts, counts);
+  for (const PinnedOutcome& one : outcome.cases) {
+    xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"", name,
+                       xml_escaped(one.about.name), one.seconds);
+    if (one.passed()) {
+      xml += "/>\n";
+      continue;
+    }
+    xml += ">\n";
+    xml += failure(one.messages.front(),
+                   fmt::format("{}\n{}\n{}", fmt::join(one.messages, "\n"), one.why, context_table(one)));
+    xml += "  </testcase>\n";
+  }
+  for (const std::string& dropped : outcome.dropped) {
+    xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"0\">\n", name, xml_escaped(dropped));
+    xml += failure("its forces are stored, and the suite has no such case any more", "");
+    xml += "  </testcase>\n";
+  }
+  return xml + "  </testsuite>\n</testsuites>\n";
+}
+
+}  // namespace kerf::bench

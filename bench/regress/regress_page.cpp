@@ -1,0 +1,137 @@
+#include "regress/regress_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "files/whole_file.h"
+#include "regress/context.h"
+#include "report/html.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t ticks_around = 40;
+
+Chart chart_of(const PinnedOutcome& outcome, std::size_t begin, std::size_t end, const std::string& title) {
+  const ForceDifference& worst = *outcome.comparison.worst;
+  const std::size_t columns = outcome.stored.channels.size();
+  const bool close = end - begin <= 3 * ticks_around;
+  const Mark mark = close ? Mark::steps : Mark::line;
+  Curve expected{.label = "expected", .colour = Colour::blue, .mark = mark, .width = 3.0};
+  Curve got{.label = "got", .colour = Colour::vermillion, .mark = mark, .width = 1.5};
+  const double period_s = outcome.path.period_s.front();
+  const auto time_of = [&](std::size_t tick) {
+    return tick < outcome.path.ticks() ? outcome.path.time_s[tick] : static_cast<double>(tick) * period_s;
+  };
+  for (std::size_t tick = begin; tick < end; ++tick) {
+    const auto add = [&](Curve& curve, const std::vector<double>& force) {
+      if ((tick + 1) * columns > force.size()) return;
+      curve.x.push_back(time_of(tick));
+      curve.y.push_back(force[tick * columns + worst.channel]);
+    };
+    add(expected, outcome.stored.force);
+    add(got, outcome.got.force);
+  }
+  const schema::ForceChannel& channel = outcome.stored.channels[worst.channel];
+  return {.title = title,
+          .x_label = "time [s]",
+          .y_label = fmt::format("force of {} [{}]", channel.name, channel.unit),
+          .curves = {decimated(expected), decimated(got)},
+          .vertical = {{.at = time_of(worst.tick),
+                        .label = fmt::format("tick {}", worst.tick),
+                        .label_after = 2 * (worst.tick - begin) < end - begin}}};
+}
+
+std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
+
+std::string context_section(const PinnedOutcome& outcome) {
+  const auto context = context_of(outcome);
+  if (context.empty()) return {};
+  const models::LawAxis& axis = outcome.path.axes[outcome.comparison.worst->channel];
+  std::vector<std::vector<std::string>> rows{
+      {"tick", "time [s]", fmt::format("{} [{}]", axis.name, axis.position_unit),
+       fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),
+       fmt::format("got [{}]", axis.force_unit), fmt::format("apart [{}]", axis.force_unit)}};
+  for (const ContextRow& row : context) {
+    rows.push_back({fmt::format("{}", row.tick), cell(row.time_s), cell(row.position), cell(row.velocity),
+                    cell(row.expected), cell(row.got), cell(row.got - row.expected)});
+  }
+  return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
+}
+
+std::string summary_table(const SuiteOutcome& outcome) {
+  std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "ticks that differ",
+                                              "worst difference", "JND", "tick cost", "stored"}};
+  for (const PinnedOutcome& one : outcome.cases) {
+    const auto& worst = one.comparison.worst;
+    rows.push_back({one.about.name, std::string(one.about.law.law.model()),
+                    fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
+                    fmt::format("{}", one.comparison.differing),
+                    worst ? fmt::format("{:.3g} {}", std::abs(worst->difference()),
+                                        one.stored.channels[worst->channel].unit)
+                          : "0",
+                    worst ? fmt::format("{:.2g}", worst->jnds) : "0",
+                    one.tick_cost ? fmt::format("{:.3g}", *one.tick_cost) : "",
+                    fmt::format("{}: {}", one.stored.date.substr(0, 10), one.stored.reason)});
+  }
+  for (const std::string& name : outcome.dropped)
+    rows.push_back({name, "", "", "FAILED: no longer in the suite", "", "", "", "", ""});
+  return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
+}
+
+std::string case_section(const PinnedOutcome& outcome, const std::vector<std::string>& pictures) {
+  std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
+  for (const std::string& message : outcome.messages)
+    body += fmt::format("<p class=\"answer bad\">{}.</p>\n", escaped(message));
+  body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));
+  for (const std::string& picture : pictures) body += "<figure>" + picture + "</figure>\n";
+  return body + context_section(outcome);
+}
+
+}  // namespace
+
+std::vector<Figure> figures_of(const PinnedOutcome& outcome) {
+  if (!outcome.comparison.worst) return {};
+  const std::size_t tick = outcome.comparison.worst->tick;
+  const std::size_t rows = std::max(outcome.stored.rows(), outcome.got.rows());
+  const std::string& name = outcome.about.name;
+  return {{.name = name + "-worst",
+           .chart = chart_of(outcome, tick - std::min(tick, ticks_around),
+                             std::min(rows, tick + ticks_around + 1), name + ": around the worst tick")},
+          {.name = name + "-whole", .chart = chart_of(outcome, 0, rows, name + ": the whole trajectory")}};
+}
+
+void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
+                        const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  write_whole_file(folder / "regress.json", outcome_as_json(suite, outcome).dump(2) + '\n');
+  std::vector<Figure> figures;
+  for (const PinnedOutcome& one : outcome.cases) {
+    if (one.passed()) continue;
+    for (Figure& figure : figures_of(one)) figures.push_back(std::move(figure));
+  }
+  std::vector<Chart> charts;
+  for (const Figure& figure : figures) charts.push_back(figure.chart);
+  const std::vector<std::string> pictures = charts.empty() ? std::vector<std::string>{} : draw_all(charts);
+  for (std::size_t i = 0; i < figures.size(); ++i)
+    write_whole_file(folder / (figures[i].name + ".svg"), pictures[i]);
+  const std::size_t failed = outcome.failed();
+  const std::size_t all = outcome.cases.size() + outcome.dropped.size();
+  std::string body = fmt::format("<h1>{}</h1>\n<p class=\"answer{}\">{}</p>\n", escaped(suite.name),
+                                 failed > 0 ? " bad" : "",
+                                 failed > 0 ? fmt::format("{} of {} cases did not pass.", failed, all)
+                                            : fmt::format("All {} cases passed.", all));
+  body += summary_table(outcome);
+  std::size_t next = 0;
+  for (const PinnedOutcome& one : outcome.cases) {
+    if (one.passed()) continue;
+    std::vector<std::string> mine;
+    for (std::size_t i = figures_of(one).size(); i > 0; --i) mine.push_back(pictures[next++]);
+    body += case_section(one, mine);
+  }
+  write_whole_file(folder / "regress.html", html_page(suite.name, body));
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "regress/run.h"
+#include "report/plot.h"
+
+namespace kerf::bench {
+
+/// Expected and got of the worst channel of a case: around its worst tick, and over the whole trajectory.
+/// None if nothing differs.
+[[nodiscard]] std::vector<Figure> figures_of(const PinnedOutcome& outcome);
+
+/// Writes regress.html, regress.json and the pictures of the cases that did not pass into a folder.
+/// @throws std::system_error; std::runtime_error if gnuplot is missing.
+void write_regress_page(const Suite& suite, const SuiteOutcome& outcome, const std::filesystem::path& folder);
+
+}  // namespace kerf::bench

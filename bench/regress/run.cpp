@@ -1,0 +1,218 @@
+#include "regress/run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "recordings/provenance.h"
+
+namespace kerf::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+const schema::StoredForces* find(const std::vector<schema::StoredForces>& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &schema::StoredForces::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::vector<schema::StoredForces> stored_forces(const Suite& suite) {
+  if (!std::filesystem::exists(suite.stored)) return {};
+  return schema::read_regression(suite.stored);
+}
+
+/// Stored forces without a case in the suite.
+std::vector<std::string> dropped_from(const Suite& suite, const std::vector<schema::StoredForces>& stored) {
+  std::vector<std::string> dropped;
+  for (const schema::StoredForces& one : stored) {
+    if (!std::ranges::count(suite.cases, one.name, &RegressionCase::name)) dropped.push_back(one.name);
+  }
+  return dropped;
+}
+
+std::string why_different(const PinnedOutcome& outcome) {
+  const bool law = checksum(outcome.about.law) != outcome.stored.law_sha256;
+  const bool trajectory = checksum(outcome.path) != outcome.stored.trajectory_sha256;
+  const std::string since =
+      fmt::format("since {} ({}: {})", outcome.stored.date, outcome.stored.software, outcome.stored.reason);
+  if (law && trajectory) return fmt::format("the law file and the trajectory have changed {}", since);
+  if (law) return fmt::format("the law file has changed {}", since);
+  if (trajectory) return fmt::format("the trajectory has changed {}", since);
+  return fmt::format("law file and trajectory are as they were; the code or the compiler has changed {}",
+                     since);
+}
+
+void judge_cost(PinnedOutcome& outcome) {
+  if (!outcome.about.tick_cost || !outcome.tick_cost) return;
+  if (!outcome.stored.tick_cost) {
+    outcome.note = "no tick cost is stored; 'kerf regress update' stores one";
+  } else if (outcome.stored.tick_cost_build != build_kind()) {
+    outcome.note = fmt::format("tick cost not compared: stored by a build that was {}, and this one is {}",
+                               outcome.stored.tick_cost_build, build_kind());
+  } else if (*outcome.tick_cost > *outcome.about.tick_cost * *outcome.stored.tick_cost) {
+    outcome.messages.push_back(fmt::format(
+        "a tick costs {:.3g} rounds of the calibration loop where {:.3g} are stored: {:.2g} times "
+        "as much, and {:g} times is allowed",
+        *outcome.tick_cost, *outcome.stored.tick_cost, *outcome.tick_cost / *outcome.stored.tick_cost,
+        *outcome.about.tick_cost));
+  }
+}
+
+PinnedOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
+  const auto begin = Clock::now();
+  PinnedOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
+  outcome.got = render_forces(one.law.law, one.law.contact, outcome.path);
+  outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
+  outcome.messages = outcome.comparison.messages;
+  if (!outcome.comparison.passed) {
+    for (std::string& line : diagnose(stored, outcome.got)) outcome.messages.push_back(std::move(line));
+  }
+  outcome.why = why_different(outcome);
+  if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law.law, one.law.contact, outcome.path);
+  judge_cost(outcome);
+  outcome.seconds = seconds_since(begin);
+  return outcome;
+}
+
+std::string how_different(const ForceComparison& comparison) {
+  if (comparison.expected_rows != comparison.got_rows)
+    return fmt::format("{} samples instead of {}", comparison.got_rows, comparison.expected_rows);
+  if (comparison.channels.empty()) return "other channels";
+  if (comparison.differing == 0) return "the same forces, bit for bit";
+  const auto most = std::ranges::max_element(comparison.channels, {}, &ChannelComparison::largest_jnds);
+  return fmt::format("{} of {} ticks, {} by up to {:.3g} {} ({:.3g} JND)", comparison.differing,
+                     comparison.expected_rows, most->channel.name, most->largest_difference,
+                     most->channel.unit, most->largest_jnds);
+}
+
+/// A case as it is now, measured anew.
+schema::StoredForces stored_now(const RegressionCase& one, const RegressionPath& path,
+                                const RenderedForces& got, std::optional<double> cost) {
+  schema::StoredForces now{.name = one.name,
+                           .model = std::string(one.law.law.model()),
+                           .law_sha256 = checksum(one.law),
+                           .trajectory_sha256 = checksum(path),
+                           .channels = got.channels,
+                           .force = got.force,
+                           .faults = got.faults,
+                           .tick_cost = cost};
+  if (cost) now.tick_cost_build = build_kind();
+  return now;
+}
+
+StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs) {
+  if (before == nullptr) {
+    const RegressionPath path = path_of(one);
+    const RenderedForces got = render_forces(one.law.law, one.law.contact, path);
+    std::optional<double> cost;
+    if (tick_costs && one.tick_cost) cost = tick_cost(one.law.law, one.law.contact, path);
+    return {.name = one.name,
+            .kind = ChangeKind::added,
+            .what = fmt::format("{} ticks of {} channel{}", got.rows(), got.channels.size(),
+                                got.channels.size() == 1 ? "" : "s"),
+            .why = "nothing is stored for it yet",
+            .now = stored_now(one, path, got, cost)};
+  }
+  const PinnedOutcome outcome = run_case(one, *before, tick_costs);
+  StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
+  change.what = how_different(outcome.comparison);
+  const bool same_source =
+      checksum(one.law) == before->law_sha256 && checksum(outcome.path) == before->trajectory_sha256;
+  const bool no_cost_yet = outcome.tick_cost && !before->tick_cost;
+  if (outcome.passed() && same_source && !no_cost_yet) {
+    if (outcome.comparison.differing > 0) change.what += ", within the tolerance: it stays as it is";
+    return change;
+  }
+  change.kind = ChangeKind::changed;
+  change.why = outcome.why;
+  if (outcome.comparison.passed && !outcome.messages.empty()) change.what = outcome.messages.back();
+  if (outcome.passed() && same_source) change.what = "a tick cost is added";
+  std::optional<double> cost = outcome.tick_cost;
+  if (!cost && one.tick_cost) cost = before->tick_cost;
+  change.now = stored_now(one, outcome.path, outcome.got, cost);
+  change.now.history = before->history;
+  if (!change.now.history.empty() && !change.now.history.ends_with('\n')) change.now.history += '\n';
+  change.now.history += fmt::format("{} {}: {}\n", before->date, before->software, before->reason);
+  return change;
+}
+
+}  // namespace
+
+std::size_t SuiteOutcome::failed() const noexcept {
+  return dropped.size() + static_cast<std::size_t>(std::ranges::count_if(
+                              cases, [](const PinnedOutcome& one) { return !one.passed(); }));
+}
+
+SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
+  const auto begin = Clock::now();
+  const Suite chosen = only(suite, options.only);
+  const auto stored = stored_forces(suite);
+  for (const RegressionCase& one : chosen.cases) {
+    if (find(stored, one.name) != nullptr) continue;
+    throw std::invalid_argument(fmt::format(
+        "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
+        suite.stored.string(), one.name, suite.file.string()));
+  }
+  SuiteOutcome outcome;
+  for (const RegressionCase& one : chosen.cases)
+    outcome.cases.push_back(run_case(one, *find(stored, one.name), options.tick_costs));
+  if (options.only.empty()) outcome.dropped = dropped_from(suite, stored);
+  outcome.seconds = seconds_since(begin);
+  return outcome;
+}
+
+std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options) {
+  const auto stored = stored_forces(suite);
+  const Suite chosen = only(suite, options.only);
+  std::vector<StoredChange> changes;
+  for (const RegressionCase& one : suite.cases) {
+    const schema::StoredForces* before = find(stored, one.name);
+    if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) > 0) {
+      changes.push_back(change_of(one, before, options.tick_costs));
+    } else if (before != nullptr) {
+      changes.push_back({.name = one.name, .asked = false, .now = *before});
+    }
+  }
+  for (const std::string& name : dropped_from(suite, stored)) {
+    const bool asked = options.only.empty();
+    changes.push_back({.name = name,
+                       .kind = asked ? ChangeKind::removed : ChangeKind::unchanged,
+                       .what = "its forces are removed",
+                       .why = "the suite has no such case any more",
+                       .asked = asked,
+                       .now = *find(stored, name)});
+  }
+  return changes;
+}
+
+bool changes_anything(const std::vector<StoredChange>& changes) noexcept {
+  return std::ranges::any_of(changes,
+                             [](const StoredChange& one) { return one.kind != ChangeKind::unchanged; });
+}
+
+void write_update(const Suite& suite, const std::vector<StoredChange>& changes, const std::string& reason) {
+  if (reason.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw std::invalid_argument("say why the forces change: --reason WHY");
+  std::string line = reason;
+  std::ranges::replace(line, '\n', ' ');
+  const std::string date = schema::new_header("").created;
+  std::vector<schema::StoredForces> all;
+  for (const StoredChange& change : changes) {
+    if (change.kind == ChangeKind::removed) continue;
+    all.push_back(change.now);
+    if (change.kind == ChangeKind::unchanged) continue;
+    all.back().reason = line;
+    all.back().date = date;
+    all.back().software = software();
+  }
+  schema::write_regression(suite.stored, all);
+}
+
+}  // namespace kerf::bench

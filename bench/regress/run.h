@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <kerf/schema/regression.h>
+
+#include "regress/compare.h"
+#include "regress/path.h"
+#include "regress/suite.h"
+
+namespace kerf::bench {
+
+/// What came of one case.
+struct PinnedOutcome {
+  RegressionCase about;
+  RegressionPath path;
+  RenderedForces got;
+  schema::StoredForces stored;
+  ForceComparison comparison;
+  std::vector<std::string> messages;  ///< why it did not pass, and what the difference looks like
+  std::string why;                    ///< law, trajectory or code: what is not as it was when it was stored
+  std::optional<double> tick_cost;    ///< measured now
+  std::string note;                   ///< what could not be compared
+  double seconds = 0.0;               ///< that it took
+
+  [[nodiscard]] bool passed() const noexcept { return messages.empty(); }
+};
+
+struct SuiteOutcome {
+  std::vector<PinnedOutcome> cases;
+  std::vector<std::string> dropped;  ///< stored, and no longer in the suite
+  double seconds = 0.0;
+
+  [[nodiscard]] std::size_t failed() const noexcept;
+};
+
+struct SuiteOptions {
+  std::vector<std::string> only;  ///< names of cases; empty: all
+  bool tick_costs = true;
+};
+
+/// Renders every case and compares it with its stored forces.
+/// @throws std::invalid_argument if there are none for a case, saying how to store them; as read_suite() and
+/// path_of().
+[[nodiscard]] SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options);
+
+/// What storing a case anew would do.
+enum class ChangeKind { added, changed, unchanged, removed };
+struct StoredChange {
+  std::string name;
+  ChangeKind kind = ChangeKind::unchanged;
+  std::string what;          ///< by how much
+  std::string why;           ///< what is behind it
+  bool asked = true;         ///< one of the cases that were named
+  schema::StoredForces now;  ///< as it would stand in the file, without the reason
+};
+
+/// What would change in the stored forces, case by case. What passes, with the same law and trajectory,
+/// stays as it is, so that the last digits of a compiler do not come and go. @throws as run_suite().
+[[nodiscard]] std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options);
+[[nodiscard]] bool changes_anything(const std::vector<StoredChange>& changes) noexcept;
+
+/// Writes what was planned. @throws std::invalid_argument for an empty reason; std::system_error.
+void write_update(const Suite& suite, const std::vector<StoredChange>& changes, const std::string& reason);
+
+}  // namespace kerf::bench

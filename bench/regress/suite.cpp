@@ -1,0 +1,249 @@
+#include "regress/suite.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/ranges.h>
+
+#include "files/whole_file.h"
+#include "laws/law_toml.h"
+#include "scene/read_trajectory.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double longest_s = 3600.0;
+constexpr std::array<std::string_view, 7> settings{"rate", "seconds", "absolute", "relative",
+                                                   "jnd",  "exact",   "tick_cost"};
+
+template <typename... Names>
+std::vector<std::string_view> with_settings(Names... names) {
+  std::vector<std::string_view> all{names...};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return all;
+}
+
+/// The names of axes or of cases. Clang 14 does not take the views of GCC's library.
+template <typename Named>
+std::string names_in(const std::vector<Named>& all) {
+  std::string text;
+  for (const Named& one : all) text += (text.empty() ? "" : ", ") + one.name;
+  return text;
+}
+
+/// A bare number within bounds.
+double plain(const Place& place, const toml::node& node, std::string_view what, double lower, double upper) {
+  const double value = place.number(node, fmt::format("'{}'", what));
+  if (!(value >= lower && value <= upper))
+    place.refuse(node, "'{}' is {}, expected a number from {:g} to {:g}", what, value, lower, upper);
+  return value;
+}
+
+/// One absolute tolerance: in N, or in N·m.
+void read_absolute(const Place& place, const toml::node& node, Tolerance& tolerance) {
+  const toml::table* table = node.as_table();
+  const bool torque = table != nullptr && place.text(*table, "unit", "").find("m") != std::string::npos &&
+                      place.text(*table, "unit", "") != "mN";
+  const auto values = place.measured(node, "absolute", torque ? "N·m" : "N").values;
+  if (values.size() != 1 || !(values[0] >= 0.0)) place.refuse(node, "'absolute' must be one number, >= 0");
+  (torque ? tolerance.torque_n_m : tolerance.force_n) = values[0];
+}
+
+/// The settings that a table names, over those that it inherits.
+void read_settings(const Place& place, const toml::table& table, RegressionCase& one) {
+  if (table.contains("rate"))
+    one.rate_hz = read_number(place, table, {.key = "rate", .unit = "Hz", .lower = 1.0, .upper = 1e5});
+  if (table.contains("seconds"))
+    one.seconds =
+        read_number(place, table, {.key = "seconds", .unit = "s", .lower = 0.001, .upper = longest_s});
+  const bool inexact = table.contains("absolute") || table.contains("relative") || table.contains("jnd");
+  if (inexact) one.tolerance = {};
+  if (const toml::node* absolute = table.get("absolute")) {
+    if (const toml::array* list = absolute->as_array()) {
+      for (const toml::node& node : *list) read_absolute(place, node, one.tolerance);
+    } else {
+      read_absolute(place, *absolute, one.tolerance);
+    }
+  }
+  if (const toml::node* relative = table.get("relative"))
+    one.tolerance.relative = plain(place, *relative, "relative", 0.0, 1.0);
+  if (const toml::node* jnd = table.get("jnd")) one.tolerance.jnd = plain(place, *jnd, "jnd", 0.0, 100.0);
+  if (const toml::node* exact = table.get("exact")) {
+    one.tolerance.exact = place.flag(table, "exact", false);
+    if (one.tolerance.exact && inexact)
+      place.refuse(*exact, "'exact' leaves no room for a tolerance; leave out either");
+    if (one.tolerance.exact) one.tolerance = {.exact = true};
+  }
+  if (const toml::node* cost = table.get("tick_cost"))
+    one.tick_cost = plain(place, *cost, "tick_cost", 1.1, 1000.0);
+}
+
+ScriptedAxis read_motion(const Place& place, const toml::table& table, const RegressionCase& one) {
+  const auto axes = axes_of(one.law);
+  const std::string name = place.text(table, "axis", axes.front().name);
+  const auto axis = std::ranges::find(axes, name, &models::LawAxis::name);
+  if (axis == axes.end()) {
+    place.refuse(*table.get("axis"), "'axis' is \"{}\", and the law has {}", name, names_in(axes));
+  }
+  const auto position = [&](std::string_view key) {
+    return read_number(place, table, {.key = key, .unit = axis->position_unit, .required = true});
+  };
+  const auto seconds = [&](std::string_view key, double standard, double lower) {
+    return read_number(place, table,
+                       {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = longest_s});
+  };
+  ScriptedAxis motion{.axis = static_cast<std::size_t>(axis - axes.begin()), .script = Rest{}};
+  const std::string kind = place.text(table, "kind", "");
+  if (kind == "rest") {
+    place.allow_only(table, {"kind", "axis", "at"}, "a motion of the kind \"rest\"");
+    motion.script = Rest{.at = position("at")};
+  } else if (kind == "strokes") {
+    place.allow_only(table, {"kind", "axis", "from", "to", "stroke", "pause"}, "a motion of strokes");
+    motion.script = StrokesToAndFro{.from = position("from"),
+                                    .to = position("to"),
+                                    .stroke_s = seconds("stroke", StrokesToAndFro{}.stroke_s, 0.001),
+                                    .pause_s = seconds("pause", StrokesToAndFro{}.pause_s, 0.0)};
+  } else if (kind == "sine") {
+    place.allow_only(table, {"kind", "axis", "centre", "amplitude", "frequency", "phase"},
+                     "a motion of the kind \"sine\"");
+    motion.script = Sine{
+        .centre = position("centre"),
+        .amplitude = position("amplitude"),
+        .frequency_hz = read_number(
+            place, table,
+            {.key = "frequency", .unit = "Hz", .standard = Sine{}.frequency_hz, .lower = 0.0, .upper = 1e4}),
+        .phase_rad = read_number(place, table, {.key = "phase", .unit = "rad"})};
+  } else if (kind == "ramp-and-hold") {
+    place.allow_only(table, {"kind", "axis", "from", "to", "start", "ramp", "hold"},
+                     "a motion of the kind \"ramp-and-hold\"");
+    motion.script = RampAndHold{.from = position("from"),
+                                .to = position("to"),
+                                .start_s = seconds("start", RampAndHold{}.start_s, 0.0),
+                                .ramp_s = seconds("ramp", RampAndHold{}.ramp_s, 0.001),
+                                .hold_s = seconds("hold", RampAndHold{}.hold_s, 0.0)};
+  } else {
+    const toml::node* node = table.get("kind");
+    place.refuse(node != nullptr ? *node : table,
+                 "'kind' is \"{}\", expected \"rest\", \"strokes\", \"sine\" or \"ramp-and-hold\"", kind);
+  }
+  return motion;
+}
+
+void read_motions(const Place& place, const toml::node& node, RegressionCase& one) {
+  if (const toml::table* table = node.as_table()) {
+    one.motion.push_back(read_motion(place, *table, one));
+  } else if (const toml::array* all = node.as_array(); all != nullptr && all->is_homogeneous<toml::table>()) {
+    for (const toml::node& each : *all) {
+      one.motion.push_back(read_motion(place, *each.as_table(), one));
+      const std::size_t axis = one.motion.back().axis;
+      if (std::ranges::count(one.motion, axis, &ScriptedAxis::axis) > 1)
+        place.refuse(each, "axis '{}' has two motions", axes_of(one.law)[axis].name);
+    }
+  } else {
+    place.refuse(node, "expected one [[case.motion]] or more");
+  }
+}
+
+/// A file that the suite names, as it is found from here.
+fs::path file_at(const Place& place, const toml::table& table, std::string_view key, const fs::path& folder) {
+  const fs::path file = folder / place.text(table, key, "");
+  if (!fs::is_regular_file(file)) place.refuse(*table.get(key), "there is no file {}", file.string());
+  return file;
+}
+
+/// Every channel needs something to be held against.
+void require_tolerances(const Place& place, const toml::table& table, const RegressionCase& one) {
+  const Tolerance& given = one.tolerance;
+  if (given.exact || given.relative || given.jnd) return;
+  for (const models::LawAxis& axis : axes_of(one.law)) {
+    if (axis.force_unit == "N·m" ? given.torque_n_m.has_value() : given.force_n.has_value()) continue;
+    place.refuse(table,
+                 "case '{}' has no tolerance for '{}' in {}; give exact = true, relative, jnd or absolute = "
+                 "{{ value = ..., unit = \"{}\" }}",
+                 one.name, axis.name, axis.force_unit, axis.force_unit);
+  }
+}
+
+RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
+                         const RegressionCase& defaults) {
+  const auto keys = with_settings("name", "law", "recording", "scene", "motion");
+  place.allow_only(table, keys, "a [[case]]");
+  RegressionCase one = defaults;
+  for (const char* key : {"name", "law"}) {
+    if (!table.contains(key)) place.refuse(table, "a [[case]] needs '{}'", key);
+  }
+  one.name = place.text(table, "name", "");
+  if (one.name.empty() || one.name.front() == '.' || one.name.find('/') != std::string::npos)
+    place.refuse(*table.get("name"), "'{}' is no name for a case; expected one without '/'", one.name);
+  one.law_file = file_at(place, table, "law", folder);
+  one.law = read_law_file(one.law_file);
+  const int sources = static_cast<int>(table.contains("recording")) +
+                      static_cast<int>(table.contains("scene")) + static_cast<int>(table.contains("motion"));
+  if (sources != 1) {
+    place.refuse(table, "case '{}' needs one trajectory: a recording, a scene or [[case.motion]]; found {}",
+                 one.name, sources);
+  }
+  if (table.contains("recording")) one.recording = file_at(place, table, "recording", folder);
+  if (table.contains("scene")) one.scene = file_at(place, table, "scene", folder);
+  read_settings(place, table, one);
+  if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
+  if (table.contains("rate") && !one.recording.empty())
+    place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");
+  require_tolerances(place, table, one);
+  return one;
+}
+
+}  // namespace
+
+std::vector<models::LawAxis> axes_of(const LawFile& law) {
+  if (law.law.is_spatial()) return law.law.axes();
+  return {{law.axis.empty() ? "position" : law.axis, law.position_unit, law.force_unit}};
+}
+
+Suite read_suite(const fs::path& file) {
+  const Place place(file.string());
+  const toml::table root = parse_toml(read_whole_file(file), file.string());
+  place.allow_only(root, {"name", "defaults", "case"}, "a suite");
+  Suite suite{
+      .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};
+  suite.stored.replace_extension(".h5");
+  if (suite.stored == file) throw std::invalid_argument(file.string() + ": expected a suite, SUITE.toml");
+  RegressionCase defaults{.law = {.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0})}};
+  if (root.contains("defaults")) {
+    const toml::table& table = place.table(root, "defaults");
+    place.allow_only(table, settings, "[defaults]");
+    read_settings(place, table, defaults);
+  }
+  const toml::array* cases = root.get_as<toml::array>("case");
+  if (cases == nullptr || cases->empty() || !cases->is_homogeneous<toml::table>())
+    throw std::invalid_argument(file.string() + ": a suite needs one [[case]] or more");
+  std::set<std::string> names;
+  for (const toml::node& node : *cases) {
+    suite.cases.push_back(read_case(place, *node.as_table(), file.parent_path(), defaults));
+    if (!names.insert(suite.cases.back().name).second)
+      place.refuse(node, "there are two cases named '{}'", suite.cases.back().name);
+  }
+  return suite;
+}
+
+Suite only(const Suite& suite, const std::vector<std::string>& names) {
+  if (names.empty()) return suite;
+  const auto known = [&](const std::string& name) {
+    return std::ranges::any_of(suite.cases, [&](const RegressionCase& one) { return one.name == name; });
+  };
+  for (const std::string& name : names) {
+    if (known(name)) continue;
+    throw std::invalid_argument(
+        fmt::format("{} has no case '{}'; it has {}", suite.file.string(), name, names_in(suite.cases)));
+  }
+  Suite some = suite;
+  std::erase_if(some.cases, [&](const RegressionCase& one) { return !std::ranges::count(names, one.name); });
+  return some;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <kerf/schema/recording.h>
+
+namespace kerf::schema {
+
+inline constexpr std::string_view regression_schema_name = "kerf.regression";
+inline constexpr std::uint32_t regression_schema_version = 1;
+
+/// One column of stored forces.
+struct ForceChannel {
+  std::string name;        ///< "theta", "rx", ...
+  std::string unit = "N";  ///< "N" or "N·m"
+};
+
+/// The forces that a law rendered along a trajectory, tick by tick, and how they came to be stored.
+struct StoredForces {
+  std::string name;   ///< of the case, unique in its file, without '/'
+  std::string model;  ///< the law's
+  std::string law_sha256;
+  std::string trajectory_sha256;
+  std::string reason;    ///< why these forces were stored
+  std::string date;      ///< ISO 8601, UTC
+  std::string software;  ///< "kerf 0.1.0"
+  std::string history;   ///< those that stood before: one line each, oldest first
+  std::vector<ForceChannel> channels;
+  std::vector<double> force;        ///< N x D, row-major
+  std::uint64_t faults = 0;         ///< ticks in which the law faulted
+  std::optional<double> tick_cost;  ///< of a tick, in rounds of the calibration loop
+  std::string tick_cost_build;      ///< what kind of build it was measured with
+
+  [[nodiscard]] std::size_t rows() const noexcept {
+    return channels.empty() ? 0 : force.size() / channels.size();
+  }
+};
+
+/// Reads the stored forces of a suite, in the order in which they were written.
+/// @throws FormatError in one line; std::invalid_argument (there is no such file), std::system_error (it
+/// cannot be opened).
+[[nodiscard]] std::vector<StoredForces> read_regression(const std::filesystem::path& file);
+
+/// Writes the stored forces of a suite, compressed without loss: to a temporary name beside `file`, then
+/// renamed, so that a half-written file never stands under the final name. An existing file is replaced.
+/// @throws std::invalid_argument (a name twice or with '/', forces that do not fill their rows),
+/// std::system_error.
+void write_regression(const std::filesystem::path& file, const std::vector<StoredForces>& cases);
+
+}  // namespace kerf::schema

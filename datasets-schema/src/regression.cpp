@@ -1,0 +1,178 @@
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include <kerf/schema/regression.h>
+
+#include "files.h"
+#include "h5.h"
+
+namespace kerf::schema {
+namespace {
+
+constexpr hsize_t chunk_rows = 8192;
+const std::string group_of_cases = "/cases";
+
+/// The texts of a case, under the names that they have in the file.
+struct TextAttribute {
+  const char* name;
+  std::string StoredForces::*member;
+};
+constexpr TextAttribute texts[] = {{"model", &StoredForces::model},
+                                   {"law_sha256", &StoredForces::law_sha256},
+                                   {"trajectory_sha256", &StoredForces::trajectory_sha256},
+                                   {"reason", &StoredForces::reason},
+                                   {"date", &StoredForces::date},
+                                   {"software", &StoredForces::software},
+                                   {"history", &StoredForces::history}};
+
+void require_sound(const std::vector<StoredForces>& cases) {
+  std::set<std::string> names;
+  for (const StoredForces& one : cases) {
+    if (one.name.empty() || one.name == "." || one.name == ".." || one.name.find('/') != std::string::npos)
+      throw std::invalid_argument("stored forces: '" + one.name + "' is no name; expected one without '/'");
+    if (!names.insert(one.name).second)
+      throw std::invalid_argument("stored forces: there are two cases named '" + one.name + "'");
+    if (one.channels.empty() || one.force.size() % one.channels.size() != 0) {
+      throw std::invalid_argument("stored forces: '" + one.name + "' has " +
+                                  std::to_string(one.force.size()) + " numbers for " +
+                                  std::to_string(one.channels.size()) + " channels");
+    }
+  }
+}
+
+std::vector<std::string> gather(const std::vector<ForceChannel>& channels,
+                                std::string ForceChannel::*member) {
+  std::vector<std::string> all;
+  for (const ForceChannel& channel : channels) all.push_back(channel.*member);
+  return all;
+}
+
+void write_case(hid_t cases, const StoredForces& one) {
+  const auto group = h5::create_group(cases, one.name);
+  for (const auto& [name, member] : texts) h5::write_attribute(group.id(), name, one.*member);
+  h5::write_attribute(group.id(), "faults", h5::native<std::uint64_t>(), {}, &one.faults);
+  if (one.tick_cost) {
+    h5::write_attribute(group.id(), "tick_cost", h5::native<double>(), {}, &*one.tick_cost);
+    h5::write_attribute(group.id(), "tick_cost_build", one.tick_cost_build);
+  }
+  const h5::Extent extent{one.rows(), one.channels.size()};
+  const auto dataset = h5::create_dataset(
+      group.id(), "force", h5::native<double>(),
+      {.extent = extent, .chunk_rows = std::min<hsize_t>(extent[0], chunk_rows), .compressed = true});
+  h5::write_attribute(dataset.id(), "channels", gather(one.channels, &ForceChannel::name));
+  h5::write_attribute(dataset.id(), "units", gather(one.channels, &ForceChannel::unit));
+  if (!one.force.empty()) h5::write(dataset.id(), h5::native<double>(), one.force.data());
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
+  throw FormatError(file.string() + ": " + what);
+}
+
+/// The text of an attribute; empty if it is not there.
+std::string text_of(hid_t object, const std::string& name) {
+  if (!h5::has_attribute(object, name)) return {};
+  if (h5::describe_attribute(object, name).type != "text") return {};
+  const auto all = h5::read_texts(object, name);
+  return all.empty() ? std::string() : all.front();
+}
+
+bool has_number(hid_t object, const std::string& name, const std::string& type) {
+  if (!h5::has_attribute(object, name)) return false;
+  const h5::Description found = h5::describe_attribute(object, name);
+  return found.type == type && found.extent.empty();
+}
+
+StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std::string& name) {
+  const std::string where = group_of_cases + '/' + name;
+  if (!h5::is_group(cases, name)) refuse(file, where + ": found no group, expected one a case");
+  const auto group = h5::open(cases, name);
+  if (!h5::is_dataset(group.id(), "force")) refuse(file, where + "/force: there is no such dataset");
+  StoredForces one;
+  one.name = name;
+  for (const auto& [attribute, member] : texts) one.*member = text_of(group.id(), attribute);
+  if (has_number(group.id(), "faults", "uint64"))
+    h5::read_attribute(group.id(), "faults", h5::native<std::uint64_t>(), &one.faults);
+  if (has_number(group.id(), "tick_cost", "float64")) {
+    one.tick_cost = 0.0;
+    h5::read_attribute(group.id(), "tick_cost", h5::native<double>(), &*one.tick_cost);
+    one.tick_cost_build = text_of(group.id(), "tick_cost_build");
+  }
+  const auto dataset = h5::open(group.id(), "force");
+  const h5::Description about = h5::describe(dataset.id());
+  if (about.type != "float64" || about.extent.size() != 2 || about.extent[1] == 0)
+    refuse(file, where + "/force: found " + about.type + ", expected float64 of N x D");
+  for (const char* list : {"channels", "units"}) {
+    if (h5::has_attribute(dataset.id(), list) && h5::describe_attribute(dataset.id(), list).type == "text" &&
+        h5::read_texts(dataset.id(), list).size() == about.extent[1]) {
+      continue;
+    }
+    refuse(file, where + "/force: expected the attribute '" + list + "', one text a column");
+  }
+  const auto names = h5::read_texts(dataset.id(), "channels");
+  const auto units = h5::read_texts(dataset.id(), "units");
+  for (std::size_t i = 0; i < names.size(); ++i) one.channels.push_back({names[i], units[i]});
+  one.force.resize(about.extent[0] * about.extent[1]);
+  if (!one.force.empty()) h5::read(dataset.id(), h5::native<double>(), about.extent[0], one.force.data());
+  return one;
+}
+
+void require_schema(const std::filesystem::path& file, hid_t root) {
+  const std::string schema = text_of(root, "schema");
+  if (schema != regression_schema_name) {
+    refuse(file, "found " + (schema.empty() ? "no schema" : "the schema '" + schema + "'") +
+                     ", expected stored forces ('" + std::string(regression_schema_name) +
+                     "'), as 'kerf regress update' writes them");
+  }
+  std::uint32_t version = 0;
+  if (has_number(root, "schema_version", "uint32"))
+    h5::read_attribute(root, "schema_version", h5::native<std::uint32_t>(), &version);
+  if (version != regression_schema_version) {
+    refuse(file, "found version " + std::to_string(version) + " of " + schema + ", expected " +
+                     std::to_string(regression_schema_version));
+  }
+}
+
+}  // namespace
+
+std::vector<StoredForces> read_regression(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw std::invalid_argument(file.string() + ": there is no such file; expected stored forces");
+  require_readable(file);
+  if (!h5::is_hdf5(file)) refuse(file, "not an HDF5 file; expected stored forces");
+  try {
+    const auto opened = h5::open_file(file);
+    require_schema(file, h5::open(opened.id(), "/").id());
+    if (!h5::is_group(opened.id(), group_of_cases)) refuse(file, "there is no group " + group_of_cases);
+    const auto cases = h5::open(opened.id(), group_of_cases);
+    std::vector<StoredForces> all;
+    for (const std::string& name : h5::children(cases.id())) all.push_back(read_case(file, cases.id(), name));
+    return all;
+  } catch (const h5::Error& error) {
+    refuse(file, std::string("cannot be read (") + error.what() + ")");
+  }
+}
+
+void write_regression(const std::filesystem::path& file, const std::vector<StoredForces>& cases) {
+  require_sound(cases);
+  TemporaryFile temporary(file);
+  h5::WritableFile output;
+  try {
+    output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
+    {
+      const auto root = h5::open(output.id(), "/");
+      h5::write_attribute(root.id(), "schema", std::string(regression_schema_name));
+      h5::write_attribute(root.id(), "schema_version", h5::native<std::uint32_t>(), {},
+                          &regression_schema_version);
+      const auto group = h5::create_group(output.id(), group_of_cases);
+      for (const StoredForces& one : cases) write_case(group.id(), one);
+    }
+    output.close();
+  } catch (const h5::Error& error) {
+    throw write_error(file, output.cause_of(error));
+  }
+  temporary.commit();
+}
+
+}  // namespace kerf::schema

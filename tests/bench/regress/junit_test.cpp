@@ -1,0 +1,83 @@
+#include "regress/junit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bench/regress/small_suite.h"
+#include "regress/context.h"
+#include "regress/regress_page.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::SizeIs;
+
+TEST(Xml, HasNothingInItThatXmlForbids) {
+  EXPECT_EQ(xml_escaped("a < b & \"c\""), "a &lt; b &amp; &quot;c&quot;");
+  EXPECT_EQ(xml_escaped(std::string("nul \0 bell \a tab \t", 16)), "nul ? bell ? tab");
+  EXPECT_EQ(xml_escaped("N·m"), "N·m");
+  EXPECT_EQ(xml_escaped("cut \xC2"), "cut ?") << "half a character";
+  EXPECT_EQ(xml_escaped("\xED\xA0\x80"), "???") << "a surrogate";
+  EXPECT_EQ(xml_escaped("\xEF\xBF\xBF"), "???") << "no character at all";
+  EXPECT_EQ(xml_escaped("\xC0\xAF"), "??") << "longer than it need be";
+}
+
+/// A suite whose law went silent after its forces were stored.
+class SilentLaw : public testing::Test {
+ protected:
+  SilentLaw() {
+    const Suite before = read_suite(folder_.suite());
+    write_update(before, plan_update(before, {}), "<first> & best");
+    folder_.change_law("value = 8, unit = \"N/rad\"", "value = 1e-6, unit = \"N/rad\"");
+    folder_.change_law("value = 7,", "value = 1e-6,");
+    suite_ = read_suite(folder_.suite());
+    outcome_ = run_suite(suite_, {});
+  }
+  test::SuiteFolder folder_;
+  Suite suite_;
+  SuiteOutcome outcome_;
+};
+
+TEST_F(SilentLaw, IsAFailureInJUnit) {
+  const std::string xml = junit_xml(suite_, outcome_);
+  EXPECT_THAT(
+      xml,
+      AllOf(HasSubstr("<testsuite name=\"a small suite\" tests=\"1\" failures=\"1\" errors=\"0\" time=\""),
+            HasSubstr("<testcase classname=\"a small suite\" name=\"kelvin\" time=\""),
+            HasSubstr("<failure message=\"the force differs in "),
+            HasSubstr("kerf 0.1.0: &lt;first&gt; &amp; best"), HasSubstr("</testsuites>\n")));
+}
+
+TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {
+  const auto rows = context_of(outcome_.cases[0]);
+  const std::size_t worst = outcome_.cases[0].comparison.worst->tick;
+  ASSERT_THAT(rows, SizeIs(11));
+  EXPECT_EQ(rows[5].tick, worst);
+  EXPECT_EQ(rows[0].tick, worst - 5);
+  EXPECT_DOUBLE_EQ(rows[5].time_s, 1e-3 * static_cast<double>(worst));
+  EXPECT_EQ(rows[5].position, outcome_.cases[0].path.position[worst][0]);
+  EXPECT_EQ(rows[5].expected, outcome_.cases[0].stored.force[worst]);
+  EXPECT_EQ(rows[5].got, outcome_.cases[0].got.force[worst]);
+  EXPECT_THAT(context_table(outcome_.cases[0]), AllOf(HasSubstr("theta [rad]"), HasSubstr("speed [rad/s]"),
+                                                      HasSubstr("expected [N]"), HasSubstr("\n> ")));
+}
+
+TEST_F(SilentLaw, IsDrawnBesideWhatWasExpected) {
+  const auto figures = figures_of(outcome_.cases[0]);
+  ASSERT_THAT(figures, SizeIs(2));
+  EXPECT_EQ(figures[0].name, "kelvin-worst");
+  ASSERT_THAT(figures[0].chart.curves, SizeIs(2));
+  EXPECT_EQ(figures[0].chart.curves[0].label, "expected");
+  EXPECT_EQ(figures[1].chart.curves[0].x.size(), 400U);
+  write_regress_page(suite_, outcome_, folder_.at("page"));
+  const std::string page = test::read_text(folder_.at("page/regress.html"));
+  EXPECT_THAT(page, AllOf(HasSubstr("1 of 1 cases did not pass"), HasSubstr("<svg"), HasSubstr("FAILED"),
+                          Not(HasSubstr("<first>"))));
+  EXPECT_THAT(test::read_text(folder_.at("page/kelvin-worst.svg")), HasSubstr("<svg"));
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,134 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <kerf/schema/recording.h>
+
+#include "bench/regress/small_suite.h"
+
+// Regression as a user runs it, with the accidents that it is there for.
+
+namespace kerf {
+namespace {
+
+using test::Outcome;
+using test::run_kerf;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class RegressProgram : public testing::Test {
+ protected:
+  [[nodiscard]] Outcome kerf(const std::string& action, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"regress", action, folder_.suite()});
+    return run_kerf(more);
+  }
+  void store() const {
+    const Outcome outcome = kerf("update", {"--reason", "first forces", "--yes"});
+    ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  }
+  test::SuiteFolder folder_;
+};
+
+TEST_F(RegressProgram, PassesWhatDidNotChange) {
+  store();
+  const Outcome outcome = kerf("run", {"--json", "--junit", folder_.at("r.xml"), "-o", folder_.at("page")});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_TRUE(json.at("passed").get<bool>());
+  EXPECT_EQ(json.at("cases").at(0).at("samples"), 400);
+  EXPECT_THAT(test::read_text(folder_.at("r.xml")), HasSubstr("failures=\"0\""));
+  EXPECT_THAT(test::read_text(folder_.at("page/regress.html")), HasSubstr("All 1 cases passed"));
+}
+
+TEST_F(RegressProgram, SaysHowToStoreForcesThatAreMissing) {
+  const Outcome outcome = kerf("run");
+  EXPECT_EQ(outcome.exit_status, 2);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("no forces are stored for case 'kelvin'"),
+                                    HasSubstr("suite.toml --reason WHY' stores them")));
+}
+
+TEST_F(RegressProgram, StoresNothingWithoutBeingToldTo) {
+  const Outcome unsure = kerf("update", {"--reason", "first forces"});
+  EXPECT_EQ(unsure.exit_status, 2);
+  EXPECT_THAT(unsure.errors,
+              AllOf(HasSubstr("new"), HasSubstr("was not touched; --yes stores what is shown")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.at("suite.h5")));
+  EXPECT_THAT(kerf("update", {"--yes"}).errors, HasSubstr("say why the forces change: --reason WHY"));
+}
+
+TEST_F(RegressProgram, CatchesALawThatWentSilent) {
+  store();
+  folder_.change_law("position = { value = 0.5, unit = \"rad\" }",
+                     "position = { value = -9, unit = \"rad\" }");
+  const Outcome outcome = kerf("run", {"--json"});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("FAILED"), HasSubstr("the law is silent: no force in any tick"),
+                                    HasSubstr("the law file has changed since"), HasSubstr("got [N]")));
+  const auto one = nlohmann::json::parse(outcome.output).at("cases").at(0);
+  EXPECT_FALSE(one.at("passed").get<bool>());
+  EXPECT_EQ(one.at("worst").at("context").size(), 11U);
+}
+
+TEST_F(RegressProgram, CatchesDegreesPassedForRadians) {
+  store();
+  // One stiffness per degree where it is per radian, in all that this law has.
+  for (const char* from : {"value = 8, unit = \"N/rad\"", "value = 7, unit = \"N/rad\""}) {
+    std::string to = from;
+    folder_.change_law(from, to.replace(to.find("rad"), 3, "deg"));
+  }
+  folder_.change_law("unit = \"N·s/rad\"", "unit = \"N·s/deg\"");
+  const Outcome outcome = kerf("run");
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_THAT(outcome.errors,
+              HasSubstr("the force is 57.3 times the stored one in every tick, 180/pi: degrees "
+                        "where radians are meant"));
+}
+
+TEST_F(RegressProgram, CatchesALostSample) {
+  schema::Recording recording;
+  recording.header = schema::new_header("test");
+  recording.axes = {{.name = "theta", .position_unit = "rad"}};
+  for (int i = 0; i < 1000; ++i) {
+    recording.time.push_back(1e-3 * i);
+    recording.tick.push_back(static_cast<std::uint64_t>(i));
+    recording.position.push_back(0.6 - 5e-4 * i);
+    recording.velocity.push_back(-0.5);
+  }
+  schema::write_recording(folder_.at("cut.h5"), recording);
+  folder_.write_suite(
+      "[[case]]\nname = \"kelvin\"\nlaw = \"kelvin.law.toml\"\nrecording = \"cut.h5\"\njnd = 100\n");
+  store();
+  for (auto* column : {&recording.time, &recording.position, &recording.velocity})
+    column->erase(column->begin() + 600);
+  recording.tick.erase(recording.tick.begin() + 600);
+  schema::write_recording(folder_.at("cut.h5"), recording);
+  const Outcome outcome = kerf("run");
+  EXPECT_EQ(outcome.exit_status, 1) << "h5diff calls them equal";
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("999 samples where 1000 are stored: 1 lost"),
+                                    HasSubstr("the first tick that differs is 600"),
+                                    HasSubstr("the trajectory has changed since")));
+}
+
+TEST_F(RegressProgram, RefusesWhatMakesNoSense) {
+  EXPECT_EQ(kerf("compare").exit_status, 2);
+  EXPECT_THAT(kerf("run", {"--reason", "x"}).errors, HasSubstr("--reason is for 'kerf regress update'"));
+  EXPECT_THAT(kerf("update", {"--reason", "x", "--junit", "a.xml"}).errors,
+              HasSubstr("--junit is for 'kerf regress run'"));
+  EXPECT_THAT(kerf("run", {"--only", "maxwell"}).errors, HasSubstr("has no case 'maxwell'; it has kelvin"));
+  store();
+  test::write_text(folder_.at("suite.h5"), "not HDF5");
+  const Outcome broken = kerf("run");
+  EXPECT_EQ(broken.exit_status, 2);
+  EXPECT_THAT(broken.errors, HasSubstr("not an HDF5 file; expected stored forces"));
+}
+
+TEST(RegressOwnLaws, PassByTheProgram) {
+  const Outcome outcome =
+      run_kerf({"regress", "run", std::string(KERF_SOURCE_DIR) + "/examples/regress/kerf.toml", "--no-cost"});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("all 19 cases passed"));
+}
+
+}  // namespace
+}  // namespace kerf

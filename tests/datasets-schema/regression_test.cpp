@@ -1,0 +1,133 @@
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/schema/regression.h>
+
+#include "h5.h"
+#include "sample_recording.h"
+#include "support/program.h"
+
+namespace kerf::schema {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+StoredForces sample_forces() {
+  StoredForces one{.name = "a blade, slowly",
+                   .model = "blade",
+                   .law_sha256 = "12ab",
+                   .trajectory_sha256 = "34cd",
+                   .reason = "first forces",
+                   .date = "2026-01-31T12:00:00Z",
+                   .software = "kerf 0.1.0",
+                   .history = "2026-01-30T12:00:00Z kerf 0.1.0: too stiff\n",
+                   .channels = {{"x", "N"}, {"rx", "N·m"}},
+                   .force = {},
+                   .faults = 3,
+                   .tick_cost = 1.25,
+                   .tick_cost_build = "optimised"};
+  for (int i = 0; i < 20000; ++i) one.force.push_back(std::sin(0.01 * i) / 3.0);
+  return one;
+}
+
+class Regression : public testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_ / "suite.h5";
+};
+
+TEST_F(Regression, ComesBackBitForBit) {
+  StoredForces odd{.name = "odd", .channels = {{"theta", "N"}}};
+  odd.force = {-0.0, std::numeric_limits<double>::denorm_min(), 0.1 + 0.2};
+  write_regression(file_, {sample_forces(), odd});
+  const auto all = read_regression(file_);
+  ASSERT_THAT(all, SizeIs(2));
+  const StoredForces expected = sample_forces();
+  EXPECT_EQ(all[0].name, expected.name);
+  EXPECT_EQ(all[0].model, expected.model);
+  EXPECT_EQ(all[0].law_sha256, expected.law_sha256);
+  EXPECT_EQ(all[0].trajectory_sha256, expected.trajectory_sha256);
+  EXPECT_EQ(all[0].reason, expected.reason);
+  EXPECT_EQ(all[0].date, expected.date);
+  EXPECT_EQ(all[0].software, expected.software);
+  EXPECT_EQ(all[0].history, expected.history);
+  EXPECT_EQ(all[0].faults, 3U);
+  EXPECT_EQ(all[0].tick_cost, 1.25);
+  EXPECT_EQ(all[0].tick_cost_build, "optimised");
+  ASSERT_THAT(all[0].channels, SizeIs(2));
+  EXPECT_EQ(all[0].channels[1].name, "rx");
+  EXPECT_EQ(all[0].channels[1].unit, "N·m");
+  EXPECT_EQ(all[0].force, expected.force);
+  EXPECT_EQ(all[0].rows(), 10000U);
+  EXPECT_EQ(all[1].force, odd.force);
+  EXPECT_TRUE(std::signbit(all[1].force[0]));
+  EXPECT_FALSE(all[1].tick_cost);
+}
+
+TEST_F(Regression, IsCompressed) {
+  StoredForces quiet{.name = "quiet", .channels = {{"theta", "N"}}};
+  quiet.force.assign(100000, 0.0);
+  write_regression(file_, {quiet});
+  EXPECT_LT(std::filesystem::file_size(file_), 30000U) << "800 kB as they are";
+}
+
+TEST_F(Regression, LeavesTheOldFileAloneWhenItCannotBeWritten) {
+  write_regression(file_, {sample_forces()});
+  StoredForces twice = sample_forces();
+  EXPECT_THAT(
+      [&] {
+        write_regression(file_, {twice, twice});
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("two cases named 'a blade, slowly'")));
+  twice.name = "a/b";
+  EXPECT_THAT([&] { write_regression(file_, {twice}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'a/b' is no name")));
+  twice.name = "c";
+  twice.force.pop_back();
+  EXPECT_THAT([&] { write_regression(file_, {twice}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("19999 numbers for 2 channels")));
+  EXPECT_EQ(read_regression(file_).front().name, "a blade, slowly");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << "nothing beside it";
+}
+
+TEST_F(Regression, RefusesWhatIsNoneInOneLine) {
+  EXPECT_THAT(
+      [&] { (void)read_regression(file_); },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("there is no such file; expected stored forces")));
+  test::write_text(file_, "name = 1\n");
+  EXPECT_THAT([&] { (void)read_regression(file_); },
+              ThrowsMessage<FormatError>(HasSubstr("not an HDF5 file")));
+  write_recording(file_, test::sample_recording());
+  EXPECT_THAT(
+      [&] { (void)read_regression(file_); },
+      ThrowsMessage<FormatError>(HasSubstr("found the schema 'kerf.recording', expected stored forces")));
+}
+
+TEST_F(Regression, RefusesAnotherVersion) {
+  write_regression(file_, {sample_forces()});
+  {
+    auto file = h5::WritableFile::open(file_);
+    const auto root = h5::open(file.id(), "/");
+    h5::delete_attribute(root.id(), "schema_version");
+    const std::uint32_t later = 2;
+    h5::write_attribute(root.id(), "schema_version", h5::native<std::uint32_t>(), {}, &later);
+  }
+  EXPECT_THAT([&] { (void)read_regression(file_); },
+              ThrowsMessage<FormatError>(HasSubstr("found version 2 of kerf.regression, expected 1")));
+}
+
+TEST_F(Regression, RefusesACutFile) {
+  write_regression(file_, {sample_forces()});
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
+  EXPECT_THROW((void)read_regression(file_), FormatError);
+}
+
+}  // namespace
+}  // namespace kerf::schema
