@@ -11,12 +11,15 @@
 
 #include <fmt/core.h>
 
-#include "choose/step_cost.h"
+#include "chart/tick_cost.h"
 #include "fits/choice.h"
 #include "fits/fit_series.h"
 
 namespace kerf::bench {
 namespace {
+
+constexpr std::size_t timing_rounds = 9;
+constexpr double timing_s = 0.05;  // a law, at most
 
 std::size_t cycles_in(const schema::Recording& recording, std::size_t axis) {
   if (!recording.cycles || recording.cycles->axis != axis) return 0;
@@ -57,9 +60,7 @@ class Making {
       const std::size_t end = walk_.end_of_group(begin);
       const auto group = std::span(all).subspan(begin, end - begin);
       if (!options_.richer_too) fit_all(group);
-      for (Candidate& one : group) {
-        if (one.file) one.tick_us = step_cost_us(one.file->law, motion_, period_s_);
-      }
+      time(group);
       walk_.over_group(begin, end);
       begin = end;
     }
@@ -73,6 +74,20 @@ class Making {
   }
 
  private:
+  /// What a tick of each costs in the loop.
+  void time(std::span<Candidate> group) const {
+    std::vector<TimedLaw> timed;
+    for (const Candidate& one : group) {
+      if (one.file) timed.push_back({LawRendering(one.file->law, {}, {0}), path_, period_s_});
+    }
+    const std::vector<TickCost> costs =
+        tick_costs(timed, {.rounds = timing_rounds, .cold_ticks = 0, .most_seconds = timing_s});
+    auto cost = costs.begin();
+    for (Candidate& one : group) {
+      if (one.file) one.tick_us = 1e-3 * (cost++)->p50_ns;
+    }
+  }
+
   void look_at(const AxisSeries& series) {
     choice_.jnd_n = jnd_of(series.force, options_.fit.jnd);
     const double squares =
@@ -82,7 +97,7 @@ class Making {
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
     period_s_ = std::max(1e-6, duration_s / periods);
     for (std::size_t i = 0; i < series.force.size(); ++i)
-      motion_.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
+      path_.push_back({.position = {series.penetration[i]}, .velocity = {series.velocity[i]}});
   }
 
   void say_folds(std::size_t cycles) {
@@ -161,7 +176,7 @@ class Making {
   const std::atomic<bool>& stop_;
   LawChoice choice_;
   Walk walk_;
-  std::vector<models::Motion> motion_;
+  std::vector<drivers::Sample> path_;  ///< the recording, as penetration on one axis
   double period_s_ = 1e-3;
   std::shared_ptr<fitting::SegmentedMemory> memory_;
 };

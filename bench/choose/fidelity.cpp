@@ -2,32 +2,34 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "chart/judgement.h"
+#include "chart/tick_cost.h"
 #include "laws/placement.h"
+#include "loop/command.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::array strip_counts{1, 2, 4, 8, 16, 32, 64};
 
-std::vector<models::SpatialMotion> motion_of(const Scene& scene, double rate_hz) {
+/// The scene's script, tick by tick, and the device's axes that the blade is rendered on.
+struct Way {
+  std::vector<drivers::Sample> samples;
+  std::vector<std::size_t> axes;
+  double period_s = 0.0;
+};
+
+Way way_of(const Scene& scene, double rate_hz) {
   const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
-  const std::vector<std::size_t> axes = axes_for(scene.tissue, device);
-  const ToolPath path = tool_path(scene, rate_hz);
-  std::vector<models::SpatialMotion> all(path.position.size());
-  for (std::size_t tick = 0; tick < all.size(); ++tick) {
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-      all[tick].position[i] = path.position[tick][axes[i]];
-      all[tick].velocity[i] = path.velocity[tick][axes[i]];
-    }
-  }
-  return all;
+  return {.samples = samples_of(tool_path(scene, rate_hz)),
+          .axes = axes_for(scene.tissue, device),
+          .period_s = 1.0 / rate_hz};
 }
 
 LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
@@ -39,31 +41,29 @@ LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
   return other;
 }
 
-/// The forces of a law along a motion, and the median of what a step takes [us], over a few rounds.
-struct Rendered {
-  std::vector<models::AxisValues> force;
-  double tick_us = 0.0;
-};
+LawRendering rendering_of(const Candidate& one, const Way& way) {
+  return {one.file->law, one.file->contact, way.axes};
+}
 
-Rendered render(const models::Law& law, const std::vector<models::SpatialMotion>& motion, double period_s) {
-  constexpr std::size_t batch = 64;
-  Rendered rendered;
-  rendered.force.reserve(motion.size());
-  std::vector<double> batches_us;
-  models::Law::State state = law.initial_state();
-  for (std::size_t begin = 0; begin < motion.size(); begin += batch) {
-    const std::size_t end = std::min(begin + batch, motion.size());
-    const auto from = std::chrono::steady_clock::now();
-    for (std::size_t tick = begin; tick < end; ++tick)
-      rendered.force.push_back(law.step(state, motion[tick], period_s).force);
-    const std::chrono::duration<double, std::micro> spent = std::chrono::steady_clock::now() - from;
-    batches_us.push_back(spent.count() / static_cast<double>(end - begin));
+/// The forces of a candidate along the way, by the blade's own axes.
+std::vector<models::AxisValues> forces_of(const Candidate& one, const Way& way) {
+  LawRendering rendering = rendering_of(one, way);
+  std::vector<models::AxisValues> forces;
+  for (const drivers::Sample& sample : way.samples) {
+    const Command command = rendering(sample, way.period_s);
+    models::AxisValues force{};
+    for (std::size_t i = 0; i < way.axes.size(); ++i) force[i] = command.force[way.axes[i]];
+    forces.push_back(force);
   }
-  // Above the median: a blade costs next to nothing while it is in the air.
-  const auto place = batches_us.begin() + static_cast<std::ptrdiff_t>(batches_us.size() * 3 / 4);
-  std::ranges::nth_element(batches_us, place);
-  rendered.tick_us = *place;
-  return rendered;
+  return forces;
+}
+
+/// What a tick of each costs in the loop.
+void time(std::vector<Candidate>& all, const Way& way) {
+  std::vector<TimedLaw> timed;
+  for (const Candidate& one : all) timed.push_back({rendering_of(one, way), way.samples, way.period_s});
+  const std::vector<TickCost> costs = tick_costs(timed, {.rounds = 9, .cold_ticks = 0});
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].tick_us = 1e-3 * costs[i].p50_ns;
 }
 
 /// Root mean squares of a force and a torque, or of their differences.
@@ -125,30 +125,28 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
                     "'blade' has",
                     scene.tissue.law.model()));
   }
-  const double period_s = 1.0 / options.rate_hz;
-  const auto motion = motion_of(scene, options.rate_hz);
-  if (motion.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
+  const Way way = way_of(scene, options.rate_hz);
+  if (way.samples.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
   LawChoice choice;
   choice.settings.jnd = options.jnd;
   choice.candidates.push_back(candidate(scene.tissue, "exact", 16));
   for (const char* kind : {"paper", "strips"}) {
     for (const int strips : strip_counts) choice.candidates.push_back(candidate(scene.tissue, kind, strips));
   }
-  const Rendered reference = render(choice.candidates.front().file->law, motion, period_s);
+  const auto reference = forces_of(choice.candidates.front(), way);
   std::vector<bool> pushes;
-  for (const models::AxisValues& force : reference.force)
+  for (const models::AxisValues& force : reference)
     pushes.push_back(std::ranges::any_of(force, [](double value) { return value != 0.0; }));
   const auto ticks = std::ranges::count(pushes, true);
   if (ticks == 0) throw std::invalid_argument("along the scene's path the blade never pushes on anything");
-  const Size whole = size_of(reference.force, {}, pushes);
+  const Size whole = size_of(reference, {}, pushes);
   choice.force_rms_n = whole.force_n;
   choice.jnd_n = options.jnd.at(whole.force_n);
   const double jnd_n_m = options.torque_jnd.at(whole.torque_n_m);
   choice.held_out = fmt::format("the scene's path, {} ticks of {} in the tissue", ticks, pushes.size());
+  time(choice.candidates, way);
   for (Candidate& one : choice.candidates) {
-    const Rendered rendered = render(one.file->law, motion, period_s);
-    const Size error = size_of(rendered.force, reference.force, pushes);
-    one.tick_us = rendered.tick_us;
+    const Size error = size_of(forces_of(one, way), reference, pushes);
     one.error_n = error.force_n;
     one.error_torque_n_m = error.torque_n_m;
     one.error_jnd = std::max(error.force_n / choice.jnd_n, error.torque_n_m / jnd_n_m);

@@ -11,6 +11,7 @@
 #include "loop/check.h"
 #include "loop/run.h"
 #include "report/charts.h"
+#include "stability/in_hand.h"
 
 namespace kerf::bench {
 namespace {
@@ -147,7 +148,7 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
 }
 
 std::optional<std::string> LoopChecks::instability(const LawFile& law) const {
-  if (auto hum = hum_of(law, device_, options_.rate_hz, {.grip = options_.grip, .deepest = deepest_}))
+  if (auto hum = hum_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_))
     return fmt::format("on {}, {}", options_.device_uri, *hum);
   if (!device_.simulated) return std::nullopt;
   const auto run = [&](double seconds) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -46,13 +45,6 @@ struct Arguments {
   bool force = false;
 };
 
-struct Grip {
-  const char* name;
-  HandImpedance hand;
-};
-constexpr std::array grips{Grip{"none", {}}, Grip{"light", light_grip}, Grip{"firm", firm_grip},
-                           Grip{"arm", arm}};
-
 SampledDevice device_of(const Arguments& given, const drivers::DeviceInfo& info, std::size_t axis) {
   SampledDevice device;
   const drivers::AxisInfo& about = info.axes[axis];
@@ -72,9 +64,7 @@ SampledDevice device_of(const Arguments& given, const drivers::DeviceInfo& info,
   device.encoder_step_m = given.encoder.value_or(device.encoder_step_m);
   device.velocity_corner_rad_s = given.filter.value_or(device.velocity_corner_rad_s);
   device.delay_s = given.delay_s;
-  device.hand = std::find_if(grips.begin(), grips.end(), [&](const Grip& grip) {
-                  return grip.name == given.grip;
-                })->hand;
+  device.hand = grip_named(given.grip);
   device.hand.mass_kg = given.hand_mass.value_or(device.hand.mass_kg);
   device.hand.damping_n_s_per_m = given.hand_damping.value_or(device.hand.damping_n_s_per_m);
   device.hand.stiffness_n_per_m = given.hand_stiffness.value_or(device.hand.stiffness_n_per_m);

@@ -7,6 +7,7 @@ namespace kerf::bench {
 
 // One function a verb, each in the file cli/verb_NAME.cpp.
 void add_blade(CLI::App& app, Context& context);
+void add_chart(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_choose(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
@@ -19,6 +20,7 @@ void add_prepare(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);
 void add_regress(CLI::App& app, Context& context);
 void add_repair(CLI::App& app, Context& context);
+void add_replay(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_reproduce(CLI::App& app, Context& context);
 void add_segment(CLI::App& app, Context& context);

@@ -19,21 +19,6 @@ constexpr double velocity_corner_rad_s = 10.0;  // 004, section 2.2
 constexpr double ramp_share = 0.05;             // of the 95th percentile of the speed
 constexpr double reversal_share = 0.05;  // of the range of the penetration, until the full force is back
 
-/// The rendering aids of 004 for a law with branches, scaled to the recordings.
-models::Options with_rendering_aids(models::Options options, const AxisSeries& series) {
-  const auto loop = options.find("loop");
-  if (loop == options.end() || !std::get<bool>(loop->second)) return options;
-  std::vector<double> speeds;
-  for (const double velocity : series.velocity) speeds.push_back(std::abs(velocity));
-  const auto high = speeds.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(speeds.size()));
-  std::nth_element(speeds.begin(), high, speeds.end());
-  const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
-  options["velocity_corner"] = velocity_corner_rad_s;
-  options["ramp_band"] = ramp_share * *high;
-  options["reversal_scale"] = 1.0 / (reversal_share * (*most - *least));
-  return options;
-}
-
 double squares_left(const models::Law& law, const AxisSeries& series) {
   const auto force = render(law, series);
   double squares = 0.0;
@@ -157,6 +142,20 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
 }
 
 }  // namespace
+
+models::Options with_rendering_aids(models::Options options, const AxisSeries& series) {
+  const auto loop = options.find("loop");
+  if (loop == options.end() || !std::get<bool>(loop->second)) return options;
+  std::vector<double> speeds;
+  for (const double velocity : series.velocity) speeds.push_back(std::abs(velocity));
+  const auto high = speeds.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(speeds.size()));
+  std::nth_element(speeds.begin(), high, speeds.end());
+  const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
+  options["velocity_corner"] = velocity_corner_rad_s;
+  options["ramp_band"] = ramp_share * *high;
+  options["reversal_scale"] = 1.0 / (reversal_share * (*most - *least));
+  return options;
+}
 
 std::size_t RecordingFit::samples() const {
   return std::accumulate(recordings.begin(), recordings.end(), std::size_t{0},

@@ -139,6 +139,16 @@ struct LoopReport {
           .flags = command.flags};
 }
 
+/// Whether a rendering has come to an end of its own; most have none.
+template <typename Rendering>
+[[nodiscard]] bool has_finished(const Rendering& rendering) noexcept {
+  if constexpr (requires { rendering.finished(); }) {
+    return rendering.finished();
+  } else {
+    return false;
+  }
+}
+
 /// Runs device, rendering and recorder in a loop on a grid of absolute deadlines.
 ///
 /// A deadline is missed if no tick begins in its period, because the machine woke the loop a period or more
@@ -168,7 +178,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   control.heartbeat.start(grid.start_ns);
   std::uint64_t due = 0;
   std::uint64_t expected = 0;
-  while (due < options.ticks && report.end == LoopEnd::completed) {
+  while (due < options.ticks && report.end == LoopEnd::completed && !has_finished(rendering)) {
     TickTimes times{.deadline_ns = grid.deadline_ns(due)};
     clock.sleep_until(times.deadline_ns);
     const std::uint64_t tick = grid.current(due, times.mark(Stage::wake, clock.now_ns()));
@@ -185,7 +195,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     Command command = wrong == 0 ? rendering(sample, elapsed_s) : Command{.flags = wrong};
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
     if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
-    safety.apply(time_s, sample, command);
+    safety.apply(time_s, command);
     if (measures_cpu) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
     times.mark(Stage::compute, clock.now_ns());
 

@@ -37,8 +37,10 @@ class PassivityObserver {
   ///
   ///     F = -alpha v,   alpha = -E / (T |v|^2)   while E < 0
   ///
-  /// over the travel speeds v of all axes. At less than 0.1 mm/s the quotient means nothing and there is
-  /// none. Returns whether it acted. Source: Hannaford and Ryu 2002, eq. 6 to 9.
+  /// over the speeds v of all axes in the period behind, their travel over its length: the velocity of a
+  /// driver lags by its filter, and braking on it may push (docs/where-methods-fail.md). At less than 0.1
+  /// mm/s the quotient means nothing and there is none. Returns whether it acted. Source: Hannaford and Ryu
+  /// 2002, eq. 6 to 9.
   bool control(const drivers::Axes& velocity, double period_s, drivers::Axes& force) const noexcept {
     constexpr double least_speed_m_s = 1e-4;
     if (energy_j_ >= 0.0) return false;

@@ -1,5 +1,6 @@
 #include "loop/run.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -56,6 +57,19 @@ class ZeroForceAtExit {
   drivers::Device& device_;
 };
 
+/// Another rendering in the shape that the loop asks for.
+class CalledRendering {
+ public:
+  explicit CalledRendering(const OtherRendering& rendering) : rendering_(rendering) {}
+  Command operator()(const drivers::Sample& sample, double elapsed_s) noexcept {
+    return rendering_.step(sample, elapsed_s);
+  }
+  [[nodiscard]] bool finished() const noexcept { return rendering_.finished && rendering_.finished(); }
+
+ private:
+  const OtherRendering& rendering_;
+};
+
 /// Everything that one run needs, in the order in which it is set up.
 class Run {
  public:
@@ -68,6 +82,9 @@ class Run {
                         .soft_start_s = options.ramp_s,
                         .passivity_control = options.passivity_control}};
     (void)laws();  // before anything is written or moves
+    if (!options.rendering) return;
+    other_ = options.rendering(result_.device);
+    if (other_.most_ticks > 0) loop_.ticks = std::min(loop_.ticks, other_.most_ticks);
   }
 
   RunResult run() {
@@ -158,10 +175,13 @@ class Run {
                           }});
   }
 
-  /// The loop with one law, with several or without, recorded or not: instances of one template.
+  /// The loop with one law, with several, without or with another rendering, recorded or not: instances of one template.
   template <typename Clock, typename Log>
   void run_laws(Clock& clock, Log& log, const LoopControl& control) {
-    if (!options_.law) {
+    if (options_.rendering) {
+      CalledRendering rendering(other_);
+      run_loop(clock, *device_, rendering, log, loop_, control, result_.report);
+    } else if (!options_.law) {
       NoForce free;
       run_loop(clock, *device_, free, log, loop_, control, result_.report);
     } else if (options_.changes.empty()) {
@@ -243,6 +263,7 @@ class Run {
   ZeroForceAtExit at_exit_;
   RunResult result_;
   LoopOptions loop_;
+  OtherRendering other_;
 };
 
 }  // namespace

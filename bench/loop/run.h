@@ -25,6 +25,13 @@ struct LawChange {
   double at_s = 0.0;  ///< loop time
 };
 
+/// What is rendered where it is no law: called once a tick, it must not allocate, lock or throw.
+struct OtherRendering {
+  std::function<Command(const drivers::Sample&, double elapsed_s)> step;
+  std::function<bool()> finished;  ///< ends the run before its time; empty: nothing does
+  std::uint64_t most_ticks = 0;    ///< after which it has finished at the latest; 0: not known
+};
+
 /// What to run on a device, for how long, and where to record it.
 struct RunOptions {
   std::string device_uri = "sim:scissors";
@@ -35,6 +42,8 @@ struct RunOptions {
   bool virtual_time = false;
   std::optional<LawFile> law;      ///< rendered as force; none: the device moves freely
   std::vector<LawChange> changes;  ///< laws that come after it
+  /// Makes what is rendered in place of a law once the device is open, before anything moves.
+  std::function<OtherRendering(const drivers::DeviceInfo&)> rendering;
   double ramp_s = 0.25;            ///< of the soft start, and from law to law
   bool passivity_control = false;
   std::optional<Scene> scene;                   ///< what a simulated device meets

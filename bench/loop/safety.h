@@ -56,6 +56,10 @@ class Safety {
     } else {
       observer_.observe(held_, sample.position);
     }
+    for (std::size_t axis = 0; axis < count_; ++axis) {
+      travelled_[axis] =
+          jumped || !has_reading_ ? 0.0 : (sample.position[axis] - last_position_[axis]) / since_reading_s_;
+    }
     last_position_ = sample.position;
     since_reading_s_ = 0.0;
     has_reading_ = true;
@@ -63,12 +67,12 @@ class Safety {
   }
 
   /// Makes of a command what the device is given at `time_s`.
-  void apply(double time_s, const drivers::Sample& sample, Command& command) noexcept {
+  void apply(double time_s, Command& command) noexcept {
     for (std::size_t axis = 0; axis < count_; ++axis) {
       if (!std::isfinite(command.force[axis])) command.flags |= schema::flag_law_fault;
     }
     if ((command.flags & zero_force_flags) != 0) return release(time_s, command);
-    if (options_.passivity_control && observer_.control(sample.velocity, options_.period_s, command.force)) {
+    if (options_.passivity_control && observer_.control(travelled_, options_.period_s, command.force)) {
       command.flags |= schema::flag_passivity_control;
     }
     const double ramp =
@@ -119,6 +123,8 @@ class Safety {
   drivers::Axes speed_limit_{};
   drivers::Axes slack_{};
   drivers::Axes last_position_{};
+  drivers::Axes
+      travelled_{};  ///< speed since the reading before: that of a driver lags, and braking on it pushes
   drivers::Axes held_{};
   double since_reading_s_ = 0.0;
   double ramp_start_s_ = 0.0;

@@ -42,6 +42,10 @@ std::string style_of(const Curve& curve) {
       return fmt::format("lines lw {} dt {}", curve.width, curve.dashed ? 2 : 1);
     case Mark::points:
       return fmt::format("points pt 7 ps {}", 0.2 * curve.width);
+    case Mark::circles:
+      return fmt::format("points pt 6 lw 1.5 ps {}", 0.2 * curve.width);
+    case Mark::crosses:
+      return fmt::format("points pt 2 lw 2 ps {}", 0.2 * curve.width);
     case Mark::steps:
       return fmt::format("histeps lw {}", curve.width);
     case Mark::boxes:
@@ -122,6 +126,11 @@ std::string script_of(const Chart& chart, const std::string& output) {
                    marker.at, hex(Colour::grey));
     fmt::format_to(out, "set label {} at graph 0.99, first {} right offset 0,0.6 textcolor rgb '{}'\n",
                    gnuplot_text(marker.label), marker.at, hex(Colour::grey));
+  }
+  for (const PointLabel& label : chart.labels) {
+    fmt::format_to(out, "set label {} at first {}, first {} {} front font 'DejaVu Sans,11'\n",
+                   gnuplot_text(label.text), label.x, label.y,
+                   label.left ? "right offset -0.6,-0.6" : "left offset 0.6,0.6");
   }
   for (std::size_t i = 0; i < chart.curves.size(); ++i) add_data(script, chart.curves[i], i);
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {

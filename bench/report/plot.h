@@ -10,7 +10,7 @@ namespace kerf::bench {
 /// Colours that colour-blind readers tell apart (Okabe and Ito 2008), in the order in which charts use them.
 enum class Colour { black, blue, vermillion, green, purple, orange, sky, yellow, grey };
 
-enum class Mark { line, points, steps, boxes };
+enum class Mark { line, points, circles, crosses, steps, boxes };
 
 /// One set of data in a chart. NaN breaks a line.
 struct Curve {
@@ -52,6 +52,14 @@ struct NamedTick {
   std::string name;
 };
 
+/// A text beside a point, above and right of it, or below and left.
+struct PointLabel {
+  double x = 0.0;
+  double y = 0.0;
+  std::string text;
+  bool left = false;
+};
+
 /// A range of an axis; empty while begin is not less than end.
 struct Range {
   double begin = 0.0;
@@ -67,6 +75,7 @@ struct Chart {
   std::vector<Box> boxes;
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
+  std::vector<PointLabel> labels;
   std::vector<NamedTick> y_ticks;  ///< in place of numbers
   Range x_range;                   ///< empty: what the curves need
   Range y_range;

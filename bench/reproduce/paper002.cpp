@@ -148,7 +148,7 @@ Reproduction reproduce_002(std::uint64_t) {
                   "{:.2g} mN after {} in {:.3f} s",
                   1e3 * projected.rmse_n, projected.iterations, projected.seconds, 1e3 * descended.rmse_n,
                   descended.iterations, descended.seconds));
-  const models::Kelvin<double> liver{8.0, 7.0, 130.0, false};
+  const models::Kelvin<double> liver{8.0, 7.0, 130.0};
   models::Kelvin<double>::State state;
   double force = 0.0;
   for (int tick = 0; tick <= 30000; ++tick) {

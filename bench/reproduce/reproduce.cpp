@@ -15,13 +15,13 @@ Reproduction reproduce(const std::string& paper, std::uint64_t seed) {
   throw std::invalid_argument(fmt::format("no paper '{}'; the papers are 000, 001, 002, 003 and 004", paper));
 }
 
-const char* name_of(Verdict verdict) {
+const char* name_of(ClaimVerdict verdict) {
   switch (verdict) {
-    case Verdict::holds:
+    case ClaimVerdict::holds:
       return "holds";
-    case Verdict::fails:
+    case ClaimVerdict::fails:
       return "does not hold";
-    case Verdict::answered:
+    case ClaimVerdict::answered:
       return "answered";
   }
   return "";

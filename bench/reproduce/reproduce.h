@@ -11,13 +11,13 @@
 namespace kerf::bench {
 
 /// What became of a claim of a paper. A question that a paper left open is answered by a number.
-enum class Verdict { holds, fails, answered };
+enum class ClaimVerdict { holds, fails, answered };
 
 struct Claim {
   std::string claim;     ///< in the paper's sense
   std::string where;     ///< section or figure of the paper
   std::string measured;  ///< with units
-  Verdict verdict = Verdict::holds;
+  ClaimVerdict verdict = ClaimVerdict::holds;
 };
 
 /// A paper's experiments, run in virtual time.
@@ -28,11 +28,11 @@ struct Reproduction {
   std::vector<Figure> figures;
 
   void add(std::string claim, std::string where, std::string measured, bool holds) {
-    claims.push_back(
-        {std::move(claim), std::move(where), std::move(measured), holds ? Verdict::holds : Verdict::fails});
+    claims.push_back({std::move(claim), std::move(where), std::move(measured),
+                      holds ? ClaimVerdict::holds : ClaimVerdict::fails});
   }
   void answer(std::string question, std::string where, std::string measured) {
-    claims.push_back({std::move(question), std::move(where), std::move(measured), Verdict::answered});
+    claims.push_back({std::move(question), std::move(where), std::move(measured), ClaimVerdict::answered});
   }
 };
 
@@ -46,7 +46,7 @@ struct Reproduction {
 /// @throws std::invalid_argument for a paper that is none of 000 to 004.
 [[nodiscard]] Reproduction reproduce(const std::string& paper, std::uint64_t seed);
 
-[[nodiscard]] const char* name_of(Verdict verdict);
+[[nodiscard]] const char* name_of(ClaimVerdict verdict);
 [[nodiscard]] nlohmann::ordered_json to_json(const Reproduction& reproduction);
 /// The claims as a Markdown table.
 [[nodiscard]] std::string as_markdown(const Reproduction& reproduction);

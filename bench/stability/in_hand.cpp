@@ -1,5 +1,9 @@
 #include "stability/in_hand.h"
 
+#include <array>
+#include <stdexcept>
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "laws/placement.h"
@@ -7,9 +11,18 @@
 
 namespace kerf::bench {
 
+HandImpedance grip_named(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, HandImpedance>, 4> grips{
+      {{"none", {}}, {"light", light_grip}, {"firm", firm_grip}, {"arm", arm}}};
+  for (const auto& [grip, hand] : grips) {
+    if (grip == name) return hand;
+  }
+  throw std::invalid_argument(fmt::format("grip '{}' is not none, light, firm or arm", name));
+}
+
 std::optional<std::string> hum_in_hand(const LawFile& law, const drivers::DeviceInfo& device, double rate_hz,
                                        const HandImpedance& hand, double deepest) {
-  if (law.law.is_spatial()) return std::nullopt;
+  if (law.law.is_spatial() || !(deepest > 0.0)) return std::nullopt;
   const std::size_t axis = axis_for(law, device);
   if (!device.axes[axis].mechanics) return std::nullopt;
   SampledDevice held = sampled_device(device, axis, rate_hz);

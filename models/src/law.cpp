@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "kerf/models/blade.h"
@@ -115,6 +116,14 @@ void check_values(std::string_view model, const std::vector<ParameterInfo>& para
   }
 }
 
+/// The same law in another scalar.
+template <typename L, typename T>
+struct WithScalar;
+template <template <typename> typename L, typename From, typename T>
+struct WithScalar<L<From>, T> {
+  using Law = L<T>;
+};
+
 template <typename L>
 concept Spatial = requires {
   L::axes();
@@ -122,44 +131,76 @@ concept Spatial = requires {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-template <Place I>
-struct StateAt final : AnyState {
-  using Value = typename LawAt<I>::State;
-  explicit StateAt(Value first) : AnyState(I), value(std::move(first)) {}
-  [[nodiscard]] std::unique_ptr<AnyState> copy() const override { return std::make_unique<StateAt>(value); }
-  void assign(const AnyState& other) override { value = static_cast<const StateAt&>(other).value; }
+/// `Of` in the registry; laws in single precision have places of their own behind it.
+template <typename L, Place Of>
+struct StateOf final : AnyState {
+  using Value = typename L::State;
+  explicit StateOf(Value first) : AnyState(Of), value(std::move(first)) {}
+  [[nodiscard]] std::unique_ptr<AnyState> copy() const override { return std::make_unique<StateOf>(value); }
+  void assign(const AnyState& other) override { value = static_cast<const StateOf&>(other).value; }
 
   Value value;
 };
 
-template <Place I>
+template <typename L, Place Of>
 struct RegisteredLaw final : AnyLaw {
-  using L = LawAt<I>;
   explicit RegisteredLaw(L of) : law(std::move(of)) {}
   [[nodiscard]] std::string_view name() const noexcept override { return L::name; }
   [[nodiscard]] std::unique_ptr<AnyState> initial_state() const override {
     if constexpr (requires { law.initial_state(); }) {
-      return std::make_unique<StateAt<I>>(law.initial_state());
+      return std::make_unique<StateOf<L, Of>>(law.initial_state());
     } else {
-      return std::make_unique<StateAt<I>>(typename L::State{});
+      return std::make_unique<StateOf<L, Of>>(typename L::State{});
     }
   }
   [[nodiscard]] double step(AnyState& state, const Motion& motion, double period_s) const noexcept override {
     if constexpr (!Spatial<L>) {
-      if (state.law == I) return law.step(static_cast<StateAt<I>&>(state).value, motion, period_s);
+      if (state.law == Of) return law.step(static_cast<StateOf<L, Of>&>(state).value, motion, period_s);
     }
     return not_a_number;
   }
   [[nodiscard]] AxisValues step(AnyState& state, const SpatialMotion& motion,
                                 double period_s) const noexcept override {
     if constexpr (Spatial<L>) {
-      if (state.law == I) return law.step(static_cast<StateAt<I>&>(state).value, motion, period_s);
+      if (state.law == Of) return law.step(static_cast<StateOf<L, Of>&>(state).value, motion, period_s);
     }
     return {not_a_number};
   }
 
   L law;
 };
+
+/// Laws that can be rendered in single precision, and have the option to say so.
+template <typename L>
+struct InFloat : std::false_type {};
+template <>
+struct InFloat<Kelvin<double>> : std::true_type {};
+template <>
+struct InFloat<Maxwell<double>> : std::true_type {};
+template <>
+struct InFloat<Exponential<double>> : std::true_type {};
+template <>
+struct InFloat<HuntCrossley<double>> : std::true_type {};
+template <>
+struct InFloat<Piecewise<double>> : std::true_type {};
+template <>
+struct InFloat<Recording<double>> : std::true_type {};
+
+template <Place I>
+std::shared_ptr<const AnyLaw> registered(std::span<const double> values, const Options& options) {
+  using L = LawAt<I>;
+  if constexpr (InFloat<L>::value) {
+    const OptionReader reader(L::name, L::options(), options);
+    if (reader.choice("precision", {"double", "float"}) == "float") {
+      using Single = typename WithScalar<L, float>::Law;
+      // What refuses values that make no law does so in double, before they are rounded.
+      (void)L::make(values, options);
+      const std::vector<float> rounded(values.begin(), values.end());
+      return std::make_shared<const RegisteredLaw<Single, I + law_count>>(Single::make(rounded, options));
+    }
+  }
+  return std::make_shared<const RegisteredLaw<L, I>>(L::make(values, options));
+}
 
 template <typename L>
 LawInfo info_of() {
@@ -223,9 +264,8 @@ Law::Law(std::shared_ptr<const AnyLaw> law, std::vector<double> values, Options 
 
 Law Law::make(std::string_view model, std::span<const double> values, const Options& options) {
   check_values(model, parameters(model, options), values);
-  auto law = dispatch(model, [&]<Place I>() -> std::shared_ptr<const AnyLaw> {
-    return std::make_shared<const RegisteredLaw<I>>(LawAt<I>::make(values, options));
-  });
+  auto law = dispatch(
+      model, [&]<Place I>() -> std::shared_ptr<const AnyLaw> { return registered<I>(values, options); });
   return {std::move(law), {values.begin(), values.end()}, options};
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/models/kelvin.h>
+#include <kerf/models/law.h>
 
 namespace kerf::models {
 namespace {
@@ -103,18 +104,55 @@ TEST(Kelvin, TakesMoreEnergyThanItGivesOnClosedPathsAtEveryPeriod) {
 
 TEST(Kelvin, ForwardEulerDivergesPastTwiceTheRelaxationTime) {
   const Kelvin<double> fast{
-      .parallel_stiffness = 8.0, .series_stiffness = 700.0, .damping = 0.3, .euler = true};
+      .parallel_stiffness = 8.0, .series_stiffness = 700.0, .damping = 0.3, .integrator = Integrator::euler};
   ASSERT_GT(1e-3, 2.0 * fast.relaxation_time());
   // The sign alternates from tick to tick, and a negative force is not felt.
-  EXPECT_GT(std::max(force_at(fast, ramp_and_hold, 3.0, 1e-3), force_at(fast, ramp_and_hold, 3.001, 1e-3)),
+  EXPECT_GT(std::max(force_at(fast, ramp_and_hold, 0.2, 1e-3), force_at(fast, ramp_and_hold, 0.201, 1e-3)),
             1.0);
   EXPECT_NEAR(force_at(fast, ramp_and_hold, 3.0, 1e-5), 8.0 * 5e-3, 1e-6);
+}
+
+TEST(Kelvin, SemiImplicitStaysStableAtAnyPeriodAndIsOfFirstOrder) {
+  const Kelvin<double> fast{.parallel_stiffness = 8.0,
+                            .series_stiffness = 700.0,
+                            .damping = 0.3,
+                            .integrator = Integrator::semi_implicit};
+  for (const double period_s : {1e-3, 1e-2, 0.5}) {
+    EXPECT_NEAR(force_at(fast, ramp_and_hold, 3.0, period_s), 8.0 * 5e-3, 1e-3) << period_s;
+  }
+  const auto error_of = [&](double period_s) {
+    const Kelvin<double> law{.parallel_stiffness = 8.0,
+                             .series_stiffness = 7.0,
+                             .damping = 1.4,
+                             .integrator = Integrator::semi_implicit};
+    Kelvin<double> exact = law;
+    exact.integrator = Integrator::exact;
+    return std::abs(force_at(law, ramp_and_hold, 2.6, period_s) -
+                    force_at(exact, ramp_and_hold, 2.6, period_s));
+  };
+  EXPECT_NEAR(error_of(2e-3) / error_of(1e-3), 2.0, 0.02);
+}
+
+TEST(Kelvin, InSinglePrecisionKeepsItsForceToSevenDigitsAndItsRelaxationTime) {
+  const Law law = Law::make("kelvin", std::vector{8.0, 7.0, 130.0});
+  const Law single = Law::make("kelvin", law.values(), {{"precision", std::string("float")}});
+  Law::State state = law.initial_state();
+  Law::State single_state = single.initial_state();
+  double worst = 0.0;
+  for (int tick = 0; tick <= 30000; ++tick) {
+    const Motion motion{.penetration = ramp_and_hold(tick * 1e-3), .velocity = 0.0};
+    const double force = law.step(state, motion, 1e-3).force;
+    worst = std::max(worst, std::abs(single.step(single_state, motion, 1e-3).force - force));
+  }
+  EXPECT_GT(worst, 0.0) << "it is single precision";
+  EXPECT_LT(worst, 2e-5 * 0.0728) << "of the largest force, after 30,000 ticks of rounding";
 }
 
 TEST(Kelvin, RefusesAnUnknownIntegrator) {
   const std::vector<double> values{8.0, 7.0, 130.0};
   EXPECT_THROW(Kelvin<double>::make(values, {{"integrator", std::string("magic")}}), std::invalid_argument);
-  EXPECT_TRUE(Kelvin<double>::make(values, {{"integrator", std::string("euler")}}).euler);
+  EXPECT_EQ(Kelvin<double>::make(values, {{"integrator", std::string("euler")}}).integrator,
+            Integrator::euler);
 }
 
 }  // namespace

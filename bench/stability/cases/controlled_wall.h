@@ -31,7 +31,7 @@ inline constexpr double above_wall_m = 5e-3;
 
 /// A weight of 4 N that falls on a wall from 5 mm above it.
 template <typename Force>
-[[nodiscard]] Trace lean_on(const SampledDevice& device, Force wall, double seconds = 3.0) {
+[[nodiscard]] CaseTrace lean_on(const SampledDevice& device, Force wall, double seconds = 3.0) {
   return run_loop(device, std::move(wall), {.place_m = -above_wall_m}, seconds,
                   [](double) { return HandPush{.force_n = leaning_n}; });
 }

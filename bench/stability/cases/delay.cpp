@@ -15,12 +15,12 @@ constexpr double delay_s = 4e-3;
 constexpr double margin = 0.7;
 
 /// A hand that leans on a wall with a spring drawn by 4 mm.
-Trace lean(const SampledDevice& device, double stiffness) {
+CaseTrace lean(const SampledDevice& device, double stiffness) {
   return run_loop(device, WallForce{{.stiffness_n_per_m = stiffness}}, {}, 1.0,
                   [](double) { return HandPush{.place_m = 4e-3}; });
 }
 
-CaseOutcome judged(const Trace& trace, std::string figure) {
+CaseOutcome judged(const CaseTrace& trace, std::string figure) {
   const double ripple = ripple_n(trace);
   return {.holds = ripple <= felt_n,
           .measured = ripple,
@@ -36,8 +36,8 @@ NamedCase delay(std::uint64_t) {
   SampledDevice late = prompt;
   late.delay_s = delay_s;
   const double boundary = eigenvalue_boundary(late, 0.0, 1.0, 1e6);
-  const Trace failing = lean(late, stiffness_n_per_m);
-  const Trace holding = lean(late, margin * boundary);
+  const CaseTrace failing = lean(late, stiffness_n_per_m);
+  const CaseTrace holding = lean(late, margin * boundary);
   const double prompt_ripple = ripple_n(lean(prompt, stiffness_n_per_m));
   const double damping = late.damping_n_s_per_m();
   return {

@@ -21,7 +21,7 @@ constexpr double peak_n = 1.0;
 
 struct Ramp {
   unsigned transitions = 0;
-  Trace state;  ///< 0 holds, 1 cuts
+  CaseTrace state;  ///< 0 holds, 1 cuts
 };
 
 /// The force rises through the thresholds once and falls through them once, with the sensor's noise.

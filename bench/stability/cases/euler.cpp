@@ -24,7 +24,7 @@ double pressed(double depth_m, double time_s) {
 }
 
 /// Largest distance of two traces at the times of the first; lost_n where the first got lost.
-double largest_error(const Trace& trace, const Trace& reference, std::size_t finer) {
+double largest_error(const CaseTrace& trace, const CaseTrace& reference, std::size_t finer) {
   double worst = 0.0;
   for (std::size_t i = 0; i < trace.force_n.size(); ++i) {
     const double error = std::abs(trace.force_n[i] - reference.force_n[finer * i]);
@@ -40,11 +40,11 @@ CaseOutcome judged(double error_n) {
 constexpr double arm_n_per_m = 400.0;
 constexpr double relaxation_s = 0.4e-3;
 
-Trace press_kelvin(const std::string& integrator, double dt) {
+CaseTrace press_kelvin(const std::string& integrator, double dt) {
   const double values[] = {200.0, arm_n_per_m, arm_n_per_m * relaxation_s};
   const models::Law tissue = models::Law::make("kelvin", values, {{"integrator", integrator}});
   auto state = tissue.initial_state();
-  Trace trace;
+  CaseTrace trace;
   for (int tick = 0; tick * dt < seconds; ++tick) {
     const models::Motion motion{.penetration = pressed(5e-3, tick * dt)};
     const models::Response response = tissue.step(state, motion, dt);
@@ -59,7 +59,7 @@ constexpr models::LatticeOptions patch{
     .columns = 13, .rows = 13, .stiffness_n_per_m = 400.0, .diagonal_stiffness_n_per_m = 200.0};
 constexpr double coupling_n_per_m = 100.0;
 
-Trace press_lattice(int substeps) {
+CaseTrace press_lattice(int substeps) {
   models::Lattice<double> lattice(patch);
   for (int i = 0; i < patch.columns; ++i) {
     for (const int edge : {0, patch.rows - 1}) {
@@ -69,7 +69,7 @@ Trace press_lattice(int substeps) {
   }
   models::Coupling tool{.node = patch.rows / 2 * patch.columns + patch.columns / 2,
                         .stiffness_n_per_m = coupling_n_per_m};
-  Trace trace;
+  CaseTrace trace;
   for (int tick = 0; tick * period_s < seconds; ++tick) {
     const double now_m = pressed(5e-3, tick * period_s);
     tool.target_m = {now_m, 0.0};
@@ -85,9 +85,9 @@ Trace press_lattice(int substeps) {
 
 NamedCase euler_maxwell(std::uint64_t) {
   constexpr std::size_t finer = 50;
-  const Trace reference = press_kelvin("exact", period_s / finer);
-  const Trace failing = press_kelvin("euler", period_s);
-  const Trace holding = press_kelvin("exact", period_s);
+  const CaseTrace reference = press_kelvin("exact", period_s / finer);
+  const CaseTrace failing = press_kelvin("euler", period_s);
+  const CaseTrace holding = press_kelvin("exact", period_s);
   Chart picture = two_traces("5 mm into a Kelvin solid with an arm of 0.4 ms", failing, "forward Euler",
                              holding, "exact (first-order hold)");
   picture.x_range = {0.0, 0.1};
@@ -109,9 +109,9 @@ NamedCase euler_maxwell(std::uint64_t) {
 NamedCase euler_lattice(std::uint64_t) {
   constexpr int finer = 8;
   const int needed = models::substeps(patch, period_s);
-  const Trace reference = press_lattice(finer * needed);
-  const Trace failing = press_lattice(1);
-  const Trace holding = press_lattice(needed);
+  const CaseTrace reference = press_lattice(finer * needed);
+  const CaseTrace failing = press_lattice(1);
+  const CaseTrace holding = press_lattice(needed);
   Chart picture = two_traces("5 mm into a lattice of 13 by 13 nodes", failing, "one step a tick", holding,
                              fmt::format("{} sub-steps", needed));
   picture.x_range = {0.0, 0.1};

@@ -36,14 +36,14 @@ SampledDevice weighted_handle() {
 }
 
 /// A weight that leans on the tissue, from where half of it would rest.
-Trace lean(const LimitedDepth& law) {
+CaseTrace lean(const LimitedDepth& law) {
   const double begin_m =
       intestine.depth_at_stiffness(0.5 * push_n * intestine.exponent / intestine.thickness);
   return run_loop(weighted_handle(), law, {.place_m = begin_m}, 3.0,
                   [](double time_s) { return HandPush{.force_n = push_n * std::min(1.0, 0.5 + time_s)}; });
 }
 
-CaseOutcome judged(const Trace& trace) {
+CaseOutcome judged(const CaseTrace& trace) {
   const double ripple = ripple_n(trace);
   return {.holds = ripple <= felt_n,
           .measured = ripple,
@@ -58,9 +58,9 @@ NamedCase exponential_depth(std::uint64_t) {
   const AxisLaw law{models::Law::make("exponential", values, {{"viscous", false}})};
   const LawLimits limits = limits_of(weighted_handle(), law, tool, deepest_m);
   const double passive_m = limits.depth_m.value_or(deepest_m);
-  const Trace failing = lean({});
+  const CaseTrace failing = lean({});
   const double kept_m = intestine.depth_at_stiffness(margin * intestine.stiffness(passive_m));
-  const Trace holding = lean({.limit_m = kept_m});
+  const CaseTrace holding = lean({.limit_m = kept_m});
   const double rest_m = kept_m + (push_n - intestine.elastic_force(kept_m)) / intestine.stiffness(kept_m);
   return {
       .where = "001, eq. 11",

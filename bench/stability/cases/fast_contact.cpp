@@ -40,7 +40,7 @@ struct SoftContact {
 
 struct Bounce {
   double gained_j = 0.0;
-  Trace speed;
+  CaseTrace speed;
 };
 
 /// Thrown at the wall from a share of a tick in front of it, until it has left it again.

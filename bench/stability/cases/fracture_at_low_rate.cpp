@@ -98,7 +98,7 @@ class FromThePath {
 struct Stroke {
   Books books;
   double noticed_n = 0.0;  ///< force of the deformation at the tick of the fracture
-  Trace error_mj;
+  CaseTrace error_mj;
 };
 
 template <typename Keeper>

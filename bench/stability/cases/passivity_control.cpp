@@ -8,7 +8,7 @@ namespace {
 
 constexpr double share = 4.0;
 
-CaseOutcome judged(const Trace& trace, const std::string& also) {
+CaseOutcome judged(const CaseTrace& trace, const std::string& also) {
   const double ripple = ripple_n(trace);
   return {.holds = ripple <= felt_n,
           .measured = ripple,
@@ -23,8 +23,8 @@ NamedCase passivity_control(std::uint64_t) {
   const double passive = 2.0 * device.viscous_n_s_per_m / device.period_s;
   const double stiffness = share * passive;
   const WallForce wall{{.stiffness_n_per_m = stiffness}};
-  const Trace failing = lean_on(device, wall);
-  const Trace holding = lean_on(device, ControlledWall(wall, device, {stiffness}));
+  const CaseTrace failing = lean_on(device, wall);
+  const CaseTrace holding = lean_on(device, ControlledWall(wall, device, {stiffness}));
   const double lagging_n =
       ripple_n(lean_on(device, ControlledWall(wall, device, {stiffness}, BrakeOn::read_velocity)));
   return {

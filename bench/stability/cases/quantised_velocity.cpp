@@ -16,13 +16,13 @@ constexpr double seconds = 1.5;
 constexpr double into_wall_m_s = 10e-3;
 
 /// A hand that goes into the wall at 10 mm/s for a second and stays.
-Trace slow_press(const SampledDevice& device) {
+CaseTrace slow_press(const SampledDevice& device) {
   return run_loop(device, WallForce{wall}, {}, seconds,
                   [](double time_s) { return HandPush{.place_m = into_wall_m_s * std::min(time_s, 1.0)}; });
 }
 
 struct Hum {
-  Trace trace;
+  CaseTrace trace;
   double rms_n = 0.0;
 };
 
@@ -30,7 +30,7 @@ struct Hum {
 Hum hum_of(SampledDevice device) {
   Hum hum{.trace = slow_press(device)};
   device.encoder_step_m = 0.0;
-  const Trace smooth = slow_press(device);
+  const CaseTrace smooth = slow_press(device);
   double squares = 0.0;
   for (std::size_t i = 0; i < smooth.force_n.size(); ++i) {
     squares += std::pow(hum.trace.force_n[i] - smooth.force_n[i], 2);

@@ -27,7 +27,7 @@ SampledDevice held(const HandImpedance& hand) {
   return device;
 }
 
-Trace press(const HandImpedance& hand, const Wall& wall) {
+CaseTrace press(const HandImpedance& hand, const Wall& wall) {
   return run_loop(held(hand), WallForce{wall}, {}, seconds, [](double time_s) {
     return HandPush{.place_m = into_tissue_m * drivers::MinimumJerk::at(2.0 * time_s).place};
   });
@@ -46,9 +46,9 @@ NamedCase stiff_grip(std::uint64_t) {
   });
   const Wall damped_less{.stiffness_n_per_m = tissue.stiffness_n_per_m,
                          .damping_n_s_per_m = margin * boundary};
-  const Trace loose = press(light_grip, tissue);
-  const Trace failing = press(stiffened_grip, tissue);
-  const Trace holding = press(stiffened_grip, damped_less);
+  const CaseTrace loose = press(light_grip, tissue);
+  const CaseTrace failing = press(stiffened_grip, tissue);
+  const CaseTrace holding = press(stiffened_grip, damped_less);
   Chart picture = two_traces("A hand of 600 N/m presses a damped tissue", failing, "14.2 N·s/m", holding,
                              fmt::format("{:.1f} N·s/m", damped_less.damping_n_s_per_m));
   picture.curves.push_back(curve_of(loose, "14.2 N·s/m, hand of 200 N/m", Colour::green));

@@ -7,7 +7,7 @@ namespace {
 constexpr std::size_t points_of_a_picture = 1200;
 }
 
-double ripple_n(const Trace& trace, double share) {
+double ripple_n(const CaseTrace& trace, double share) {
   const std::size_t size = trace.force_n.size();
   const auto begin = size - static_cast<std::size_t>(share * static_cast<double>(size));
   const auto count = static_cast<double>(size - begin);
@@ -23,14 +23,14 @@ std::string newtons(double force_n) {
   return force_n < 1e-3 ? "below 0.001 N" : fmt::format("{:.2g} N", force_n);
 }
 
-Curve curve_of(const Trace& trace, std::string label, Colour colour) {
+Curve curve_of(const CaseTrace& trace, std::string label, Colour colour) {
   return decimated(
       {.label = std::move(label), .x = trace.time_s, .y = trace.force_n, .colour = colour, .width = 1.2},
       points_of_a_picture);
 }
 
-Chart two_traces(std::string title, const Trace& failing, std::string failing_label, const Trace& holding,
-                 std::string holding_label) {
+Chart two_traces(std::string title, const CaseTrace& failing, std::string failing_label,
+                 const CaseTrace& holding, std::string holding_label) {
   return {.title = std::move(title),
           .x_label = "time [s]",
           .y_label = "force [N]",

@@ -12,7 +12,7 @@
 namespace kerf::bench {
 
 /// A force over time.
-struct Trace {
+struct CaseTrace {
   std::vector<double> time_s;
   std::vector<double> force_n;
 
@@ -29,18 +29,18 @@ inline constexpr double lost_n = 1000.0;
 inline constexpr double felt_n = 0.05;
 
 /// rms of a force about its mean over the last `share` of a trace [N].
-[[nodiscard]] double ripple_n(const Trace& trace, double share = 0.25);
+[[nodiscard]] double ripple_n(const CaseTrace& trace, double share = 0.25);
 
 /// A force as a reader wants it: "0.36 N", "below 0.001 N", "beyond 1000 N".
 [[nodiscard]] std::string newtons(double force_n);
 
 /// A curve of a trace, thinned for a small picture.
-[[nodiscard]] Curve curve_of(const Trace& trace, std::string label, Colour colour);
+[[nodiscard]] Curve curve_of(const CaseTrace& trace, std::string label, Colour colour);
 
 /// What every picture of a case shares: the run that failed in vermillion, behind it the one that held in
 /// blue.
-[[nodiscard]] Chart two_traces(std::string title, const Trace& failing, std::string failing_label,
-                               const Trace& holding, std::string holding_label);
+[[nodiscard]] Chart two_traces(std::string title, const CaseTrace& failing, std::string failing_label,
+                               const CaseTrace& holding, std::string holding_label);
 
 /// What a hand does to a device: a force on it, and where its spring rests.
 struct HandPush {
@@ -51,10 +51,10 @@ struct HandPush {
 /// The force that a device in a hand renders over `seconds`, positive against the way in; `hand(t)` gives
 /// the HandPush. Ends early at lost_n.
 template <typename Force, typename Hand>
-[[nodiscard]] Trace run_loop(const SampledDevice& device, Force force, AxisMotion start, double seconds,
-                             Hand hand) {
+[[nodiscard]] CaseTrace run_loop(const SampledDevice& device, Force force, AxisMotion start, double seconds,
+                                 Hand hand) {
   SampledLoop loop(device, std::move(force), start);
-  Trace trace;
+  CaseTrace trace;
   const auto ticks = static_cast<std::size_t>(std::lround(seconds / device.period_s));
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     const double time_s = static_cast<double>(tick) * device.period_s;

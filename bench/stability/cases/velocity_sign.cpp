@@ -31,7 +31,7 @@ SampledDevice held_scissors() {
 }
 
 /// A hand that closes the scissors, lets them open a little and then holds still, from 1 s on.
-Trace close_and_hold(double ramp_band, double scale) {
+CaseTrace close_and_hold(double ramp_band, double scale) {
   const double values[] = {0.0, 1.0, closing_n, closing_n, opening_n, opening_n};
   const AxisLaw law{
       models::Law::make(
@@ -45,7 +45,7 @@ Trace close_and_hold(double ramp_band, double scale) {
   });
 }
 
-CaseOutcome judged(const Trace& trace, const std::string& also) {
+CaseOutcome judged(const CaseTrace& trace, const std::string& also) {
   const double ripple = ripple_n(trace);
   double jumps = 0.0;
   const std::size_t begin = trace.force_n.size() / 2;
@@ -79,8 +79,8 @@ NarrowestBands narrowest_bands() {
 }  // namespace
 
 NamedCase velocity_sign(std::uint64_t) {
-  const Trace failing = close_and_hold(0.0, 0.0);
-  const Trace holding = close_and_hold(band_rad_s, 0.0);
+  const CaseTrace failing = close_and_hold(0.0, 0.0);
+  const CaseTrace holding = close_and_hold(band_rad_s, 0.0);
   const double scaled_n = ripple_n(close_and_hold(0.0, reversal_scale));
   const NarrowestBands bands = narrowest_bands();
   return {

@@ -103,13 +103,5 @@ TEST(LoopChecks, HoldALawToTheMarginThatIsAskedFor) {
   EXPECT_FALSE(deadline.why.empty());
 }
 
-TEST(Hum, IsJudgedInAHandThatHasAName) {
-  const drivers::DeviceInfo device = drivers::open_device("sim:scissors")->info();
-  EXPECT_EQ(hum_of(kelvin(5.0), device, 1000.0, {.grip = "light", .deepest = 0.3}), std::nullopt);
-  EXPECT_TRUE(hum_of(kelvin(1e5), device, 1000.0, {.deepest = 0.01}));
-  EXPECT_THROW((void)hum_of(kelvin(5.0), device, 1000.0, {.grip = "iron", .deepest = 0.3}),
-               std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace kerf::bench

@@ -19,7 +19,7 @@ const std::vector<drivers::AxisInfo> scissors{
     {.name = "x_s", .lever = 1.0, .force_limit = 100.0, .slew_limit = 20000.0}};
 
 Command applied(Safety& safety, Command command, double time_s = 1.0) {
-  safety.apply(time_s, {}, command);
+  safety.apply(time_s, command);
   return command;
 }
 
@@ -114,7 +114,7 @@ TEST(Safety, LetsThePassivityControllerActOnlyIfAsked) {
     (void)applied(safety, {.force = {0.0, 2.0}});
     read(0.001);  // 2 mJ were given
     Command command;
-    safety.apply(1.0, {.velocity = {0.0, 1.0}}, command);
+    safety.apply(1.0, command);  // at the 1 m/s of that millimetre, whatever the driver's filter says
     EXPECT_EQ(command.flags & schema::flag_passivity_control, asked ? schema::flag_passivity_control : 0U);
     EXPECT_NEAR(command.force[1], asked ? -2.0 : 0.0, 1e-12);
   }

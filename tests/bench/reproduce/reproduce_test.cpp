@@ -34,7 +34,7 @@ void expect_drawable(const Reproduction& paper) {
 
 TEST(Reproduce, BladeAndTissue) {
   const Reproduction paper = reproduce_000(1);
-  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, Verdict::fails) << claim.claim;
+  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   EXPECT_EQ(paper.figures.size(), 6U);
   expect_drawable(paper);
 }
@@ -43,28 +43,28 @@ TEST(Reproduce, OrthogonalDecomposition) {
   const Reproduction paper = reproduce_001(1);
   for (const Claim& claim : paper.claims) {
     const bool of_paper = claim.claim.find("`paper` projection") != std::string::npos;
-    EXPECT_EQ(claim.verdict == Verdict::fails, of_paper) << claim.claim << ": " << claim.measured;
+    EXPECT_EQ(claim.verdict == ClaimVerdict::fails, of_paper) << claim.claim << ": " << claim.measured;
   }
   expect_drawable(paper);
 }
 
 TEST(Reproduce, FuzzyKelvin) {
   const Reproduction paper = reproduce_002(1);
-  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, Verdict::fails) << claim.claim;
+  for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, TwoMeshScissors) {
   const Reproduction paper = reproduce_003(1);
   // The others measure this machine.
-  EXPECT_EQ(paper.claims.at(0).verdict, Verdict::holds) << paper.claims.at(0).measured;
-  EXPECT_EQ(paper.claims.at(1).verdict, Verdict::holds) << paper.claims.at(1).measured;
+  EXPECT_EQ(paper.claims.at(0).verdict, ClaimVerdict::holds) << paper.claims.at(0).measured;
+  EXPECT_EQ(paper.claims.at(1).verdict, ClaimVerdict::holds) << paper.claims.at(1).measured;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, HapticScissors) {
   const Reproduction paper = reproduce_004(1);
-  for (const Claim& claim : paper.claims) EXPECT_EQ(claim.verdict, Verdict::holds) << claim.claim;
+  for (const Claim& claim : paper.claims) EXPECT_EQ(claim.verdict, ClaimVerdict::holds) << claim.claim;
   expect_drawable(paper);
 }
 

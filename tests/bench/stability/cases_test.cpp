@@ -163,7 +163,7 @@ TEST(Delay, AHandOnAWallVibratesFromTheEigenvaluesBoundaryOn) {
   late.delay_s = 4e-3;
   const double boundary = eigenvalue_boundary(late, 0.0, 1.0, 1e6);
   const auto growth = [&](double stiffness) {
-    const Trace trace = run_loop(late, WallForce{{.stiffness_n_per_m = stiffness}, false}, {}, 2.0,
+    const CaseTrace trace = run_loop(late, WallForce{{.stiffness_n_per_m = stiffness}, false}, {}, 2.0,
                                  [](double) { return HandPush{.place_m = 1e-4}; });
     return ripple_n(trace, 0.25) / ripple_n(trace, 0.75);
   };

@@ -57,7 +57,8 @@ struct Exponential {
     return {{"thickness", 0.1, "L0, thickness of the sample in the unit of position"},
             {"zero_at_contact", false, "subtract alpha, so that the force begins at zero"},
             {"viscous", true, "a force per speed"},
-            {"offset", false, "a constant force, in contact and before it"}};
+            {"offset", false, "a constant force, in contact and before it"},
+            precision_option()};
   }
   static Exponential make(std::span<const T> values, const Options& given) {
     const OptionReader reader(name, options(), given);
@@ -75,8 +76,8 @@ struct Exponential {
   [[nodiscard]] T elastic_force(double penetration) const {
     using std::exp;
     using std::expm1;
-    if (penetration <= 0.0) return T(0.0);
-    const T growth = exponent * (penetration / thickness);
+    if (penetration <= 0.0) return T(0);
+    const T growth = exponent * static_cast<Input<T>>(penetration / thickness);
     return zero_at_contact ? T(amplitude * expm1(growth)) : T(amplitude * exp(growth));
   }
   /// dF/dx [N/m]
@@ -100,7 +101,7 @@ struct Exponential {
 
   T step(State&, const Motion& motion, double) const noexcept {
     if (motion.penetration <= 0.0) return offset;
-    return offset + (elastic_force(motion.penetration) + viscosity * motion.velocity);
+    return offset + (elastic_force(motion.penetration) + viscosity * static_cast<Input<T>>(motion.velocity));
   }
 };
 

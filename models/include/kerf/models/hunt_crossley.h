@@ -45,7 +45,8 @@ struct HuntCrossley {
             {"exponent", Quantity::ratio, 0.5, 5.0, Scale::linear, "n, power of the depth"}};
   }
   static std::vector<OptionInfo> options() {
-    return {{"reference_depth", 0.01, "x1, depth at which force and damping are given, in position's unit"}};
+    return {{"reference_depth", 0.01, "x1, depth at which force and damping are given, in position's unit"},
+            precision_option()};
   }
   static HuntCrossley make(std::span<const T> values, const Options& given) {
     return {values[0], values[1], values[2],
@@ -59,16 +60,16 @@ struct HuntCrossley {
   }
 
   T step(State&, const Motion& motion, double) const noexcept {
-    if (motion.penetration <= 0.0) return T(0.0);
-    const T at_reference = reference_force + reference_damping * motion.velocity;
-    return at_reference < T(0.0) ? T(0.0) : T(at_reference * share(motion.penetration));
+    if (motion.penetration <= 0.0) return T(0);
+    const T at_reference = reference_force + reference_damping * static_cast<Input<T>>(motion.velocity);
+    return at_reference < T(0) ? T(0) : T(at_reference * share(motion.penetration));
   }
 
  private:
   /// (x / x1)^n
   [[nodiscard]] T share(double penetration) const noexcept {
     using std::pow;
-    return pow(penetration / reference_depth, exponent);
+    return pow(static_cast<Input<T>>(penetration / reference_depth), exponent);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/integrator.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -20,9 +21,11 @@ namespace kerf::models {
 ///
 ///     f[n+1] = a f[n] + (b/T) (1 - a) (x[n+1] - x[n])
 ///
-/// so the result does not depend on the period and never goes unstable. The option `integrator = "euler"`
-/// steps forward Euler instead, which diverges for T > 2 tau: the bench shows where. Contact is unilateral:
-/// the force felt is never below zero while the arm keeps relaxing. The first tick takes the arm as relaxed.
+/// so the result does not depend on the period and never goes unstable. The option `integrator` has two other
+/// steps (integrator.h), so that the bench can show what they cost: "semi_implicit", stable but of first
+/// order, and "euler", which diverges for T > 2 tau. Contact is unilateral: the force felt is never below
+/// zero while the arm keeps relaxing. The first tick takes the arm as relaxed. With `precision = "float"` the
+/// forces are single, and only the travel of a tick is still a difference of doubles.
 ///
 /// Source: 002, fig. 2 and section 2.1; differs from the paper in that b, printed without a unit, is N·s/m.
 template <typename T>
@@ -33,11 +36,11 @@ struct Kelvin {
   T parallel_stiffness{};  ///< k1 [N/m], > 0
   T series_stiffness{};    ///< k2 [N/m], > 0
   T damping{};             ///< b [N·s/m], > 0
-  bool euler = false;
+  Integrator integrator = Integrator::exact;
 
   struct State {
-    T arm_force{0.0};
-    T decay{1.0};  ///< a of `period_s`
+    T arm_force{0};
+    ArmTick<T> tick;  ///< of `period_s`
     double penetration = 0.0;
     double period_s = 0.0;
     bool started = false;
@@ -49,13 +52,9 @@ struct Kelvin {
             {"series_stiffness", Quantity::stiffness, 1e-9, 1e9, Scale::logarithmic, "k2, spring of the arm"},
             {"damping", Quantity::damping, 1e-9, 1e9, Scale::logarithmic, "b, dashpot of the arm"}};
   }
-  static std::vector<OptionInfo> options() {
-    return {{"integrator", std::string("exact"), "exact (first-order hold) or euler (forward Euler)"}};
-  }
+  static std::vector<OptionInfo> options() { return {integrator_option(), precision_option()}; }
   static Kelvin make(std::span<const T> values, const Options& given) {
-    const std::string integrator =
-        OptionReader(name, options(), given).choice("integrator", {"exact", "euler"});
-    return {values[0], values[1], values[2], integrator == "euler"};
+    return {values[0], values[1], values[2], integrator_of(OptionReader(name, options(), given))};
   }
 
   /// Relaxation time tau = b / k2 [s].
@@ -76,26 +75,23 @@ struct Kelvin {
   /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
-    return force < T(0.0) ? T(0.0) : force;
+    return force < T(0) ? T(0) : force;
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
   T bilateral_step(State& state, double x, double period_s) const noexcept {
-    using std::expm1;
     if (!state.started) {
       state.started = true;
       state.penetration = x;
     }
     if (period_s != state.period_s) {
       state.period_s = period_s;
-      state.decay =
-          euler ? T(1.0 - period_s / relaxation_time()) : T(1.0 + expm1(-period_s / relaxation_time()));
+      state.tick = ArmTick<T>::of(integrator, series_stiffness, relaxation_time(), period_s);
     }
-    const double travel = x - state.penetration;
-    const T gain = euler ? series_stiffness : T(damping / period_s * (1.0 - state.decay));
-    state.arm_force = state.decay * state.arm_force + gain * travel;
+    const auto travel = static_cast<Input<T>>(x - state.penetration);
+    state.arm_force = state.arm_force + (state.tick.gain * travel - state.tick.loss * state.arm_force);
     state.penetration = x;
-    return parallel_stiffness * x + state.arm_force;
+    return parallel_stiffness * static_cast<Input<T>>(x) + state.arm_force;
   }
 };
 

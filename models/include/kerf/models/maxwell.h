@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/integrator.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -28,8 +29,10 @@ namespace kerf::models {
 ///
 ///     f_i[n+1] = a_i f_i[n] + (k_i tau_i / T) (1 - a_i) (x[n+1] - x[n])
 ///
+/// `integrator` and `precision` as in Kelvin; forward Euler diverges where an arm has T > 2 tau_i.
+///
 /// Contact is unilateral as in Kelvin: no force below zero, while the arms keep relaxing, and the first tick
-/// takes them as relaxed. Passive at every period: springs and dashpots, all positive.
+/// takes them as relaxed. Exact, it is passive at every period: springs and dashpots, all positive.
 ///
 /// Source: Maxwell's arms in parallel as in Ferry, Viscoelastic Properties of Polymers (1980), chapter 1; 002
 /// uses one of them.
@@ -43,18 +46,20 @@ struct Maxwell {
   T parallel_stiffness{};                     ///< k0 [N/m], > 0
   std::array<T, max_arms> stiffness{};        ///< k_i [N/m], > 0
   std::array<T, max_arms> relaxation_time{};  ///< tau_i [s], > 0
+  Integrator integrator = Integrator::exact;
 
   struct State {
     std::array<T, max_arms> arm_force{};
-    std::array<T, max_arms> decay{};  ///< a_i of `period_s`
-    std::array<T, max_arms> gain{};   ///< force of an arm per travel in a tick of `period_s`
+    std::array<ArmTick<T>, max_arms> tick{};  ///< of `period_s`
     double penetration = 0.0;
     double period_s = 0.0;
     bool started = false;
   };
 
   static std::vector<OptionInfo> options() {
-    return {{"arms", 2.0, "number of arms, each with a relaxation time of its own, 1 to 6"}};
+    return {{"arms", 2.0, "number of arms, each with a relaxation time of its own, 1 to 6"},
+            integrator_option(),
+            precision_option()};
   }
   static std::vector<ParameterInfo> parameters(const Options& given) {
     const std::size_t count = arm_count(given);
@@ -73,6 +78,7 @@ struct Maxwell {
   static Maxwell make(std::span<const T> values, const Options& given) {
     Maxwell law;
     law.arms = arm_count(given);
+    law.integrator = integrator_of(OptionReader(name, options(), given));
     law.parallel_stiffness = values[0];
     for (std::size_t i = 0; i < law.arms; ++i) {
       law.stiffness[i] = values[1 + i];
@@ -105,7 +111,7 @@ struct Maxwell {
   /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
-    return force < T(0.0) ? T(0.0) : force;
+    return force < T(0) ? T(0) : force;
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
@@ -115,30 +121,29 @@ struct Maxwell {
       state.penetration = x;
     }
     if (period_s != state.period_s) hold(state, period_s);
-    const double travel = x - state.penetration;
+    const auto travel = static_cast<Input<T>>(x - state.penetration);
     state.penetration = x;
-    T force = parallel_stiffness * x;
+    T force = parallel_stiffness * static_cast<Input<T>>(x);
     for (std::size_t i = 0; i < arms; ++i) {
       T& arm = state.arm_force[i];
-      arm = state.decay[i] * arm + state.gain[i] * travel;
-      // What a long hold leaves would soon be denormal, and slow to reckon with.
-      if (arm < 1e-100 && arm > -1e-100) arm = T(0.0);
+      arm = arm + (state.tick[i].gain * travel - state.tick[i].loss * arm);
+      if (arm < negligible_n && arm > -negligible_n) arm = T(0);
       force = force + arm;
     }
     return force;
   }
 
  private:
+  // What a long hold leaves would soon be denormal, and slow to reckon with.
+  static constexpr Input<T> negligible_n = static_cast<Input<T>>(std::is_same_v<T, float> ? 1e-30 : 1e-100);
+
   static std::size_t arm_count(const Options& given) {
     return OptionReader(name, options(), given).count("arms", 1, max_arms);
   }
   void hold(State& state, double period_s) const noexcept {
-    using std::expm1;
     state.period_s = period_s;
     for (std::size_t i = 0; i < arms; ++i) {
-      const T relaxed = expm1(-period_s / relaxation_time[i]);
-      state.decay[i] = 1.0 + relaxed;
-      state.gain[i] = stiffness[i] * relaxation_time[i] / period_s * -relaxed;
+      state.tick[i] = ArmTick<T>::of(integrator, stiffness[i], relaxation_time[i], period_s);
     }
   }
 };

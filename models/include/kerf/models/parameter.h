@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -63,6 +64,16 @@ struct OptionInfo {
   OptionValue standard;
   std::string meaning;
 };
+
+/// The scalar in which a law of the scalar T reckons with what is no parameter: its inputs, its numbers.
+/// Single precision stays single; a dual number meets doubles.
+template <typename T>
+using Input = std::conditional_t<std::is_same_v<T, float>, float, double>;
+
+/// The option of a law that can be rendered in single precision; its parameters are fitted in double anyhow.
+[[nodiscard]] inline OptionInfo precision_option() {
+  return {"precision", std::string("double"), "of the arithmetic of a tick: double or float"};
+}
 
 /// Reads the options that a law knows, and refuses the others.
 ///

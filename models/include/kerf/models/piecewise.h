@@ -42,7 +42,8 @@ struct Piecewise {
   static std::vector<OptionInfo> options() {
     auto all = BranchSelector::options();
     all.insert(all.begin(), {{"segments", 5.0, "number of linear segments, 1 to 16"},
-                             {"loop", false, "opening has forces of its own"}});
+                             {"loop", false, "opening has forces of its own"},
+                             precision_option()});
     return all;
   }
   static std::vector<ParameterInfo> parameters(const Options& given) {
@@ -79,7 +80,8 @@ struct Piecewise {
   }
 
   /// Force of one branch at a penetration [N].
-  [[nodiscard]] T branch_force(bool is_closing, double penetration) const noexcept {
+  [[nodiscard]] T branch_force(bool is_closing, double at) const noexcept {
+    const auto penetration = static_cast<Input<T>>(at);
     const auto& force = is_closing ? closing : opening;
     if (knot[0] >= penetration) return force[0];
     std::size_t i = 0;
@@ -102,7 +104,7 @@ struct Piecewise {
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     if (!loop) return branch_force(true, motion.penetration);
     const auto branch = selector.step(state, motion, period_s);
-    return branch.scale * branch_force(branch.closing, motion.penetration);
+    return static_cast<Input<T>>(branch.scale) * branch_force(branch.closing, motion.penetration);
   }
 
  private:

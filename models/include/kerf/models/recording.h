@@ -43,7 +43,8 @@ struct Recording {
     all.insert(all.begin(), {{"points", 101.0, "grid points of a table, 2 to 4096"},
                              {"first", 0.0, "penetration of the first grid point"},
                              {"last", 1.0, "penetration of the last grid point"},
-                             {"loop", false, "opening has a table of its own"}});
+                             {"loop", false, "opening has a table of its own"},
+                             precision_option()});
     return all;
   }
   static std::vector<ParameterInfo> parameters(const Options& given) {
@@ -81,13 +82,13 @@ struct Recording {
     if (!(place > 0.0)) return table.front();
     const double cell = std::min(std::floor(place), static_cast<double>(table.size() - 2));
     const auto i = static_cast<std::size_t>(cell);
-    return table[i] + (table[i + 1] - table[i]) * (place - cell);
+    return table[i] + (table[i + 1] - table[i]) * static_cast<Input<T>>(place - cell);
   }
 
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     if (opening.empty()) return branch_force(true, motion.penetration);
     const auto branch = selector.step(state, motion, period_s);
-    return branch.scale * branch_force(branch.closing, motion.penetration);
+    return static_cast<Input<T>>(branch.scale) * branch_force(branch.closing, motion.penetration);
   }
 
  private:

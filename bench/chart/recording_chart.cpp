@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "chart/fidelities.h"
+#include "chart/fit_plan.h"
+#include "chart/speed_accuracy.h"
+#include "fits/fit_series.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t most_timed_ticks = 4000;
+constexpr double runaway = 10.0;  // times the largest force recorded
+
+bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
+
+/// The stretch of a recording that laws are timed along: that with most contact.
+std::vector<drivers::Sample> timed_stretch(const AxisSeries& series, const FitSource& source) {
+  const std::size_t rows = series.time_s.size();
+  const std::size_t length = std::min(rows, most_timed_ticks);
+  std::size_t inside = 0;
+  std::size_t most = 0;
+  std::size_t begin = 0;
+  for (std::size_t end = 0; end < rows; ++end) {
+    if (series.penetration[end] > 0.0) ++inside;
+    if (end >= length && series.penetration[end - length] > 0.0) --inside;
+    if (end + 1 < length || inside <= most) continue;
+    most = inside;
+    begin = end + 1 - length;
+  }
+  std::vector<drivers::Sample> samples(length);
+  for (std::size_t i = 0; i < length; ++i) {
+    const models::Contact& contact = source.contact;
+    samples[i].position[0] = contact.position + contact.direction * series.penetration[begin + i];
+    samples[i].velocity[0] = contact.direction * series.velocity[begin + i];
+  }
+  return samples;
+}
+
+double median_period_s(const AxisSeries& series) {
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < series.time_s.size(); ++i)
+    periods.push_back(series.time_s[i] - series.time_s[i - 1]);
+  if (periods.empty()) throw std::invalid_argument("a recording of one row cannot be charted");
+  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
+                   periods.end());
+  return periods[periods.size() / 2];
+}
+
+FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options) {
+  FitRecordingOptions fit{.models = {plan.model}};
+  fit.fit.law_options = plan.options;
+  fit.fit.folds = options.folds;
+  fit.fit.threads = options.threads;
+  fit.fit.jnd = options.jnd;
+  fit.fit.intervals = fitting::Intervals::white;
+  return fit;
+}
+
+/// Root mean square and largest difference of two series of forces [N].
+struct Difference {
+  double rms_n = 0.0;
+  double largest_n = 0.0;
+};
+
+Difference difference(const std::vector<double>& a, const std::vector<double>& b) {
+  Difference result;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    result.rms_n += (a[i] - b[i]) * (a[i] - b[i]);
+    result.largest_n = std::max(result.largest_n, std::abs(a[i] - b[i]));
+  }
+  result.rms_n = std::sqrt(result.rms_n / static_cast<double>(std::max<std::size_t>(a.size(), 1)));
+  return result;
+}
+
+class RecordingChart {
+ public:
+  RecordingChart(const FitSource& source, const ChartOptions& options)
+      : source_(source),
+        options_(options),
+        series_(fit_series(*source.recording, source.axis, source.contact).axis) {
+    period_s_ = median_period_s(series_);
+    for (const double force : series_.force) peak_n_ = std::max(peak_n_, std::abs(force));
+  }
+
+  SpeedAccuracy run() {
+    chart_.source = source_.name;
+    chart_.rate_hz = 1.0 / period_s_;
+    chart_.reference = options_.folds > 0 ? "held-out cycles, or blocks of time where there are none"
+                                          : "the recording itself, with nothing held out";
+    const auto plans = fit_plans(options_.models);
+    for (const FitPlan& plan : plans) {
+      if (stopped(options_)) break;
+      add(plan);
+      if (options_.done != nullptr) *options_.done += 900 / plans.size();
+    }
+    if (!stopped(options_) && chart_.points.empty()) refuse();
+    if (!stopped(options_)) time();
+    if (stopped(options_)) {
+      chart_.stopped = true;
+      chart_.points.clear();
+      return chart_;
+    }
+    mark_front(chart_.points, chart_.rate_hz);
+    if (options_.done != nullptr) *options_.done = chart_steps;
+    return chart_;
+  }
+
+ private:
+  void add(const FitPlan& plan) {
+    const RecordingFit fit = fit_recordings(std::span(&source_, 1), options_of(plan, options_));
+    for (const Refusal& refusal : fit.refusals) {
+      chart_.notes.push_back(
+          fmt::format("{} ({}) was not fitted: {}", refusal.model, plan.label, refusal.why));
+    }
+    if (fit.laws.empty()) return;
+    const FittedLaw& fitted = fit.laws.front();
+    chart_.jnd_n = fit.jnd_n;
+    const auto rendered_force = render(without_rendering_aids(fitted.file.law), series_);
+    ChartPoint point{.law = plan.model,
+                     .fidelity = plan.label,
+                     .parameters = fitted.result.free_parameters,
+                     .rate_hz = chart_.rate_hz,
+                     .cost = {},
+                     .error_n = options_.folds > 0 ? fitted.result.cv_rmse : fitted.result.rmse,
+                     .worst_n = difference(rendered_force, series_.force).largest_n,
+                     .axis = source_.recording->axes[source_.axis].name,
+                     .why = {},
+                     .file = fitted.file};
+    if (!std::isfinite(point.error_n)) {
+      chart_.notes.push_back(
+          fmt::format("{} ({}) has no error on held-out data and is left out", plan.model, plan.label));
+      return;
+    }
+    finish(point, rendered_force);
+    const bool first = chart_.points.size() == 1 || chart_.points[chart_.points.size() - 2].law != plan.model;
+    if (has_float(plan.model) && first) add_single(plan, point, rendered_force);
+  }
+
+  void add_single(const FitPlan& plan, ChartPoint point, const std::vector<double>& in_double) {
+    try {
+      point.file = with_options(point.file, {{"precision", std::string("float")}});
+    } catch (const std::invalid_argument& error) {
+      chart_.notes.push_back(fmt::format("{} ({}) in float: {}", plan.model, plan.label, error.what()));
+      return;
+    }
+    const auto in_single = render(without_rendering_aids(point.file.law), series_);
+    point.fidelity += ", float";
+    point.error_n = std::hypot(point.error_n, difference(in_single, in_double).rms_n);
+    finish(point, in_single);
+  }
+
+  void finish(ChartPoint& point, const std::vector<double>& force) {
+    point.error_jnd = point.error_n / chart_.jnd_n;
+    double largest = 0.0;
+    bool finite = true;
+    for (const double f : force) {
+      largest = std::max(largest, std::abs(f));
+      finite = finite && std::isfinite(f);
+    }
+    if (!finite || !(largest <= runaway * peak_n_)) {
+      point.stable = false;
+      point.why = fmt::format("its force reaches {:.3g} N, the recording {:.3g} N", largest, peak_n_);
+    } else if (options_.unstable) {
+      const auto why = options_.unstable(point.file, point.rate_hz);
+      point.stable = !why;
+      point.why = why.value_or("");
+    }
+    chart_.points.push_back(point);
+  }
+
+  void time() {
+    const auto samples = timed_stretch(series_, source_);
+    std::vector<TimedLaw> laws;
+    for (const ChartPoint& point : chart_.points) {
+      laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, {0}),
+                      .path = samples,
+                      .period_s = period_s_});
+    }
+    TickCostOptions timing = options_.timing;
+    timing.stop = options_.stop;
+    const auto costs = tick_costs(laws, timing);
+    for (std::size_t i = 0; i < costs.size(); ++i) chart_.points[i].cost = costs[i];
+  }
+
+  [[noreturn]] void refuse() const {
+    throw std::invalid_argument(chart_.notes.empty() ? "no law could be fitted"
+                                                     : "no law could be fitted: " + chart_.notes.front());
+  }
+
+  const FitSource& source_;
+  const ChartOptions& options_;
+  AxisSeries series_;
+  double period_s_ = 0.0;
+  double peak_n_ = 0.0;
+  SpeedAccuracy chart_;
+};
+
+}  // namespace
+
+SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options) {
+  return RecordingChart(source, options).run();
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,216 @@
+#include "chart/speed_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "chart/fidelities.h"
+#include "chart/fit_plan.h"
+#include "chart/front.h"
+#include "chart/judgement.h"
+#include "laws/placement.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t most_fit_samples = 4000;
+constexpr double shown_from_jnd = 1e-3;
+
+bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
+
+/// Samples along the path, by rate, each made once.
+class Samples {
+ public:
+  explicit Samples(const ScriptedPath& path) : path_(path) {}
+  const std::vector<drivers::Sample>& at(double rate_hz) {
+    const auto known = of_rate_.find(rate_hz);
+    if (known != of_rate_.end()) return known->second;
+    return of_rate_.emplace(rate_hz, samples_of(path_.at(rate_hz))).first->second;
+  }
+
+ private:
+  const ScriptedPath& path_;
+  std::map<double, std::vector<drivers::Sample>> of_rate_;
+};
+
+/// What the reference of a law along one axis looks like to a fit. A cycle begins where the tool turns
+/// inwards.
+struct ReferenceSeries {
+  std::vector<double> time_s, penetration, velocity, force;
+  std::vector<std::uint32_t> cycle;
+
+  ReferenceSeries(const LawFile& law, const Judge& judge, const std::vector<drivers::Sample>& samples,
+                  double rate_hz) {
+    const std::size_t axis = judge.axes().front();
+    const std::size_t step = samples.size() / most_fit_samples + 1;
+    std::uint32_t number = 0;
+    bool inwards = false;
+    for (std::size_t i = 0; i < samples.size(); i += step) {
+      const models::Motion motion = law.contact.motion(samples[i].position[axis], samples[i].velocity[axis]);
+      if (motion.velocity > 0.0 && !inwards) ++number;
+      if (motion.velocity != 0.0) inwards = motion.velocity > 0.0;
+      time_s.push_back(static_cast<double>(i) / rate_hz);
+      penetration.push_back(motion.penetration);
+      velocity.push_back(motion.velocity);
+      force.push_back(-law.contact.direction * judge.force_n(0, time_s.back()));
+      cycle.push_back(number);
+    }
+  }
+  [[nodiscard]] fitting::Series view() const {
+    return {
+        .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = cycle};
+  }
+};
+
+ChartPoint point_of(const Fidelity& fidelity) {
+  return {.law = std::string(fidelity.law.law.model()),
+          .fidelity = fidelity.label,
+          .parameters = fidelity.law.law.values().size(),
+          .rate_hz = fidelity.rate_hz,
+          .cost = {},
+          .axis = {},
+          .why = {},
+          .file = fidelity.law};
+}
+
+bool within_units(const FitPlan& plan, const LawFile& law) {
+  const models::LawInfo info = models::law_info(plan.model);
+  return info.position_unit.empty() ||
+         (info.position_unit == law.position_unit && info.force_unit == law.force_unit);
+}
+
+/// What a law with two branches is rendered with, if it says nothing of that itself.
+void add_aids(LawFile& file, const std::vector<drivers::Sample>& samples, std::size_t axis) {
+  for (const auto* aid : {"velocity_corner", "ramp_band", "reversal_scale"}) {
+    if (file.law.options().count(aid) > 0) return;
+  }
+  AxisSeries met;
+  for (const drivers::Sample& sample : samples) {
+    const models::Motion motion = file.contact.motion(sample.position[axis], sample.velocity[axis]);
+    met.penetration.push_back(motion.penetration);
+    met.velocity.push_back(motion.velocity);
+  }
+  file = with_options(file, with_rendering_aids(file.law.options(), met));
+}
+
+/// The other laws, as fitted to the reference of this one.
+void add_fitted(const LawFile& law, const ReferenceSeries& series, const ChartOptions& options,
+                SpeedAccuracy& chart) {
+  for (const FitPlan& plan : fit_plans(options.models)) {
+    if (stopped(options)) return;
+    if (plan.model == law.law.model() || !within_units(plan, law)) continue;
+    try {
+      fitting::FitOptions fit{.law_options = plan.options, .jnd = options.jnd, .folds = 0};
+      fit.intervals = fitting::Intervals::white;
+      const fitting::FitResult result = fitting::fit(plan.model, series.view(), fit);
+      if (result.parameters.empty()) throw std::invalid_argument(result.message);
+      ChartPoint point = point_of({plan.label, with_law(law, result.law()), options.rate_hz});
+      point.parameters = result.free_parameters;
+      chart.points.push_back(point);
+    } catch (const std::invalid_argument& error) {
+      chart.notes.push_back(fmt::format("{} ({}) was not fitted: {}", plan.model, plan.label, error.what()));
+    }
+    if (options.done != nullptr) *options.done += 5;
+  }
+}
+
+void time_points(const std::vector<std::size_t>& axes, Samples& samples, const ChartOptions& options,
+                 SpeedAccuracy& chart) {
+  std::vector<TimedLaw> laws;
+  for (const ChartPoint& point : chart.points) {
+    laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, axes),
+                    .path = samples.at(point.rate_hz),
+                    .period_s = 1.0 / point.rate_hz});
+  }
+  TickCostOptions timing = options.timing;
+  timing.stop = options.stop;
+  const auto costs = tick_costs(laws, timing);
+  if (costs.empty()) {
+    chart.stopped = true;
+    return;
+  }
+  for (std::size_t i = 0; i < costs.size(); ++i) chart.points[i].cost = costs[i];
+}
+
+}  // namespace
+
+void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
+  std::vector<FrontEntry> entries;
+  for (ChartPoint& point : points) {
+    point.on_front = false;
+    entries.push_back({.cost_ns = point.cost.p50_ns,
+                       .error = point.error_jnd,
+                       .parameters = point.parameters,
+                       .name = point.law,
+                       .competes = point.stable && point.rate_hz == rate_hz});
+  }
+  for (const std::size_t place : pareto_front(entries, {.error_floor = shown_from_jnd}))
+    points[place].on_front = true;
+}
+
+ScriptedPath scripted_path(const Scene& scene) {
+  const auto device = drivers::open_device(device_of(scene));
+  const bool ends = std::isfinite(scene.tissue_until) && !scene.tissue.law.is_spatial();
+  const std::size_t axis = ends ? axis_for(scene.tissue, device->info()) : 0;
+  return {.device = device->info(), .at = [scene, ends, axis](double rate_hz) {
+            ToolPath path = tool_path(scene, rate_hz);
+            const models::Contact& contact = scene.tissue.contact;
+            for (std::size_t i = 0; ends && i < path.position.size(); ++i) {
+              const double depth = contact.direction * (path.position[i][axis] - contact.position);
+              if (depth < scene.tissue_until) continue;
+              path.position[i][axis] = contact.position + contact.direction * scene.tissue_until;
+              path.velocity[i][axis] = 0.0;
+            }
+            return path;
+          }};
+}
+
+SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const ChartOptions& options) {
+  const Fidelities fidelities = fidelities_of(law, options.rate_hz);
+  const Judge judge(fidelities.reference, path, axes_for(law, path.device), options.jnd);
+  SpeedAccuracy chart{.source = {},
+                      .reference = fmt::format("{}, {} at {:g} Hz", law.law.model(),
+                                               fidelities.reference.label, fidelities.reference.rate_hz),
+                      .rate_hz = options.rate_hz,
+                      .jnd_n = judge.jnd_n(0),
+                      .one_axis = judge.axes().size() == 1,
+                      .points = {},
+                      .notes = fidelities.notes};
+  Samples samples(path);
+  for (const Fidelity& fidelity : fidelities.all) chart.points.push_back(point_of(fidelity));
+  if (!law.law.is_spatial()) {
+    const ReferenceSeries series(law, judge, samples.at(options.rate_hz), options.rate_hz);
+    add_fitted(law, series, options, chart);
+  } else if (!options.models.empty()) {
+    chart.notes.push_back(
+        fmt::format("other laws are not fitted to law '{}', which has axes of its own", law.law.model()));
+  }
+  for (ChartPoint& point : chart.points) {
+    if (stopped(options)) break;
+    judge.judge(rendered(point.file, judge.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz), point);
+    if (!law.law.is_spatial()) add_aids(point.file, samples.at(options.rate_hz), judge.axes().front());
+    if (!point.stable || !options.unstable) continue;
+    if (const auto why = options.unstable(point.file, point.rate_hz)) {
+      point.stable = false;
+      point.why = *why;
+    }
+  }
+  if (!stopped(options)) time_points(judge.axes(), samples, options, chart);
+  chart.stopped = chart.stopped || stopped(options);
+  if (chart.stopped) {
+    chart.points.clear();
+    return chart;
+  }
+  mark_front(chart.points, options.rate_hz);
+  if (options.done != nullptr) *options.done = chart_steps;
+  if (chart.one_axis) return chart;
+  const auto worst = std::max_element(chart.points.begin(), chart.points.end(),
+                                      [](const auto& a, const auto& b) { return a.error_jnd < b.error_jnd; });
+  chart.jnd_n = judge.jnd_of(worst->axis);
+  return chart;
+}
+
+}  // namespace kerf::bench

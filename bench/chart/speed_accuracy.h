@@ -1,0 +1,97 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <kerf/fitting/fit.h>
+
+#include "chart/tick_cost.h"
+#include "fits/fit_recording.h"
+#include "laws/law_file.h"
+#include "scene/scene.h"
+
+namespace kerf::bench {
+
+/// A law at one fidelity: what a tick costs, and how far its force is from the reference.
+struct ChartPoint {
+  std::string law;
+  std::string fidelity;
+  std::size_t parameters = 0;
+  double rate_hz = 0.0;  ///< of the loop that renders it
+  TickCost cost;
+  double error_n = 0.0;    ///< root mean square, on the axis that is worst in JNDs [N]
+  double error_jnd = 0.0;  ///< the same in JNDs
+  double worst_n = 0.0;    ///< the largest, on that axis [N]
+  std::string axis;
+  bool stable = true;
+  std::string why;  ///< not stable
+  bool on_front = false;
+  LawFile file;
+};
+
+/// Cost against error, for all laws and fidelities.
+struct SpeedAccuracy {
+  std::string source;     ///< name of the recording or scene
+  std::string reference;  ///< in words, what errors are towards
+  double rate_hz = 0.0;
+  double jnd_n = 0.0;    ///< of the axis, or of the worst axis of the cheapest point where there are several
+  bool one_axis = true;  ///< errors in N are comparable; else only those in JNDs
+  std::vector<ChartPoint> points;
+  std::vector<std::string> notes;
+  bool stopped = false;  ///< before it was done; there are no points then
+};
+
+struct ChartOptions {
+  double rate_hz = 1000.0;
+  std::vector<std::string> models;  ///< laws to fit; empty: those that say something of any axis
+  fitting::ForceJnd jnd;
+  std::size_t folds = 5;
+  std::size_t threads = 1;
+  /// Why a closed loop with this law at this rate is not stable, in words; nothing if it is. Empty: only what
+  /// it renders along the path is looked at.
+  std::function<std::optional<std::string>(const LawFile&, double rate_hz)> unstable;
+  TickCostOptions timing;
+  const std::atomic<bool>* stop = nullptr;
+  std::atomic<std::size_t>* done = nullptr;  ///< counts up to chart_steps
+};
+inline constexpr std::size_t chart_steps = 1000;
+
+/// A way of the tool that can be had at any rate, on the axes of a device.
+struct ScriptedPath {
+  drivers::DeviceInfo device;
+  std::function<ToolPath(double rate_hz)> at;
+};
+
+/// The script of a scene, on its device; no deeper than where its first layer is cut through. @throws as
+/// tool_path() and device_of() do, drivers::DeviceError.
+[[nodiscard]] ScriptedPath scripted_path(const Scene& scene);
+
+/// A law of a scene at all its fidelities along a path, and, for a law along one axis, the other laws as
+/// fitted to its reference there. The reference is the converged fidelity (fidelities.h); forces are compared
+/// at the ticks of each, while the reference pushes.
+///
+/// Each axis is judged by its own JND at the root mean square of its reference; a torque in N·m counts as the
+/// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
+/// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
+/// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
+/// rendering aids of 004 where they have none. Only points at the chart's own rate compete for the front.
+/// @throws std::invalid_argument if the path never meets the tissue.
+[[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
+                                        const ChartOptions& options);
+inline constexpr double fingers_m = 0.01;
+
+/// Every law that fits an axis of a recording, in every size: segments 1 to 12, tables of 2 to 256 points,
+/// arms 1 to 4, and each integrator. Errors are those on held-out cycles (blocks where there are none); a law
+/// in single precision adds what its rounding does along the recording. Costs are those along the 4,000 ticks
+/// of the recording with most contact, at its own rate.
+/// @throws std::invalid_argument if no law can be fitted.
+[[nodiscard]] SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options);
+
+/// Marks the points of the front (front.h), costs p50 and warm, errors in JNDs, those under a thousandth of a
+/// JND alike.
+void mark_front(std::vector<ChartPoint>& points, double rate_hz);
+
+}  // namespace kerf::bench

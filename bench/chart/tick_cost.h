@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <kerf/drivers/device.h>
+
+#include "loop/command.h"
+
+namespace kerf::bench {
+
+/// What one tick of a law costs in the loop [ns], over the ticks on which it pushes (all, if it never does).
+struct TickCost {
+  double p50_ns = 0.0;
+  double p999_ns = 0.0;
+  double cold_p50_ns = 0.0;  ///< the caches of the processor's core hold none of the law's data
+  double cold_p999_ns = 0.0;
+};
+
+/// A law as the loop renders it, and the samples that it is shown, one a tick. The samples must outlive the
+/// measurement.
+struct TimedLaw {
+  LawRendering rendering;
+  std::span<const drivers::Sample> path;
+  double period_s = 1e-3;
+};
+
+struct TickCostOptions {
+  std::size_t rounds = 25;
+  std::size_t cold_ticks = 128;             ///< at most, a law; 0: the cold costs are not measured and NaN
+  double most_seconds = 0.25;               ///< a law: fewer rounds, but two at least, where they take longer
+  const std::atomic<bool>* stop = nullptr;  ///< ends early, without a result
+  std::atomic<std::size_t>* done = nullptr;  ///< counts up to tick_cost_steps()
+};
+
+/// Measures laws side by side, one cost each in their order; none if it was stopped.
+///
+/// A tick is what the loop does: LawRendering, between two time stamps that nothing may pass, less what an
+/// empty body costs between them in the same round. Laws take turns, round by round, another one first in
+/// each, each along its whole path from a fresh state. A neighbour on the same core slows whole rounds, by
+/// half or more, so that the cost p50 is the lowest tenth of its medians in the rounds; the others are the
+/// median of their percentiles. Nothing is allocated between the stamps.
+///
+/// Cold: before a tick the thread reads a buffer larger than the last cache that the core has for itself. The
+/// law's data then come from the shared cache or from memory; instructions may stay in a cache of their own,
+/// and branches stay predicted. So few cold ticks make the 99.9th percentile nearly the worst of them.
+///
+/// Time stamps are those of the processor, whose rate is taken from the monotonic clock over the whole
+/// measurement; where there are none, the clock's own. Where they come in steps (10 ns on some processors) a
+/// median is the mean of the durations within a step of it, which is finer; a 99.9th percentile is not.
+/// @throws std::invalid_argument for an empty path or a period that is not positive.
+[[nodiscard]] std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws,
+                                               const TickCostOptions& options = {});
+
+/// What `done` reaches at the end.
+[[nodiscard]] std::size_t tick_cost_steps(std::size_t laws, const TickCostOptions& options);
+
+}  // namespace kerf::bench

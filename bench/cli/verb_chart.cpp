@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "chart/chart_files.h"
+#include "chart/held_loop.h"
+#include "chart/speed_accuracy.h"
+#include "cli/progress.h"
+#include "cli/verbs.h"
+#include "files/whole_file.h"
+#include "laws/placement.h"
+#include "laws/render.h"
+#include "loop/run.h"
+#include "recordings/axes.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string recording;
+  std::string scene;
+  std::string output;
+  std::string axis;
+  std::vector<std::string> laws;
+  double rate_hz = 0.0;  ///< 0: not given
+  bool no_folds = false;
+  bool no_cold = false;
+  bool no_hold = false;
+  bool force = false;
+};
+
+constexpr std::array names{"chart.svg", "chart.csv", "chart.json", "chart.html"};
+
+void check(const Arguments& arguments) {
+  if (arguments.recording.empty() == arguments.scene.empty()) {
+    throw std::invalid_argument("give a recording, or a scene with --scene, and not both");
+  }
+  if (!arguments.scene.empty() && (!arguments.axis.empty() || arguments.no_folds)) {
+    throw std::invalid_argument("--axis and --no-folds are for a recording, not for a scene");
+  }
+  if (!arguments.recording.empty() && arguments.rate_hz > 0.0) {
+    throw std::invalid_argument("--rate is for a scene; a recording is charted at its own rate");
+  }
+  for (const auto* name : names) {
+    if (!arguments.output.empty()) refuse_to_replace(fs::path(arguments.output) / name, arguments.force);
+  }
+}
+
+SpeedAccuracy chart_of_recording(const Arguments& arguments, const ChartOptions& options) {
+  const schema::Recording recording = schema::read_recording(arguments.recording);
+  const std::size_t axis = arguments.axis.empty() && recording.cycles ? recording.cycles->axis
+                                                                      : find_axis(recording, arguments.axis);
+  const FitSource source{.recording = &recording,
+                         .name = fs::path(arguments.recording).stem().string(),
+                         .axis = axis,
+                         .contact = contact_of(recording, axis)};
+  try {
+    return chart_recording(source, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", arguments.recording, error.what()));
+  }
+}
+
+/// How deep the tool goes by the scene's script, past the tissue's contact.
+double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) {
+  if (scene.tissue.law.is_spatial()) return 0.0;
+  const std::size_t axis = axis_for(scene.tissue, path.device);
+  double deepest = 0.0;
+  for (const drivers::Axes& position : path.at(rate_hz).position)
+    deepest = std::max(deepest, scene.tissue.contact.motion(position[axis], 0.0).penetration);
+  return deepest;
+}
+
+SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
+  const Scene scene = read_scene(arguments.scene);
+  try {
+    const ScriptedPath path = scripted_path(scene);
+    if (!arguments.no_hold)
+      options.unstable = hum_of({.device = path.device,
+                                 .hand_mass_kg = scene.hand.mass_kg,
+                                 .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
+                                 .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
+                                 .deepest = deepest_of(scene, path, options.rate_hz)});
+    SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
+    chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
+    if (!scene.deeper.empty()) chart.notes.push_back("only the first layer of the scene's tissue is charted");
+    return chart;
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", arguments.scene, error.what()));
+  }
+}
+
+void print(const SpeedAccuracy& chart) {
+  say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
+  say(fmt::format("  {:1} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity", "par.",
+                  "p50 us", "p99.9 us", "cold us", "error N", "JND"));
+  for (const ChartPoint& point : chart.points) {
+    const double cold_us = 1e-3 * point.cost.cold_p50_ns;
+    const std::string cold = std::isfinite(cold_us) ? fmt::format("{:.3f}", cold_us) : "-";
+    say(fmt::format("  {:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
+                    point.on_front ? "*"
+                    : point.stable ? ""
+                                   : "x",
+                    point.law, point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
+                    1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
+  }
+  say("  * on the front, x not stable");
+}
+
+void write(const SpeedAccuracy& chart, const nlohmann::ordered_json& json, const fs::path& folder) {
+  const std::string page = chart_page(chart);
+  const std::string svg = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + draw(chart_picture(chart));
+  fs::create_directories(folder);
+  write_whole_file(folder / "chart.svg", svg);
+  write_whole_file(folder / "chart.csv", chart_csv(chart));
+  write_whole_file(folder / "chart.json", json.dump(2) + "\n");
+  write_whole_file(folder / "chart.html", page);
+  say(fmt::format("chart.svg, chart.csv, chart.json and chart.html are in {}", folder.string()));
+}
+
+void run_chart(const Arguments& arguments, Context& context) {
+  check(arguments);
+  const StopOnSignal signals;
+  SpeedAccuracy chart;
+  {
+    Progress progress("charting", chart_steps);
+    ChartOptions options{.models = arguments.laws};
+    if (arguments.rate_hz > 0.0) options.rate_hz = arguments.rate_hz;
+    options.threads = std::max(1U, std::thread::hardware_concurrency());
+    options.stop = &signals.requested();
+    options.done = &progress.done;
+    if (arguments.no_folds) options.folds = 0;
+    if (arguments.no_cold) options.timing.cold_ticks = 0;
+    chart =
+        arguments.scene.empty() ? chart_of_recording(arguments, options) : chart_of_scene(arguments, options);
+  }
+  if (chart.stopped) {
+    context.exit = Exit::check_failed;
+    context.result = {{"stopped", true}};
+    say("stopped; nothing was written");
+    return;
+  }
+  for (const std::string& note : chart.notes) warn(note);
+  context.result = chart_as_json(chart);
+  print(chart);
+  if (!arguments.output.empty()) write(chart, context.result, arguments.output);
+}
+
+}  // namespace
+
+void add_chart(CLI::App& app, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      app, context, "chart", "Chart what a tick of each law costs against how wrong its force is",
+      "kerf chart cut.h5 -o chart\n"
+      "  kerf chart --scene examples/scenes/scalpel-t2.scene.toml -o chart\n\n"
+      "Of a recording every law is fitted in every size, and judged by held-out cycles. Of a scene the\n"
+      "tissue's law is computed at every fidelity, and judged by the finest. docs/charts.md says more.\n"
+      "Costs are measured: leave the machine in peace meanwhile. Ctrl-C ends it without files.",
+      [arguments, &context] { run_chart(*arguments, context); });
+  verb.add_option("RECORDING", arguments->recording, "Recording");
+  verb.add_option("--scene", arguments->scene, "Scene, in place of a recording");
+  verb.add_option("--laws", arguments->laws, "Laws to fit, or all (default: eight that suit any axis)")
+      .separated_by(',');
+  verb.add_option("--axis", arguments->axis,
+                  "Axis of the recording (default: that of its cycles, or the first)");
+  verb.add_option("--rate", arguments->rate_hz, "Rate of the loop for a scene (default: 1000) [Hz]")
+      .within(100.0, 10000.0);
+  verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");
+  verb.add_flag("--no-hold", arguments->no_hold,
+                "Cross out nothing because it hums when the scene's hand presses it and holds still");
+  verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
+  verb.add_option("-o,--output", arguments->output, "Folder for chart.svg, .csv, .json and .html");
+  verb.add_flag("--force", arguments->force, "Replace existing files");
+}
+
+}  // namespace kerf::bench

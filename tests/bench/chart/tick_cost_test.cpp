@@ -1,0 +1,90 @@
+#include "chart/tick_cost.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+/// A blade that goes back and forth in the tissue and turns about itself.
+std::vector<drivers::Sample> strokes_of_a_blade(std::size_t ticks) {
+  std::vector<drivers::Sample> path(ticks);
+  for (std::size_t i = 0; i < ticks; ++i) {
+    const double phase = 0.01 * static_cast<double>(i);
+    path[i].position = {0.02 * std::sin(phase), 0.0, 0.1, 0.0, 0.0, 0.2 * std::sin(phase)};
+    path[i].velocity = {0.2 * std::cos(phase), 0.0, 0.0, 0.0, 0.0, 2.0 * std::cos(phase)};
+  }
+  return path;
+}
+
+LawRendering blade_of(const std::string& fidelity, double strips) {
+  const double values[] = {5.0, 2e4, 4e3};
+  return {
+      models::Law::make("blade", values, {{"thresholds", false}, {"fidelity", fidelity}, {"strips", strips}}),
+      {},
+      {0, 1, 2, 3, 4, 5}};
+}
+
+LawRendering spring() {
+  const double values[] = {10.0, 1.0, 1.0};
+  return {models::Law::make("kelvin", values), {}, {0}};
+}
+
+TEST(TickCost, IsGreaterForALawThatDoesMore) {
+  const auto path = strokes_of_a_blade(500);
+  const std::vector<TimedLaw> laws{{blade_of("strips", 256.0), path}, {spring(), path}};
+  const auto costs = tick_costs(laws, {.rounds = 3, .cold_ticks = 16});
+  ASSERT_EQ(costs.size(), 2U);
+  EXPECT_GT(costs[0].p50_ns, costs[1].p50_ns);
+  for (const TickCost& cost : costs) {
+    EXPECT_LE(cost.p50_ns, cost.p999_ns);
+    EXPECT_LE(cost.cold_p50_ns, cost.cold_p999_ns);
+    EXPECT_GE(cost.p50_ns, 0.0);
+  }
+}
+
+TEST(TickCost, KeepsTheOrderInWhichLawsWereGiven) {
+  const auto path = strokes_of_a_blade(300);
+  const std::vector<TimedLaw> laws{{spring(), path}, {blade_of("strips", 256.0), path}, {spring(), path}};
+  const auto costs = tick_costs(laws, {.rounds = 2, .cold_ticks = 0});
+  ASSERT_EQ(costs.size(), 3U);
+  EXPECT_GT(costs[1].p50_ns, costs[0].p50_ns);
+  EXPECT_GT(costs[1].p50_ns, costs[2].p50_ns);
+  EXPECT_TRUE(std::isnan(costs[0].cold_p50_ns)) << "no cold tick was asked for";
+}
+
+TEST(TickCost, TimesALawThatNeverPushes) {
+  std::vector<drivers::Sample> in_the_air(100);
+  for (drivers::Sample& sample : in_the_air) sample.position[0] = -1.0;
+  const std::vector<TimedLaw> laws{{spring(), in_the_air}};
+  const auto costs = tick_costs(laws, {.rounds = 1, .cold_ticks = 4});
+  ASSERT_EQ(costs.size(), 1U);
+  EXPECT_TRUE(std::isfinite(costs[0].p50_ns) && std::isfinite(costs[0].cold_p50_ns));
+}
+
+TEST(TickCost, CountsItsStepsAndStopsWithoutAResult) {
+  const auto path = strokes_of_a_blade(50);
+  const std::vector<TimedLaw> laws{{spring(), path}, {spring(), path}};
+  std::atomic<bool> stop{false};
+  std::atomic<std::size_t> done{0};
+  const TickCostOptions options{.rounds = 2, .cold_ticks = 4, .stop = &stop, .done = &done};
+  EXPECT_EQ(tick_costs(laws, options).size(), 2U);
+  EXPECT_EQ(done, tick_cost_steps(2, options));
+  stop = true;
+  EXPECT_TRUE(tick_costs(laws, options).empty());
+}
+
+TEST(TickCost, RefusesAPathWithoutSamplesAndAPeriodThatIsNotPositive) {
+  const std::vector<TimedLaw> no_path{{spring(), {}}};
+  EXPECT_THROW((void)tick_costs(no_path), std::invalid_argument);
+  const auto path = strokes_of_a_blade(2);
+  const std::vector<TimedLaw> no_period{{spring(), path, 0.0}};
+  EXPECT_THROW((void)tick_costs(no_period), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kerf::bench
