@@ -79,7 +79,7 @@ RegressionPath uniform(const RegressionCase& one, double seconds) {
 
 RegressionPath scripted(const RegressionCase& one) {
   RegressionPath path = uniform(one, one.seconds.value_or(standard_seconds));
-  for (const AxisMotion& motion : one.motion) {
+  for (const ScriptedAxis& motion : one.motion) {
     for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
       const Point point =
           std::visit([&](const auto& script) { return at(script, path.time_s[tick]); }, motion.script);

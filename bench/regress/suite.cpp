@@ -83,7 +83,7 @@ void read_settings(const Place& place, const toml::table& table, RegressionCase&
     one.tick_cost = plain(place, *cost, "tick_cost", 1.1, 1000.0);
 }
 
-AxisMotion read_motion(const Place& place, const toml::table& table, const RegressionCase& one) {
+ScriptedAxis read_motion(const Place& place, const toml::table& table, const RegressionCase& one) {
   const auto axes = axes_of(one.law);
   const std::string name = place.text(table, "axis", axes.front().name);
   const auto axis = std::ranges::find(axes, name, &models::LawAxis::name);
@@ -97,7 +97,7 @@ AxisMotion read_motion(const Place& place, const toml::table& table, const Regre
     return read_number(place, table,
                        {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = longest_s});
   };
-  AxisMotion motion{.axis = static_cast<std::size_t>(axis - axes.begin()), .script = Rest{}};
+  ScriptedAxis motion{.axis = static_cast<std::size_t>(axis - axes.begin()), .script = Rest{}};
   const std::string kind = place.text(table, "kind", "");
   if (kind == "rest") {
     place.allow_only(table, {"kind", "axis", "at"}, "a motion of the kind \"rest\"");
@@ -141,7 +141,7 @@ void read_motions(const Place& place, const toml::node& node, RegressionCase& on
     for (const toml::node& each : *all) {
       one.motion.push_back(read_motion(place, *each.as_table(), one));
       const std::size_t axis = one.motion.back().axis;
-      if (std::ranges::count(one.motion, axis, &AxisMotion::axis) > 1)
+      if (std::ranges::count(one.motion, axis, &ScriptedAxis::axis) > 1)
         place.refuse(each, "axis '{}' has two motions", axes_of(one.law)[axis].name);
     }
   } else {

@@ -51,7 +51,7 @@ struct RampAndHold {
 };
 
 /// What one axis of a trajectory does. Positions in the axis' own unit.
-struct AxisMotion {
+struct ScriptedAxis {
   std::size_t axis = 0;  ///< of the law's
   std::variant<Rest, StrokesToAndFro, Sine, RampAndHold> script;
 };
@@ -64,7 +64,7 @@ struct RegressionCase {
   LawFile law;
   std::filesystem::path recording;
   std::filesystem::path scene;
-  std::vector<AxisMotion> motion;
+  std::vector<ScriptedAxis> motion;
   double rate_hz = 1000.0;        ///< of a scripted trajectory
   std::optional<double> seconds;  ///< of a scripted one without it 1; of the others all there is
   Tolerance tolerance;

@@ -17,14 +17,14 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-RegressionCase case_with(AxisMotion motion, double seconds = 1.0) {
+RegressionCase case_with(ScriptedAxis motion, double seconds = 1.0) {
   return {.name = "one",
           .law = {.law = test::example("kelvin"), .axis = "theta", .position_unit = "rad"},
           .motion = {motion},
           .seconds = seconds};
 }
 
-const std::vector<AxisMotion> every_kind{
+const std::vector<ScriptedAxis> every_kind{
     {.script = Rest{.at = 0.3}},
     {.script = StrokesToAndFro{.from = 0.6, .to = 0.1, .stroke_s = 0.2, .pause_s = 0.05}},
     {.script = Sine{.centre = 0.3, .amplitude = 0.2, .frequency_hz = 3.0, .phase_rad = 0.4}},
@@ -39,7 +39,7 @@ TEST(RegressionPath, HasOneEntryATick) {
 }
 
 TEST(RegressionPath, MovesAtTheSpeedThatItSays) {
-  for (const AxisMotion& motion : every_kind) {
+  for (const ScriptedAxis& motion : every_kind) {
     const RegressionPath path = path_of(case_with(motion));
     double travelled = 0.0;
     double most = 0.0;
