@@ -29,7 +29,7 @@ struct Arguments {
   bool yes = false;
 };
 
-void say_case(const PinnedOutcome& one) {
+void say_case(const RegressionOutcome& one) {
   const auto& worst = one.comparison.worst;
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
@@ -55,7 +55,7 @@ void run_cases(const Arguments& arguments, const Suite& suite, Context& context)
   refuse(arguments.yes, "--yes", "update");
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
-  for (const PinnedOutcome& one : outcome.cases) say_case(one);
+  for (const RegressionOutcome& one : outcome.cases) say_case(one);
   for (const std::string& name : outcome.dropped) {
     say(fmt::format("  {:24} FAILED", name));
     say("      its forces are stored, and the suite has no such case any more; 'kerf regress update' removes "

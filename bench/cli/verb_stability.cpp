@@ -77,9 +77,8 @@ std::size_t axis_of(const Arguments& given, const drivers::DeviceInfo& info) {
   for (std::size_t at = 0; at < info.axes.size(); ++at) {
     if (info.axes[at].name == given.axis) return at;
   }
-  std::string names;
-  for (const drivers::AxisInfo& axis : info.axes) names += (names.empty() ? "" : ", ") + axis.name;
-  throw std::invalid_argument(fmt::format("{} has no axis '{}'; it has {}", info.uri, given.axis, names));
+  throw std::invalid_argument(
+      fmt::format("{} has no axis '{}'; it has {}", info.uri, given.axis, names_of_axes(info)));
 }
 
 Range range_of(const std::vector<double>& given, const char* option, Range standard, bool from_zero) {

@@ -6,6 +6,12 @@
 
 namespace kerf::bench {
 
+std::string names_of_axes(const drivers::DeviceInfo& device) {
+  std::string names;
+  for (const drivers::AxisInfo& axis : device.axes) names += (names.empty() ? "" : ", ") + axis.name;
+  return names;
+}
+
 std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device) {
   const auto fits = [&](const drivers::AxisInfo& axis) {
     return axis.position_unit == law.position_unit && axis.force_unit == law.force_unit;

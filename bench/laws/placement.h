@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <kerf/drivers/device.h>
@@ -8,6 +9,9 @@
 #include "laws/law_file.h"
 
 namespace kerf::bench {
+
+/// The names of a device's axes, for messages: "theta, x_s".
+[[nodiscard]] std::string names_of_axes(const drivers::DeviceInfo& device);
 
 /// The axis of a device on which a law is rendered: the one it names, else the first with its units.
 /// @throws std::invalid_argument if there is none, naming both units.

@@ -13,7 +13,7 @@ using json = nlohmann::ordered_json;
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 json number(const std::optional<double>& value) { return value ? number(*value) : json(nullptr); }
 
-json difference_as_json(const PinnedOutcome& outcome, const ForceDifference& worst) {
+json difference_as_json(const RegressionOutcome& outcome, const ForceDifference& worst) {
   const schema::ForceChannel& channel = outcome.stored.channels[worst.channel];
   json result{{"tick", worst.tick},
               {"time_s", outcome.path.time_s[worst.tick]},
@@ -35,7 +35,7 @@ json difference_as_json(const PinnedOutcome& outcome, const ForceDifference& wor
   return result;
 }
 
-json case_as_json(const PinnedOutcome& outcome) {
+json case_as_json(const RegressionOutcome& outcome) {
   json channels = json::array();
   for (const ChannelComparison& one : outcome.comparison.channels) {
     channels.push_back({{"name", one.channel.name},
@@ -67,7 +67,7 @@ std::string cell(double value) { return std::isnan(value) ? "-" : fmt::format("{
 
 }  // namespace
 
-std::vector<ContextRow> context_of(const PinnedOutcome& outcome, std::size_t ticks) {
+std::vector<ContextRow> context_of(const RegressionOutcome& outcome, std::size_t ticks) {
   std::vector<ContextRow> rows;
   if (!outcome.comparison.worst) return rows;
   const ForceDifference& worst = *outcome.comparison.worst;
@@ -88,7 +88,7 @@ std::vector<ContextRow> context_of(const PinnedOutcome& outcome, std::size_t tic
   return rows;
 }
 
-std::string context_table(const PinnedOutcome& outcome) {
+std::string context_table(const RegressionOutcome& outcome) {
   const auto rows = context_of(outcome);
   if (rows.empty()) return {};
   const ForceDifference& worst = *outcome.comparison.worst;
@@ -116,7 +116,7 @@ json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome) {
               {"stored", suite.stored.string()}, {"passed", outcome.failed() == 0},
               {"failed", outcome.failed()},      {"dropped", outcome.dropped},
               {"seconds", outcome.seconds},      {"cases", json::array()}};
-  for (const PinnedOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
+  for (const RegressionOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
   return result;
 }
 

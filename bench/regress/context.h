@@ -21,10 +21,10 @@ struct ContextRow {
 };
 
 /// So many ticks before and after the worst one; none if nothing differs.
-[[nodiscard]] std::vector<ContextRow> context_of(const PinnedOutcome& outcome, std::size_t ticks = 5);
+[[nodiscard]] std::vector<ContextRow> context_of(const RegressionOutcome& outcome, std::size_t ticks = 5);
 
 /// The same as a table of text, with a head, for people.
-[[nodiscard]] std::string context_table(const PinnedOutcome& outcome);
+[[nodiscard]] std::string context_table(const RegressionOutcome& outcome);
 
 /// Everything about a suite's run, for --json.
 [[nodiscard]] nlohmann::ordered_json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome);

@@ -58,7 +58,7 @@ std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome) {
                   outcome.failed(), outcome.seconds);
   std::string xml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n", counts, counts);
-  for (const PinnedOutcome& one : outcome.cases) {
+  for (const RegressionOutcome& one : outcome.cases) {
     xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"", name,
                        xml_escaped(one.about.name), one.seconds);
     if (one.passed()) {

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t ticks_around = 40;
 
-Chart chart_of(const PinnedOutcome& outcome, std::size_t begin, std::size_t end, const std::string& title) {
+Chart chart_of(const RegressionOutcome& outcome, std::size_t begin, std::size_t end,
+               const std::string& title) {
   const ForceDifference& worst = *outcome.comparison.worst;
   const std::size_t columns = outcome.stored.channels.size();
   const bool close = end - begin <= 3 * ticks_around;
@@ -46,7 +47,7 @@ Chart chart_of(const PinnedOutcome& outcome, std::size_t begin, std::size_t end,
 
 std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
 
-std::string context_section(const PinnedOutcome& outcome) {
+std::string context_section(const RegressionOutcome& outcome) {
   const auto context = context_of(outcome);
   if (context.empty()) return {};
   const models::LawAxis& axis = outcome.path.axes[outcome.comparison.worst->channel];
@@ -64,7 +65,7 @@ std::string context_section(const PinnedOutcome& outcome) {
 std::string summary_table(const SuiteOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "ticks that differ",
                                               "worst difference", "JND", "tick cost", "stored"}};
-  for (const PinnedOutcome& one : outcome.cases) {
+  for (const RegressionOutcome& one : outcome.cases) {
     const auto& worst = one.comparison.worst;
     rows.push_back({one.about.name, std::string(one.about.law.law.model()),
                     fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
@@ -81,7 +82,7 @@ std::string summary_table(const SuiteOutcome& outcome) {
   return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }
 
-std::string case_section(const PinnedOutcome& outcome, const std::vector<std::string>& pictures) {
+std::string case_section(const RegressionOutcome& outcome, const std::vector<std::string>& pictures) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
   for (const std::string& message : outcome.messages)
     body += fmt::format("<p class=\"answer bad\">{}.</p>\n", escaped(message));
@@ -92,7 +93,7 @@ std::string case_section(const PinnedOutcome& outcome, const std::vector<std::st
 
 }  // namespace
 
-std::vector<Figure> figures_of(const PinnedOutcome& outcome) {
+std::vector<Figure> figures_of(const RegressionOutcome& outcome) {
   if (!outcome.comparison.worst) return {};
   const std::size_t tick = outcome.comparison.worst->tick;
   const std::size_t rows = std::max(outcome.stored.rows(), outcome.got.rows());
@@ -108,7 +109,7 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
   std::filesystem::create_directories(folder);
   write_whole_file(folder / "regress.json", outcome_as_json(suite, outcome).dump(2) + '\n');
   std::vector<Figure> figures;
-  for (const PinnedOutcome& one : outcome.cases) {
+  for (const RegressionOutcome& one : outcome.cases) {
     if (one.passed()) continue;
     for (Figure& figure : figures_of(one)) figures.push_back(std::move(figure));
   }
@@ -125,7 +126,7 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
                                             : fmt::format("All {} cases passed.", all));
   body += summary_table(outcome);
   std::size_t next = 0;
-  for (const PinnedOutcome& one : outcome.cases) {
+  for (const RegressionOutcome& one : outcome.cases) {
     if (one.passed()) continue;
     std::vector<std::string> mine;
     for (std::size_t i = figures_of(one).size(); i > 0; --i) mine.push_back(pictures[next++]);

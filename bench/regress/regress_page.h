@@ -11,7 +11,7 @@ namespace kerf::bench {
 
 /// Expected and got of the worst channel of a case: around its worst tick, and over the whole trajectory.
 /// None if nothing differs.
-[[nodiscard]] std::vector<Figure> figures_of(const PinnedOutcome& outcome);
+[[nodiscard]] std::vector<Figure> figures_of(const RegressionOutcome& outcome);
 
 /// Writes regress.html, regress.json and the pictures of the cases that did not pass into a folder.
 /// @throws std::system_error; std::runtime_error if gnuplot is missing.

@@ -37,7 +37,7 @@ std::vector<std::string> dropped_from(const Suite& suite, const std::vector<sche
   return dropped;
 }
 
-std::string why_different(const PinnedOutcome& outcome) {
+std::string why_different(const RegressionOutcome& outcome) {
   const bool law = checksum(outcome.about.law) != outcome.stored.law_sha256;
   const bool trajectory = checksum(outcome.path) != outcome.stored.trajectory_sha256;
   const std::string since =
@@ -49,7 +49,7 @@ std::string why_different(const PinnedOutcome& outcome) {
                      since);
 }
 
-void judge_cost(PinnedOutcome& outcome) {
+void judge_cost(RegressionOutcome& outcome) {
   if (!outcome.about.tick_cost || !outcome.tick_cost) return;
   if (!outcome.stored.tick_cost) {
     outcome.note = "no tick cost is stored; 'kerf regress update' stores one";
@@ -65,9 +65,9 @@ void judge_cost(PinnedOutcome& outcome) {
   }
 }
 
-PinnedOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
+RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
   const auto begin = Clock::now();
-  PinnedOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
+  RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
   outcome.got = render_forces(one.law.law, one.law.contact, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
   outcome.messages = outcome.comparison.messages;
@@ -120,7 +120,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
             .why = "nothing is stored for it yet",
             .now = stored_now(one, path, got, cost)};
   }
-  const PinnedOutcome outcome = run_case(one, *before, tick_costs);
+  const RegressionOutcome outcome = run_case(one, *before, tick_costs);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
   const bool same_source =
@@ -147,7 +147,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
 
 std::size_t SuiteOutcome::failed() const noexcept {
   return dropped.size() + static_cast<std::size_t>(std::ranges::count_if(
-                              cases, [](const PinnedOutcome& one) { return !one.passed(); }));
+                              cases, [](const RegressionOutcome& one) { return !one.passed(); }));
 }
 
 SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {

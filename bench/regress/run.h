@@ -13,7 +13,7 @@
 namespace kerf::bench {
 
 /// What came of one case.
-struct PinnedOutcome {
+struct RegressionOutcome {
   RegressionCase about;
   RegressionPath path;
   RenderedForces got;
@@ -29,7 +29,7 @@ struct PinnedOutcome {
 };
 
 struct SuiteOutcome {
-  std::vector<PinnedOutcome> cases;
+  std::vector<RegressionOutcome> cases;
   std::vector<std::string> dropped;  ///< stored, and no longer in the suite
   double seconds = 0.0;
 

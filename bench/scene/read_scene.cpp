@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <stdexcept>
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
@@ -143,7 +141,7 @@ void read_device(const Place& place, const toml::table& root, Scene& scene) {
   if (axis.empty() || std::ranges::find(device.axes, axis, &drivers::AxisInfo::name) != device.axes.end())
     return;
   place.refuse(*tissue_table(place, root).get("axis"), "'axis' is \"{}\", and the axes of {} are {}", axis,
-               device.model, fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
+               device.model, names_of_axes(device));
 }
 
 }  // namespace

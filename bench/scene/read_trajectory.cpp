@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <ranges>
 
-#include <fmt/ranges.h>
+#include <fmt/core.h>
+
+#include "laws/placement.h"
 
 namespace kerf::bench {
 namespace {
@@ -16,10 +17,6 @@ constexpr double cycles_at_most = 100.0;
 constexpr std::size_t keyframes_at_most = 1000;
 
 using drivers::PoseKeyframe;
-
-std::string names_of(const drivers::DeviceInfo& device) {
-  return fmt::format("{}", fmt::join(device.axes | std::views::transform(&drivers::AxisInfo::name), ", "));
-}
 
 /// A trajectory for one kind of device alone.
 void expect_device(const Place& place, const toml::node& node, const drivers::DeviceInfo& device,
@@ -114,7 +111,7 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
   const auto axis = std::ranges::find(device.axes, name, &drivers::AxisInfo::name);
   if (axis == device.axes.end()) {
     place.refuse(*table.get("axis"), "'axis' is \"{}\", and the axes of {} are {}", name, device.model,
-                 names_of(device));
+                 names_of_axes(device));
   }
   const auto place_of = [&](std::string_view key) {
     return read_number(place, table,
@@ -151,7 +148,7 @@ PoseKeyframe read_keyframe(const Place& place, const toml::table& table, const d
     const auto axis = std::ranges::find(device.axes, key.str(), &drivers::AxisInfo::name);
     if (axis == device.axes.end()) {
       place.refuse(node, "unknown axis '{}' in a keyframe; those of {} are {}", key.str(), device.model,
-                   names_of(device));
+                   names_of_axes(device));
     }
     keyframe.position[static_cast<std::size_t>(axis - device.axes.begin())] = read_number(
         place, position,

@@ -37,7 +37,9 @@ class Fitter {
     for (fit_.iterations = 1; fit_.iterations < most_iterations && !fit_.settled; ++fit_.iterations) {
       const Eigen::Vector3d viscous = fit_.viscous.value;
       const Eigen::Vector3d elastic = fit_.elastic.value;
-      const bool changed = assign() | (fit_.iterations < splitting_iterations && split()) | merge();
+      bool changed = assign();
+      if (fit_.iterations < splitting_iterations && split()) changed = true;
+      if (merge()) changed = true;
       fit_fields();
       fit_.settled = !changed && (fit_.viscous.value - viscous).norm() <= 1e-6 * viscous.norm() &&
                      (fit_.elastic.value - elastic).norm() <= 1e-6 * elastic.norm();

@@ -16,7 +16,7 @@ const std::filesystem::path own = std::filesystem::path(KERF_SOURCE_DIR) / "exam
 
 TEST(OwnLaws, RenderTheForcesThatAreStored) {
   const SuiteOutcome outcome = run_suite(read_suite(own), {.tick_costs = false});
-  for (const PinnedOutcome& one : outcome.cases) {
+  for (const RegressionOutcome& one : outcome.cases) {
     EXPECT_TRUE(one.passed()) << one.about.name << ": " << testing::PrintToString(one.messages) << one.why;
     EXPECT_EQ(one.got.faults, 0U) << one.about.name;
   }
