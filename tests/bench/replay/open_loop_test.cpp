@@ -81,7 +81,8 @@ TEST(OpenLoop, IsExactForEveryLawOfTheExamples) {
     const std::string uri = device_for(law);
     ASSERT_NE(uri, "") << entry.path();
     const schema::Recording recording = closed_loop(law, uri, 0.0);
-    for (const AxisComparison& one : through(recording, {{.name = "law", .file = law}}).laws.at(0).axes) {
+    const OpenLoopResult result = through(recording, {{.name = "law", .file = law}});
+    for (const AxisComparison& one : result.laws.at(0).axes) {
       if (!one.exact) continue;  // it met nothing on this axis
       EXPECT_EQ(one.exact->identical, one.exact->untouched) << entry.path();
       EXPECT_GT(one.exact->untouched, 2500U) << entry.path();
