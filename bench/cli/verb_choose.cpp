@@ -191,7 +191,7 @@ void run_choose(const Arguments& arguments, Context& context) {
 void add_choose(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb = add_verb(
-      app, context, "choose", "The simplest law that serves: within the JND, in time and stable",
+      app, context, "choose", "Choose the simplest law that serves: within the JND, in time and stable",
       "kerf choose cut.h5 -o choice\n"
       "  kerf choose punch.h5 --device sim:scissors?grip=300 --most-segments 7 -o choice\n"
       "  kerf choose --scene examples/scenes/palpation.scene.toml -o choice\n\n"

@@ -51,14 +51,14 @@ void run_record(const Arguments& arguments, Context& context) {
 
 void add_record(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
-  Verb verb = add_verb(
-      app, context, "record", "Record a device's trajectory and forces",
-      "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
-      "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue; a scene may\n"
-      "give device, hand and trajectory too (docs/scenes.md). Ctrl-C ends a recording cleanly.\n"
-      "'kerf info --follow' shows it from another terminal, and after a crash 'kerf repair' closes\n"
-      "it.",
-      [arguments, &context] { run_record(*arguments, context); });
+  Verb verb =
+      add_verb(app, context, "record", "Record a device's trajectory and forces",
+               "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"
+               "A simulated device meets the tissue of --scene, scissors else a Kelvin tissue; a scene may\n"
+               "give device, hand and trajectory too (docs/scenes.md). Ctrl-C ends a recording cleanly.\n"
+               "'kerf info --follow' shows it from another terminal, and after a crash 'kerf repair' closes\n"
+               "it.",
+               [arguments, &context] { run_record(*arguments, context); });
   add_loop_options(verb, arguments->loop,
                    "Scene file: the tissue that a simulated device meets, the hand on it and what that does");
   verb.add_option("--law", arguments->law, "Law file to render while recording");

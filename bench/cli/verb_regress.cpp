@@ -138,7 +138,7 @@ void run_regress(Arguments& arguments, Context& context) {
 void add_regress(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb =
-      add_verb(app, context, "regress", "Compares rendered forces with stored ones, tick by tick",
+      add_verb(app, context, "regress", "Compare rendered forces with stored ones, tick by tick",
                "kerf regress update suite.toml --reason 'first forces' --yes\n"
                "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
                "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"

@@ -175,7 +175,8 @@ class Run {
                           }});
   }
 
-  /// The loop with one law, with several, without or with another rendering, recorded or not: instances of one template.
+  /// The loop with one law, with several, without or with another rendering, recorded or not: instances of
+  /// one template.
   template <typename Clock, typename Log>
   void run_laws(Clock& clock, Log& log, const LoopControl& control) {
     if (options_.rendering) {

@@ -44,7 +44,7 @@ struct RunOptions {
   std::vector<LawChange> changes;  ///< laws that come after it
   /// Makes what is rendered in place of a law once the device is open, before anything moves.
   std::function<OtherRendering(const drivers::DeviceInfo&)> rendering;
-  double ramp_s = 0.25;            ///< of the soft start, and from law to law
+  double ramp_s = 0.25;  ///< of the soft start, and from law to law
   bool passivity_control = false;
   std::optional<Scene> scene;                   ///< what a simulated device meets
   std::optional<std::filesystem::path> record;  ///< where to record

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/hand.h>
 #include <kerf/schema/recording.h>
 
 #include "laws/placement.h"
@@ -28,12 +29,10 @@ struct Point {
   double v = 0.0;
 };
 
-/// From a to b in `lasting_s`, at rest at both ends: x = a + (b - a) (10 s^3 - 15 s^4 + 6 s^5), s = t / T.
+/// From a to b in `lasting_s`, along a stroke of minimum jerk.
 Point stroke(double a, double b, double t, double lasting_s) {
-  const double s = t / lasting_s;
-  const double s2 = s * s;
-  return {a + (b - a) * s2 * s * (10.0 + s * (6.0 * s - 15.0)),
-          (b - a) * 30.0 * s2 * (1.0 + s * (s - 2.0)) / lasting_s};
+  const drivers::MinimumJerk way = drivers::MinimumJerk::at(t / lasting_s);
+  return {a + (b - a) * way.place, (b - a) * way.speed / lasting_s};
 }
 
 Point at(const Rest& rest, double) { return {rest.at, 0.0}; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <kerf/drivers/hand.h>
+#include <kerf/fitting/fit.h>
 
 #include "stability/cases/controlled_wall.h"
 
@@ -13,7 +14,6 @@ namespace {
 constexpr double above_m = 8e-3;
 constexpr double inside_m = 2e-3;
 constexpr double stroke_s = 0.1;
-constexpr double jnd_share = 0.07;
 
 /// Where a tap is: in within 0.1 s, there for 0.1 s, out again.
 double tapped(double time_s) {
@@ -35,7 +35,7 @@ void tap(const SampledDevice& device, ControlCost& cost) {
     const double rendered_n = controlled(reading);
     const double own_n = own(reading);
     const double difference_n = std::abs(rendered_n - own_n);
-    const double jnd = difference_n / std::max(jnd_share * std::abs(own_n), felt_n);
+    const double jnd = difference_n / fitting::ForceJnd{}.at(own_n);
     if (own_n == 0.0 && rendered_n == 0.0) continue;
     cost.worst_n = std::max(cost.worst_n, difference_n);
     cost.worst_jnd = std::max(cost.worst_jnd, jnd);

@@ -32,7 +32,7 @@ CaseOutcome judged(const CaseTrace& trace, std::string figure) {
 
 NamedCase delay(std::uint64_t) {
   SampledDevice prompt = linear_handle();
-  prompt.hand = stylus_grip;
+  prompt.hand = drivers::usual_grip;
   SampledDevice late = prompt;
   late.delay_s = delay_s;
   const double boundary = eigenvalue_boundary(late, 0.0, 1.0, 1e6);

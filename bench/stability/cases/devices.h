@@ -10,9 +10,6 @@ namespace kerf::bench {
 /// The same without what makes a loop nonlinear: the encoder's steps and Coulomb friction.
 [[nodiscard]] SampledDevice linear_handle();
 
-/// The stylus grip of `sim:scissors`, in the middle of what Fu and Cavusoglu 2012 give.
-inline constexpr HandImpedance stylus_grip{
-    .mass_kg = 0.15, .damping_n_s_per_m = 5.0, .stiffness_n_per_m = 500.0};
 /// light_grip (in_hand.h) after it stiffened threefold, which took it to the end of that range.
 inline constexpr HandImpedance stiffened_grip{
     .mass_kg = 0.1, .damping_n_s_per_m = 3.0, .stiffness_n_per_m = 600.0};

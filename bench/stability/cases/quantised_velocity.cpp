@@ -47,7 +47,7 @@ CaseOutcome judged(double rms_n, std::string figure) {
 
 NamedCase quantised_velocity(std::uint64_t) {
   SampledDevice device = scissors_handle();
-  device.hand = stylus_grip;
+  device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = 0.0;
   const Hum failing = hum_of(device);
   SampledDevice finer = device;

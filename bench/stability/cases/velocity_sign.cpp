@@ -25,7 +25,7 @@ constexpr double back_m = 2e-3;
 
 SampledDevice held_scissors() {
   SampledDevice device = scissors_handle();
-  device.hand = stylus_grip;
+  device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = corner_rad_s;
   return device;
 }

@@ -87,7 +87,7 @@ double ripple_with_band(double band_rad_s) {
       models::Law::make("piecewise", values, {{"segments", 1.0}, {"loop", true}, {"ramp_band", band_rad_s}}),
       drivers::SimulatedScissors::lever_m};
   SampledDevice device = scissors_handle();
-  device.hand = stylus_grip;
+  device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = 10.0;
   return ripple_n(run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
     return HandPush{.place_m = 8e-3 * drivers::MinimumJerk::at(time_s / 0.6).place -
@@ -159,12 +159,12 @@ TEST(FractureAtLowRate, MissesHalfATicksTravelTimesTheForce) {
 
 TEST(Delay, AHandOnAWallVibratesFromTheEigenvaluesBoundaryOn) {
   SampledDevice late = linear_handle();
-  late.hand = stylus_grip;
+  late.hand = drivers::usual_grip;
   late.delay_s = 4e-3;
   const double boundary = eigenvalue_boundary(late, 0.0, 1.0, 1e6);
   const auto growth = [&](double stiffness) {
     const CaseTrace trace = run_loop(late, WallForce{{.stiffness_n_per_m = stiffness}, false}, {}, 2.0,
-                                 [](double) { return HandPush{.place_m = 1e-4}; });
+                                     [](double) { return HandPush{.place_m = 1e-4}; });
     return ripple_n(trace, 0.25) / ripple_n(trace, 0.75);
   };
   EXPECT_LT(growth(0.97 * boundary), 0.9);
@@ -209,7 +209,7 @@ TEST(StiffGrip, TurnsTheEigenvaluesOut) {
 
 TEST(StiffGrip, LiesWithinWhatWasMeasuredOfHands) {
   EXPECT_GE(stiffened_grip.mass_kg, light_grip.mass_kg);
-  for (const HandImpedance& hand : {stylus_grip, stiffened_grip}) {
+  for (const HandImpedance& hand : {drivers::usual_grip, stiffened_grip}) {
     EXPECT_GE(hand.mass_kg, 0.1);
     EXPECT_LE(hand.mass_kg, 0.2);
     EXPECT_GE(hand.damping_n_s_per_m, 2.0);
