@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <kerf/psychophysics/quest_plus.h>
+#include <kerf/psychophysics/staircase.h>
+
+#include "session/plan.h"
+
+namespace kerf::bench {
+
+/// How a session goes on from the answers so far: which trial is next, at which level. A value without clock
+/// or chance, so that a session is resumed by giving it the recorded answers again.
+class Course {
+ public:
+  Course(Protocol protocol, Plan plan);
+
+  /// The trial to be given now, its level filled in; nothing once the session is over.
+  [[nodiscard]] std::optional<TrialPlan> next() const;
+  /// Its answer, a slot. @throws std::invalid_argument: no such answer, or the session is over.
+  void answer(std::size_t slot);
+  /// Trials answered, practice included.
+  [[nodiscard]] std::size_t answered() const noexcept { return answered_; }
+  /// All trials; of an adaptive design the most that there may be.
+  [[nodiscard]] std::size_t at_most() const noexcept { return plan_.size(); }
+  /// A break is due before the next trial.
+  [[nodiscard]] bool break_due() const noexcept;
+
+ private:
+  Protocol protocol_;
+  Plan plan_;
+  std::size_t answered_ = 0;
+  std::optional<psychophysics::Staircase> staircase_;
+  std::optional<psychophysics::QuestPlus> quest_;
+};
+
+}  // namespace kerf::bench
