@@ -14,6 +14,7 @@ enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error 
 struct Context {
   bool json = false;              ///< print one JSON object on standard output and nothing else there
   std::uint64_t seed = 1;         ///< of every random choice
+  bool seed_given = false;        ///< by --seed
   Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
   nlohmann::ordered_json result;  ///< printed at the end with --json
 };

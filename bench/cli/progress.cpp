@@ -17,7 +17,8 @@ constexpr std::size_t bar_width = 40;
 
 Progress::Progress(std::string label, std::size_t total)
     : label_(std::move(label)), total_(std::max<std::size_t>(total, 1)) {
-  if (isatty(STDERR_FILENO) != 0) thread_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
+  if (!label_.empty() && isatty(STDERR_FILENO) != 0)
+    thread_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
 }
 
 Progress::~Progress() = default;

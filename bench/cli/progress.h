@@ -12,7 +12,7 @@ namespace kerf::bench {
 /// The work counts `done` up from any thread; the bar is drawn by a thread of its own and removed at the end.
 class Progress {
  public:
-  /// `total` is what `done` reaches at the end, in any unit.
+  /// `total` is what `done` reaches at the end, in any unit. Without a label nothing is drawn.
   Progress(std::string label, std::size_t total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;

@@ -93,11 +93,23 @@ Verb add_verb(CLI::App& app, Context& context, const std::string& name, const st
               const std::string& example, std::function<void()> action) {
   CLI::App* const subcommand = app.add_subcommand(name, description);
   subcommand->footer("Example:\n  " + example);
-  subcommand->callback(std::move(action));
   Verb verb(*subcommand);
   verb.add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
-  verb.add_option("--seed", context.seed, "Seed of every random choice").with_default();
+  const CLI::Option* const seed =
+      subcommand->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
+  subcommand->callback([&context, seed, run = std::move(action)] {
+    context.seed_given = seed->count() > 0;
+    run();
+  });
   return verb;
+}
+
+CLI::App& add_verb_of_verbs(CLI::App& app, const std::string& name, const std::string& description,
+                            const std::string& footer) {
+  CLI::App* const group = app.add_subcommand(name, description);
+  group->require_subcommand(1);
+  group->footer(footer);
+  return *group;
 }
 
 }  // namespace kerf::bench

@@ -58,4 +58,9 @@ class Verb {
 Verb add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
               const std::string& example, std::function<void()> action);
 
+/// Adds a verb that has verbs of its own, one of which must be given: what it returns takes the place of
+/// `app` for them.
+CLI::App& add_verb_of_verbs(CLI::App& app, const std::string& name, const std::string& description,
+                            const std::string& footer);
+
 }  // namespace kerf::bench

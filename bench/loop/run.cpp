@@ -17,6 +17,7 @@
 #include "loop/clock.h"
 #include "loop/law_switch.h"
 #include "loop/recorder.h"
+#include "recordings/axes.h"
 #include "recordings/provenance.h"
 
 namespace kerf::bench {
@@ -25,17 +26,6 @@ namespace {
 constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP};
 
 std::atomic<bool> stop_requested{false};
-
-std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
-  std::vector<schema::Axis> axes;
-  for (const drivers::AxisInfo& axis : device.axes) {
-    axes.push_back({.name = axis.name,
-                    .position_unit = axis.position_unit,
-                    .force_unit = axis.force_unit,
-                    .lever = axis.lever});
-  }
-  return axes;
-}
 
 std::vector<schema::Channel> channels_of(const drivers::DeviceInfo& device) {
   std::vector<schema::Channel> channels;
@@ -70,6 +60,21 @@ class CalledRendering {
   const OtherRendering& rendering_;
 };
 
+/// Shows every row, and records it if there is a recorder.
+class ShownLog {
+ public:
+  ShownLog(const std::function<void(const schema::Row&)>& show, Recorder* recorder)
+      : show_(show), recorder_(recorder) {}
+  void push(const schema::Row& row) noexcept {
+    show_(row);
+    if (recorder_ != nullptr) recorder_->push(row);
+  }
+
+ private:
+  const std::function<void(const schema::Row&)>& show_;
+  Recorder* recorder_;
+};
+
 /// Everything that one run needs, in the order in which it is set up.
 class Run {
  public:
@@ -91,12 +96,15 @@ class Run {
     const auto recorder = open_recorder();
     if (!options_.virtual_time) know_the_machine();
     {
-      Progress progress(
-          recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
-          static_cast<std::size_t>(loop_.ticks));
+      const std::string label =
+          recorder ? "recording " + options_.record->string() : "running " + options_.device_uri;
+      Progress progress(options_.progress ? label : "", static_cast<std::size_t>(loop_.ticks));
       const LoopControl control{.stop = stop_, .done = progress.done, .heartbeat = heartbeat_};
       NoRecorder none;
-      if (recorder) {
+      if (options_.each_row) {
+        ShownLog log(options_.each_row, recorder.get());
+        run_by_clock(log, control);
+      } else if (recorder) {
         run_by_clock(*recorder, control);
       } else {
         run_by_clock(none, control);

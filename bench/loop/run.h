@@ -44,6 +44,8 @@ struct RunOptions {
   std::vector<LawChange> changes;  ///< laws that come after it
   /// Makes what is rendered in place of a law once the device is open, before anything moves.
   std::function<OtherRendering(const drivers::DeviceInfo&)> rendering;
+  /// Gets the row of every tick, beside a recording or without one; it must not allocate, lock or throw.
+  std::function<void(const schema::Row&)> each_row;
   double ramp_s = 0.25;  ///< of the soft start, and from law to law
   bool passivity_control = false;
   std::optional<Scene> scene;                   ///< what a simulated device meets
@@ -53,6 +55,7 @@ struct RunOptions {
   /// and need not be known anew; 0: only how early to wake up is measured. By the wall clock only.
   double floor_s = 0.0;
   bool floor_anew = false;
+  bool progress = true;                        ///< a bar on a terminal
   std::function<void(std::string_view)> warn;  ///< told at once what is wrong with the recording
 };
 

@@ -16,4 +16,15 @@ std::size_t find_axis(const schema::Recording& recording, const std::string& nam
   throw std::invalid_argument(fmt::format("the recording has no axis '{}'; it has {}", name, known));
 }
 
+std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
+  std::vector<schema::Axis> axes;
+  for (const drivers::AxisInfo& axis : device.axes) {
+    axes.push_back({.name = axis.name,
+                    .position_unit = axis.position_unit,
+                    .force_unit = axis.force_unit,
+                    .lever = axis.lever});
+  }
+  return axes;
+}
+
 }  // namespace kerf::bench

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
+#include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
 namespace kerf::bench {
@@ -10,5 +12,8 @@ namespace kerf::bench {
 /// The place of the axis with that name; an empty name means the first one.
 /// @throws std::invalid_argument that lists the axes there are.
 [[nodiscard]] std::size_t find_axis(const schema::Recording& recording, const std::string& name);
+
+/// A device's axes, as a recording describes them.
+[[nodiscard]] std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device);
 
 }  // namespace kerf::bench
