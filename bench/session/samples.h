@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "session/plan.h"
@@ -16,6 +17,9 @@ struct PlayedLaw {
 /// What a sample renders at a level of the scale; NaN: as it is.
 /// @throws std::invalid_argument where a parameter leaves its bounds at that level, naming both.
 [[nodiscard]] PlayedLaw played(const Protocol& protocol, std::size_t sample, double level);
+
+/// Where the parameter of a law stands that a scale names: "damping"; of "knot" all of knot[0], knot[1] ...
+[[nodiscard]] std::vector<std::size_t> parameters_named(const models::Law& law, std::string_view name);
 
 /// The two of a trial, in the order of its pair: pair[1] at the trial's level.
 [[nodiscard]] std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial);
