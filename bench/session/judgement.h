@@ -15,10 +15,13 @@ namespace kerf::bench {
 /// One answer with what had been asked, after the blinding is lifted.
 struct Judgement {
   std::string subject;
+  std::size_t session = 1;  ///< of the subject, from 1
   std::string tissue;
   std::array<std::size_t, 2> pair{};  ///< samples of the study: the standard (or first) and the other
   double level = std::numeric_limits<double>::quiet_NaN();
-  std::size_t right = 0;   ///< the slot that is right; of a preference the slot that played pair[1]
+  /// The slot that is right; of a preference, and where levels lie on both sides of the standard, the slot
+  /// that played pair[1].
+  std::size_t right = 0;
   std::size_t answer = 0;  ///< a slot
   double response_s = std::numeric_limits<double>::quiet_NaN();
   std::size_t switches = 0;
@@ -34,6 +37,7 @@ struct Study {
   std::vector<std::string> samples;
   std::optional<psychophysics::Task> task;  ///< none: a preference
   IntensityScale scale;                     ///< where the design has levels
+  bool slots_known = true;                  ///< of a table of answers perhaps not: which slot held what
   std::vector<Judgement> judgements;        ///< practice included, which is not analysed
 };
 
