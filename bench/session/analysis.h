@@ -41,6 +41,7 @@ struct Analysis {
   std::string name;
   Design design = Design::preference;
   std::vector<std::string> samples;
+  std::size_t trials = 0;
   std::size_t practice = 0;                                   ///< trials left out
   std::vector<std::string> subjects;                          ///< in order of appearance
   std::vector<std::size_t> preferred;                         ///< of a preference: wins by sample
