@@ -61,7 +61,9 @@ int read_request_line(std::string_view line, HttpRequest& request) {
       !std::all_of(target.begin(), target.end(), is_visible)) {
     return 400;
   }
-  if (line != "HTTP/1.1" && line != "HTTP/1.0") return line.starts_with("HTTP/") ? 505 : 400;
+  if (line != "HTTP/1.1" && line != "HTTP/1.0") {
+    return line.starts_with("HTTP/") && std::all_of(line.begin(), line.end(), is_visible) ? 505 : 400;
+  }
   request.method = method;
   request.path = take_until(target, "?");
   return read_query(target, request) ? 0 : 400;

@@ -61,7 +61,7 @@ Descriptor listening_socket(std::uint16_t port) {
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      listen(listener.get(), 64) != 0) {
+      listen(listener.get(), SOMAXCONN) != 0) {
     throw std::invalid_argument(fmt::format(
         "port {} of 127.0.0.1: {}; give another one, or 0 for any that is free", port, std::strerror(errno)));
   }
@@ -125,10 +125,11 @@ class LoopbackServer::Loop {
     while (!stopping_) turn();
     answer_the_bell();  // What was shown last is to arrive.
     const Clock::time_point end = Clock::now() + time_to_hang_up;
-    connections_.remove_if([](const Connection& it) {
-      return it.state == Connection::State::reading || it.state == Connection::State::waiting;
-    });
-    while (!connections_.empty() && Clock::now() < end) turn();
+    const auto is_not_writing = [](const Connection& it) { return it.state != Connection::State::writing; };
+    for (connections_.remove_if(is_not_writing); !connections_.empty() && Clock::now() < end;) {
+      turn();
+      connections_.remove_if(is_not_writing);
+    }
   }
 
   /// Waits for whatever comes first and deals with all of it.

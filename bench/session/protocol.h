@@ -35,6 +35,7 @@ enum class Design : std::uint8_t {
 /// A rendering that takes part.
 struct SessionSample {
   std::string name;
+  std::string law_name;  ///< what the protocol calls its law file
   std::string law_toml;  ///< its law file, as it was read
   LawFile law;
   double gain = 1.0;  ///< of every force, so that the samples of a tissue are equally strong

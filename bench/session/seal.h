@@ -19,9 +19,11 @@ class SealKey {
   /// From the whole content of a file of 32 bytes at least. @throws std::invalid_argument, std::system_error.
   [[nodiscard]] static SealKey from_file(const std::filesystem::path& file,
                                          const schema::KeyDerivation& derivation);
-  /// Argon2id. Takes a third of a second, on purpose.
+  /// Argon2id. Takes half a second and 256 MiB, on purpose. @throws std::invalid_argument: costs that no
+  /// session was sealed with (a tampered file must not exhaust the machine); std::system_error: no memory.
   [[nodiscard]] static SealKey from_passphrase(std::string_view passphrase,
                                                const schema::KeyDerivation& derivation);
+  [[nodiscard]] SealKey copy() const;
   SealKey(const SealKey&) = delete;
   SealKey& operator=(const SealKey&) = delete;
   SealKey(SealKey&& other) noexcept;
@@ -33,6 +35,9 @@ class SealKey {
   SealKey();
   std::uint8_t* bytes_ = nullptr;
 };
+
+/// @throws std::invalid_argument: a new passphrase of less than 8 characters.
+void require_long_enough(std::string_view new_passphrase);
 
 /// A fresh salt and the costs of today, for a key file or for a passphrase.
 [[nodiscard]] schema::KeyDerivation new_derivation(bool passphrase);

@@ -31,6 +31,7 @@ struct RecordedTrial {
   std::string at;  ///< when it was answered, ISO 8601, UTC
   std::vector<schema::Axis> axes;
   std::vector<TraceRow> trace;
+  std::vector<schema::Channel> channels;  ///< names and units of Row::channels; the values are in the trace
 };
 
 /// What a session is made of.

@@ -286,18 +286,21 @@ std::vector<std::size_t> field_sizes(hid_t dataset) {
 
 Handle create_dataset(hid_t parent, const std::string& path, hid_t type, const DatasetOptions& options) {
   const auto creation = property_list(H5P_DATASET_CREATE);
-  Extent chunk = options.extent;
-  for (auto& length : chunk) length = std::max<hsize_t>(length, 1);
-  chunk.front() = std::max<hsize_t>(options.chunk_rows, 1);
-  call(H5Pset_chunk, creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  if (!options.contiguous) {
+    Extent chunk = options.extent;
+    for (auto& length : chunk) length = std::max<hsize_t>(length, 1);
+    chunk.front() = std::max<hsize_t>(options.chunk_rows, 1);
+    call(H5Pset_chunk, creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  }
   if (options.compressed) {
     constexpr unsigned hardest = 9;
     call(H5Pset_shuffle, creation.id());
     call(H5Pset_deflate, creation.id(), hardest);
   }
   if (options.fill != nullptr) call(H5Pset_fill_value, creation.id(), type, options.fill);
-  return Handle(call(H5Dcreate2, parent, path.c_str(), type, dataspace(options.extent, true).id(),
-                     utf8_names(H5P_LINK_CREATE).id(), creation.id(), H5P_DEFAULT));
+  return Handle(call(H5Dcreate2, parent, path.c_str(), type,
+                     dataspace(options.extent, !options.contiguous).id(), utf8_names(H5P_LINK_CREATE).id(),
+                     creation.id(), H5P_DEFAULT));
 }
 
 Description describe(hid_t dataset) {

@@ -135,6 +135,7 @@ struct DatasetOptions {
   hsize_t chunk_rows = 1;
   const void* fill = nullptr;  ///< value of rows that never reached the file
   bool compressed = false;     ///< shuffle and deflate, without loss
+  bool contiguous = false;     ///< in one piece, which cannot grow
 };
 [[nodiscard]] Handle create_dataset(hid_t parent, const std::string& path, hid_t type,
                                     const DatasetOptions& options);

@@ -5,6 +5,7 @@
 #include <kerf/schema/validate.h>
 
 #include "layout.h"
+#include "session_layout.h"
 
 namespace kerf::schema {
 namespace {
@@ -73,6 +74,24 @@ std::string schema_as_markdown() {
     text += row(
         {std::to_string(static_cast<std::uint32_t>(flag.flag)), code(flag.name), std::string(flag.meaning)});
   }
+  return text;
+}
+
+std::string session_schema_as_markdown() {
+  std::string text =
+      row({"on", "attribute", "type", "values", "what"}) + row({"---", "---", "---", "---", "---"});
+  for (const auto& [object, rule, description] : session_layout::session_attributes()) {
+    text += row({code(object), code(rule.name), std::string(rule.type),
+                 rule.list == 0 ? "one" : std::to_string(rule.list), std::string(description)});
+  }
+  text += '\n' + row({"dataset", "type", "shape", "what"}) + row({"---", "---", "---", "---"});
+  text += row({code("/entries"), code(session_layout::type_of_entries), "E",
+               "What happened, oldest first: `plan`, `run`, `trial`, `quit`, `opened`, `finished`; texts of "
+               "fixed length"});
+  text +=
+      row({code("/sealed/NNNNNN"), code("uint8"), "any",
+           "What is sealed of entry NNNNNN, from 000000: nonce (24), ciphertext, tag (16); in one piece, not "
+           "compressed"});
   return text;
 }
 

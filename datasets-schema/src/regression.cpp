@@ -6,25 +6,12 @@
 
 #include "files.h"
 #include "h5.h"
+#include "regression_layout.h"
 
 namespace kerf::schema {
 namespace {
 
 constexpr hsize_t chunk_rows = 8192;
-const std::string group_of_cases = "/cases";
-
-/// The texts of a case, under the names that they have in the file.
-struct TextAttribute {
-  const char* name;
-  std::string StoredForces::*member;
-};
-constexpr TextAttribute texts[] = {{"model", &StoredForces::model},
-                                   {"law_sha256", &StoredForces::law_sha256},
-                                   {"trajectory_sha256", &StoredForces::trajectory_sha256},
-                                   {"reason", &StoredForces::reason},
-                                   {"date", &StoredForces::date},
-                                   {"software", &StoredForces::software},
-                                   {"history", &StoredForces::history}};
 
 void require_sound(const std::vector<StoredForces>& cases) {
   std::set<std::string> names;
@@ -50,7 +37,7 @@ std::vector<std::string> gather(const std::vector<ForceChannel>& channels,
 
 void write_case(hid_t cases, const StoredForces& one) {
   const auto group = h5::create_group(cases, one.name);
-  for (const auto& [name, member] : texts) h5::write_attribute(group.id(), name, one.*member);
+  for (const auto& [name, member] : texts_of_a_case) h5::write_attribute(group.id(), name, one.*member);
   h5::write_attribute(group.id(), "faults", h5::native<std::uint64_t>(), {}, &one.faults);
   if (one.tick_cost) {
     h5::write_attribute(group.id(), "tick_cost", h5::native<double>(), {}, &*one.tick_cost);
@@ -90,7 +77,7 @@ StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std
   if (!h5::is_dataset(group.id(), "force")) refuse(file, where + "/force: there is no such dataset");
   StoredForces one;
   one.name = name;
-  for (const auto& [attribute, member] : texts) one.*member = text_of(group.id(), attribute);
+  for (const auto& [attribute, member] : texts_of_a_case) one.*member = text_of(group.id(), attribute);
   if (has_number(group.id(), "faults", "uint64"))
     h5::read_attribute(group.id(), "faults", h5::native<std::uint64_t>(), &one.faults);
   if (has_number(group.id(), "tick_cost", "float64")) {

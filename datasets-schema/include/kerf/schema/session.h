@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,8 +55,18 @@ struct Session {
 /// @throws FormatError in one line; std::invalid_argument (there is no such file), std::system_error.
 [[nodiscard]] Session read_session(const std::filesystem::path& file);
 
+/// The same without what is sealed, which may be hundreds of megabytes.
+[[nodiscard]] Session read_session_facts(const std::filesystem::path& file);
+
+/// What is sealed of an entry, counted from 0. @throws as read_session(); FormatError if there is none.
+[[nodiscard]] std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry);
+
 /// Writes a session to a temporary name beside `file`, then renames it. An existing file is replaced.
-/// @throws std::invalid_argument, std::system_error.
+/// @throws std::invalid_argument (a text with a zero byte, which HDF5 cannot hold), std::system_error.
 void write_session(const std::filesystem::path& file, const Session& session);
+
+/// The same, but asks for what is sealed entry by entry, so that no more than one is in memory.
+using SealedOf = std::function<std::vector<std::uint8_t>(std::size_t entry)>;
+void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of);
 
 }  // namespace kerf::schema
