@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -24,7 +25,7 @@ struct Arguments {
   double jnd_percent = 7.0;
   double jnd_criterion_percent = 75.0;
   std::size_t trials = 0;
-  double seconds = 0.0;
+  std::optional<double> d_prime;
   std::size_t jobs = 0;
   bool peak = false;
   bool no_curve = false;
@@ -38,7 +39,7 @@ SimulationOptions options_of(const Arguments& arguments, const Context& context)
   if (arguments.by == "strength") options.sensation.by = ToldBy::strength;
   if (arguments.by == "difference") options.sensation.by = ToldBy::difference;
   if (arguments.peak) options.sensation.strength = Loudest::peak;
-  options.sensation.felt.seconds = arguments.seconds;
+  options.sensation.d_prime = arguments.d_prime;
   if (arguments.no_curve) options.curve_points = 0;
   options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1U, std::thread::hardware_concurrency());
   options.seed = context.seed;
@@ -123,6 +124,8 @@ void add_session_simulate(CLI::App& session, Context& context) {
                   "by difference), or always one of them")
       .one_of({"asked", "strength", "difference"})
       .with_default();
+  verb.add_option("--d-prime", arguments->d_prime,
+                  "All pairs of samples are so many d' apart, whatever their laws render");
   verb.add_flag("--peak", arguments->peak, "Strength is the peak of the force, not its root mean square");
   verb.add_option("--subjects", arguments->simulation.subjects, "Of each experiment").with_default();
   verb.add_option("--experiments", arguments->simulation.experiments, "How many are simulated")
@@ -131,7 +134,11 @@ void add_session_simulate(CLI::App& session, Context& context) {
   verb.add_option("--power", arguments->simulation.power, "For which trials are counted").with_default();
   verb.add_option("--device", arguments->simulation.sensation.felt.device_uri,
                   "Simulated device that the laws are felt on (default: the protocol's)");
-  verb.add_option("--seconds", arguments->seconds, "Felt for so long (default: the protocol's [motion])");
+  verb.add_option("--seconds", arguments->simulation.sensation.felt.seconds,
+                  "Felt for so long (default: the protocol's [motion])");
+  verb.add_option("--renderings", arguments->simulation.sensation.felt.renderings,
+                  "So often, each time with other strokes of the simulated hand")
+      .with_default();
   verb.add_flag("--open-loop", arguments->simulation.sensation.felt.open_loop,
                 "Forces along the protocol's [motion], without a device");
   verb.add_option("-o,--output", arguments->output, "Folder for simulate.html, charts, JSON and CSV");

@@ -25,6 +25,10 @@ constexpr double no_force_n = 1e-9;
 
 double to_newtons(const std::string& unit) { return unit == "N·m" ? 1.0 / lever_m : 1.0; }
 
+std::string with_seed(const std::string& uri, std::size_t seed) {
+  return fmt::format("{}{}seed={}", uri, uri.find('?') == std::string::npos ? '?' : '&', seed);
+}
+
 bool fits(const Protocol& protocol, const drivers::DeviceInfo& device) {
   return std::ranges::all_of(protocol.samples, [&](const SessionSample& sample) {
     try {
@@ -48,9 +52,9 @@ std::string first_that_fits(const Protocol& protocol) {
 /// From the ticks past the soft start.
 class FeltRows {
  public:
-  FeltRows(const drivers::DeviceInfo& device, std::size_t ticks) {
+  FeltRows(const drivers::DeviceInfo& device, std::size_t ticks, FeltForces& felt) : felt_(felt) {
     felt_.axes = device.axes.size();
-    felt_.force_n.reserve(ticks * felt_.axes);
+    felt_.force_n.reserve(felt_.force_n.size() + ticks * felt_.axes);
     for (const drivers::AxisInfo& axis : device.axes) newtons_.push_back(to_newtons(axis.force_unit));
   }
   void take(const schema::Row& row) {
@@ -59,10 +63,9 @@ class FeltRows {
       felt_.force_n.push_back(newtons_[axis] * row.force_commanded[axis]);
     if ((row.flags & (schema::flag_force_limited | schema::flag_slew_limited)) != 0) ++felt_.limited_ticks;
   }
-  [[nodiscard]] FeltForces taken() && { return std::move(felt_); }
 
  private:
-  FeltForces felt_;
+  FeltForces& felt_;
   std::vector<double> newtons_;
 };
 
@@ -105,6 +108,8 @@ FeltRenderer::FeltRenderer(const Protocol& protocol, const FeltOptions& options)
   }
   if (protocol.motion) seconds_ = protocol.motion->seconds;
   if (options.seconds > 0.0) seconds_ = options.seconds;
+  if (device_uri_.find("seed=") == std::string::npos)
+    renderings_ = std::max<std::size_t>(1, options.renderings);
   if (seconds_ < 2.0 * soft_start_s) {
     throw std::invalid_argument(fmt::format(
         "samples are to be felt for {:g} s, expected at least {:g} s: the first {:g} s are left out",
@@ -113,22 +118,26 @@ FeltRenderer::FeltRenderer(const Protocol& protocol, const FeltOptions& options)
 }
 
 FeltForces FeltRenderer::rendered(const PlayedLaw& law) const {
-  return is_open_loop() ? along_motion(law) : on_device(law);
+  if (is_open_loop()) return along_motion(law);
+  FeltForces felt;
+  for (std::size_t i = 1; i <= renderings_; ++i)
+    render_once(law, renderings_ == 1 ? device_uri_ : with_seed(device_uri_, i), felt);
+  return felt;
 }
 
-FeltForces FeltRenderer::on_device(const PlayedLaw& law) const {
+void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, FeltForces& felt) const {
   std::optional<LawRendering> rendering;
   std::optional<FeltRows> rows;
   const std::atomic<bool> stop{false};
   const RunOptions options{
-      .device_uri = device_uri_,
+      .device_uri = uri,
       .seconds = seconds_,
       .rate_hz = protocol_->rate_hz,
       .virtual_time = true,
       .rendering =
           [&](const drivers::DeviceInfo& device) {
             rendering.emplace(law.law.law, law.law.contact, axes_for(law.law, device));
-            rows.emplace(device, static_cast<std::size_t>(seconds_ * protocol_->rate_hz) + 1);
+            rows.emplace(device, static_cast<std::size_t>(seconds_ * protocol_->rate_hz) + 1, felt);
             return OtherRendering{.step = [&](const drivers::Sample& now, double period_s) {
               Command command = (*rendering)(now, period_s);
               for (double& force : command.force) force *= law.gain;
@@ -141,9 +150,8 @@ FeltForces FeltRenderer::on_device(const PlayedLaw& law) const {
   const LoopReport report = run_on_device(options, stop).report;
   if (const auto faults = report.ticks_with(schema::flag_law_fault); faults > 0) {
     throw std::invalid_argument(fmt::format("law '{}' gives no finite force on {} in {} of {} ticks",
-                                            law.law.law.model(), device_uri_, faults, report.ticks()));
+                                            law.law.law.model(), uri, faults, report.ticks()));
   }
-  return std::move(*rows).taken();
 }
 
 FeltForces FeltRenderer::along_motion(const PlayedLaw& law) const {

@@ -25,11 +25,14 @@ struct FeltForces {
 /// How strength is told from the forces along time.
 enum class Loudest : std::uint8_t { rms, peak };
 
-/// Where and how long the samples are rendered.
+/// Where, how long and how often the samples are rendered.
 struct FeltOptions {
   std::string device_uri;  ///< empty: the protocol's, else the first simulated device that all samples fit
   bool open_loop = false;  ///< along the protocol's [motion], which no force disturbs
-  double seconds = 0.0;    ///< 0: those of the protocol's [motion], else 6
+  double seconds = 0.0;    ///< each time; 0: those of the protocol's [motion], else 6
+  /// Times, each with other strokes of the hand and other noise (`seed` of the device): a law that chatters
+  /// is felt otherwise every time. Once where the device's URI gives a seed.
+  std::size_t renderings = 8;
 };
 
 /// What a rendering is like on a simulated device with a hand on it: closed loop, in virtual time, with the
@@ -40,7 +43,8 @@ class FeltRenderer {
   /// @throws std::invalid_argument: no device, no [motion] where one is needed.
   FeltRenderer(const Protocol& protocol, const FeltOptions& options);
 
-  /// Without the first 0.5 s, while the soft start makes everything weaker.
+  /// All renderings one after the other, each without its first 0.5 s, while the soft start makes everything
+  /// weaker.
   /// @throws std::invalid_argument: the law faults. drivers::DeviceError.
   [[nodiscard]] FeltForces rendered(const PlayedLaw& law) const;
 
@@ -49,12 +53,13 @@ class FeltRenderer {
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
 
  private:
-  [[nodiscard]] FeltForces on_device(const PlayedLaw& law) const;
+  void render_once(const PlayedLaw& law, const std::string& uri, FeltForces& felt) const;
   [[nodiscard]] FeltForces along_motion(const PlayedLaw& law) const;
 
   const Protocol* protocol_;
   std::string device_uri_;  ///< empty: open loop
   double seconds_ = 6.0;
+  std::size_t renderings_ = 1;
 };
 
 /// How far two renderings lie apart in kind, in JNDs:

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Dense>
+
 #include <kerf/psychophysics/quest_plus.h>
 
 namespace kerf::bench {
@@ -59,28 +61,46 @@ Sensation::Sensation(const Protocol& protocol, const Observer& observer, const S
   };
   if (!has_levels(protocol.design)) {
     for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue) {
-      for (const auto& pair : pairs_of(protocol, tissue)) pairs_[pair] = apart(felt[pair[0]], felt[pair[1]]);
+      for (const auto& pair : pairs_of(protocol, tissue))
+        pairs_[pair] = options.d_prime ? *options.d_prime / d_prime_per_jnd(observer)
+                                       : apart(felt[pair[0]], felt[pair[1]]);
     }
     return;
   }
   const std::size_t standard = protocol.scale.standard;
   levels_ = rendered_levels(protocol);
+  std::vector<double> rendered;
   for (const double level : levels_) {
     const double distance = apart(felt[standard], renderer.rendered(played(protocol, standard, level)));
-    jnds_.push_back(by_strength_ ? distance : std::copysign(distance, level));
+    rendered.push_back(by_strength_ ? distance : std::copysign(distance, level));
   }
+  fit(rendered);
   // A parameter may make a law weaker where it grows: what is asked for is then the weaker one.
-  if (jnds_.back() < 0.0) {
-    for (double& distance : jnds_) distance = -distance;
+  if (jnds({standard, standard}, levels_.back()) < 0.0) {
+    for (double& coefficient : coefficients_) coefficient = -coefficient;
   }
+}
+
+void Sensation::fit(const std::vector<double>& rendered) {
+  const auto rows = static_cast<Eigen::Index>(rendered.size());
+  const Eigen::Index powers = std::min<Eigen::Index>(4, rows - 1);
+  Eigen::MatrixXd matrix(rows, powers);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    for (Eigen::Index power = 0; power < powers; ++power)
+      matrix(row, power) = std::pow(levels_[static_cast<std::size_t>(row)], power + 1);
+  }
+  const Eigen::VectorXd wanted = Eigen::VectorXd::Map(rendered.data(), rows);
+  const Eigen::VectorXd found = matrix.colPivHouseholderQr().solve(wanted);
+  coefficients_.assign(found.begin(), found.end());
+  scatter_ = std::sqrt((matrix * found - wanted).squaredNorm() / static_cast<double>(rows));
 }
 
 double Sensation::jnds(const std::array<std::size_t, 2>& pair, double level) const {
   if (levels_.empty()) return pairs_.at(pair);
-  const auto above = std::upper_bound(levels_.begin() + 1, levels_.end() - 1, level);
-  const auto place = static_cast<std::size_t>(above - levels_.begin());
-  const double share = (level - levels_[place - 1]) / (levels_[place] - levels_[place - 1]);
-  return std::lerp(jnds_[place - 1], jnds_[place], share);
+  double sum = 0.0;
+  for (auto coefficient = coefficients_.rbegin(); coefficient != coefficients_.rend(); ++coefficient)
+    sum = level * (sum + *coefficient);
+  return sum;
 }
 
 }  // namespace kerf::bench

@@ -23,6 +23,8 @@ struct SensationOptions {
   FeltOptions felt;
   ToldBy by = ToldBy::as_the_design_asks;
   Loudest strength = Loudest::rms;
+  /// All pairs lie so many d' apart for the observer, whatever their laws render; of designs without levels.
+  std::optional<double> d_prime;
 };
 
 /// What a sample is like, for a report.
@@ -38,7 +40,10 @@ struct FeltSample {
 /// Without levels that is the difference in kind, with the first of the pair at 0: an observer who is asked
 /// for a signal ("which one rubbed?") feels by how much the signal differs. With levels it is the strength
 /// u(F): that of the comparison less that of the standard, above 0 where the comparison has more of what the
-/// scale varies. Between the levels that are rendered strength is taken as linear.
+/// scale varies. Two renderings of a law that chatters are never equally strong, so that the strength over
+/// the levels x is a smooth curve through what was rendered, 0 at the standard:
+///
+///     u(x) - u(0) = sum over k = 1 ... 4 of c_k x^k,   by least squares; scatter() is the rest
 class Sensation {
  public:
   /// Renders every sample, and the standard at 33 levels at least.
@@ -49,8 +54,10 @@ class Sensation {
   [[nodiscard]] double jnds(const std::array<std::size_t, 2>& pair, double level) const;
 
   [[nodiscard]] const std::vector<FeltSample>& samples() const noexcept { return samples_; }
-  /// The levels that were rendered, ascending, and how far they are from the standard; none without levels.
+  /// The levels that were rendered, ascending; none without levels.
   [[nodiscard]] const std::vector<double>& levels() const noexcept { return levels_; }
+  /// Root mean square of what was rendered about the curve, in JNDs.
+  [[nodiscard]] double scatter() const noexcept { return scatter_; }
   [[nodiscard]] bool is_by_strength() const noexcept { return by_strength_; }
   [[nodiscard]] const std::string& device_uri() const noexcept { return device_uri_; }  ///< empty: open loop
 
@@ -58,7 +65,10 @@ class Sensation {
   std::vector<FeltSample> samples_;
   std::map<std::array<std::size_t, 2>, double> pairs_;
   std::vector<double> levels_;
-  std::vector<double> jnds_;
+  void fit(const std::vector<double>& rendered);
+
+  std::vector<double> coefficients_;  ///< of x, x^2 ...
+  double scatter_ = 0.0;
   bool by_strength_ = false;
   std::string device_uri_;
 };

@@ -102,6 +102,7 @@ class Simulator {
                       .design = protocol_.design,
                       .device_uri = sensation_.device_uri(),
                       .by_strength = sensation_.is_by_strength(),
+                      .scatter = sensation_.scatter(),
                       .samples = sensation_.samples(),
                       .truth = truth_,
                       .curve_of = counted_on_curve(protocol_.design)};

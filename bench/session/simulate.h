@@ -69,6 +69,7 @@ struct Simulation {
   Design design = Design::preference;
   std::string device_uri;  ///< empty: open loop
   bool by_strength = false;
+  double scatter = 0.0;  ///< of the rendered levels about their curve, in JNDs
   std::vector<FeltSample> samples;
   SimulatedTruth truth;
   SimulatedFindings found;

@@ -78,6 +78,9 @@ ordered_json simulation_json(const Simulation& simulation) {
                        {"limited_share", sample.limited_share}});
   ordered_json curve = ordered_json::array();
   for (const PowerPoint& point : simulation.curve) curve.push_back(json_of(point));
+  ordered_json psychometric = ordered_json::array();
+  for (const CellTruth& at : simulation.curve_truth)
+    psychometric.push_back({{"level", at.level}, {"jnds", at.jnds}, {"share", at.share}});
   return {
       {"protocol", simulation.name},
       {"design", name_of(simulation.design)},
@@ -89,6 +92,8 @@ ordered_json simulation_json(const Simulation& simulation) {
       {"told_by", simulation.by_strength ? "strength" : "difference"},
       {"samples", std::move(samples)},
       {"truth", json_of(simulation.truth)},
+      {"rendering_scatter_jnd", simulation.scatter},
+      {"psychometric", std::move(psychometric)},
       {"level", options.analysis.level},
       {"found", json_of(simulation.found)},
       {"power_by_theory", number(simulation.theory)},

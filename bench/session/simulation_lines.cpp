@@ -32,6 +32,9 @@ std::string felt_line(const Simulation& simulation) {
     if (sample.limited_share > 0.0) line += fmt::format(" (at a limit in {})", percent(sample.limited_share));
     line += &sample == &simulation.samples.back() ? " rms." : ",";
   }
+  if (simulation.truth.is_of_levels)
+    line += fmt::format(" Renderings of the levels scatter by {:.2f} JND about a smooth curve.",
+                        simulation.scatter);
   return line;
 }
 
@@ -89,8 +92,8 @@ void add_jnd(const Simulation& simulation, std::vector<std::string>& lines) {
         percent(simulation.options.analysis.confidence), truth.jnd, with_interval(found.jnd_covered),
         found.jnd_covered.count.trials));
     lines.push_back(fmt::format(
-        "The JND came out {:.1f} % too {} on the average (geometric mean), with a scatter of {:.0f} %; half "
-        "of the intervals end within a ratio of {:.2f}.",
+        "The JND came out {:.1f} % too {} on the average (geometric mean), with a scatter of {:.0f} %; the "
+        "median interval ends at {:.2f} times its beginning.",
         100.0 * std::abs(found.jnd_bias), found.jnd_bias < 0.0 ? "small" : "large", 100.0 * found.jnd_spread,
         found.jnd_ratio));
   }

@@ -22,7 +22,7 @@ inline std::string spring_toml(double stiffness_n_per_rad) {
 /// A protocol whose samples "law 8" or "law 8.8" are springs of so many N/rad.
 inline Protocol simulated_protocol(const std::string& toml) {
   return parse_protocol(
-      "name = \"simulated\"\ndevice = \"sim:scissors\"\n" + toml +
+      "name = \"simulated\"\nquestion = \"Which is stiffer?\"\ndevice = \"sim:scissors\"\n" + toml +
           "\n[motion]\nfrom = { value = 32, unit = \"deg\" }\nto = { value = 8, unit = \"deg\" }\n",
       "simulated.protocol.toml",
       [](const std::string& name) { return spring_toml(std::stod(name.substr(4))); });
