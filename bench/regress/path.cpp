@@ -152,10 +152,14 @@ void add_bytes(std::string& bytes, double value) {
 
 }  // namespace
 
+RegressionPath trajectory_of(const RegressionCase& one) {
+  return !one.recording.empty() ? recorded(one) : !one.scene.empty() ? along_scene(one) : scripted(one);
+}
+
 RegressionPath path_of(const RegressionCase& one) {
   RegressionPath path;
   try {
-    path = !one.recording.empty() ? recorded(one) : !one.scene.empty() ? along_scene(one) : scripted(one);
+    path = trajectory_of(one);
   } catch (const std::invalid_argument& error) {
     const std::string source = one.recording.empty() ? one.scene.string() : one.recording.string();
     const std::string what = error.what();

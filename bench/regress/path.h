@@ -23,6 +23,8 @@ struct RegressionPath {
 /// The trajectory of a case. @throws std::invalid_argument: a recording without the law's axes, in other
 /// units or with a sample that is not finite; a scene without a script; no tick at all.
 [[nodiscard]] RegressionPath path_of(const RegressionCase& one);
+/// The same, with messages that do not speak of a case.
+[[nodiscard]] RegressionPath trajectory_of(const RegressionCase& one);
 
 /// SHA-256 of a path's numbers, and of what of a law has a bearing on its forces: everything of its file but
 /// comments, standard errors and where it comes from.

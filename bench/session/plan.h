@@ -30,8 +30,16 @@ struct TrialPlan {
 /// The trials of one subject in their order, practice first. Of adaptive designs as many as there may be.
 using Plan = std::vector<TrialPlan>;
 
-/// The plans of all subjects of a study: tissues in counterbalanced orders, each sample equally often in each
-/// slot, all from the seed (psychophysics/balance.h).
+/// The plans of all subjects of a study, all from the seed (psychophysics/balance.h):
+/// - the trials of a tissue are together, and the orders of the tissues counterbalanced over the subjects;
+/// - within a tissue they come in rounds of every pair (every level) once, shuffled;
+/// - which sample is in which slot, what X is, which slot holds the signal: each equally often for each
+/// subject
+///   and pair (level), within one, shuffled; what an odd number leaves over is dealt evenly over the subjects
+///   and pairs. docs/sessions.md says where two such claims cannot both hold;
+/// - adaptive designs are even in every ten trials, for they may end anywhere;
+/// - practice is of the subject's first tissue, by chance.
+/// @throws std::invalid_argument: no subject, or more than 1,000.
 [[nodiscard]] std::vector<Plan> make_plans(const Protocol& protocol, std::size_t subjects,
                                            std::uint64_t seed);
 

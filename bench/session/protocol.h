@@ -110,6 +110,7 @@ struct Protocol {
   double ramp_s = 0.25;               ///< from sample to sample
   std::optional<std::size_t> signal;  ///< two_interval, three_interval: the sample that the question asks for
   bool odd_one_out = false;           ///< three_interval: either may be the odd one
+  bool differencing = false;          ///< abx: the strategy that d' is reckoned for; else independent
   IntensityScale scale;               ///< where the design has levels
   Loudness loudness = Loudness::as_they_are;
   std::optional<SessionMotion> motion;
@@ -124,8 +125,14 @@ struct Protocol {
 [[nodiscard]] std::string_view label_of(Design design, std::size_t slot) noexcept;
 /// Slots that may be the answer: not X.
 [[nodiscard]] std::size_t answers_of(Design design) noexcept;
-/// The task for d' and chance. @throws std::invalid_argument: a preference has none.
+/// The task for d' and chance. ABX is taken as independent observations unless the protocol says
+/// "differencing"; a trial at a level is a forced choice of two.
+/// @throws std::invalid_argument: no answer is right where preferences are asked for, nor where levels lie on
+///         both sides of the standard.
 [[nodiscard]] psychophysics::Task task_of(const Protocol& protocol);
+/// The pairs of samples that the trials of a tissue compare: all of them; where there is a signal those with
+/// it, as the second; where there are levels the standard with itself.
+[[nodiscard]] std::vector<std::array<std::size_t, 2>> pairs_of(const Protocol& protocol, std::size_t tissue);
 
 /// Reads a protocol and the laws that it names, relative to its folder.
 /// @throws std::invalid_argument with file, line, found and expected; std::system_error.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "session/plan.h"
@@ -17,6 +18,9 @@ struct PlayedLaw {
 /// @throws std::invalid_argument where a parameter leaves its bounds at that level, naming both.
 [[nodiscard]] PlayedLaw played(const Protocol& protocol, std::size_t sample, double level);
 
+/// Where the parameter of a law stands that a scale names: "damping"; of "knot" all of knot[0], knot[1] ...
+[[nodiscard]] std::vector<std::size_t> parameters_named(const models::Law& law, std::string_view name);
+
 /// The two of a trial, in the order of its pair: pair[1] at the trial's level.
 [[nodiscard]] std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial);
 
@@ -26,7 +30,8 @@ struct PlayedLaw {
 
 /// Sets the gains of the samples so that peak or root mean square of the force along the protocol's motion
 /// (over the axes, torques at a lever of 10 mm) is that of the first sample of each tissue. Nothing where the
-/// protocol leaves them as they are. @throws std::invalid_argument: no motion, or a sample without force.
+/// protocol leaves them as they are. @throws std::invalid_argument: no motion, a sample without force, a gain
+/// that is not from 1/20 to 20, or one sample that would need two gains.
 void match_loudness(Protocol& protocol);
 
 }  // namespace kerf::bench
