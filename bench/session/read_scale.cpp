@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -136,7 +137,10 @@ void read_staircase(const Place& place, const toml::table& scale, Protocol& prot
 /// A tenth to ten times the expected JND, 16 a decade, to four digits so that every machine has the same.
 std::vector<double> standard_levels(double expected_jnd) {
   std::vector<double> levels = psychophysics::geometric_grid(0.1 * expected_jnd, 10.0 * expected_jnd, 33);
-  for (double& level : levels) level = std::stod(fmt::format("{:.4g}", level));
+  for (double& level : levels) {
+    const std::string digits = fmt::format("{:.4g}", level);
+    std::from_chars(digits.data(), digits.data() + digits.size(), level);
+  }
   return levels;
 }
 

@@ -20,7 +20,6 @@ namespace {
 using test::level_text;
 using test::protocol_from;
 using test::protocol_text;
-using testing::DoubleNear;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;

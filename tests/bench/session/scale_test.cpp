@@ -91,6 +91,7 @@ struct BadScale {
   const char* scale;
   const char* message;
 };
+void PrintTo(const BadScale& bad, std::ostream* out) { *out << bad.name; }
 class BadScales : public testing::TestWithParam<BadScale> {};
 
 TEST_P(BadScales, AreRefusedWithTheLine) {
