@@ -19,6 +19,7 @@ class Findings {
       warn(analysis_.practice > 0 ? "there are no answers besides practice" : "there are no answers");
       return;
     }
+    if (analysis_.levels) write_levels(*analysis_.levels);
     if (analysis_.all) {
       if (is_preference()) {
         write_preference(*analysis_.all);
@@ -28,7 +29,6 @@ class Findings {
     }
     write_family(analysis_.by_tissue.size() > 1 ? analysis_.by_tissue : analysis_.by_pair);
     for (const TissueRanking& ranking : analysis_.rankings) write_ranking(ranking);
-    if (analysis_.levels) write_levels(*analysis_.levels);
     write_subjects();
     write_bias();
     write_times();
@@ -96,9 +96,13 @@ class Findings {
 
   void write_family(const std::vector<AnswerGroup>& family) {
     if (family.size() < 2) return;
+    const auto& rankings = analysis_.rankings;
+    const bool is_ranked =
+        !rankings.empty() && std::all_of(rankings.begin(), rankings.end(),
+                                         [](const auto& each) { return each.bradley_terry.has_value(); });
     for (const AnswerGroup& group : family) {
       if (std::isnan(group.p_value)) return;
-      if (is_alarm(group.p_adjusted)) {
+      if (is_alarm(group.p_adjusted) && !is_ranked) {
         show(fmt::format("{}: {}, {} after correction over {} tests", group.name,
                          count_text(group, options_.confidence), p_text(group.p_adjusted), family.size()));
       }
@@ -147,8 +151,14 @@ class Findings {
       show(threshold_text("the JND is", *pooled.jnd, criterion_text(levels, *pooled.jnd).c_str(),
                           options_.confidence));
     if (pooled.equality)
-      show(threshold_text("equal strength is felt at", *pooled.equality, "of the standard from it",
+      show(threshold_text("equal strength is felt at", *pooled.equality, "from the standard",
                           options_.confidence));
+    if (levels.across) {
+      show(fmt::format(
+          "the mean JND of the {} subjects is {} ({:.3g} % {}, Student): the one for people like them",
+          levels.by_subject.size(), percent_text(levels.across->mean), 100.0 * options_.confidence,
+          percent_text(levels.across->interval)));
+    }
     if (pooled.jnd_within) {
       const std::string margins = percent_text(*options_.jnd_margins);
       if (*pooled.jnd_within) {
@@ -181,7 +191,7 @@ class Findings {
       show_not("anything of people: it is one subject");
       return;
     }
-    if (spread.population) {
+    if (spread.population && !analysis_.levels) {
       const auto& population = *spread.population;
       const std::string mean = fmt::format("mean of the subjects {} ({:.3g} % {}, Student), {}",
                                            percent_text(population.mean), 100.0 * options_.confidence,
@@ -221,8 +231,9 @@ class Findings {
       counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ", label_of(analysis_.design, slot),
                             bias.answers[slot]);
     }
-    warn(fmt::format("answers lean to one slot ({}; {}): d' of the count is too small", counts,
-                     p_text(bias.test.p)));
+    warn(fmt::format("answers lean to one slot ({}; {}){}", counts, p_text(bias.test.p),
+                     is_preference() ? ": a preference is seen less clearly for it"
+                                     : ": the count makes the difference look smaller than it is"));
   }
 
   void write_times() {
