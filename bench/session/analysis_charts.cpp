@@ -219,7 +219,8 @@ Chart track_chart(const AdaptiveTrack& track, const Analysis& analysis) {
               .x_label = "trial",
               .y_label = "level [1, fraction of the standard]",
               .log_y = true,
-              .legend_below = true};
+              .legend_below = true,
+              .height_px = 430};
   Curve line{.colour = Colour::grey, .mark = Mark::line, .width = 1.0};
   Curve right{.label = "right", .colour = Colour::blue, .mark = Mark::points, .width = 2.5};
   Curve wrong{.label = "wrong", .colour = Colour::vermillion, .mark = Mark::crosses, .width = 4.5};
@@ -271,6 +272,10 @@ Chart ranking_chart(const TissueRanking& ranking, const Analysis& analysis) {
   for (const std::size_t i : order) {
     forest.add(analysis.samples[ranking.samples[i]], worth[i], ranking.intervals[i], Colour::blue);
   }
+  double most = 0.0;
+  for (const psychophysics::Interval& interval : ranking.intervals)
+    most = std::max({most, -interval.lower, interval.upper});
+  forest.chart().x_range = {-1.1 * most, 1.1 * most};
   forest.chart().vertical.push_back({.at = 0.0, .label = "mean", .label_after = true});
   return forest.finished();
 }

@@ -167,6 +167,14 @@ class Findings {
         show_not(fmt::format("that the JND lies within {}", margins));
       }
     }
+    if (pooled.jnd && is_adaptive(analysis_.design)) {
+      // Simulated: 300 sessions each of 50 to 120 trials, a Weibull observer with lapses of 0 and 2 %.
+      warn(fmt::format(
+          "levels that follow the answers make the interval of the JND too narrow: what says 95 % covers {} "
+          "in simulated sessions of one subject",
+          analysis_.design == Design::staircase ? "79 % with 15 reversals, 87 % with 30"
+                                                : "92 % with 60 trials"));
+    }
     for (const std::string& note : pooled.notes) warn(note);
     for (const std::string& note : levels.notes) warn(note);
     if (pooled.fit && is_alarm(pooled.fit->overdispersion_p)) {
@@ -212,10 +220,13 @@ class Findings {
           "and those who notice stand beside those who do not; look at each subject",
           p_text(spread.equal.p)));
     } else if (is_preference()) {
-      warn(
-          fmt::format("{} answers of {} subjects are not as many independent ones; that the subjects differ "
-                      "does not show ({}), which with few answers says little",
-                      analysis_.trials, analysis_.subjects.size(), p_text(spread.equal.p)));
+      const std::string agreement =
+          analysis_.by_subject.empty()
+              ? std::string("whether the subjects agree is not tested among more than two samples")
+              : fmt::format("that the subjects differ does not show ({}), which with few answers says little",
+                            p_text(spread.equal.p));
+      warn(fmt::format("{} answers of {} subjects are not as many independent ones; {}", analysis_.trials,
+                       analysis_.subjects.size(), agreement));
     }
   }
 

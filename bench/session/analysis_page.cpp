@@ -15,6 +15,8 @@
 namespace kerf::bench {
 namespace {
 
+constexpr std::size_t most_unbroken = 24;  ///< characters of a cell that stay on one line
+
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string list_of(const char* title, const std::vector<std::string>& sentences) {
@@ -37,12 +39,10 @@ std::string table_of(const Rows& rows) {
                           });
     if (is_empty) continue;
     for (std::size_t row = 0; row < rows.size(); ++row) {
+      const std::string& whole = rows[row][column];
+      const bool is_short = row > 0 && whole.size() < most_unbroken;
       std::string cell;
-      for (std::size_t i = 0; i < rows[row][column].size(); ++i) {
-        const std::string_view rest = std::string_view(rows[row][column]).substr(i);
-        const bool stays = rest.starts_with(" %") || rest.starts_with(" of ") || (i == 1 && rest[0] == ' ');
-        cell += stays ? std::string("\u00a0") : std::string(1, rest[0]);
-      }
+      for (const char c : whole) cell += is_short && c == ' ' ? std::string("\u00a0") : std::string(1, c);
       kept[row].push_back(std::move(cell));
     }
   }

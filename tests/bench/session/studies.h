@@ -37,10 +37,8 @@ inline void add_answers(Study& study, const std::string& subject, const std::str
 inline void add_wins(Study& study, std::size_t first, std::size_t second, int wins, int losses) {
   for (int i = 0; i < wins + losses; ++i) {
     const std::size_t slot = static_cast<std::size_t>(i) % 2;
-    study.judgements.push_back({.subject = "P1",
-                                .pair = {first, second},
-                                .right = slot,
-                                .answer = i < wins ? 1 - slot : slot});
+    study.judgements.push_back(
+        {.subject = "P1", .pair = {first, second}, .right = slot, .answer = i < wins ? 1 - slot : slot});
   }
 }
 
