@@ -24,6 +24,7 @@ void add_replay(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_reproduce(CLI::App& app, Context& context);
 void add_segment(CLI::App& app, Context& context);
+void add_session(CLI::App& app, Context& context);
 void add_stability(CLI::App& app, Context& context);
 void add_train(CLI::App& app, Context& context);
 void add_validate(CLI::App& app, Context& context);
