@@ -181,6 +181,8 @@ TEST(TheTableOf004, GivesTheNumbersOfTheDocs) {
   for (const AnswerGroup& tissue : found.by_tissue) {
     EXPECT_DOUBLE_EQ(tissue.p_value, tissue.name == "empty" ? 0.25 : 1.0);
     EXPECT_DOUBLE_EQ(tissue.p_adjusted, 1.0);
+    EXPECT_EQ(tissue.count.successes, tissue.name == "empty" ? 0 : 2);
+    EXPECT_EQ(tissue.count.trials, 3);
   }
   EXPECT_NEAR(found.spread.equal.p, 708.0 / 924.0, 1e-12);
   EXPECT_EQ(found.preferred, (std::vector<std::size_t>{6, 6}));
