@@ -10,11 +10,15 @@
 
 #include <kerf/schema/live_recording.h>
 #include <kerf/schema/recording.h>
+#include <kerf/schema/regression.h>
+#include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
 #include "cli/verbs.h"
 #include "loop/run.h"
 #include "recordings/summary.h"
+#include "regress/stored_facts.h"
+#include "session/session_facts.h"
 
 namespace kerf::bench {
 namespace {
@@ -30,8 +34,10 @@ struct Arguments {
 void print_schema(Context& context) {
   const std::string markdown = schema::schema_as_markdown();
   if (context.json) {
-    context.result = {
-        {"schema", schema::schema_name}, {"schema_version", schema::schema_version}, {"markdown", markdown}};
+    context.result = {{"schema", schema::schema_name},
+                      {"schema_version", schema::schema_version},
+                      {"markdown", markdown},
+                      {"markdown_of_sessions", schema::session_schema_as_markdown()}};
   } else {
     std::cout << markdown << std::flush;
   }
@@ -93,8 +99,17 @@ void run_info(const Arguments& arguments, Context& context) {
   if (arguments.follow) follow(arguments.recording);
   const std::filesystem::path file = arguments.follow ? schema::find_recording(arguments.recording).file
                                                       : std::filesystem::path(arguments.recording);
-  context.result = recording_summary(schema::read_recording(file));
-  say(summary_table(context.result));
+  const std::string schema = schema::schema_of(file);
+  if (schema == schema::session_schema_name) {
+    context.result = session_facts(file);
+    say(session_facts_table(context.result));
+  } else if (schema == schema::regression_schema_name) {
+    context.result = stored_facts(schema::read_regression(file));
+    say(stored_facts_table(context.result));
+  } else {
+    context.result = recording_summary(schema::read_recording(file));
+    say(summary_table(context.result));
+  }
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
 }
 
@@ -103,11 +118,13 @@ void run_info(const Arguments& arguments, Context& context) {
 void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<Arguments>();
   Verb verb =
-      add_verb(app, context, "info", "Say what is in a recording, also in one that is still written",
+      add_verb(app, context, "info",
+               "Say what is in a recording, also in one that is still written, a session or stored forces",
                "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
                "info --schema",
                [arguments, &context] { run_info(*arguments, context); });
-  verb.add_option("recording", arguments->recording, "The recording, or the NAME.partial of one not closed");
+  verb.add_option("recording", arguments->recording,
+                  "The recording, or the NAME.partial of one not closed; a session, stored forces");
   verb.add_flag("--follow", arguments->follow,
                 "Show a recording while it is made, from another terminal, until it is closed");
   verb.add_flag("--schema", arguments->schema, "Print the schema's tables instead, as Markdown");

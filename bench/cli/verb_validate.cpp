@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
 #include "cli/verbs.h"
@@ -11,6 +12,9 @@ namespace {
 
 void run_validate(const std::string& file, Context& context) {
   const auto violations = schema::validate(file);
+  const std::string schema = schema::schema_of(file);
+  context.result["schema"] =
+      schema.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(schema);
   context.result["valid"] = violations.empty();
   context.result["violations"] = nlohmann::ordered_json::array();
   for (const auto& [where, found, expected] : violations) {
@@ -18,7 +22,9 @@ void run_validate(const std::string& file, Context& context) {
     say(fmt::format("{}: {}: found {}, expected {}", file, where, found, expected));
   }
   if (violations.empty()) {
-    say(fmt::format("{}: valid", file));
+    const bool is_sealed = schema == schema::session_schema_name;
+    say(fmt::format("{}: valid{}", file,
+                    is_sealed ? "; whether its seals hold is seen by who opens it with its key" : ""));
   } else {
     context.exit = Exit::check_failed;
   }
@@ -30,7 +36,7 @@ void add_validate(CLI::App& app, Context& context) {
   auto file = std::make_shared<std::string>();
   Verb verb = add_verb(app, context, "validate", "List every way in which a file departs from the schema",
                        "kerf validate cut.h5", [file, &context] { run_validate(*file, context); });
-  verb.add_option("recording", *file, "The recording").required();
+  verb.add_option("recording", *file, "The recording, session or stored forces").required();
 }
 
 }  // namespace kerf::bench

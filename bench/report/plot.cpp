@@ -67,6 +67,15 @@ void add_data(std::string& script, const Curve& curve, std::size_t index) {
   script += "EOD\n";
 }
 
+std::string ticks_of(char axis, const std::vector<NamedTick>& ticks) {
+  if (ticks.empty()) return {};
+  std::string script = fmt::format("set {}tics (", axis);
+  for (const NamedTick& tick : ticks) {
+    script += fmt::format("{}{} {}", &tick == &ticks.front() ? "" : ", ", gnuplot_text(tick.name), tick.at);
+  }
+  return script + ")\n";
+}
+
 std::string script_of(const Chart& chart, const std::string& output) {
   std::string script = "reset session\n";
   auto out = std::back_inserter(script);
@@ -90,14 +99,7 @@ std::string script_of(const Chart& chart, const std::string& output) {
   if (std::all_of(chart.curves.begin(), chart.curves.end(),
                   [](const Curve& curve) { return curve.label.empty(); }))
     script += "unset key\nset rmargin 3\n";
-  if (!chart.y_ticks.empty()) {
-    script += "set ytics (";
-    for (const NamedTick& tick : chart.y_ticks) {
-      fmt::format_to(out, "{}{} {}", &tick == &chart.y_ticks.front() ? "" : ", ", gnuplot_text(tick.name),
-                     tick.at);
-    }
-    script += ")\n";
-  }
+  script += ticks_of('x', chart.x_ticks) + ticks_of('y', chart.y_ticks);
   for (const Band& band : chart.bands) {
     fmt::format_to(
         out,

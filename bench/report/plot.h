@@ -46,7 +46,7 @@ struct Marker {
   bool label_after = false;  ///< right of a vertical line instead of left
 };
 
-/// A name in place of a number at the y axis.
+/// A name in place of a number at an axis.
 struct NamedTick {
   double at = 0.0;
   std::string name;
@@ -76,7 +76,8 @@ struct Chart {
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
   std::vector<PointLabel> labels;
-  std::vector<NamedTick> y_ticks;  ///< in place of numbers
+  std::vector<NamedTick> x_ticks;  ///< in place of numbers
+  std::vector<NamedTick> y_ticks;  ///< likewise
   Range x_range;                   ///< empty: what the curves need
   Range y_range;
   bool log_x = false;

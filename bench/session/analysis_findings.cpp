@@ -19,6 +19,7 @@ class Findings {
       warn(analysis_.practice > 0 ? "there are no answers besides practice" : "there are no answers");
       return;
     }
+    if (analysis_.levels) write_levels(*analysis_.levels);
     if (analysis_.all) {
       if (is_preference()) {
         write_preference(*analysis_.all);
@@ -28,7 +29,6 @@ class Findings {
     }
     write_family(analysis_.by_tissue.size() > 1 ? analysis_.by_tissue : analysis_.by_pair);
     for (const TissueRanking& ranking : analysis_.rankings) write_ranking(ranking);
-    if (analysis_.levels) write_levels(*analysis_.levels);
     write_subjects();
     write_bias();
     write_times();
@@ -96,9 +96,13 @@ class Findings {
 
   void write_family(const std::vector<AnswerGroup>& family) {
     if (family.size() < 2) return;
+    const auto& rankings = analysis_.rankings;
+    const bool is_ranked =
+        !rankings.empty() && std::all_of(rankings.begin(), rankings.end(),
+                                         [](const auto& each) { return each.bradley_terry.has_value(); });
     for (const AnswerGroup& group : family) {
       if (std::isnan(group.p_value)) return;
-      if (is_alarm(group.p_adjusted)) {
+      if (is_alarm(group.p_adjusted) && !is_ranked) {
         show(fmt::format("{}: {}, {} after correction over {} tests", group.name,
                          count_text(group, options_.confidence), p_text(group.p_adjusted), family.size()));
       }
@@ -147,8 +151,14 @@ class Findings {
       show(threshold_text("the JND is", *pooled.jnd, criterion_text(levels, *pooled.jnd).c_str(),
                           options_.confidence));
     if (pooled.equality)
-      show(threshold_text("equal strength is felt at", *pooled.equality, "of the standard from it",
+      show(threshold_text("equal strength is felt at", *pooled.equality, "from the standard",
                           options_.confidence));
+    if (levels.across) {
+      show(fmt::format(
+          "the mean JND of the {} subjects is {} ({:.3g} % {}, Student): the one for people like them",
+          levels.by_subject.size(), percent_text(levels.across->mean), 100.0 * options_.confidence,
+          percent_text(levels.across->interval)));
+    }
     if (pooled.jnd_within) {
       const std::string margins = percent_text(*options_.jnd_margins);
       if (*pooled.jnd_within) {
@@ -156,6 +166,14 @@ class Findings {
       } else {
         show_not(fmt::format("that the JND lies within {}", margins));
       }
+    }
+    if (pooled.jnd && is_adaptive(analysis_.design)) {
+      // Simulated: 300 sessions each of 50 to 120 trials, a Weibull observer with lapses of 0 and 2 %.
+      warn(fmt::format(
+          "levels that follow the answers make the interval of the JND too narrow: what says 95 % covers {} "
+          "in simulated sessions of one subject",
+          analysis_.design == Design::staircase ? "79 % with 15 reversals, 87 % with 30"
+                                                : "92 % with 60 trials"));
     }
     for (const std::string& note : pooled.notes) warn(note);
     for (const std::string& note : levels.notes) warn(note);
@@ -181,7 +199,7 @@ class Findings {
       show_not("anything of people: it is one subject");
       return;
     }
-    if (spread.population) {
+    if (spread.population && !analysis_.levels) {
       const auto& population = *spread.population;
       const std::string mean = fmt::format("mean of the subjects {} ({:.3g} % {}, Student), {}",
                                            percent_text(population.mean), 100.0 * options_.confidence,
@@ -202,10 +220,13 @@ class Findings {
           "and those who notice stand beside those who do not; look at each subject",
           p_text(spread.equal.p)));
     } else if (is_preference()) {
-      warn(
-          fmt::format("{} answers of {} subjects are not as many independent ones; that the subjects differ "
-                      "does not show ({}), which with few answers says little",
-                      analysis_.trials, analysis_.subjects.size(), p_text(spread.equal.p)));
+      const std::string agreement =
+          analysis_.by_subject.empty()
+              ? std::string("whether the subjects agree is not tested among more than two samples")
+              : fmt::format("that the subjects differ does not show ({}), which with few answers says little",
+                            p_text(spread.equal.p));
+      warn(fmt::format("{} answers of {} subjects are not as many independent ones; {}", analysis_.trials,
+                       analysis_.subjects.size(), agreement));
     }
   }
 
@@ -221,8 +242,9 @@ class Findings {
       counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ", label_of(analysis_.design, slot),
                             bias.answers[slot]);
     }
-    warn(fmt::format("answers lean to one slot ({}; {}): d' of the count is too small", counts,
-                     p_text(bias.test.p)));
+    warn(fmt::format("answers lean to one slot ({}; {}){}", counts, p_text(bias.test.p),
+                     is_preference() ? ": a preference is seen less clearly for it"
+                                     : ": the count makes the difference look smaller than it is"));
   }
 
   void write_times() {

@@ -148,6 +148,8 @@ json rankings_as_json(const Analysis& analysis) {
   for (const TissueRanking& ranking : analysis.rankings) {
     json names = json::array();
     for (const std::size_t sample : ranking.samples) names.push_back(analysis.samples[sample]);
+    json intervals = json::array();
+    for (const psychophysics::Interval& interval : ranking.intervals) intervals.push_back(pair_of(interval));
     json pairs = json::array();
     for (const RankedPair& pair : ranking.pairs) {
       pairs.push_back({{"first", names[pair.first]},

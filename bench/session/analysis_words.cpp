@@ -21,6 +21,7 @@ std::string power_text(const AnswerGroup& group) {
 std::string group_line(const AnswerGroup& group, const Analysis& analysis, bool in_family) {
   std::string line = fmt::format("{}: {}, {}", group.name.empty() ? std::string("(no name)") : group.name,
                                  count_text(group, analysis.options.confidence), p_text(group.p_value));
+  if (std::isnan(group.p_value)) return fmt::format("{} ({})", line.substr(0, line.size() - 6), group.note);
   if (in_family && !std::isnan(group.p_adjusted)) {
     line += fmt::format(" ({} {})",
                         analysis.options.correction == FamilyCorrection::holm ? "Holm" : "Benjamini-Hochberg",
@@ -57,7 +58,7 @@ std::string level_line(const LevelFit& fit, const LevelAnalysis& levels, double 
   if (fit.jnd) line += threshold_text("JND", *fit.jnd, criterion_text(levels, *fit.jnd).c_str(), confidence);
   if (fit.equality)
     line += fmt::format("{}{}", fit.jnd ? "; " : "",
-                        threshold_text("PSE", *fit.equality, "of the standard from it", confidence));
+                        threshold_text("PSE", *fit.equality, "from the standard", confidence));
   if (fit.fit) line += fmt::format("{}slope {:.3g}", fit.jnd || fit.equality ? "; " : "", fit.fit->slope);
   for (const std::string& note : fit.notes)
     line += fmt::format("{}{}", line.ends_with(": ") ? "" : "; ", note);
@@ -178,6 +179,18 @@ std::string as_sentence(std::string text) {
   return text;
 }
 
+std::string times_text(const ResponseTimes& times) {
+  std::string text = fmt::format("answered in {:.2f} s (median; half of them in {:.2f} to {:.2f} s)",
+                                 times.median_s, times.lower_quartile_s, times.upper_quartile_s);
+  if (std::isfinite(times.right_is_faster)) {
+    text += fmt::format(
+        "; right ones in {:.2f} s, wrong ones in {:.2f} s, and a right one is the faster in {} ({})",
+        times.median_right_s, times.median_wrong_s, percent_text(times.right_is_faster),
+        p_text(times.p_value));
+  }
+  return text;
+}
+
 std::vector<std::string> summary_lines(const Analysis& analysis) {
   std::vector<std::string> lines;
   lines.push_back(fmt::format(
@@ -195,12 +208,13 @@ std::vector<std::string> summary_lines(const Analysis& analysis) {
       lines.push_back("  " + group_line(group, analysis, true));
   }
   for (const AnswerGroup& group : analysis.by_pair) lines.push_back("  " + group_line(group, analysis, true));
-  if (analysis.by_subject.size() > 1) {
+  if (analysis.by_subject.size() > 1 && !analysis.levels) {
     for (const AnswerGroup& group : analysis.by_subject)
       lines.push_back(fmt::format("  subject {}", group_line(group, analysis, true)));
   }
   add_ranking_lines(analysis, lines);
   if (analysis.levels) add_level_lines(analysis, lines);
+  if (analysis.times.trials > 0) lines.push_back(times_text(analysis.times));
   for (const auto& [title, sentences] : {std::pair{"shown", &analysis.shows},
                                          {"not shown", &analysis.shows_not},
                                          {"mind", &analysis.warnings}}) {

@@ -29,6 +29,8 @@ namespace kerf::bench {
 [[nodiscard]] std::string criterion_text(const LevelAnalysis& levels,
                                          const psychophysics::Threshold& threshold);
 [[nodiscard]] const char* name_of(psychophysics::Shape shape) noexcept;
+/// "answered in 2.31 s (median; ...)". Of times that there are.
+[[nodiscard]] std::string times_text(const ResponseTimes& times);
 /// "12 trials", "1 trial"
 [[nodiscard]] std::string plural(std::size_t count, const char* of);
 /// The sentence with a capital and a full stop.

@@ -121,7 +121,7 @@ AnswerGroup answer_group(const Study& study, const std::vector<const Judgement*>
   group.p_value = group.one_sided ? group.p_greater : group.p_two_sided;
   group.interval = psychophysics::clopper_pearson(group.count, options.confidence);
   group.wilson = psychophysics::wilson(group.count, options.confidence);
-  for (const double truth : options.truths) {
+  for (const double truth : has_levels(study.design) ? std::vector<double>() : options.truths) {
     group.power.push_back(
         {.truth = truth,
          .power = psychophysics::binomial_power(design_of(group, truth, options), group.count.trials)});
@@ -206,8 +206,8 @@ SubjectSpread subject_spread(const Study& study, const std::vector<AnswerGroup>&
   }
   const double mean = sum / n;
   const double variance = (squares - n * mean * mean) / (n - 1.0);
-  if (study.design == Design::staircase) {
-    spread.note = "a staircase holds every subject at the same share of right answers";
+  if (is_adaptive(study.design)) {
+    spread.note = "an adaptive rule holds every subject at much the same share of right answers";
   } else if (variance <= 1e-12) {
     spread.note = "all subjects have the same share, which gives Student's interval no width";
   } else {

@@ -39,7 +39,7 @@ struct AnswerGroup {
   double p_adjusted = 1.0;  ///< the main one, within its family (all subjects, all tissues, all pairs)
   psychophysics::Interval interval;  ///< Clopper-Pearson
   psychophysics::Interval wilson;
-  std::vector<TestPower> power;
+  std::vector<TestPower> power;  ///< none of answers at levels, whose share right has no one truth
   std::optional<psychophysics::DPrime> d_prime;           ///< none of a preference, nor over several levels
   double excluded_d_prime = 0.0;                          ///< with d_prime; infinite where all are right
   double excluded_margin = 0.0;                           ///< of a preference, about 50 %

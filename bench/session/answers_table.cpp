@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -11,8 +10,7 @@
 #include <fmt/format.h>
 
 #include "files/whole_file.h"
-#include "import/decimal.h"
-#include "import/text_layout.h"
+#include "session/answer_text.h"
 
 namespace kerf::bench {
 namespace {
@@ -20,161 +18,6 @@ namespace {
 constexpr std::array designs{Design::preference,     Design::abx,      Design::two_interval,
                              Design::three_interval, Design::constant, Design::staircase,
                              Design::quest_plus};
-
-struct TextRow {
-  std::size_t line = 0;
-  std::vector<std::string> fields;
-};
-
-/// Head, rows and the remarks of comment lines.
-struct AnswerText {
-  std::string file;
-  std::size_t head_line = 0;
-  std::vector<std::string> head;
-  std::vector<TextRow> rows;
-  std::map<std::string, std::pair<std::string, std::size_t>> remarks;  ///< value and line
-
-  template <typename... Arguments>
-  [[noreturn]] void refuse(std::size_t line, fmt::format_string<Arguments...> text,
-                           Arguments&&... arguments) const {
-    throw std::invalid_argument(
-        fmt::format("{}:{}: {}", file, line, fmt::format(text, std::forward<Arguments>(arguments)...)));
-  }
-
-  [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const {
-    const auto found = std::find(head.begin(), head.end(), name);
-    if (found == head.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - head.begin());
-  }
-
-  [[nodiscard]] std::string remark(const char* key) const {
-    const auto found = remarks.find(key);
-    return found == remarks.end() ? std::string() : found->second.first;
-  }
-};
-
-/// `key = "value"` after the #.
-void take_remark(std::string_view line, std::size_t number, AnswerText& text) {
-  const auto equals = line.find('=');
-  if (equals == std::string_view::npos) return;
-  const auto trimmed = [](std::string_view part) {
-    const auto begin = part.find_first_not_of(" \t#\"");
-    if (begin == std::string_view::npos) return std::string();
-    return std::string(part.substr(begin, part.find_last_not_of(" \t\"") - begin + 1));
-  };
-  const std::string key = trimmed(line.substr(0, equals));
-  if (key == "design" || key == "task" || key == "name")
-    text.remarks[key] = {trimmed(line.substr(equals + 1)), number};
-}
-
-char separator_of(std::string_view head) {
-  for (const char separator : {'\t', ';'}) {
-    if (head.find(separator) != std::string_view::npos) return separator;
-  }
-  return ',';
-}
-
-AnswerText split(std::string_view content, const std::string& file) {
-  AnswerText text{.file = file};
-  if (content.find('\0') != std::string_view::npos)
-    text.refuse(1, "a binary file; expected a table of answers as text");
-  if (content.starts_with("\xEF\xBB\xBF")) content.remove_prefix(3);
-  char separator = ',';
-  for (std::size_t number = 1; !content.empty(); ++number) {
-    const std::string_view line = take_line(content);
-    const auto first = line.find_first_not_of(" \t");
-    if (first == std::string_view::npos) continue;
-    if (line[first] == '#') {
-      take_remark(line.substr(first), number, text);
-      continue;
-    }
-    if (text.head.empty()) separator = separator_of(line);
-    std::vector<std::string> fields;
-    for (const std::string_view field : split_line(line, separator)) fields.push_back(to_utf8(field));
-    if (text.head.empty()) {
-      text.head_line = number;
-      text.head = std::move(fields);
-      continue;
-    }
-    if (fields.size() != text.head.size()) {
-      text.refuse(number, "{} fields, expected {} as in the first line ({})", fields.size(), text.head.size(),
-                  fmt::join(text.head, ","));
-    }
-    text.rows.push_back({.line = number, .fields = std::move(fields)});
-  }
-  if (text.head.empty())
-    text.refuse(1, "no line of column names; expected one such as subject,tissue,preferred");
-  for (const std::string& name : text.head) {
-    if (std::count(text.head.begin(), text.head.end(), name) > 1)
-      text.refuse(text.head_line, "column '{}' is there twice", name);
-  }
-  return text;
-}
-
-/// One field of a row; empty where the table has no such column.
-class RowReader {
- public:
-  RowReader(const AnswerText& text, const TextRow& row) : text_(text), row_(row) {}
-
-  [[nodiscard]] std::string field(const char* column) const {
-    const auto at = text_.column(column);
-    return at ? row_.fields[*at] : std::string();
-  }
-
-  [[nodiscard]] std::string needed(const char* column) const {
-    std::string value = field(column);
-    if (value.empty()) refuse("column '{}' is empty; expected a value", column);
-    return value;
-  }
-
-  [[nodiscard]] double number(const char* column) const {
-    const std::string value = field(column);
-    if (value.empty()) return std::numeric_limits<double>::quiet_NaN();
-    double result = 0.0;
-    const char* end = value.data() + value.size();
-    if (parse_decimal(value.data(), end, '.', result) != end || !std::isfinite(result))
-      refuse("column '{}' is '{}', expected a number such as 0.1", column, value);
-    return result;
-  }
-
-  [[nodiscard]] std::size_t whole(const char* column, std::size_t otherwise) const {
-    const double value = number(column);
-    if (std::isnan(value)) return otherwise;
-    if (value < 0.0 || value > 1e9 || value != std::floor(value))
-      refuse("column '{}' is {:g}, expected a whole number of 0 or more", column, value);
-    return static_cast<std::size_t>(value);
-  }
-
-  [[nodiscard]] bool yes(const char* column) const {
-    const std::string value = needed(column);
-    for (const char* text : {"1", "yes", "true", "right"}) {
-      if (value == text) return true;
-    }
-    for (const char* text : {"0", "no", "false", "wrong"}) {
-      if (value == text) return false;
-    }
-    refuse("column '{}' is '{}', expected 1 or 0 (or yes, no, true, false, right, wrong)", column, value);
-  }
-
-  [[nodiscard]] std::size_t slot(const char* column, Design design) const {
-    const std::string value = needed(column);
-    std::string labels;
-    for (std::size_t slot = 0; slot < answers_of(design); ++slot) {
-      if (value == label_of(design, slot)) return slot;
-      labels += fmt::format("{}{}", slot == 0 ? "" : " or ", label_of(design, slot));
-    }
-    refuse("column '{}' is '{}', expected {}", column, value, labels);
-  }
-
-  template <typename... Arguments>
-  [[noreturn]] void refuse(fmt::format_string<Arguments...> text, Arguments&&... arguments) const {
-    text_.refuse(row_.line, text, std::forward<Arguments>(arguments)...);
-  }
-
- private:
-  const AnswerText& text_;
-  const TextRow& row_;
-};
 
 Design design_of(const AnswerText& text, std::optional<Design> said) {
   if (said) return *said;
@@ -237,7 +80,7 @@ std::size_t sample_named(Study& study, const std::string& name) {
 }
 
 /// The two that are compared: those of the columns `first` and `second`, or the two of the whole table.
-std::array<std::size_t, 2> pair_of(const RowReader& row, const AnswerText& text, Study& study) {
+std::array<std::size_t, 2> pair_of(const AnswerReader& row, const AnswerText& text, Study& study) {
   if (text.column("first") && text.column("second")) {
     const std::string first = row.field("first");
     const std::string second = row.field("second");
@@ -256,8 +99,8 @@ void name_samples(const AnswerText& text, AnswerForm form, Study& study) {
     study.samples = {"standard", "comparison"};
     return;
   }
-  for (const TextRow& row : text.rows) {
-    (void)sample_named(study, RowReader(text, row).needed("preferred"));
+  for (const AnswerRow& row : text.rows) {
+    (void)sample_named(study, AnswerReader(text, row).needed("preferred"));
     if (study.samples.size() > 2) {
       text.refuse(row.line,
                   "'{}' is a third sample besides '{}' and '{}'; of more than two, columns 'first' "
@@ -268,7 +111,7 @@ void name_samples(const AnswerText& text, AnswerForm form, Study& study) {
   if (study.samples.size() == 1) study.samples.emplace_back("the other");
 }
 
-void read_answer(const RowReader& row, AnswerForm form, Study& study, Judgement& judgement) {
+void read_answer(const AnswerReader& row, AnswerForm form, Study& study, Judgement& judgement) {
   if (form == AnswerForm::slots) {
     judgement.right = row.slot("right", study.design);
     judgement.answer = row.slot("answer", study.design);
@@ -295,8 +138,8 @@ void read_answer(const RowReader& row, AnswerForm form, Study& study, Judgement&
   judgement.answer = is_right ? 0 : 1;
 }
 
-Judgement read_row(const AnswerText& text, const TextRow& at, AnswerForm form, Study& study) {
-  const RowReader row(text, at);
+Judgement read_row(const AnswerText& text, const AnswerRow& at, AnswerForm form, Study& study) {
+  const AnswerReader row(text, at);
   Judgement judgement{.subject = row.needed("subject"),
                       .session = row.whole("number", 1),
                       .tissue = row.field("tissue"),
@@ -314,8 +157,8 @@ Judgement read_row(const AnswerText& text, const TextRow& at, AnswerForm form, S
 /// The levels that were shown, which also say whether they lie on both sides of the standard.
 void take_levels(const AnswerText& text, Study& study) {
   if (!has_levels(study.design)) return;
-  for (const TextRow& row : text.rows) {
-    const double level = RowReader(text, row).number("level");
+  for (const AnswerRow& row : text.rows) {
+    const double level = AnswerReader(text, row).number("level");
     if (!std::isnan(level)) study.scale.levels.push_back(level);
   }
   std::vector<double>& levels = study.scale.levels;
@@ -337,7 +180,7 @@ Design design_named(std::string_view name) {
 }
 
 Study parse_answers(std::string_view content, const std::string& name, std::optional<Design> design) {
-  const AnswerText text = split(content, name);
+  const AnswerText text = split_answers(content, name);
   Study study{.name = text.remark("name"), .design = design_of(text, design)};
   if (study.name.empty()) study.name = std::filesystem::path(name).stem().string();
   const AnswerForm form = form_of(text, study.design);
@@ -348,7 +191,7 @@ Study parse_answers(std::string_view content, const std::string& name, std::opti
   if (form == AnswerForm::comparison && !study.scale.two_sided())
     text.refuse(text.head_line, "'comparison' is for levels on both sides of 0; expected a column 'correct'");
   name_samples(text, form, study);
-  for (const TextRow& row : text.rows) study.judgements.push_back(read_row(text, row, form, study));
+  for (const AnswerRow& row : text.rows) study.judgements.push_back(read_row(text, row, form, study));
   return study;
 }
 

@@ -46,7 +46,8 @@ void Director::poll(double now_s) {
   if (over()) return;
   if (phase_ == Phase::trial && playing_)
     felt_s_[*playing_] = std::max(felt_s_[*playing_], now_s_ - playing_since_s_);
-  while (const auto action = subject_.next()) act(*action);
+  // One at a time: what comes next may be meant for what is shown then.
+  if (const auto action = subject_.next()) act(*action);
   if (phase_ == Phase::trial) follow_sequence();
   if (phase_ == Phase::trial && playing_ && time_is_over()) {
     rendering_.play(std::nullopt);

@@ -1,7 +1,6 @@
 #include "session/level_analysis.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "session/analysis.h"
+#include "session/two_sided_fit.h"
 
 namespace kerf::bench {
 namespace {
@@ -21,9 +21,6 @@ using psychophysics::Shape;
 using psychophysics::Threshold;
 
 using Answers = std::vector<const Judgement*>;
-
-/// Of a curve from "less" to "more": lapses at both ends alike.
-constexpr std::array two_sided_lapses{0.0, 0.02, 0.04, 0.06};
 
 /// One row a level.
 std::vector<Level> rows_of(const Study& study, const Answers& judgements) {
@@ -59,28 +56,15 @@ Question question_of(const Study& study, const AnalysisOptions& options) {
   if (question.two_sided) {
     if (fit.shape == Shape::weibull) fit.shape = Shape::gaussian;  // its axis is a logarithm
     fit.axis = Axis::linear;
-    fit.guess = options.lapse.value_or(0.0);
+    fit.guess = 0.0;
     fit.criterion = 0.5;
   }
   return question;
 }
 
-/// Lapses at both ends alike, those of the largest likelihood, which a fit itself knows at one end alone.
-void choose_lapse(Question& question, const std::vector<Level>& points) {
-  if (!question.two_sided || question.options->lapse) return;
-  double most = -HUGE_VAL;
-  double chosen = 0.0;
-  for (const double lapse : two_sided_lapses) {
-    FitOptions trial = question.fit;
-    trial.guess = lapse;
-    trial.lapse = lapse;
-    const double found = psychophysics::fit_psychometric(points, trial).log_likelihood;
-    if (found <= most + 1e-9) continue;
-    most = found;
-    chosen = lapse;
-  }
-  question.fit.guess = chosen;
-  question.fit.lapse = chosen;
+PsychometricFit fitted(const Question& question, const std::vector<Level>& rows, const FitOptions& options) {
+  return question.two_sided ? fit_with_equal_lapses(rows, options)
+                            : psychophysics::fit_psychometric(rows, options);
 }
 
 Threshold jnd_of(const PsychometricFit& fit, bool two_sided) {
@@ -134,7 +118,7 @@ std::optional<bool> within_margins(const Question& question, const std::vector<L
   if (!question.options->jnd_margins) return std::nullopt;
   FitOptions options = question.fit;
   options.confidence = 1.0 - 2.0 * question.options->level;
-  const Threshold jnd = jnd_of(psychophysics::fit_psychometric(rows, options), question.two_sided);
+  const Threshold jnd = jnd_of(fitted(question, rows, options), question.two_sided);
   return psychophysics::lies_within(jnd.interval, *question.options->jnd_margins);
 }
 
@@ -159,20 +143,24 @@ std::string why_no_curve(const std::vector<Level>& points, bool two_sided) {
 }
 
 LevelFit level_fit(const Study& study, const Answers& judgements, const std::vector<Level>& rows,
-                   std::string name, Question question, bool thorough) {
+                   std::string name, const Question& question, bool thorough) {
   LevelFit result{.name = std::move(name), .points = rows_of(study, judgements)};
   if (auto why = why_no_curve(result.points, question.two_sided); !why.empty()) {
     result.notes.push_back(std::move(why));
     return result;
   }
   try {
-    choose_lapse(question, result.points);
-    result.fit = psychophysics::fit_psychometric(rows, question.fit);
+    result.fit = fitted(question, rows, question.fit);
     add_thresholds(result, question);
     if (result.jnd) result.jnd_within = within_margins(question, rows);
     if (thorough && question.options->bootstrap > 0) {
+      FitOptions options = question.fit;
+      if (question.two_sided) {
+        options.guess = result.fit->curve.guess;
+        options.lapse = result.fit->curve.lapse;
+      }
       result.bootstrap =
-          psychophysics::bootstrap(*result.fit, rows, question.fit,
+          psychophysics::bootstrap(*result.fit, rows, options,
                                    {.samples = question.options->bootstrap, .seed = question.options->seed});
     }
   } catch (const std::invalid_argument& refused) {
@@ -192,8 +180,7 @@ void compare_shapes(LevelAnalysis& analysis, const Question& question) {
     Question trial = question;
     trial.fit.shape = shape;
     trial.fit.overdispersed = false;
-    choose_lapse(trial, analysis.pooled.points);
-    const PsychometricFit fit = psychophysics::fit_psychometric(analysis.pooled.points, trial.fit);
+    const PsychometricFit fit = fitted(trial, analysis.pooled.points, trial.fit);
     const int parameters = question.options->lapse ? 2 : 3;
     analysis.shapes.push_back({.shape = shape,
                                .parameters = parameters,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include <kerf/psychophysics/equivalence.h>
+
 #include "session/analysis.h"
 
 namespace kerf::bench {
@@ -39,6 +41,13 @@ void put_on_scale(TissueRanking& ranking, const AnalysisOptions& options) {
   } catch (const std::invalid_argument& refused) {
     ranking.note = refused.what();
     return;
+  }
+  for (std::size_t i = 0; i < ranking.samples.size(); ++i) {
+    const psychophysics::Estimate estimate{.value = ranking.bradley_terry->worth[i],
+                                           .standard_error = ranking.bradley_terry->standard_error[i]};
+    ranking.intervals.push_back(psychophysics::equivalent_estimate(estimate, {.lower = -1.0, .upper = 1.0},
+                                                                   0.5 * (1.0 - options.confidence))
+                                    .interval);
   }
   std::vector<double> p;
   for (std::size_t i = 0; i < ranking.samples.size(); ++i) {

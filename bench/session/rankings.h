@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/psychophysics/binomial.h>
 #include <kerf/psychophysics/comparisons.h>
 
 #include "session/judgement.h"
@@ -28,6 +29,7 @@ struct TissueRanking {
   psychophysics::Wins wins;
   std::optional<psychophysics::Ranking> bradley_terry;
   std::optional<psychophysics::Ranking> thurstone;
+  std::vector<psychophysics::Interval> intervals;  ///< of the worth by Bradley-Terry, normal
   std::vector<RankedPair> pairs;
   std::string note;  ///< why there is no scale
 };

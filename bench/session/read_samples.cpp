@@ -58,7 +58,7 @@ SessionSample read_sample(const Place& place, const toml::table& table,
   if (law.empty()) place.refuse(table, "sample '{}' needs a 'law', such as law = \"liver.law.toml\"", name);
   try {
     const std::string text = law_text(law);
-    return {.name = name, .law_toml = text, .law = parse_law_file(text, law)};
+    return {.name = name, .law_name = law, .law_toml = text, .law = parse_law_file(text, law)};
   } catch (const std::invalid_argument& error) {
     place.refuse(*table.get("law"), "{}", error.what());
   }

@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "session/loopback_server.h"
 #include "session/subject.h"
+#include "web/loopback_server.h"
 
 namespace kerf::bench {
 

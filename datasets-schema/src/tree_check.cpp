@@ -10,8 +10,8 @@ namespace {
 
 std::string in_words(const h5::Description& found) {
   std::string words = found.type;
-  for (const hsize_t length : found.extent) {
-    words += (&length == found.extent.data() ? " of " : " x ") + std::to_string(length);
+  for (std::size_t i = 0; i < found.extent.size(); ++i) {
+    words += (i == 0 ? " of " : " x ") + std::to_string(found.extent[i]);
   }
   return words;
 }

@@ -15,5 +15,12 @@ TEST(Readme, HoldsTheTablesThatTheCodePrints) {
       << schema_as_markdown();
 }
 
+TEST(Readme, HoldsTheTablesOfSessionsThatTheCodePrints) {
+  const std::string readme = test::read_text(KERF_SOURCE_DIR "/datasets-schema/README.md");
+  EXPECT_NE(readme.find(session_schema_as_markdown()), std::string::npos)
+      << "replace the tables of sessions in datasets-schema/README.md by:\n"
+      << session_schema_as_markdown();
+}
+
 }  // namespace
 }  // namespace kerf::schema

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/schema/regression.h>
+#include <kerf/schema/validate.h>
 
 #include "h5.h"
 #include "sample_recording.h"
@@ -127,6 +128,35 @@ TEST_F(Regression, RefusesACutFile) {
   write_regression(file_, {sample_forces()});
   std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
   EXPECT_THROW((void)read_regression(file_), FormatError);
+}
+
+TEST_F(Regression, IsValidAsItWasWritten) {
+  write_regression(file_, {sample_forces()});
+  EXPECT_THAT(validate(file_), IsEmpty());
+}
+
+TEST_F(Regression, TellsOfEveryDeparture) {
+  StoredForces one = sample_forces();
+  one.date = "yesterday";
+  one.channels[0].unit = "kg";
+  one.force[3] = std::numeric_limits<double>::quiet_NaN();
+  write_regression(file_, {one});
+  {
+    auto file = h5::WritableFile::open(file_);
+    const auto group = h5::open(file.id(), "/cases/a blade, slowly");
+    h5::delete_attribute(group.id(), "reason");
+    h5::delete_attribute(group.id(), "tick_cost_build");
+    h5::write_attribute(group.id(), "note", std::string("x"));
+  }
+  std::string all;
+  for (const auto& [where, found, expected] : validate(file_)) all += where + ": " + found + '\n';
+  EXPECT_EQ(all,
+            "/cases/a blade, slowly attribute 'reason': nothing\n"
+            "/cases/a blade, slowly attribute 'tick_cost_build': nothing\n"
+            "/cases/a blade, slowly attribute 'note': an attribute\n"
+            "/cases/a blade, slowly attribute 'date': 'yesterday'\n"
+            "/cases/a blade, slowly/force attribute 'units': 'kg'\n"
+            "/cases/a blade, slowly/force: no finite number in row 1\n");
 }
 
 }  // namespace

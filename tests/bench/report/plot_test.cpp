@@ -28,6 +28,14 @@ TEST(Plot, IsOneSvgElementWithItsLabels) {
     EXPECT_THAT(svg, HasSubstr(text));
 }
 
+TEST(Plot, NamesTicksOnBothAxes) {
+  const std::string svg = draw({.curves = {{.x = {0, 1, 2}, .y = {0, 3, 1}}},
+                                .x_ticks = {{.at = 1.0, .name = "the standard"}},
+                                .y_ticks = {{.at = 3.0, .name = "subject 1"}}});
+  EXPECT_THAT(svg, HasSubstr("the standard"));
+  EXPECT_THAT(svg, HasSubstr("subject 1"));
+}
+
 TEST(Plot, TakesHostileTextAsText) {
   const std::string svg = draw({.title = "a_b^2 <script>alert(1)</script> 'quoted' \"; system('true') äöü",
                                 .x_label = "x\nset output '/dev/null'",

@@ -1,5 +1,6 @@
 #include "session/journal.h"
 
+#include <random>
 #include <system_error>
 
 #include <gmock/gmock.h>

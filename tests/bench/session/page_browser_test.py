@@ -149,7 +149,7 @@ def is_legible(session, browser, folder):
         expect(browser.run("return document.scrollingElement.scrollHeight") <= 720, "a trial has to be scrolled")
         for it in browser.run(LOOKS):
             expect(it["contrast"] >= 7, f"{scheme}: {it}")
-            expect(it["size"] >= 17, f"too small: {it}")
+            expect(it["size"] >= 20, f"too small: {it}")
             expect(it["tag"] != "BUTTON" or min(it["height"], it["width"]) >= 96, f"hard to hit: {it}")
         browser.run("document.activeElement.blur()")
         browser.screenshot(folder / f"trial-{scheme}.png")

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <kerf/schema/session.h>

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "plain_client.h"
+#include "support/plain_client.h"
 #include "views.h"
 
 namespace kerf::bench {

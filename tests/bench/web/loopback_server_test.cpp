@@ -1,4 +1,4 @@
-#include "session/loopback_server.h"
+#include "web/loopback_server.h"
 
 #include <atomic>
 #include <list>
@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "plain_client.h"
+#include "support/plain_client.h"
 
 namespace kerf::bench {
 namespace {
@@ -107,6 +107,40 @@ TEST(LoopbackServer, AsksAgainWhenWoken) {
   server.wake();
   EXPECT_EQ(test::body_of(client.answer()), "now");
   EXPECT_EQ(asked, 2);
+}
+
+TEST(LoopbackServer, RefusesWhatNoBrowserSends) {
+  LoopbackServer server(0);
+  server.start(always("hello"));
+  const auto status = [&](const std::string& request) {
+    return status_of(answer_to(server.port(), request));
+  };
+  EXPECT_EQ(status("nonsense\r\n\r\n"), "400");
+  EXPECT_EQ(status("GET / HTTP/3.0\r\n\r\n"), "505");
+  EXPECT_EQ(status("GET a HTTP/1.1\r\nHost: a\r\n\r\n"), "400") << "no path";
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n"), "400");
+  EXPECT_EQ(status("GET /?a=1&a=2 HTTP/1.1\r\nHost: a\r\n\r\n"), "400");
+  EXPECT_EQ(status("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 5000\r\n\r\n"), "413");
+  EXPECT_EQ(status("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1000000000000000000000\r\n\r\n"), "400");
+}
+
+TEST(LoopbackServer, TakesARequestApart) {
+  LoopbackServer server(0);
+  HttpRequest taken;
+  server.start([&](const HttpRequest& request, bool) {
+    taken = request;
+    return HttpResponse{};
+  });
+  ASSERT_EQ(status_of(answer_to(server.port(),
+                                "POST /view?after=12&b HTTP/1.1\r\nHost: a\r\nX-Token:  t \r\n"
+                                "Content-Length: 4096\r\n\r\n" +
+                                    std::string(4096, 'x'))),
+            "200");
+  EXPECT_EQ(taken.method, "POST");
+  EXPECT_EQ(taken.path, "/view");
+  EXPECT_EQ(taken.query, (std::map<std::string, std::string>{{"after", "12"}, {"b", ""}}));
+  EXPECT_EQ(taken.header("x-token"), "t");
+  EXPECT_EQ(taken.body.size(), 4096U) << "the longest that is taken";
 }
 
 TEST(LoopbackServer, OfATakenPortSaysSo) {

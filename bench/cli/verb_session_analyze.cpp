@@ -1,0 +1,126 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "cli/key_arguments.h"
+#include "cli/verb_session.h"
+#include "session/analysis_json.h"
+#include "session/analysis_page.h"
+#include "session/answers_table.h"
+#include "session/opening.h"
+#include "session/session_store.h"
+
+namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> files;
+  std::string output;
+  std::string reason;
+  std::string design;
+  std::string correction = "holm";
+  std::vector<double> jnd_margins;
+  double bootstrap = AnalysisOptions{}.bootstrap;
+  AnalysisOptions options;
+  KeyArguments key;
+  bool replace = false;
+};
+
+bool is_table(const std::string& file) {
+  return file.ends_with(".csv") || file.ends_with(".tsv") || file.ends_with(".txt");
+}
+
+Study read_table(const Arguments& arguments) {
+  if (arguments.files.size() != 1)
+    throw std::invalid_argument("a table of answers is analysed alone; put all answers into one table");
+  if (arguments.design.empty()) return read_answers(arguments.files.front());
+  return read_answers(arguments.files.front(), design_named(arguments.design));
+}
+
+Study read_sessions(Arguments& arguments, Context& context) {
+  if (!arguments.design.empty())
+    throw std::invalid_argument("--design is for tables: a session knows its design");
+  std::vector<std::unique_ptr<SessionStore>> stores;
+  std::vector<const SessionStore*> sessions;
+  context.result["early_openings"] = nlohmann::ordered_json::array();
+  for (const std::string& file : arguments.files) {
+    if (is_table(file))
+      throw std::invalid_argument(fmt::format("{}: sessions and tables are not analysed together", file));
+    const SealKey key = key_for(arguments.key, derivation_of(file));
+    record_opening(file, key, arguments.reason);
+    stores.push_back(std::make_unique<SessionStore>(file, key, SessionStore::Purpose::read));
+    const SessionStore& store = *stores.back();
+    sessions.push_back(&store);
+    for (const std::string& warning : store.warnings()) warn(warning);
+    for (const std::string& opening : store.early_openings()) {
+      warn(fmt::format("{}: opened before its end: {}", file, opening));
+      context.result["early_openings"].push_back({{"file", file}, {"opening", opening}});
+    }
+    if (was_rehearsed(store.session()))
+      warn(fmt::format("{}: a rehearsal, whose answers are by chance", file));
+  }
+  return study_of(sessions);
+}
+
+void analyze(Arguments& arguments, Context& context) {
+  AnalysisOptions& options = arguments.options;
+  options.bootstrap = static_cast<int>(arguments.bootstrap);
+  options.seed = context.seed;
+  if (arguments.correction == "bh") options.correction = FamilyCorrection::benjamini_hochberg;
+  if (!arguments.jnd_margins.empty())
+    options.jnd_margins = psychophysics::Interval{arguments.jnd_margins[0], arguments.jnd_margins[1]};
+  const Study study =
+      is_table(arguments.files.front()) ? read_table(arguments) : read_sessions(arguments, context);
+  const Analysis analysis = analyse(study, options);
+  nlohmann::ordered_json json = analysis_as_json(analysis);
+  json.update(context.result);
+  context.result = std::move(json);
+  for (const std::string& line : summary_lines(analysis)) say(line);
+  if (arguments.output.empty()) return;
+  write_analysis(study, analysis, arguments.output, arguments.replace);
+  say(fmt::format("analysis.html, analysis.json, answers.csv and the charts are in {}", arguments.output));
+}
+
+}  // namespace
+
+void add_session_analyze(CLI::App& session, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  AnalysisOptions& options = arguments->options;
+  Verb verb = add_verb(
+      session, context, "analyze", "What the answers of sessions show, and what they do not",
+      "kerf session analyze study/S*.h5 --key-file keeper.key -o analysis\n"
+      "  kerf session analyze examples/sessions/004-table-1.csv\n\n"
+      "Takes the sessions of one protocol, or a table of answers. Margins belong in the protocol of\n"
+      "a study, before its first session. docs/sessions.md has every equation.",
+      [arguments, &context] { analyze(*arguments, context); });
+  verb.add_option("FILES", arguments->files, "Session files, or one table of answers (.csv)").required();
+  add_key_options(verb, arguments->key);
+  verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");
+  verb.add_option("--reason", arguments->reason, "Why a session is opened before its end; kept in the file");
+  verb.add_option("--design", arguments->design, "Design of a table that does not say it");
+  verb.add_option("--confidence", options.confidence, "Of the intervals").within(0.5, 0.999).with_default();
+  verb.add_option("--level", options.level, "Of the tests").within(0.001, 0.5).with_default();
+  verb.add_option("--margin", options.margin, "A preference is none within 50 % +- this")
+      .within(0.001, 0.5)
+      .with_default();
+  verb.add_option("--d-prime", options.d_prime_bound, "Renderings count as equal below this d'")
+      .positive()
+      .with_default();
+  verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: a JND is as wanted between them")
+      .taking(2);
+  verb.add_option("--correction", arguments->correction, "For several tests: holm or bh")
+      .one_of({"holm", "bh"})
+      .with_default();
+  verb.add_option("--lapse", options.lapse, "Lapse rate, fixed (default: estimated in 0 to 0.06)");
+  verb.add_option("--criterion", options.criterion,
+                  "Share of right answers at the threshold (default: half way from guessing)");
+  verb.add_option("--bootstrap", arguments->bootstrap, "Samples for the goodness of fit; 0: none")
+      .within(0.0, 1e5)
+      .with_default();
+  verb.add_flag("--force", arguments->replace, "Replace existing files");
+}
+
+}  // namespace kerf::bench

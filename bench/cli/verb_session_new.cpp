@@ -1,0 +1,139 @@
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "cli/key_arguments.h"
+#include "cli/verb_session.h"
+#include "files/whole_file.h"
+#include "loop/run.h"
+#include "session/device_check.h"
+#include "session/samples.h"
+#include "session/session_store.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string protocol;
+  std::string subject;
+  std::size_t subjects = 0;  ///< 0: one session, for `subject`
+  std::string output;
+  std::string device;
+  KeyArguments key;
+  bool no_check = false;
+  bool replace = false;
+};
+
+void check_arguments(const Arguments& arguments) {
+  if (arguments.subject.empty() == (arguments.subjects == 0))
+    throw std::invalid_argument(
+        "give the subject's code with --subject, or how many subjects the study has with --subjects");
+}
+
+void check_on_device(const Arguments& arguments, const Protocol& protocol) {
+  const std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
+  if (arguments.no_check) return;
+  if (!uri.starts_with("sim:")) {
+    warn(uri.empty() ? "no device is named, so that nothing was checked on it; 'kerf session run' does"
+                     : fmt::format("{} is not moved now; 'kerf session run' checks the laws on it", uri));
+    return;
+  }
+  const StopOnSignal signals;
+  for (const std::string& remark : check_samples(protocol, uri, signals.requested())) warn(remark);
+}
+
+/// S01, S02, ...: as many digits as the last one has, two at least.
+std::string code_of(std::size_t number, std::size_t subjects) {
+  const std::size_t digits = std::max<std::size_t>(2, std::to_string(subjects).size());
+  return fmt::format("S{:0{}}", number, digits);
+}
+
+void make_sessions(Arguments& arguments, Context& context) {
+  check_arguments(arguments);
+  Protocol protocol = read_protocol(arguments.protocol);
+  match_loudness(protocol);
+  for (const SessionSample& sample : protocol.samples) {
+    if (sample.gain != 1.0)
+      say(fmt::format("  {:24} forces times {:.4g}, to be as strong", sample.name, sample.gain));
+  }
+  check_on_device(arguments, protocol);
+  if (context.seed_given)
+    warn("whoever knows the seed knows the order: keep --seed from subject and experimenter");
+  const std::uint64_t seed = context.seed_given ? context.seed : random_seed();
+  const bool is_study = arguments.subjects > 0;
+  const std::size_t subjects = is_study ? arguments.subjects : 1;
+  const auto plans = make_plans(protocol, subjects, seed);
+
+  const auto file_of = [&](std::size_t subject) -> fs::path {
+    return is_study ? fs::path(arguments.output) / (code_of(subject + 1, subjects) + ".h5")
+                    : fs::path(arguments.output);
+  };
+  for (std::size_t subject = 0; subject < subjects; ++subject)
+    refuse_to_replace(file_of(subject), arguments.replace);
+  if (is_study) fs::create_directories(arguments.output);
+  context.result = {{"protocol", arguments.protocol}, {"sessions", nlohmann::ordered_json::array()}};
+  for (std::size_t subject = 0; subject < subjects; ++subject) {
+    const schema::KeyDerivation derivation = new_derivation(arguments.key.key_file.empty());
+    const SealKey key = new_key_for(arguments.key, derivation);
+    const std::string code = is_study ? code_of(subject + 1, subjects) : arguments.subject;
+    SessionStore::create(file_of(subject),
+                         {.protocol = protocol,
+                          .subject = code,
+                          .number = subject + 1,
+                          .subjects = subjects,
+                          .plan = plans[subject]},
+                         key, derivation, arguments.replace);
+    context.result["sessions"].push_back(
+        {{"file", file_of(subject).string()}, {"subject", code}, {"trials", plans[subject].size()}});
+    say(fmt::format("{}: subject {}, {}{} trials, sealed", file_of(subject).string(), code,
+                    is_adaptive(protocol.design) ? "at most " : "", plans[subject].size()));
+  }
+}
+
+}  // namespace
+
+void add_session_key(CLI::App& session, Context& context) {
+  auto file = std::make_shared<std::string>();
+  Verb verb = add_verb(
+      session, context, "key", "Make a key file for whoever keeps the blinding",
+      "kerf session key /media/keeper/study.key\n\n"
+      "Keep it where neither subject nor experimenter reads it, and a copy of it: without the key no\n"
+      "answer of a session can be read, by nobody.",
+      [file, &context] {
+        write_new_key_file(*file);
+        context.result = {{"key_file", *file}};
+        say(fmt::format("{}: 32 random bytes, readable by you alone", *file));
+      });
+  verb.add_option("FILE", *file, "The key file to be made").required();
+}
+
+void add_session_new(CLI::App& session, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      session, context, "new", "Make the sealed session of a subject, or of all subjects of a study",
+      "kerf session new abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5\n"
+      "  kerf session new abx.protocol.toml --subjects 12 --key-file keeper.key -o study\n\n"
+      "Sessions of one study made together are counterbalanced over its subjects. Protocol and laws\n"
+      "are copied into the session; docs/sessions.md has the protocol's format.",
+      [arguments, &context] { make_sessions(*arguments, context); });
+  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
+  verb.add_option("--subject", arguments->subject,
+                  "Code of the subject, no name: letters, digits, _ and -, 16 at most");
+  verb.add_option("--subjects", arguments->subjects,
+                  "So many sessions, S01.h5 and so on, into the folder -o");
+  verb.add_option("-o,--output", arguments->output, "The session file, or with --subjects a folder")
+      .required();
+  verb.add_option("--device", arguments->device,
+                  "Check the laws on this simulated device (default: the protocol's)");
+  add_key_options(verb, arguments->key);
+  verb.add_flag("--no-check", arguments->no_check, "Do not check the laws on a simulated device");
+  verb.add_flag("--force", arguments->replace, "Replace existing sessions, with all their answers");
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,56 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "cli/key_arguments.h"
+#include "cli/verb_session.h"
+#include "session/opening.h"
+#include "session/session_export.h"
+
+namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string file;
+  std::string output;
+  std::string reason;
+  KeyArguments key;
+  bool replace = false;
+};
+
+void open(Arguments& arguments, Context& context) {
+  const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
+  record_opening(arguments.file, key, arguments.reason);
+  const SessionStore store(arguments.file, key, SessionStore::Purpose::read);
+  for (const std::string& warning : store.warnings()) warn(warning);
+  export_session(store, arguments.output, arguments.replace);
+  context.result = {{"file", arguments.file},
+                    {"output", arguments.output},
+                    {"trials", store.trials().size()},
+                    {"finished", store.finished()},
+                    {"early_openings", store.early_openings()}};
+  for (const std::string& opening : store.early_openings()) warn("opened before its end: " + opening);
+  say(fmt::format("{}: trials.csv and a recording of each of {} trials", arguments.output,
+                  store.trials().size()));
+}
+
+}  // namespace
+
+void add_session_open(CLI::App& session, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      session, context, "open", "Lift the blinding: answers as a table, each trial as a recording",
+      "kerf session open S01.h5 --key-file keeper.key -o S01\n\n"
+      "Before a session is finished it takes a --reason, and the file keeps both: every analysis of\n"
+      "it says that it was opened early.",
+      [arguments, &context] { open(*arguments, context); });
+  verb.add_option("FILE", arguments->file, "The session").required();
+  verb.add_option("-o,--output", arguments->output, "Folder for trials.csv and the recordings").required();
+  verb.add_option("--reason", arguments->reason, "Why it is opened before its end; kept in the file");
+  add_key_options(verb, arguments->key);
+  verb.add_flag("--force", arguments->replace, "Replace existing files");
+}
+
+}  // namespace kerf::bench

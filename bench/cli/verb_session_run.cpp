@@ -1,0 +1,169 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "cli/key_arguments.h"
+#include "cli/verb_session.h"
+#include "loop/check.h"
+#include "session/device_check.h"
+#include "session/rehearsal.h"
+#include "session/run_session.h"
+#include "session/subject_buttons.h"
+#include "session/subject_group.h"
+#include "session/subject_page.h"
+#include "session/subject_terminal.h"
+
+namespace kerf::bench {
+namespace {
+
+struct Arguments {
+  std::string file;
+  std::string device;
+  KeyArguments key;
+  RunOptions loop;
+  bool page = false;
+  double port = 0.0;
+  bool buttons = false;
+  bool rehearse = false;
+  bool no_check = false;
+};
+
+/// Where the subject sees and answers: a page, or the keyboard, and the buttons of the device beside them.
+struct Answering {
+  std::vector<std::unique_ptr<Subject>> parts;
+  std::unique_ptr<SubjectGroup> group;
+  ButtonSubject* buttons = nullptr;
+};
+
+Answering answering_of(const Arguments& arguments, std::uint64_t seed) {
+  Answering answering;
+  if (arguments.rehearse) {
+    answering.parts.push_back(std::make_unique<RehearsalSubject>(seed));
+  } else if (arguments.page) {
+    auto page = std::make_unique<PageSubject>(static_cast<std::uint16_t>(arguments.port));
+    say(fmt::format("The subject's page: {}", page->url()));
+    answering.parts.push_back(std::move(page));
+  } else {
+    answering.parts.push_back(std::make_unique<TerminalSubject>());
+  }
+  if (arguments.buttons) {
+    auto buttons = std::make_unique<ButtonSubject>();
+    answering.buttons = buttons.get();
+    answering.parts.push_back(std::move(buttons));
+  }
+  std::vector<Subject*> all;
+  for (const auto& part : answering.parts) all.push_back(part.get());
+  answering.group = std::make_unique<SubjectGroup>(std::move(all));
+  return answering;
+}
+
+std::string uri_of(const Arguments& arguments, const Protocol& protocol) {
+  const std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
+  if (uri.empty()) throw std::invalid_argument("the protocol names no device; give one with --device");
+  if (arguments.rehearse && !uri.starts_with("sim:"))
+    throw std::invalid_argument(
+        fmt::format("--rehearse is for simulated devices, in virtual time; {} is none", uri));
+  return uri;
+}
+
+SessionRunOptions run_options_of(const Arguments& arguments, const Protocol& protocol,
+                                 ButtonSubject* buttons) {
+  SessionRunOptions options{.loop = arguments.loop};
+  options.loop.device_uri = uri_of(arguments, protocol);
+  options.loop.virtual_time = arguments.rehearse;
+  // The subject's terminal is no place for progress: it is on the screen there already.
+  if (arguments.page) {
+    options.progress = [](std::size_t answered, std::size_t at_most) {
+      say(fmt::format("trial {} of {}{} is done", answered, at_most, ""));
+    };
+  }
+  if (buttons != nullptr) {
+    const auto channel = buttons_channel(drivers::open_device(options.loop.device_uri)->info());
+    if (!channel)
+      throw std::invalid_argument(fmt::format("--buttons: {} has no buttons", options.loop.device_uri));
+    options.each_sample = [buttons, at = *channel](const drivers::Sample& sample) {
+      buttons->sample(sample.channels[at]);
+    };
+  }
+  return options;
+}
+
+void report(const Arguments& arguments, Context& context, const SessionRunResult& result) {
+  context.result = {{"file", arguments.file},
+                    {"finished", result.end == SessionEnd::finished},
+                    {"answered", result.answered},
+                    {"at_most", result.at_most},
+                    {"ticks", result.run.report.ticks()},
+                    {"missed", result.run.report.missed()}};
+  switch (result.end) {
+    case SessionEnd::finished:
+      say(fmt::format("The session is finished: {} trials. 'kerf session analyze' opens it.",
+                      result.answered));
+      break;
+    case SessionEnd::declined:
+      say("Consent was not given; nothing was felt.");
+      break;
+    default:
+      say(fmt::format("{} trials of at most {} are done; 'kerf session run {}' goes on", result.answered,
+                      result.at_most, arguments.file));
+  }
+  if (!arguments.rehearse)
+    say(fmt::format("{} ticks, {} deadlines missed", result.run.report.ticks(), result.run.report.missed()));
+}
+
+void run(Arguments& arguments, Context& context) {
+  if (arguments.rehearse && (arguments.page || arguments.buttons))
+    throw std::invalid_argument("--rehearse needs nobody to answer: leave out --page and --buttons");
+  const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
+  SessionStore store(arguments.file, key, SessionStore::Purpose::run);
+  for (const std::string& warning : store.warnings()) warn(warning);
+  if (store.finished())
+    throw std::invalid_argument(
+        fmt::format("{}: the session is finished; 'kerf session analyze' opens it", arguments.file));
+  const StopOnSignal signals;
+  if (!arguments.no_check) {
+    for (const std::string& remark :
+         check_samples(store.protocol(), uri_of(arguments, store.protocol()), signals.requested()))
+      warn(remark);
+  }
+  if (arguments.rehearse) store.note("rehearsal", "answers by chance, in virtual time");
+  SessionRunResult result;
+  {
+    Answering answering = answering_of(arguments, context.seed);
+    const SessionRunOptions options = run_options_of(arguments, store.protocol(), answering.buttons);
+    result = run_session(store, *answering.group, options, signals.requested());
+  }
+  store.close();
+  report(arguments, context, result);
+}
+
+}  // namespace
+
+void add_session_run(CLI::App& session, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      session, context, "run", "Run a session with its subject, or go on with it",
+      "kerf session run S01.h5 --key-file keeper.key --device falcon:0 --page\n\n"
+      "Whoever keeps the blinding gives the key; nothing on the screen tells the samples apart. The\n"
+      "subject answers at this keyboard, on a page (--page), or by the buttons of the device\n"
+      "(--buttons). Ctrl-C, a crash or a pulled cable lose at most the trial at work.",
+      [arguments, &context] { run(*arguments, context); });
+  verb.add_option("FILE", arguments->file, "The session").required();
+  verb.add_option("--device", arguments->device, "Device URI (default: the protocol's)");
+  verb.add_option("--sensor", arguments->loop.sensor_uri, "URI of a force sensor beside the device");
+  add_key_options(verb, arguments->key);
+  verb.add_flag("--page", arguments->page, "The subject answers on a page in a browser of this machine");
+  verb.add_option("--port", arguments->port, "Port of the page (default: any that is free)")
+      .within(0.0, 65535.0);
+  verb.add_flag("--buttons", arguments->buttons, "The subject answers by the buttons of the device too");
+  verb.add_flag("--passivity-control", arguments->loop.passivity_control,
+                "Add damping wherever the rendering has given energy");
+  verb.add_flag("--rehearse", arguments->rehearse,
+                "Nobody answers: by chance and in virtual time, on a simulated device; the file is marked");
+  verb.add_flag("--no-check", arguments->no_check, "Do not check the laws on the device first");
+}
+
+}  // namespace kerf::bench

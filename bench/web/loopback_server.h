@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace kerf::bench {
+
+/// One request, taken apart. Nothing is decoded: what needs a %-sequence is not for us.
+struct HttpRequest {
+  std::string method;                          ///< "GET"
+  std::string path;                            ///< "/view"
+  std::map<std::string, std::string> query;    ///< "after" = "12"
+  std::map<std::string, std::string> headers;  ///< names in lower case
+  std::string body;
+
+  /// Value of a header, by its name in lower case; empty if there is none.
+  [[nodiscard]] std::string_view header(const std::string& name) const;
+};
+
+/// What is answered to a request. Every answer closes its connection and is not to be stored, framed or
+/// guessed at by the browser; nothing but the server's own files may be loaded by it.
+struct HttpResponse {
+  int status = 200;
+  std::string type = "text/plain; charset=utf-8";
+  std::string body;
+};
+
+/// A status with its name in the standard for a text.
+[[nodiscard]] HttpResponse refusal(int status);
+
+/// An HTTP server for browsers on this machine (Boost.Beast): 127.0.0.1 only, one thread for all connections.
+/// A connection that sends nothing costs a few hundred bytes and nobody's time; the process beside it renders
+/// forces with its memory locked, so that a thread for each, or headers without end, would not do.
+///
+/// At most 256 connections: the longest idle one gives way. A request has 5 s to arrive, an answer 5 s to be
+/// taken; its head has 8 kB at most and its body 4 kB. A header that comes twice is refused.
+class LoopbackServer {
+ public:
+  /// Answers a request, or puts it off by nothing: it is then called again after wake(), and in the end after
+  /// 20 s with `overdue`, where it has to answer. Called from the server's thread; must not throw.
+  using Handler = std::function<std::optional<HttpResponse>(const HttpRequest& request, bool overdue)>;
+
+  /// Takes the port, 0 for any that is free. @throws std::invalid_argument: in use, or not permitted.
+  explicit LoopbackServer(std::uint16_t port);
+  LoopbackServer(const LoopbackServer&) = delete;
+  LoopbackServer& operator=(const LoopbackServer&) = delete;
+  /// What was put off is asked for once more; answers on their way have up to a second.
+  ~LoopbackServer();
+
+  [[nodiscard]] std::uint16_t port() const noexcept;
+  void start(Handler handler);
+  void wake() noexcept;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace kerf::bench

@@ -1,0 +1,288 @@
+#include "session/run_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bench/session/blind_run.h"
+#include "session/samples.h"
+
+namespace kerf::bench {
+namespace {
+
+using kerf::test::level_text;
+using kerf::test::protocol_from;
+using kerf::test::protocol_text;
+using Kind = SubjectAction::Kind;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string short_sequence =
+    "presentation = \"sequence\"\ninterval = { value = 400, unit = \"ms\" }\n"
+    "gap = { value = 100, unit = \"ms\" }\nramp = { value = 50, unit = \"ms\" }\n";
+
+Protocol abx(const std::string& more = "") {
+  return protocol_from(protocol_text("design = \"abx\"\ntrials = 4\n" + more));
+}
+
+std::vector<std::string> kinds_of(const SessionStore& store) {
+  std::vector<std::string> kinds;
+  for (const schema::SessionEntry& entry : store.session().entries) kinds.push_back(entry.kind);
+  return kinds;
+}
+
+TEST(RunSession, GoesThroughAllTrialsAndRecordsEach) {
+  test::BlindRun session(abx("practice = 2\n"));
+  RehearsalSubject subject(1);
+  const SessionRunResult result = session.run(subject);
+  EXPECT_EQ(result.end, SessionEnd::finished);
+  EXPECT_EQ(result.answered, 6U);
+  const SessionStore store = session.read();
+  EXPECT_TRUE(store.finished());
+  ASSERT_EQ(store.trials().size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const RecordedTrial trial = store.trial(i);
+    EXPECT_EQ(trial.what.practice, i < 2);
+    EXPECT_EQ(trial.what.slots, store.plan()[i].slots);
+    EXPECT_EQ(trial.switches, 2U);
+    ASSERT_GT(trial.trace.size(), 2000U);
+    // From zero force to zero force.
+    EXPECT_EQ(trial.trace.front().row.force_commanded[0], 0.0);
+    EXPECT_EQ(trial.trace.back().row.force_commanded[0], 0.0);
+    std::set<int> slots;
+    for (const TraceRow& tick : trial.trace) slots.insert(tick.slot);
+    EXPECT_EQ(slots, (std::set<int>{0, 1, 2, 255}));
+  }
+}
+
+TEST(RunSession, PlaysTheLawsThatThePlanSays) {
+  test::BlindRun session(
+      protocol_from(protocol_text("design = \"preference\"\ntrials = 8\n" + short_sequence)));
+  RehearsalSubject subject(1);
+  (void)session.run(subject);
+  const SessionStore store = session.read();
+  for (std::size_t i = 0; i < 8; ++i) {
+    const RecordedTrial trial = store.trial(i);
+    std::vector<LawRendering> laws;
+    for (const PlayedLaw& one : played(store.protocol(), trial.what))
+      laws.emplace_back(one.law.law, one.law.contact, std::vector<std::size_t>{0});
+    std::size_t compared = 0;
+    for (const TraceRow& tick : trial.trace) {
+      drivers::Sample sample;
+      sample.position = tick.row.position;
+      sample.velocity = tick.row.velocity;
+      std::array<double, 2> forces{};
+      for (std::size_t law = 0; law < 2; ++law) forces[law] = laws[law](sample, 1e-3).force[0];
+      if (tick.slot == 255 || tick.row.flags != 0) continue;
+      ASSERT_EQ(tick.row.force_commanded[0], forces[trial.what.slots[tick.slot]]) << "to the last bit";
+      ++compared;
+    }
+    EXPECT_GT(compared, 500U);
+  }
+}
+
+TEST(RunSession, KeepsTheTimesOfASequence) {
+  test::BlindRun session(
+      protocol_from(protocol_text("design = \"preference\"\ntrials = 1\n" + short_sequence)));
+  RehearsalSubject subject(1);
+  (void)session.run(subject);
+  const RecordedTrial trial = session.read().trial(0);
+  std::vector<int> ticks(256);
+  for (const TraceRow& tick : trial.trace) ++ticks[tick.slot];
+  EXPECT_NEAR(ticks[0], 400, 1);
+  EXPECT_NEAR(ticks[1], 400, 1);
+  EXPECT_NEAR(trial.response_s, 0.9, 0.003) << "two intervals and the pause between them";
+}
+
+TEST(RunSession, NeverStepsPastTheSlewLimitWhereverItIsSwitched) {
+  test::BlindRun session(abx());
+  int polls = 0;
+  psychophysics::Random random(3);
+  // Switches some thirty times a second and answers after a while.
+  test::ScriptedSubject restless([&](const SubjectView& view) -> std::optional<SubjectAction> {
+    if (view.may_go_on) return SubjectAction{.kind = Kind::go_on};
+    if (++polls % 4000 == 0 && view.may_answer) return SubjectAction{.kind = Kind::answer};
+    if (view.may_switch && polls % 30 == 0 && (polls % 4000 < 2500 || polls % 600 == 0))
+      return SubjectAction{.kind = Kind::play, .slot = random.below(3)};
+    return std::nullopt;
+  });
+  EXPECT_EQ(session.run(restless).end, SessionEnd::finished);
+  const double step = 1e-3 * drivers::open_device("sim:scissors")->info().axes[0].slew_limit;
+  const SessionStore store = session.read();
+  for (std::size_t i = 0; i < store.trials().size(); ++i) {
+    const RecordedTrial trial = store.trial(i);
+    EXPECT_GT(trial.switches, 30U);
+    double last = 0.0;
+    for (const TraceRow& tick : trial.trace) {
+      ASSERT_LE(std::abs(tick.row.force_commanded[0] - last), step + 1e-12);
+      ASSERT_EQ(tick.row.flags & schema::flag_slew_limited, 0U) << "nor comes near it";
+      last = tick.row.force_commanded[0];
+    }
+  }
+}
+
+TEST(RunSession, LosesAtMostTheTrialAtWorkAndGoesOn) {
+  const Protocol protocol = abx();
+  test::BlindRun whole(protocol, 5);
+  RehearsalSubject steady(7);
+  (void)whole.run(steady);
+
+  test::BlindRun broken(protocol, 5);
+  {
+    // A crash in the third trial: nobody closes anything.
+    SessionStore running = broken.store(SessionStore::Purpose::run);
+    RehearsalSubject inner(7);
+    test::ScriptedSubject subject([&](const SubjectView& view) -> std::optional<SubjectAction> {
+      if (view.trial == 3 && view.playing) return SubjectAction{.kind = Kind::quit};
+      inner.show(view);
+      return view.may_switch || view.may_answer || view.may_go_on ? inner.next() : std::nullopt;
+    });
+    EXPECT_EQ(test::BlindRun::run(running, subject).end, SessionEnd::quit);
+  }
+  EXPECT_EQ(broken.read().trials().size(), 2U);
+  RehearsalSubject again(9);
+  const SessionRunResult result = broken.run(again);
+  EXPECT_EQ(result.end, SessionEnd::finished);
+  EXPECT_EQ(result.answered, 4U);
+  const SessionStore store = broken.read();
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(store.trials()[i].what.slots, store.plan()[i].slots);
+  EXPECT_THAT(kinds_of(store), Contains("quit"));
+  EXPECT_EQ(std::ranges::count(kinds_of(store), "run"), 2);
+}
+
+TEST(RunSession, RefusesAnAnswerOutOfTurnInWords) {
+  test::BlindRun session(abx());
+  std::vector<std::string> notices;
+  int step = 0;
+  test::ScriptedSubject hasty([&](const SubjectView& view) -> std::optional<SubjectAction> {
+    if (!view.notice.empty() && (notices.empty() || notices.back() != view.notice))
+      notices.push_back(view.notice);
+    switch (step++) {
+      case 0:
+        return SubjectAction{.kind = Kind::answer};  // before anything began
+      case 10:
+        return SubjectAction{.kind = Kind::go_on};
+      case 20:
+        return SubjectAction{.kind = Kind::answer};  // nothing was felt
+      case 30:
+        return SubjectAction{.kind = Kind::play, .slot = 7};
+      case 40:
+        return SubjectAction{.kind = Kind::play, .slot = 1};
+      case 1500:
+        return SubjectAction{.kind = Kind::answer};  // one of three was felt
+      case 1510:
+        return SubjectAction{.kind = Kind::go_on};
+      case 1520:
+        return SubjectAction{.kind = Kind::quit};
+      default:
+        return std::nullopt;
+    }
+  });
+  EXPECT_EQ(session.run(hasty).end, SessionEnd::quit);
+  EXPECT_THAT(notices, testing::ElementsAre("There is nothing to answer now.",
+                                            "Please feel every one of them first, each for a moment.",
+                                            "There is nothing to feel now.",
+                                            "Please feel every one of them first, each for a moment.",
+                                            "There is nothing to go on with now."));
+  EXPECT_TRUE(session.read().trials().empty());
+}
+
+TEST(RunSession, AsksForConsentOnceAndEndsWithoutIt) {
+  const Protocol protocol = abx("consent = \"I take part.\"\ninstructions = \"Cut.\"\n");
+  test::BlindRun session(protocol);
+  test::ScriptedSubject no([](const SubjectView& view) -> std::optional<SubjectAction> {
+    if (view.stage == SessionStage::consent) return SubjectAction{.kind = Kind::decline};
+    if (view.may_go_on) return SubjectAction{.kind = Kind::go_on};
+    return std::nullopt;
+  });
+  EXPECT_EQ(session.run(no).end, SessionEnd::declined);
+  EXPECT_TRUE(session.read().trials().empty());
+  EXPECT_THAT(kinds_of(session.read()), Contains("declined"));
+
+  test::BlindRun other(protocol);
+  int agreed = 0;
+  const auto leaves_after = [&](std::size_t trials) {
+    return test::ScriptedSubject(
+        [&agreed, trials, polls = 0](const SubjectView& view) mutable -> std::optional<SubjectAction> {
+          if (view.stage == SessionStage::consent) ++agreed;
+          if (view.may_go_on) return SubjectAction{.kind = Kind::go_on};
+          if (view.trial > trials) return SubjectAction{.kind = Kind::quit};
+          if (view.may_answer) return SubjectAction{.kind = Kind::answer};
+          if (view.may_switch && ++polls % 700 == 1)
+            return SubjectAction{.kind = Kind::play, .slot = static_cast<std::size_t>(polls / 700 % 3)};
+          return std::nullopt;
+        });
+  };
+  auto first = leaves_after(1);
+  (void)other.run(first);
+  auto second = leaves_after(2);
+  (void)other.run(second);
+  EXPECT_EQ(other.read().trials().size(), 2U);
+  EXPECT_EQ(agreed, 1);
+}
+
+TEST(RunSession, GivesABreakOfItsLength) {
+  test::BlindRun session(abx("break = { every = 2, at_least = { value = 20, unit = \"s\" } }\n"));
+  test::WatchingSubject subject;
+  (void)session.run(subject);
+  std::vector<std::string> pauses;
+  for (const std::string& view : subject.seen) {
+    if (view.starts_with("pause")) pauses.push_back(view);
+  }
+  ASSERT_EQ(pauses.size(), 21U) << "20 s counted down, then it may be left";
+  const SessionStore store = session.read();
+  const auto begin_of = [&](std::size_t trial) { return store.trial(trial).trace.front().row.time_s; };
+  EXPECT_GT(begin_of(2) - begin_of(1), 22.0);
+  EXPECT_LT(begin_of(3) - begin_of(2), 5.0) << "and none after the last";
+}
+
+TEST(RunSession, SaysInPracticeAloneWhatWasRight) {
+  test::BlindRun session(abx("practice = 2\nfeedback = true\n"));
+  test::WatchingSubject subject;
+  (void)session.run(subject);
+  EXPECT_EQ(
+      std::ranges::count_if(subject.seen, [](const auto& view) { return view.starts_with("feedback"); }), 2);
+}
+
+TEST(RunSession, EndsATrialOfTooLongAndStillTakesItsAnswer) {
+  test::BlindRun session(abx("longest = { value = 5, unit = \"s\" }\n"));
+  int polls = 0;
+  test::ScriptedSubject slow([&](const SubjectView& view) -> std::optional<SubjectAction> {
+    if (view.may_go_on) return SubjectAction{.kind = Kind::go_on};
+    if (view.may_switch && !view.playing) return SubjectAction{.kind = Kind::play, .slot = 0};
+    if (view.trial == 1 && ++polls == 9000) return SubjectAction{.kind = Kind::answer, .slot = 1};
+    if (view.trial == 2) return SubjectAction{.kind = Kind::quit};
+    return std::nullopt;
+  });
+  (void)session.run(slow);
+  const RecordedTrial trial = session.read().trial(0);
+  EXPECT_EQ(trial.answer, 1U);
+  EXPECT_NEAR(trial.response_s, 9.0, 0.01);
+  const auto felt = std::ranges::count(trial.trace, 0, [](const TraceRow& tick) { return int{tick.slot}; });
+  EXPECT_NEAR(static_cast<double>(felt), 5000.0, 2.0);
+}
+
+TEST(RunSession, LetsTheAnswersChooseTheLevelsOfAStaircase) {
+  const Protocol protocol =
+      protocol_from(level_text("design = \"staircase\"\ntrials = 60\n" + short_sequence,
+                               "standard = \"soft\"\nvary = \"force\"\nstaircase = { up = 1, down = 2, start "
+                               "= 0.4, reversals = 6, dropped = 2 }\n"));
+  test::BlindRun session(protocol);
+  RehearsalSubject subject(2);
+  EXPECT_EQ(session.run(subject).end, SessionEnd::finished);
+  const SessionStore store = session.read();
+  EXPECT_EQ(store.trials().front().what.level, 0.4);
+  std::set<double> levels;
+  for (const RecordedTrial& trial : store.trials()) levels.insert(trial.what.level);
+  EXPECT_GT(levels.size(), 3U);
+  EXPECT_LT(store.trials().size(), 60U) << "it ends by its reversals";
+}
+
+}  // namespace
+}  // namespace kerf::bench
