@@ -122,11 +122,13 @@ class Simulator {
   std::vector<MainResult> results_of(const Protocol& protocol, std::uint64_t kind, std::size_t experiments) {
     const Participants participants{
         .observer = options_.observer, .subjects = options_.subjects, .all_alike = kind == of_nulls};
+    AnalysisOptions analysis = options_.analysis;
+    analysis.curves = kind != of_nulls && kind != of_confirmation;
     std::vector<MainResult> results(experiments);
     for_each(experiments, options_.jobs, [&](std::size_t i) {
       const Study study =
           simulated_study(protocol, sensation_, participants, experiment_seed(options_.seed, kind, i));
-      results[i] = main_result(study, options_.analysis);
+      results[i] = main_result(study, analysis);
       ++done_;
     });
     return results;
@@ -182,14 +184,14 @@ class Simulator {
     if (options_.curve_points < 2) return;
     const bool by_need = result.confirmed && !has_levels(protocol_.design);
     const double middle = static_cast<double>(by_need ? result.confirmed->trials : size_of(protocol_));
+    const double first = (has_levels(protocol_.design) ? 0.5 : 0.25) * middle;
     const double last = (has_levels(protocol_.design) ? 4.0 : 2.0) * middle;
     std::size_t before = protocol_.design == Design::staircase
                              ? static_cast<std::size_t>(protocol_.scale.staircase.dropped + 1)
                              : 0;
     for (std::size_t i = 0; i < options_.curve_points; ++i) {
       const double share = static_cast<double>(i) / static_cast<double>(options_.curve_points - 1);
-      const auto size =
-          static_cast<std::size_t>(std::lround(0.25 * middle * std::pow(4.0 * last / middle, share)));
+      const auto size = static_cast<std::size_t>(std::lround(first * std::pow(last / first, share)));
       if (size <= before) continue;
       result.curve.push_back(point_of(size, of_curve + i, options_.curve_experiments));
       before = size;

@@ -24,7 +24,7 @@ struct SimulationOptions {
   std::size_t subjects = 1;
   double power = 0.8;                   ///< wanted
   std::size_t curve_points = 8;         ///< numbers of trials of the power curve; 0: none
-  std::size_t curve_experiments = 300;  ///< at each of them
+  std::size_t curve_experiments = 200;  ///< at each of them
   double answer_s = 2.0;                ///< that a subject takes to answer
   std::size_t jobs = 1;                 ///< threads; the result does not depend on them
   std::uint64_t seed = 1;

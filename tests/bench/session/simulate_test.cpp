@@ -9,7 +9,7 @@ namespace kerf::bench {
 namespace {
 
 SimulationOptions options_of(std::size_t experiments) {
-  return {.experiments = experiments, .curve_points = 0, .jobs = 2};
+  return {.sensation = {.felt = {.renderings = 1}}, .experiments = experiments, .curve_points = 0, .jobs = 2};
 }
 
 Simulation simulated(const Protocol& protocol, const SimulationOptions& options) {
@@ -62,7 +62,8 @@ TEST(Simulate, TheTrialsThatItTakesGiveThePowerThatWasWanted) {
 
 TEST(Simulate, IntervalsOfAJndCoverItAsOftenAsTheySay) {
   const Simulation simulation = simulated(simulated_protocol(force_levels(40)), options_of(200));
-  EXPECT_NEAR(simulation.truth.jnd, 0.07, 0.01);  // lapses and weak forces make it larger
+  EXPECT_GT(simulation.truth.jnd, 0.08);  // lapses, and a hand that gives way to more force
+  EXPECT_LT(simulation.truth.jnd, 0.13);
   EXPECT_GT(simulation.found.jnd_found.value(), 0.95);
   EXPECT_NEAR(simulation.found.jnd_covered.value(), 0.95, 4.0 * std::sqrt(0.95 * 0.05 / 200));
   EXPECT_NEAR(simulation.found.jnd_bias, 0.0, 0.1);
@@ -124,7 +125,9 @@ TEST(Simulate, SubjectsWhoDifferHaveTheJndOfTheirMeanCurve) {
   const Protocol protocol = simulated_protocol(force_levels(10));
   const double alike = simulated(protocol, options).truth.jnd;
   options.observer.spread = 0.5;
-  EXPECT_GT(simulated(protocol, options).truth.jnd, 1.02 * alike);  // a flatter curve with the same middle
+  const double unlike = simulated(protocol, options).truth.jnd;
+  EXPECT_GT(std::abs(unlike / alike - 1.0), 0.01);  // a flatter curve
+  EXPECT_NEAR(unlike, alike, 0.15 * alike);         // about the same middle
 }
 
 TEST(Simulate, TellsOnItsPageWhatItTellsInItsLines) {
