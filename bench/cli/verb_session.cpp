@@ -11,7 +11,8 @@ void add_session(CLI::App& app, Context& context) {
       "  kerf session key keeper.key\n"
       "  kerf session new abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5\n"
       "  kerf session run S01.h5 --key-file keeper.key --page\n"
-      "  kerf session analyze S01.h5 --key-file keeper.key -o analysis\n\n"
+      "  kerf session analyze S01.h5 --key-file keeper.key -o analysis\n"
+      "  kerf session simulate abx.protocol.toml --subjects 12 -o power\n\n"
       "The order of the samples, the answers and the forces lie sealed in the session file; "
       "docs/sessions.md\n"
       "says how to plan and run a study, docs/blinding.md what the seal protects from and what not.");
@@ -20,6 +21,7 @@ void add_session(CLI::App& app, Context& context) {
   add_session_run(session, context);
   add_session_analyze(session, context);
   add_session_open(session, context);
+  add_session_simulate(session, context);
 }
 
 }  // namespace kerf::bench

@@ -11,5 +11,6 @@ void add_session_new(CLI::App& session, Context& context);
 void add_session_run(CLI::App& session, Context& context);
 void add_session_analyze(CLI::App& session, Context& context);
 void add_session_open(CLI::App& session, Context& context);
+void add_session_simulate(CLI::App& session, Context& context);
 
 }  // namespace kerf::bench

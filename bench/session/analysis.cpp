@@ -209,7 +209,7 @@ MainResult main_result(const Study& study, const AnalysisOptions& options) {
       result.d_prime_interval = all.d_prime->interval;
     }
   }
-  if (!has_levels(study.design)) return result;
+  if (!has_levels(study.design) || !options.curves) return result;
   const LevelAnalysis levels = analyse_levels(study, judgements, quick, false);
   if (levels.pooled.jnd) {
     result.jnd = levels.pooled.jnd->value;

@@ -32,6 +32,7 @@ struct AnalysisOptions {
   std::optional<double> lapse;      ///< fixed; otherwise estimated in 0 to 6 %
   std::optional<double> criterion;  ///< of a threshold; half the way from guessing to certainty otherwise
   int bootstrap = 1000;             ///< samples; 0: none
+  bool curves = true;               ///< of main_result: also the curve over the levels, not the test alone
   std::uint64_t seed = 1;
 };
 

@@ -167,13 +167,10 @@ class Findings {
         show_not(fmt::format("that the JND lies within {}", margins));
       }
     }
-    if (pooled.jnd && is_adaptive(analysis_.design)) {
-      // Simulated: 300 sessions each of 50 to 120 trials, a Weibull observer with lapses of 0 and 2 %.
-      warn(fmt::format(
-          "levels that follow the answers make the interval of the JND too narrow: what says 95 % covers {} "
-          "in simulated sessions of one subject",
-          analysis_.design == Design::staircase ? "79 % with 15 reversals, 87 % with 30"
-                                                : "92 % with 60 trials"));
+    if (pooled.jnd && is_adaptive(analysis_.design) && !pooled.by_posterior) {
+      warn(
+          "levels that follow the answers make the interval of the pooled JND too narrow; those of the "
+          "subjects are not, nor that of their mean");
     }
     for (const std::string& note : pooled.notes) warn(note);
     for (const std::string& note : levels.notes) warn(note);

@@ -202,8 +202,10 @@ json level_fit_as_json(const LevelFit& fit, bool two_sided) {
         {{"level", level.intensity}, {"count", level.answers.successes}, {"trials", level.answers.trials}});
   }
   json result{{"name", fit.name},
-              {"jnd", threshold_as_json(
-                          fit.jnd, two_sided ? "half the way from 25 to 75 %" : "level at the criterion")},
+              {"jnd", threshold_as_json(fit.jnd, two_sided ? "half the way from 25 to 75 %"
+                                                 : fit.by_posterior
+                                                     ? "level at the criterion, median of the posterior"
+                                                     : "level at the criterion")},
               {"pse", threshold_as_json(fit.equality, "level at 50 %")},
               {"jnd_within_margins", fit.jnd_within ? json(*fit.jnd_within) : json(nullptr)},
               {"curve", fit.fit ? curve_as_json(*fit.fit) : json(nullptr)},

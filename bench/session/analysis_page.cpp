@@ -111,13 +111,16 @@ std::string level_section(const Analysis& analysis) {
   add_fit(rows, levels.pooled);
   for (const LevelFit& subject : levels.by_subject) add_fit(rows, subject);
   std::string html = fmt::format(
-      "<p class=\"soft\">Fractions of the standard. {} {:.3g} % intervals by profile likelihood; a curve of "
-      "shape {}.{}</p>\n",
+      "<p class=\"soft\">Fractions of the standard. {} {:.3g} % intervals by {}; a curve of shape "
+      "{}.{}</p>\n",
       levels.two_sided
           ? "The JND is half the way from 25 to 75 %, the PSE where both are named equally often."
           : fmt::format("The JND is where {:.3g} % are right.",
                         levels.pooled.fit ? 100.0 * levels.pooled.fit->threshold.criterion : 75.0),
-      100.0 * analysis.options.confidence, name_of(levels.shape),
+      100.0 * analysis.options.confidence,
+      is_adaptive(analysis.design) ? "profile likelihood (all together) or posterior (each subject)"
+                                   : "profile likelihood",
+      name_of(levels.shape),
       levels.by_subject.empty()
           ? ""
           : " All together: with the spread between subjects and levels (beta-binomial).");

@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/psychophysics/posterior.h>
+
 #include "session/analysis.h"
 #include "session/two_sided_fit.h"
 
@@ -41,12 +43,14 @@ std::vector<Level> rows_of(const Study& study, const Answers& judgements) {
 
 struct Question {
   bool two_sided = false;
+  bool adaptive = false;
   const AnalysisOptions* options = nullptr;
   FitOptions fit;
 };
 
 Question question_of(const Study& study, const AnalysisOptions& options) {
-  Question question{.two_sided = study.scale.two_sided(), .options = &options};
+  Question question{
+      .two_sided = study.scale.two_sided(), .adaptive = is_adaptive(study.design), .options = &options};
   FitOptions& fit = question.fit;
   fit.shape = study.scale.shape;
   fit.guess = study.task ? psychophysics::chance_of(*study.task) : 0.5;
@@ -70,6 +74,9 @@ PsychometricFit fitted(const Question& question, const std::vector<Level>& rows,
 Threshold jnd_of(const PsychometricFit& fit, bool two_sided) {
   return two_sided ? psychophysics::half_interquartile(fit) : fit.threshold;
 }
+
+/// Several subjects after an adaptive design have no posterior: it does not know that they differ.
+bool by_posterior(const Question& question) { return question.adaptive && !question.fit.overdispersed; }
 
 std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
 
@@ -99,7 +106,7 @@ std::optional<Threshold> bounded(const Threshold& found, const char* name, doubl
   return found;
 }
 
-void add_thresholds(LevelFit& result, const Question& question) {
+void add_thresholds(LevelFit& result, const std::vector<Level>& rows, const Question& question) {
   const double least = result.points.front().intensity;
   const double most = result.points.back().intensity;
   const PsychometricFit& fit = *result.fit;
@@ -107,7 +114,10 @@ void add_thresholds(LevelFit& result, const Question& question) {
     result.equality = bounded(fit.threshold, "PSE", least, most, result.notes);
     result.jnd = bounded(jnd_of(fit, true), "JND", 0.0, 2.0 * (most - least), result.notes);
   } else {
-    result.jnd = bounded(jnd_of(fit, false), "JND", least, most, result.notes);
+    result.by_posterior = by_posterior(question);
+    const Threshold jnd =
+        result.by_posterior ? psychophysics::posterior_threshold(rows, question.fit) : jnd_of(fit, false);
+    result.jnd = bounded(jnd, "JND", least, most, result.notes);
   }
   if (fit.slope_at_bound)
     result.notes.emplace_back("the answers do not say a slope: they fit a step or a flat line");
@@ -118,7 +128,8 @@ std::optional<bool> within_margins(const Question& question, const std::vector<L
   if (!question.options->jnd_margins) return std::nullopt;
   FitOptions options = question.fit;
   options.confidence = 1.0 - 2.0 * question.options->level;
-  const Threshold jnd = jnd_of(fitted(question, rows, options), question.two_sided);
+  const Threshold jnd = by_posterior(question) ? psychophysics::posterior_threshold(rows, options)
+                                               : jnd_of(fitted(question, rows, options), question.two_sided);
   return psychophysics::lies_within(jnd.interval, *question.options->jnd_margins);
 }
 
@@ -151,7 +162,7 @@ LevelFit level_fit(const Study& study, const Answers& judgements, const std::vec
   }
   try {
     result.fit = fitted(question, rows, question.fit);
-    add_thresholds(result, question);
+    add_thresholds(result, rows, question);
     if (result.jnd) result.jnd_within = within_margins(question, rows);
     if (thorough && question.options->bootstrap > 0) {
       FitOptions options = question.fit;

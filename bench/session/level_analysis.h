@@ -22,8 +22,11 @@ struct LevelFit {
   std::optional<psychophysics::Bootstrap> bootstrap;
   std::optional<psychophysics::Threshold> equality;  ///< PSE: of levels on both sides
   std::optional<psychophysics::Threshold> jnd;       ///< fraction of the standard
-  std::optional<bool> jnd_within;                    ///< the margins, where there are some
-  std::vector<std::string> notes;                    ///< why something is missing or open
+  /// After an adaptive design, of one subject: the JND is the median of a posterior, and its interval
+  /// credible. Otherwise it is that of the fit.
+  bool by_posterior = false;
+  std::optional<bool> jnd_within;  ///< the margins, where there are some
+  std::vector<std::string> notes;  ///< why something is missing or open
 };
 
 /// A shape of the curve over all answers, against the others.

@@ -198,8 +198,24 @@ TEST(AStaircase, HasTheMeanOfItsReversalsAndACurve) {
   EXPECT_GE(found.levels->pooled.jnd->interval.upper, 0.0864);
 }
 
-TEST(AStaircase, SaysThatItsIntervalIsTooNarrow) {
-  EXPECT_THAT(analyse(staircase_study(0.1, 3), quick()).warnings, Contains(HasSubstr("too narrow")));
+TEST(AStaircase, HasTheJndOfItsPosterior) {
+  const Analysis found = analyse(staircase_study(0.1, 3), quick());
+  ASSERT_TRUE(found.levels->pooled.jnd);
+  EXPECT_TRUE(found.levels->pooled.by_posterior);
+  EXPECT_THAT(found.warnings, Not(Contains(HasSubstr("too narrow"))));
+}
+
+TEST(AStaircase, OfSeveralSubjectsSaysThatItsPooledIntervalIsTooNarrow) {
+  Study study = staircase_study(0.1, 3);
+  for (Judgement judgement : staircase_study(0.1, 4).judgements) {
+    judgement.subject = "another";
+    study.judgements.push_back(judgement);
+  }
+  const Analysis found = analyse(study, quick());
+  EXPECT_FALSE(found.levels->pooled.by_posterior);
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("too narrow")));
+  ASSERT_EQ(found.levels->by_subject.size(), 2U);
+  EXPECT_TRUE(found.levels->by_subject[0].by_posterior);
 }
 
 TEST(AStaircase, HasNoTestOfItsCount) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -27,6 +29,13 @@ class Random {
   }
 
   [[nodiscard]] bool chance(double probability) { return uniform() < probability; }
+
+  /// Normal, of mean 0 and variance 1 (Box and Muller 1958). Two uniform numbers each, so that what follows
+  /// does not depend on whether one was left over; the last bit is that of the machine's log and cos.
+  [[nodiscard]] double normal() {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform());
+  }
 
   [[nodiscard]] int successes(int trials, double probability) {
     int count = 0;

@@ -1,0 +1,150 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "cli/progress.h"
+#include "cli/verb_session.h"
+#include "files/whole_file.h"
+#include "session/simulation_report.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string protocol;
+  std::string output;
+  SimulationOptions simulation;
+  std::string by = "asked";
+  double jnd_percent = 7.0;
+  double jnd_criterion_percent = 75.0;
+  std::size_t trials = 0;
+  std::optional<double> d_prime;
+  std::size_t jobs = 0;
+  bool peak = false;
+  bool no_curve = false;
+  bool replace = false;
+};
+
+SimulationOptions options_of(const Arguments& arguments, const Context& context) {
+  SimulationOptions options = arguments.simulation;
+  options.observer.jnd = 0.01 * arguments.jnd_percent;
+  options.observer.criterion = 0.01 * arguments.jnd_criterion_percent;
+  if (arguments.by == "strength") options.sensation.by = ToldBy::strength;
+  if (arguments.by == "difference") options.sensation.by = ToldBy::difference;
+  if (arguments.peak) options.sensation.strength = Loudest::peak;
+  options.sensation.d_prime = arguments.d_prime;
+  if (arguments.no_curve) options.curve_points = 0;
+  options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1U, std::thread::hardware_concurrency());
+  options.seed = context.seed;
+  return options;
+}
+
+void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptions& options) {
+  const Judging judging = judging_of(protocol);
+  const bool by_distances = judging != Judging::strongest && judging != Judging::preference;
+  if (options.observer.bias != 0.0 && by_distances)
+    warn(fmt::format("--bias has no bearing on '{}': its observers judge by distances",
+                     name_of(protocol.design)));
+  if (options.observer.preference != 0.0 && judging != Judging::preference)
+    warn(fmt::format("--preference has no bearing on '{}', where an answer is right",
+                     name_of(protocol.design)));
+}
+
+void write_files(const Arguments& arguments, const Simulation& simulation) {
+  const fs::path folder = arguments.output;
+  write_whole_file(folder / "simulate.html", simulation_page(simulation));
+  write_whole_file(folder / "simulate.json", simulation_json(simulation).dump(2) + "\n");
+  write_whole_file(folder / "simulate.csv", simulation_csv(simulation));
+  for (const Figure& figure : simulation_charts(simulation))
+    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart) + "\n");
+  say(fmt::format("{}: the charts, and all numbers as JSON and CSV", (folder / "simulate.html").string()));
+}
+
+void run(const Arguments& arguments, Context& context) {
+  Protocol protocol = read_protocol(arguments.protocol);
+  if (arguments.trials > 0) protocol = with_trials(std::move(protocol), arguments.trials);
+  match_loudness(protocol);
+  const SimulationOptions options = options_of(arguments, context);
+  warn_of_what_has_no_bearing(protocol, options);
+  if (!arguments.output.empty()) {
+    for (const char* file : {"simulate.html", "simulate.json", "simulate.csv"})
+      refuse_to_replace(fs::path(arguments.output) / file, arguments.replace);
+    fs::create_directories(arguments.output);
+  }
+  Simulation simulation;
+  {
+    Progress progress("simulating " + protocol.name, simulated_experiments(options));
+    simulation = simulate(protocol, options, progress.done);
+  }
+  for (const std::string& line : simulation_lines(simulation)) say(line);
+  context.result = simulation_json(simulation);
+  if (!arguments.output.empty()) write_files(arguments, simulation);
+}
+
+}  // namespace
+
+void add_session_simulate(CLI::App& session, Context& context) {
+  auto arguments = std::make_shared<Arguments>();
+  Verb verb = add_verb(
+      session, context, "simulate", "Let simulated observers feel the laws: the power of a design",
+      "kerf session simulate abx.protocol.toml --jnd 7 --subjects 12 -o power\n\n"
+      "The observers feel what the laws really render on a simulated device, limits included, and go\n"
+      "through whole sessions, whose answers are analysed as real ones: how often is a difference\n"
+      "found, how many trials does it take, do intervals cover the truth, are false alarms as rare as\n"
+      "the test says.",
+      [arguments, &context] { run(*arguments, context); });
+  Observer& observer = arguments->simulation.observer;
+  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
+  verb.add_option("--jnd", arguments->jnd_percent, "The observers' JND of force [%]")
+      .positive()
+      .with_default();
+  verb.add_option("--least-jnd", observer.least_jnd_n, "and at least so many newtons")
+      .positive()
+      .with_default();
+  verb.add_option("--jnd-criterion", arguments->jnd_criterion_percent,
+                  "Share of right answers in two intervals one JND apart [%]")
+      .with_default();
+  verb.add_option("--lapse", observer.lapse, "Share of answers by chance").within(0.0, 1.0).with_default();
+  verb.add_option("--bias", observer.bias, "Leaning to the first slot [d']").with_default();
+  verb.add_option("--spread", observer.spread, "Between subjects: standard deviation of ln(JND)")
+      .not_negative()
+      .with_default();
+  verb.add_option("--preference", observer.preference,
+                  "Of a preference: how much better the second of a pair is liked, if it is told apart [d']")
+      .with_default();
+  verb.add_option("--by", arguments->by,
+                  "What renderings are told apart by: what the design asks for (levels by strength, all else "
+                  "by difference), or always one of them")
+      .one_of({"asked", "strength", "difference"})
+      .with_default();
+  verb.add_option("--d-prime", arguments->d_prime,
+                  "All pairs of samples are so many d' apart, whatever their laws render");
+  verb.add_flag("--peak", arguments->peak, "Strength is the peak of the force, not its root mean square");
+  verb.add_option("--subjects", arguments->simulation.subjects, "Of each experiment").with_default();
+  verb.add_option("--experiments", arguments->simulation.experiments, "How many are simulated")
+      .with_default();
+  verb.add_option("--trials", arguments->trials, "In place of the protocol's");
+  verb.add_option("--power", arguments->simulation.power, "For which trials are counted").with_default();
+  verb.add_option("--device", arguments->simulation.sensation.felt.device_uri,
+                  "Simulated device that the laws are felt on (default: the protocol's)");
+  verb.add_option("--seconds", arguments->simulation.sensation.felt.seconds,
+                  "Felt for so long (default: the protocol's [motion])");
+  verb.add_option("--renderings", arguments->simulation.sensation.felt.renderings,
+                  "So often, each time with other strokes of the simulated hand")
+      .with_default();
+  verb.add_flag("--open-loop", arguments->simulation.sensation.felt.open_loop,
+                "Forces along the protocol's [motion], without a device");
+  verb.add_option("-o,--output", arguments->output, "Folder for simulate.html, charts, JSON and CSV");
+  verb.add_flag("--no-curve", arguments->no_curve, "Leave out the curve over numbers of trials");
+  verb.add_option("--jobs", arguments->jobs, "Threads (default: one a processor)");
+  verb.add_flag("--force", arguments->replace, "Replace existing files");
+}
+
+}  // namespace kerf::bench
