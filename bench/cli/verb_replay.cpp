@@ -11,7 +11,7 @@
 #include "cli/loop_arguments.h"
 #include "cli/verbs.h"
 #include "files/whole_file.h"
-#include "fits/fit_recording.h"
+#include "laws/render.h"
 #include "loop/check.h"
 #include "prepare/rows.h"
 #include "recordings/axes.h"
@@ -19,6 +19,7 @@
 #include "replay/path_rendering.h"
 #include "replay/replay_files.h"
 #include "replay/source.h"
+#include "replay/table.h"
 
 namespace kerf::bench {
 namespace {
@@ -189,19 +190,17 @@ RunOptions run_options_of(const Arguments& arguments) {
 void replay_as_table(const Arguments& arguments, Context& context, const Source& source) {
   RunOptions options = run_options_of(arguments);
   options.scene.reset();  // the table is felt in place of its tissue
-  FitRecordingOptions fit_options{.models = {"recording"}};
   const schema::Recording& recording = source.recording;
-  fit_options.axis = arguments.axis.empty() && recording.cycles ? recording.cycles->axis
-                                                                : find_axis(recording, arguments.axis);
-  models::Contact contact = contact_of(recording, fit_options.axis);
-  if (arguments.contact) contact.position = *arguments.contact;
-  if (!arguments.direction.empty()) contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
-  fit_options.contact = contact;
-  const RecordingFit fit = fit_recording(recording, fit_options);
-  if (fit.laws.empty())
-    throw std::invalid_argument(fmt::format("{}: no table can be made of it: {}", arguments.recording,
-                                            fit.refusals.empty() ? "no law" : fit.refusals[0].why));
-  const FittedLaw& table = fit.laws.front();
+  std::optional<models::Contact> contact;
+  if (arguments.contact || !arguments.direction.empty()) {
+    const std::size_t axis = arguments.axis.empty() && recording.cycles
+                                 ? recording.cycles->axis
+                                 : find_axis(recording, arguments.axis);
+    contact = contact_of(recording, axis);
+    if (arguments.contact) contact->position = *arguments.contact;
+    if (!arguments.direction.empty()) contact->direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+  }
+  const FittedLaw table = table_of(recording, arguments.recording, arguments.axis, contact);
   if (!recording.cycles)
     warn(
         "the recording has no cycles, so that one table serves both ways, without smoothing; 'kerf segment' "

@@ -76,7 +76,7 @@ void analyze(Arguments& arguments, Context& context) {
       is_table(arguments.files.front()) ? read_table(arguments) : read_sessions(arguments, context);
   const Analysis analysis = analyse(study, options);
   nlohmann::ordered_json json = analysis_as_json(analysis);
-  json.update(context.result);
+  if (!context.result.is_null()) json.update(context.result);
   context.result = std::move(json);
   for (const std::string& line : summary_lines(analysis)) say(line);
   if (arguments.output.empty()) return;

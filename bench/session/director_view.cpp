@@ -25,6 +25,7 @@ SubjectView Director::view() const {
   SubjectView view{.study = protocol.name,
                    .trial = std::min(course_.answered() + 1, course_.at_most()),
                    .at_most = course_.at_most(),
+                   .may_be_fewer = is_adaptive(protocol.design),
                    .notice = notice_};
   switch (phase_) {
     case Phase::welcome:

@@ -123,9 +123,13 @@ std::optional<Journal> Journal::look(const std::filesystem::path& session) {
   if (descriptor < 0 && errno == ENOENT) return std::nullopt;
   if (descriptor < 0) throw_errno(file, "open");
   Journal journal(session, descriptor);
-  struct flock lock = whole_file();
-  journal.being_run_ = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  journal.ask_whether_run();
   return journal;
+}
+
+void Journal::ask_whether_run() {
+  struct flock lock = whole_file();
+  being_run_ = ::fcntl(descriptor_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 std::uint64_t Journal::size() const {

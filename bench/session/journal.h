@@ -55,6 +55,7 @@ class Journal {
 
   void start(const schema::Session& session);
   [[nodiscard]] std::uint64_t read_head(const schema::Session& session) const;
+  void ask_whether_run();
   void read_records();
   /// The record at `end_`: true if it is whole and was taken. False at the end, or if it was cut off.
   bool read_record(std::uint64_t size);

@@ -105,7 +105,9 @@ void Journal::read_records() {
   const std::uint64_t all = size();
   while (end_ < all && read_record(all)) {
   }
-  if (end_ == all || being_run_) return;  // what is being written is not whole yet
+  if (end_ == all) return;
+  if (!may_write_ && !being_run_) ask_whether_run();  // a run may have begun meanwhile
+  if (being_run_) return;                             // what is being written is not whole yet
   warnings_.push_back(fmt::format(
       "{}: the last entry was cut off when the session stopped, and is dropped; all before it are there",
       file_.string()));

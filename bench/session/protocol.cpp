@@ -5,6 +5,7 @@
 
 #include "files/whole_file.h"
 #include "regress/suite.h"
+#include "replay/table.h"
 #include "scene/read_trajectory.h"
 #include "session/protocol_parts.h"
 
@@ -216,8 +217,12 @@ Protocol read_protocol(const fs::path& file) {
       throw std::invalid_argument(fmt::format("there is no file {}", found.string()));
     return found;
   };
-  Protocol protocol = parse_protocol(read_whole_file(file), file.string(),
-                                     [&](const std::string& law) { return read_whole_file(existing(law)); });
+  const auto law_text = [&](const std::string& named) {
+    const fs::path found = existing(named);
+    if (found.extension() != ".h5") return read_whole_file(found);
+    return to_toml(table_of(schema::read_recording(found), found.string()).file);
+  };
+  Protocol protocol = parse_protocol(read_whole_file(file), file.string(), law_text);
   if (protocol.motion && !protocol.motion->scene.empty()) {
     try {
       protocol.motion->scene = existing(protocol.motion->scene);

@@ -35,8 +35,8 @@ enum class Design : std::uint8_t {
 /// A rendering that takes part.
 struct SessionSample {
   std::string name;
-  std::string law_name;  ///< what the protocol calls its law file
-  std::string law_toml;  ///< its law file, as it was read
+  std::string law_name;  ///< what the protocol calls its law file or its recording
+  std::string law_toml;  ///< its law file, as it was read, or the table that was made of its recording
   LawFile law;
   double gain = 1.0;  ///< of every force, so that the samples of a tissue are equally strong
 };
@@ -138,7 +138,8 @@ struct Protocol {
 /// @throws std::invalid_argument with file, line, found and expected; std::system_error.
 [[nodiscard]] Protocol read_protocol(const std::filesystem::path& file);
 
-/// From text; `law_text` gives the text of a law file by the name that the protocol calls it by.
+/// From text; `law_text` gives the text of a law file by the name that the protocol calls it, or the
+/// recording that is looked up, by.
 [[nodiscard]] Protocol parse_protocol(const std::string& text, const std::string& name,
                                       const std::function<std::string(const std::string&)>& law_text);
 

@@ -52,15 +52,23 @@ void require_enough(const Place& place, const toml::node& node, Design design, s
 
 SessionSample read_sample(const Place& place, const toml::table& table,
                           const std::function<std::string(const std::string&)>& law_text) {
-  place.allow_only(table, {"name", "law"}, "a [[sample]]");
+  place.allow_only(table, {"name", "law", "recording"}, "a [[sample]]");
   const std::string name = read_name(place, table, "a [[sample]]");
-  const std::string law = read_plain_text(place, table, "law");
-  if (law.empty()) place.refuse(table, "sample '{}' needs a 'law', such as law = \"liver.law.toml\"", name);
+  const bool is_recording = table.contains("recording");
+  if (is_recording == table.contains("law")) {
+    place.refuse(
+        table,
+        "sample '{}' needs a 'law', such as law = \"liver.law.toml\", or a 'recording', whose forces are "
+        "looked up",
+        name);
+  }
+  const std::string_view key = is_recording ? "recording" : "law";
+  const std::string law = read_plain_text(place, table, key);
   try {
     const std::string text = law_text(law);
     return {.name = name, .law_name = law, .law_toml = text, .law = parse_law_file(text, law)};
   } catch (const std::invalid_argument& error) {
-    place.refuse(*table.get("law"), "{}", error.what());
+    place.refuse(*table.get(key), "{}", error.what());
   }
 }
 

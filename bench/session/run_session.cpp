@@ -29,7 +29,10 @@ class SessionRun {
     loop.seconds = longest_s;
     loop.progress = false;
     loop.rendering = [&](const drivers::DeviceInfo& device) { return start(device); };
-    loop.each_row = [this](const schema::Row& row) { rendering_.record(row); };
+    loop.each_row = [this](const schema::Row& row) {
+      rendering_.record(row);
+      if (options_.loop.each_row) options_.loop.each_row(row);
+    };
     SessionRunResult result;
     try {
       result.run = run_on_device(loop, stop);

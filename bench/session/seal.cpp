@@ -12,6 +12,8 @@
 #include <sodium.h>
 #include <unistd.h>
 
+#include "session/journal.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -176,7 +178,9 @@ void write_new_key_file(const std::filesystem::path& file) {
   }
   if (opened.number() < 0) throw_errno(file, "write");
   const ssize_t written = ::write(opened.number(), content.get(), least_key_file);
-  if (written == static_cast<ssize_t>(least_key_file) && ::fsync(opened.number()) == 0) return;
+  if (written == static_cast<ssize_t>(least_key_file) && ::fsync(opened.number()) == 0) {
+    return bring_to_disk(file.parent_path());
+  }
   const int reason = written < 0 || errno != 0 ? errno : ENOSPC;
   ::unlink(file.c_str());
   throw std::system_error(reason, std::generic_category(), fmt::format("cannot write {}", file.string()));

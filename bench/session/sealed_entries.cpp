@@ -146,13 +146,14 @@ std::vector<std::uint8_t> SealedEntries::content(std::size_t number) const {
 }
 
 void SealedEntries::append(const std::string& kind, const std::string& text, Bytes content) {
+  if (!runs_ || !journal_) throw std::logic_error("a session that is not run takes no entries");
   require_no_zero(kind, text);
   const std::size_t number = session_.entries.size();
   schema::SessionEntry entry{
       .kind = kind, .time = schema::new_header("").created, .text = text, .sealed = {}};
   const auto bound = bound_of(chain_.back(), number, entry).written();
   entry.sealed = sealed(key_, content, as_text(bound));
-  journal_.value().append(entry);
+  journal_->append(entry);
   chain_.push_back(blake2b({bound, entry.sealed}));
   entry.sealed.clear();
   session_.entries.push_back(std::move(entry));

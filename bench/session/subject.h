@@ -23,10 +23,11 @@ struct SubjectView {
   bool may_answer = false;
   bool may_go_on = false;  ///< a break or a text may be left
   bool practice = false;
-  std::size_t trial = 0;    ///< from 1
-  std::size_t at_most = 0;  ///< trials
-  double wait_s = 0.0;      ///< of a break
-  std::string notice;       ///< why the last action was refused; empty if it was not
+  std::size_t trial = 0;      ///< from 1
+  std::size_t at_most = 0;    ///< trials
+  bool may_be_fewer = false;  ///< the answers decide when it ends
+  double wait_s = 0.0;        ///< of a break
+  std::string notice;         ///< why the last action was refused; empty if it was not
 
   friend bool operator==(const SubjectView&, const SubjectView&) = default;
 };

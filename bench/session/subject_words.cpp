@@ -61,7 +61,8 @@ std::string text_below(const SubjectView& view) {
 
 std::string progress(const SubjectView& view) {
   if (view.trial == 0) return {};
-  return fmt::format("{} {} of {}", view.practice ? "Practice trial" : "Trial", view.trial, view.at_most);
+  return fmt::format("{} {} of {}{}", view.practice ? "Practice trial" : "Trial", view.trial,
+                     view.may_be_fewer ? "at most " : "", view.at_most);
 }
 
 std::string what_plays(const SubjectView& view) {

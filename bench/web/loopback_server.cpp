@@ -230,7 +230,6 @@ void LoopbackServer::State::ask_again() {
 }
 
 void LoopbackServer::State::stop() {
-  ask_again();  // What was shown last is to arrive.
   stopping_ = true;
   error_code ignored;
   acceptor_.close(ignored);

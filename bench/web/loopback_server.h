@@ -50,7 +50,7 @@ class LoopbackServer {
   explicit LoopbackServer(std::uint16_t port);
   LoopbackServer(const LoopbackServer&) = delete;
   LoopbackServer& operator=(const LoopbackServer&) = delete;
-  /// What was put off is asked for once more; answers on their way have up to a second.
+  /// What was put off is closed; answers on their way have up to a second.
   ~LoopbackServer();
 
   [[nodiscard]] std::uint16_t port() const noexcept;

@@ -105,6 +105,18 @@ TEST(SealedEntries, OfNoFileAreRefused) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(SealedEntries, ThatAreOnlyReadOrAreClosedTakeNoMore) {
+  const test::SealedSession session;
+  SealedEntries reader(session.file(), session.key(), For::read, test::ignore);
+  EXPECT_THROW(reader.append("run", "", {}), std::logic_error);
+  auto run = session.run();
+  run.append("run", "", {});
+  reader.close();
+  run.close();
+  EXPECT_THROW(run.append("run", "", {}), std::logic_error);
+  EXPECT_THAT(session.entries(), SizeIs(2));
+}
+
 TEST(SealedEntries, MayHaveLongTexts) {
   const test::SealedSession session;
   const std::string why = std::string(5000, 'y') + " – because";
