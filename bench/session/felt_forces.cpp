@@ -20,7 +20,6 @@ namespace {
 
 constexpr double lever_m = 0.01;  ///< at which a torque is felt as a force
 constexpr double soft_start_s = 0.5;
-constexpr double usual_seconds = 6.0;
 constexpr double no_force_n = 1e-9;
 
 double to_newtons(const std::string& unit) { return unit == "N·m" ? 1.0 / lever_m : 1.0; }

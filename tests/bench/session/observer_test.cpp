@@ -7,6 +7,15 @@
 #include <kerf/psychophysics/dprime.h>
 
 namespace kerf::bench {
+
+/// Told by name where a case fails; its padding would differ from run to run.
+void PrintTo(const FeltTrial& trial, std::ostream* out);
+void PrintTo(const FeltTrial& trial, std::ostream* out) {
+  *out << "judging " << static_cast<int>(trial.judging) << ", slots";
+  for (std::size_t slot = 0; slot < trial.slots; ++slot) *out << ' ' << int{trial.plays[slot]};
+  *out << ", d' " << trial.d_prime;
+}
+
 namespace {
 
 using psychophysics::Decision;
