@@ -53,6 +53,9 @@ void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptio
   if (options.observer.bias != 0.0 && by_distances)
     warn(fmt::format("--bias has no bearing on '{}': its observers judge by distances",
                      name_of(protocol.design)));
+  if (options.sensation.d_prime && has_levels(protocol.design))
+    warn(fmt::format("--d-prime has no bearing on '{}', whose samples differ by their level",
+                     name_of(protocol.design)));
   if (options.observer.preference != 0.0 && judging != Judging::preference)
     warn(fmt::format("--preference has no bearing on '{}', where an answer is right",
                      name_of(protocol.design)));

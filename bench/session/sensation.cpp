@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <Eigen/Dense>
+#include <fmt/core.h>
 
 #include <kerf/psychophysics/quest_plus.h>
 
@@ -59,11 +61,18 @@ Sensation::Sensation(const Protocol& protocol, const Observer& observer, const S
     if (!by_strength_) return difference_in_jnds(observer, first, second);
     return strength_of(observer, second, options.strength) - strength_of(observer, first, options.strength);
   };
+  if (options.d_prime && !(*options.d_prime >= 0.0 && *options.d_prime < 100.0))
+    throw std::invalid_argument(
+        fmt::format("samples are to be d' = {:g} apart, expected 0 or more, such as 1", *options.d_prime));
+  // Only who is asked for the stronger one can be misled by the weaker one.
+  const bool has_direction = judging_of(protocol) == Judging::strongest;
   if (!has_levels(protocol.design)) {
     for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue) {
-      for (const auto& pair : pairs_of(protocol, tissue))
-        pairs_[pair] = options.d_prime ? *options.d_prime / d_prime_per_jnd(observer)
-                                       : apart(felt[pair[0]], felt[pair[1]]);
+      for (const auto& pair : pairs_of(protocol, tissue)) {
+        const double distance = apart(felt[pair[0]], felt[pair[1]]);
+        pairs_[pair] = has_direction ? distance : std::abs(distance);
+        if (options.d_prime) pairs_[pair] = *options.d_prime / d_prime_per_jnd(observer);
+      }
     }
     return;
   }

@@ -97,6 +97,15 @@ TEST(Sensation, IsTheOneThatWasWantedWhateverIsRendered) {
   EXPECT_NEAR(d_prime_per_jnd(observer) * sensation.jnds({0, 1}, none), 1.5, 1e-12);
 }
 
+TEST(Sensation, ByStrengthHasADirectionOnlyWhereTheStrongerOneIsAskedFor) {
+  const SensationOptions by_strength{.felt = once.felt, .by = ToldBy::strength};
+  const std::string weaker_second = two_springs(9, 8);
+  EXPECT_GT(Sensation(simulated_protocol(abx + weaker_second), {}, by_strength).jnds({0, 1}, none), 0.2);
+  const Protocol asked = simulated_protocol("design = \"2ifc\"\nsignal = \"second\"\n" + weaker_second);
+  EXPECT_LT(Sensation(asked, {}, by_strength).jnds({0, 1}, none), -0.2);
+  EXPECT_THROW(Sensation(asked, {}, {.felt = once.felt, .d_prime = -1.0}), std::invalid_argument);
+}
+
 TEST(Sensation, TakesTheFirstSimulatedDeviceThatFitsAndElseAsksForAMotion) {
   Protocol protocol = simulated_protocol(abx + two_springs(8, 9));
   protocol.device_uri.clear();
