@@ -10,7 +10,7 @@
 #include "cli/progress.h"
 #include "cli/verb_session.h"
 #include "files/whole_file.h"
-#include "session/simulation_report.h"
+#include "observers/simulation_report.h"
 
 namespace kerf::bench {
 namespace {
