@@ -192,7 +192,7 @@ void Journal::append(const schema::SessionEntry& entry) {
   record.bytes(texts.written());
   const std::uint64_t sealed_at = end_ + record.written().size();
   try {
-    cut_off();  // where an earlier failure could not
+    cut_off();  // what a crash or an earlier failure left
     write(end_, record.written());
     write(sealed_at, entry.sealed);
     flush();

@@ -31,8 +31,8 @@ class Journal {
 
   [[nodiscard]] bool being_run() const noexcept { return being_run_; }  ///< by another, when it was looked at
   [[nodiscard]] bool has_records() const;
-  /// Finds the entries beyond the first `entries_in_file`, which FILE has. A run starts a new journal where
-  /// none is left, and cuts off what a crash left of a last record.
+  /// Finds the entries that FILE has not. A run starts a new journal where there are none; what a crash left
+  /// of a last record goes with the next append().
   /// @throws schema::FormatError: damage, another session; std::system_error.
   void take_up(const schema::Session& session);
 

@@ -111,7 +111,6 @@ void Journal::read_records() {
   warnings_.push_back(fmt::format(
       "{}: the last entry was cut off when the session stopped, and is dropped; all before it are there",
       file_.string()));
-  if (may_write_) cut_off();
 }
 
 bool Journal::read_record(std::uint64_t size) {
@@ -125,7 +124,8 @@ bool Journal::read_record(std::uint64_t size) {
   if (!are_equal(check_of(blake2b({checked})), Bytes(head).last(check_size)) ||
       !are_equal(checked.first(record_mark.size()), as_bytes(record_mark))) {
     const auto rest = read(end_, size - end_);
-    const bool last = std::ranges::search(Bytes(rest).subspan(1), as_bytes(record_mark)).empty();
+    const bool last =
+        std::search(rest.begin() + 1, rest.end(), record_mark.begin(), record_mark.end()) == rest.end();
     if (being_run_ || (last && has_unwritten_sector(end_, head))) return false;
     refuse(name + " was changed after it was written" + mend());
   }

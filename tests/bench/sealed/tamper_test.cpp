@@ -144,7 +144,7 @@ TEST_F(Tampered, AtRandomNeverCrashes) {
           changed[at] = static_cast<char>(generator());
           break;
         case 1:
-          changed[at] = static_cast<char>(changed[at] ^ (1U << generator() % 8));
+          changed[at] = static_cast<char>(changed[at] ^ (1 << generator() % 8));
           break;
         case 2:
           changed.replace(at, 8, 8, generator() % 2 == 0 ? '\xff' : '\0');

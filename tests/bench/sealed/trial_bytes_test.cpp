@@ -77,6 +77,10 @@ TEST(TrialBytes, AreAsManyWhateverWasPlayedOrAnswered) {
   trial.response_s = std::nan("");
   trial.at.clear();
   EXPECT_EQ(trial_bytes(trial).size(), length);
+  for (std::size_t switches = 1; switches < 1'000'000; switches *= 10) {
+    trial.switches = switches;
+    EXPECT_EQ(trial_bytes(trial).size(), length) << switches;
+  }
   for (TraceRow& tick : trial.trace) tick.row.force_commanded = {};
   EXPECT_EQ(trial_bytes(trial).size(), length) << "zeros take their room, too";
 }
