@@ -10,6 +10,7 @@
 #include "cli/progress.h"
 #include "cli/verb_session.h"
 #include "files/whole_file.h"
+#include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
 
 namespace kerf::bench {
@@ -80,7 +81,7 @@ void run(const Arguments& arguments, Context& context) {
   }
   Simulation simulation;
   {
-    Progress progress("simulating " + protocol.name, simulated_experiments(options));
+    Progress progress("simulating " + protocol.name, simulated_experiments(protocol, options));
     simulation = simulate(protocol, options, progress.done);
   }
   for (const std::string& line : simulation_lines(simulation)) say(line);

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "observers/simulated_design.h"
 #include "observers/simulated_findings.h"
 
 namespace kerf::bench {
@@ -42,48 +43,10 @@ void for_each(std::size_t count, std::size_t threads, const std::function<void(s
   if (failure) std::rethrow_exception(failure);
 }
 
-std::size_t cells_of(const Protocol& protocol) {
-  if (is_adaptive(protocol.design)) return 1;
-  std::size_t cells = 0;
-  for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue)
-    cells += pairs_of(protocol, tissue).size();
-  if (protocol.design == Design::constant)
-    cells *= static_cast<std::size_t>(
-        std::ranges::count_if(protocol.scale.levels, [](double level) { return level != 0.0; }));
-  return cells;
-}
-
-std::string counted_on_curve(Design design) {
-  if (design == Design::staircase) return "reversals of each subject";
-  if (design == Design::constant) return "trials of each level and subject";
-  if (design == Design::quest_plus) return "trials of each subject";
-  return "trials of each pair and subject";
-}
-
-/// The design at another size: a staircase grows by its reversals.
-Protocol resized(const Protocol& protocol, std::size_t size) {
-  if (protocol.design != Design::staircase) return with_trials(protocol, size);
-  const auto reversals = static_cast<std::size_t>(protocol.scale.staircase.reversals);
-  Protocol larger =
-      with_trials(protocol, std::max(protocol.trials, (protocol.trials * size + reversals - 1) / reversals));
-  larger.scale.staircase.reversals = static_cast<int>(size);
-  return larger;
-}
-
-std::size_t size_of(const Protocol& protocol) {
-  return protocol.design == Design::staircase ? static_cast<std::size_t>(protocol.scale.staircase.reversals)
-                                              : protocol.trials;
-}
-
-/// How long a subject takes for so many trials: every slot once for its interval, however they are presented.
-double session_seconds(const Protocol& protocol, double trials, double answer_s) {
-  const auto slots = static_cast<double>(slots_of(protocol.design));
-  const double trial_s = slots * protocol.interval_s + (slots - 1.0) * protocol.gap_s + answer_s;
-  const auto practice = static_cast<double>(protocol.practice);
-  double breaks = 0.0;
-  if (protocol.break_every > 0)
-    breaks = std::max(0.0, std::ceil(trials / static_cast<double>(protocol.break_every)) - 1.0);
-  return (trials + practice) * trial_s + breaks * protocol.break_s;
+std::size_t curve_experiments_of(const Protocol& protocol, const SimulationOptions& options) {
+  if (options.curve_experiments > 0) return options.curve_experiments;
+  return has_levels(protocol.design) ? std::max<std::size_t>(2, options.experiments / 5)
+                                     : options.experiments;
 }
 
 class Simulator {
@@ -181,6 +144,7 @@ class Simulator {
 
   /// About the number that is needed where that is known, else about the protocol's own.
   void add_curve(Simulation& result) {
+    result.curve_experiments = curve_experiments_of(protocol_, options_);
     if (options_.curve_points < 2) return;
     const bool by_need = result.confirmed && !has_levels(protocol_.design);
     const double middle = static_cast<double>(by_need ? result.confirmed->trials : size_of(protocol_));
@@ -193,7 +157,7 @@ class Simulator {
       const double share = static_cast<double>(i) / static_cast<double>(options_.curve_points - 1);
       const auto size = static_cast<std::size_t>(std::lround(first * std::pow(last / first, share)));
       if (size <= before) continue;
-      result.curve.push_back(point_of(size, of_curve + i, options_.curve_experiments));
+      result.curve.push_back(point_of(size, of_curve + i, result.curve_experiments));
       before = size;
     }
   }
@@ -243,16 +207,8 @@ void require_options(const SimulationOptions& options) {
 
 }  // namespace
 
-Protocol with_trials(Protocol protocol, std::size_t trials) {
-  if (trials == 0) throw std::invalid_argument("a session needs a trial at least");
-  protocol.trials = trials;
-  protocol.scale.quest_trials = trials;
-  protocol.scale.staircase.most_trials = static_cast<int>(trials);
-  return protocol;
-}
-
-std::size_t simulated_experiments(const SimulationOptions& options) noexcept {
-  return 3 * options.experiments + options.curve_points * options.curve_experiments;
+std::size_t simulated_experiments(const Protocol& protocol, const SimulationOptions& options) noexcept {
+  return 3 * options.experiments + options.curve_points * curve_experiments_of(protocol, options);
 }
 
 Simulation simulate(const Protocol& protocol, const SimulationOptions& options,

@@ -22,11 +22,12 @@ struct SimulationOptions {
   AnalysisOptions analysis;
   std::size_t experiments = 1000;
   std::size_t subjects = 1;
-  double power = 0.8;                   ///< wanted
-  std::size_t curve_points = 8;         ///< numbers of trials of the power curve; 0: none
-  std::size_t curve_experiments = 200;  ///< at each of them
-  double answer_s = 2.0;                ///< that a subject takes to answer
-  std::size_t jobs = 1;                 ///< threads; the result does not depend on them
+  double power = 0.8;            ///< wanted
+  std::size_t curve_points = 8;  ///< numbers of trials of the power curve; 0: none
+  /// At each of them; 0: as many as `experiments`, of designs with levels, which take longer, a fifth of it.
+  std::size_t curve_experiments = 0;
+  double answer_s = 2.0;  ///< that a subject takes to answer
+  std::size_t jobs = 1;   ///< threads; the result does not depend on them
   std::uint64_t seed = 1;
 };
 
@@ -77,6 +78,7 @@ struct Simulation {
   double mean_session_s = 0.0;  ///< of one subject: presentations, answers, breaks; practice included
   SimulatedShare false_alarms;  ///< of observers who feel no difference
   std::vector<PowerPoint> curve;
+  std::size_t curve_experiments = 0;    ///< at each point of the curve
   std::string curve_of;                 ///< what is counted: "trials of each pair"
   std::size_t needed_total = 0;         ///< answers for the power wanted, by theory; 0: not known
   std::optional<PowerPoint> confirmed;  ///< the design with that many
@@ -90,10 +92,7 @@ struct Simulation {
 [[nodiscard]] Simulation simulate(const Protocol& protocol, const SimulationOptions& options,
                                   std::atomic<std::size_t>& done);
 /// How many experiments a simulation takes at most.
-[[nodiscard]] std::size_t simulated_experiments(const SimulationOptions& options) noexcept;
-
-/// The protocol with another number of trials: of each pair or level; of a staircase at most so many.
-/// @throws std::invalid_argument: none.
-[[nodiscard]] Protocol with_trials(Protocol protocol, std::size_t trials);
+[[nodiscard]] std::size_t simulated_experiments(const Protocol& protocol,
+                                                const SimulationOptions& options) noexcept;
 
 }  // namespace kerf::bench

@@ -64,7 +64,7 @@ std::vector<std::string> counted_notes(const std::vector<MainResult>& results) {
   for (const auto& [kind, times] : kinds) ordered.emplace_back(times, kind);
   std::ranges::sort(ordered, std::greater());
   std::vector<std::string> notes;
-  for (const auto& [times, kind] : ordered) notes.push_back(fmt::format("{} times: {}...", times, kind));
+  for (const auto& [times, kind] : ordered) notes.push_back(fmt::format("{} x {}...", times, kind));
   return notes;
 }
 

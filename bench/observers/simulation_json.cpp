@@ -116,7 +116,7 @@ std::string simulation_csv(const Simulation& simulation) {
     const SimulatedShare& power = point.found.significant;
     const bool has_test = power.count.trials > 0;
     csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", point.trials, cell(point.found.trials),
-                       simulation.options.curve_experiments, cell(power.value()),
+                       simulation.curve_experiments, cell(power.value()),
                        has_test ? cell(power.interval().lower) : "",
                        has_test ? cell(power.interval().upper) : "", cell(point.theory),
                        cell(point.found.jnd_covered.value()), cell(point.found.jnd_bias),

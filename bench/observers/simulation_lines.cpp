@@ -100,8 +100,8 @@ void add_jnd(const Simulation& simulation, std::vector<std::string>& lines) {
   const int none = found.jnd_found.count.trials - found.jnd_found.count.successes;
   const int open = found.jnd_bounded.count.trials - found.jnd_bounded.count.successes;
   if (none > 0 || open > 0)
-    lines.push_back(
-        fmt::format("{} experiments told no JND, {} an interval that is open at one end.", none, open));
+    lines.push_back(fmt::format("{} of the experiments told no JND, {} an interval that is open at one end.",
+                                none, open));
   for (const std::string& note : found.notes) lines.push_back("  " + note);
 }
 

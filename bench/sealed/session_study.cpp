@@ -23,9 +23,10 @@ void require_same(const schema::Session& first, const schema::Session& other) {
                   first.subject, first.uuid, other.subject, other.uuid, protocol ? "laws" : "protocols"));
 }
 
-Judgement judgement_of(const SessionStore& store, const RecordedTrial& trial) {
+Judgement judgement_of(const SessionStore& store, std::size_t session, const RecordedTrial& trial) {
   const Protocol& protocol = store.protocol();
   return {.subject = store.session().subject,
+          .session = session,
           .tissue = protocol.tissues.at(trial.what.tissue).name,
           .pair = trial.what.pair,
           .level = trial.what.level,
@@ -50,7 +51,7 @@ Study study_of(const std::vector<const SessionStore*>& sessions) {
                                               session.subject, session.uuid));
     }
     for (const RecordedTrial& trial : store->trials()) {
-      study.judgements.push_back(judgement_of(*store, trial));
+      study.judgements.push_back(judgement_of(*store, seen.size(), trial));
     }
   }
   return study;
