@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/protocol/written_protocol.h"
+#include "sealed/session_store.h"
 
 namespace kerf::bench {
 namespace {
@@ -30,7 +31,7 @@ class SessionFolder {
       write_text(folder_ / fmt::format("{}.law.toml", law),
                  kerf::test::law_called(fmt::format("{}.law.toml", law)));
     write_text(protocol(), kerf::test::protocol_text(top));
-    EXPECT_EQ(run_kerf({"session", "key", path("k.key")}).status, 0);
+    EXPECT_EQ(run_kerf({"session", "key", path("k.key")}).exit_status, 0);
   }
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] std::string protocol() const { return path("p.protocol.toml"); }
@@ -56,18 +57,18 @@ class SessionFolder {
 
 /// Refused with exit status 2 and one line that says so.
 void expect_refused(const Outcome& outcome, const std::string& why) {
-  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.exit_status, 2);
   EXPECT_THAT(outcome.errors, HasSubstr("kerf: "));
   EXPECT_THAT(outcome.errors, HasSubstr(why));
 }
 
 TEST(SessionProgram, GoesFromAProtocolToAnAnalysis) {
   const SessionFolder folder;
-  ASSERT_EQ(folder.make().status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
   const Outcome run = folder.run();
-  ASSERT_EQ(run.status, 0) << run.errors;
+  ASSERT_EQ(run.exit_status, 0) << run.errors;
   const Outcome analysis = folder.analyze({"--json", "-o", folder.path("out")});
-  ASSERT_EQ(analysis.status, 0) << analysis.errors;
+  ASSERT_EQ(analysis.exit_status, 0) << analysis.errors;
   EXPECT_THAT(analysis.errors, HasSubstr("a rehearsal, whose answers are by chance"));
   const auto json = nlohmann::json::parse(analysis.output);
   EXPECT_EQ(json["trials"], 4);
@@ -76,13 +77,13 @@ TEST(SessionProgram, GoesFromAProtocolToAnAnalysis) {
   // What it exports can be read again, and says the same.
   ASSERT_EQ(run_kerf({"session", "open", folder.path("s.h5"), "--key-file", folder.path("k.key"), "-o",
                       folder.path("open")})
-                .status,
+                .exit_status,
             0);
   const Outcome again = run_kerf({"session", "analyze", folder.path("open/trials.csv"), "--json"});
-  ASSERT_EQ(again.status, 0) << again.errors;
+  ASSERT_EQ(again.exit_status, 0) << again.errors;
   EXPECT_EQ(nlohmann::json::parse(again.output)["correct"], json["correct"]);
   const Outcome replay = run_kerf({"info", folder.path("open/trial-001.h5")});
-  EXPECT_EQ(replay.status, 0) << replay.errors;
+  EXPECT_EQ(replay.exit_status, 0) << replay.errors;
 }
 
 TEST(SessionProgram, AnswersAtAKeyboardThatIsAPipe) {
@@ -90,13 +91,13 @@ TEST(SessionProgram, AnswersAtAKeyboardThatIsAPipe) {
       "design = \"preference\"\ntrials = 1\ndevice = \"sim:scissors\"\n"
       "presentation = \"sequence\"\ninterval = { value = 0.2, unit = \"s\" }\n"
       "gap = { value = 0, unit = \"s\" }\nramp = { value = 0.02, unit = \"s\" }\n");
-  ASSERT_EQ(folder.make().status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
   write_text(folder.path("keys"), "go on\nanswer B\ngo on\n");
   const Outcome outcome =
       kerf::test::run({"/bin/sh", "-c",
                        fmt::format("{} session run {} --key-file {} <{}", KERF_PROGRAM, folder.path("s.h5"),
                                    folder.path("k.key"), folder.path("keys"))});
-  EXPECT_EQ(outcome.status, 0) << outcome.errors;
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
   EXPECT_THAT(outcome.errors, HasSubstr("The session is finished: 1 trials"));
   EXPECT_THAT(folder.analyze().errors, HasSubstr("1 trial"));
 }
@@ -112,22 +113,22 @@ TEST(SessionProgram, MakesTheSessionsOfAWholeStudy) {
                                          folder.path("k.key"),
                                          "-o",
                                          folder.path("study")};
-  ASSERT_EQ(run_kerf(command).status, 0);
+  ASSERT_EQ(run_kerf(command).exit_status, 0);
   for (const char* name : {"S01.h5", "S02.h5", "S03.h5"}) {
-    EXPECT_THAT(run_kerf({"info", folder.path(std::string("study/") + name)}).output, HasSubstr("of 3"));
+    EXPECT_THAT(run_kerf({"info", folder.path(std::string("study/") + name)}).errors, HasSubstr("of 3"));
   }
   expect_refused(run_kerf(command), "S01.h5");
 }
 
 TEST(SessionProgram, IsOpenedEarlyOnlyWithAReasonThatItKeeps) {
   const SessionFolder folder;
-  ASSERT_EQ(folder.make().status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
   expect_refused(folder.analyze(), "the session is not finished; to open it early say why with --reason");
   const Outcome early = folder.analyze({"--reason", "the study was stopped"});
-  EXPECT_EQ(early.status, 0) << early.errors;
-  ASSERT_EQ(folder.run().status, 0);
+  EXPECT_EQ(early.exit_status, 0) << early.errors;
+  ASSERT_EQ(folder.run().exit_status, 0);
   EXPECT_THAT(folder.analyze().errors, HasSubstr("opened before its end"));
-  EXPECT_THAT(run_kerf({"info", folder.path("s.h5")}).output, HasSubstr("the study was stopped"));
+  EXPECT_THAT(run_kerf({"info", folder.path("s.h5")}).errors, HasSubstr("the study was stopped"));
 }
 
 TEST(SessionProgram, RefusesAProtocolThatCannotBe) {
@@ -138,7 +139,7 @@ TEST(SessionProgram, RefusesAProtocolThatCannotBe) {
     write_text(folder.protocol(), text);
     return folder.make();
   };
-  expect_refused(with("soft.law.toml", "none.law.toml"), "p.protocol.toml:8: there is no file");
+  expect_refused(with("soft.law.toml", "none.law.toml"), "p.protocol.toml:9: there is no file");
   expect_refused(with("law = \"soft.law.toml\"", "recording = \"none.h5\""), "there is no file");
   expect_refused(with("abx", "abc"), "p.protocol.toml:3: ");
   write_text(folder.path("odd.law.toml"), "model = \"odd\"\n");
@@ -164,8 +165,8 @@ TEST(SessionProgram, RefusesWhoIsNotItsSubjectOrHasNotItsKey) {
   expect_refused(run_kerf({"session", "new", folder.protocol(), "--subject", "Anna Smith", "-o",
                            folder.path("s.h5"), "--key-file", folder.path("k.key")}),
                  "no name");
-  ASSERT_EQ(folder.make().status, 0);
-  ASSERT_EQ(run_kerf({"session", "key", folder.path("other.key")}).status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
+  ASSERT_EQ(run_kerf({"session", "key", folder.path("other.key")}).exit_status, 0);
   expect_refused(
       run_kerf({"session", "run", folder.path("s.h5"), "--rehearse", "--key-file", folder.path("other.key")}),
       "key");
@@ -175,8 +176,8 @@ TEST(SessionProgram, RefusesWhoIsNotItsSubjectOrHasNotItsKey) {
 
 TEST(SessionProgram, RefusesASessionThatIsFinishedOrTamperedWith) {
   const SessionFolder folder;
-  ASSERT_EQ(folder.make().status, 0);
-  ASSERT_EQ(folder.run().status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
+  ASSERT_EQ(folder.run().exit_status, 0);
   expect_refused(folder.run(), "the session is finished");
   std::string bytes = read_text(folder.path("s.h5"));
   const std::size_t at = bytes.find("sim:scissors");
@@ -184,6 +185,17 @@ TEST(SessionProgram, RefusesASessionThatIsFinishedOrTamperedWith) {
   bytes[at] = 't';
   write_text(folder.path("s.h5"), bytes);
   expect_refused(folder.analyze(), "chang");
+}
+
+TEST(SessionProgram, RefusesASecondRunOfOneFile) {
+  const SessionFolder folder;
+  ASSERT_EQ(folder.make().exit_status, 0);
+  {
+    const SealKey key = SealKey::from_file(folder.path("k.key"), derivation_of(folder.path("s.h5")));
+    const SessionStore running(folder.path("s.h5"), key, SessionStore::Purpose::run);
+    expect_refused(folder.run(), "is being run by another process");
+  }
+  EXPECT_EQ(folder.run().exit_status, 0) << "and nothing is lost";
 }
 
 TEST(SessionProgram, SaysWhatIsMissingOnTheCommandLine) {
@@ -194,7 +206,7 @@ TEST(SessionProgram, SaysWhatIsMissingOnTheCommandLine) {
                  "--subject");
   expect_refused(run_kerf({"session", "analyze", folder.path("none.h5"), "--key-file", folder.path("k.key")}),
                  "there is no such file");
-  ASSERT_EQ(folder.make().status, 0);
+  ASSERT_EQ(folder.make().exit_status, 0);
   expect_refused(folder.run({"--rehearse", "--page"}), "leave out --page");
   expect_refused(folder.run({"--rehearse", "--device", "falcon:0"}), "--rehearse is for simulated devices");
   expect_refused(folder.run({"--buttons"}), "has no buttons");
