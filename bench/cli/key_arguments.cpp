@@ -11,8 +11,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t least_characters = 8;
-
 /// The terminal without echo, and as it was again.
 class WithoutEcho {
  public:
@@ -72,8 +70,7 @@ SealKey key_for(KeyArguments& arguments, const schema::KeyDerivation& derivation
 SealKey new_key_for(KeyArguments& arguments, const schema::KeyDerivation& derivation) {
   if (arguments.key_file.empty() && !arguments.passphrase) {
     arguments.passphrase = ask("New passphrase, for whoever keeps the blinding");
-    if (arguments.passphrase->size() < least_characters)
-      throw std::invalid_argument(fmt::format("a passphrase has {} characters or more", least_characters));
+    require_long_enough(*arguments.passphrase);
     if (ask("Once more") != *arguments.passphrase)
       throw std::invalid_argument("the two passphrases are not the same; nothing was written");
   }

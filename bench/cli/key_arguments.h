@@ -6,7 +6,7 @@
 #include <kerf/schema/session.h>
 
 #include "cli/verb.h"
-#include "session/seal.h"
+#include "sealed/seal.h"
 
 namespace kerf::bench {
 

@@ -18,7 +18,7 @@
 #include "loop/run.h"
 #include "recordings/summary.h"
 #include "regress/stored_facts.h"
-#include "session/session_facts.h"
+#include "sealed/session_facts.h"
 
 namespace kerf::bench {
 namespace {

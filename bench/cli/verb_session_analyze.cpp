@@ -5,13 +5,13 @@
 
 #include <fmt/core.h>
 
+#include "answers/analysis_json.h"
+#include "answers/analysis_page.h"
+#include "answers/answers_table.h"
 #include "cli/key_arguments.h"
 #include "cli/verb_session.h"
-#include "session/analysis_json.h"
-#include "session/analysis_page.h"
-#include "session/answers_table.h"
-#include "session/opening.h"
-#include "session/session_store.h"
+#include "sealed/opening.h"
+#include "sealed/session_store.h"
 
 namespace kerf::bench {
 namespace {

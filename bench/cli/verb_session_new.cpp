@@ -10,9 +10,9 @@
 #include "cli/verb_session.h"
 #include "files/whole_file.h"
 #include "loop/run.h"
+#include "protocol/samples.h"
+#include "sealed/session_store.h"
 #include "session/device_check.h"
-#include "session/samples.h"
-#include "session/session_store.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "cli/key_arguments.h"
 #include "cli/verb_session.h"
-#include "session/opening.h"
-#include "session/session_export.h"
+#include "sealed/opening.h"
+#include "sealed/session_export.h"
 
 namespace kerf::bench {
 namespace {

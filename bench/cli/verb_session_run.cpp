@@ -11,10 +11,10 @@
 #include "session/device_check.h"
 #include "session/rehearsal.h"
 #include "session/run_session.h"
-#include "session/subject_buttons.h"
-#include "session/subject_group.h"
-#include "session/subject_page.h"
-#include "session/subject_terminal.h"
+#include "subject/subject_buttons.h"
+#include "subject/subject_group.h"
+#include "subject/subject_page.h"
+#include "subject/subject_terminal.h"
 
 namespace kerf::bench {
 namespace {

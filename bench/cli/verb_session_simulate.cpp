@@ -10,8 +10,8 @@
 #include "cli/progress.h"
 #include "cli/verb_session.h"
 #include "files/whole_file.h"
-#include "session/simulated_design.h"
-#include "session/simulation_report.h"
+#include "observers/simulated_design.h"
+#include "observers/simulation_report.h"
 
 namespace kerf::bench {
 namespace {

@@ -11,8 +11,8 @@
 #include <kerf/schema/recording.h>
 
 #include "loop/command.h"
-#include "session/plan.h"
-#include "session/session_store.h"
+#include "protocol/plan.h"
+#include "sealed/session_store.h"
 
 namespace kerf::bench {
 

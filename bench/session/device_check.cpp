@@ -13,7 +13,7 @@
 #include "chart/tick_cost.h"
 #include "laws/placement.h"
 #include "loop/run.h"
-#include "session/samples.h"
+#include "protocol/samples.h"
 #include "stability/in_hand.h"
 
 namespace kerf::bench {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "session/protocol.h"
+#include "protocol/protocol.h"
 
 namespace kerf::bench {
 

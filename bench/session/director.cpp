@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "laws/placement.h"
+#include "protocol/samples.h"
 #include "recordings/axes.h"
-#include "session/samples.h"
 
 namespace kerf::bench {
 namespace {

@@ -9,10 +9,10 @@
 
 #include <kerf/drivers/device.h>
 
+#include "protocol/course.h"
+#include "sealed/session_store.h"
 #include "session/blind_rendering.h"
-#include "session/course.h"
-#include "session/session_store.h"
-#include "session/subject.h"
+#include "subject/subject.h"
 
 namespace kerf::bench {
 

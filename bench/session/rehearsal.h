@@ -5,7 +5,7 @@
 
 #include <kerf/psychophysics/random.h>
 
-#include "session/subject.h"
+#include "subject/subject.h"
 
 namespace kerf::bench {
 

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "loop/run.h"
+#include "sealed/session_store.h"
 #include "session/director.h"
-#include "session/session_store.h"
-#include "session/subject.h"
+#include "subject/subject.h"
 
 namespace kerf::bench {
 

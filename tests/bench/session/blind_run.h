@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/session/sealed_session.h"
-#include "bench/session/written_protocol.h"
+#include "bench/protocol/written_protocol.h"
+#include "bench/sealed/sealed_session.h"
 #include "session/rehearsal.h"
 #include "session/run_session.h"
-#include "session/subject_words.h"
+#include "subject/subject_words.h"
 
 namespace kerf::bench::test {
 

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/session/blind_run.h"
-#include "session/samples.h"
+#include "protocol/samples.h"
 
 namespace kerf::bench {
 namespace {

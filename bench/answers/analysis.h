@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "answers/answer_groups.h"
+#include "answers/level_analysis.h"
+#include "answers/rankings.h"
+#include "answers/response_times.h"
+#include "answers/tracks.h"
+
+// What the answers of blind sessions say, and what they do not: docs/sessions-analysis.md.
+
+namespace kerf::bench {
+
+/// How p values of one family are adjusted.
+enum class FamilyCorrection : std::uint8_t { holm, benjamini_hochberg };
+
+struct AnalysisOptions {
+  double confidence = 0.95;  ///< of intervals
+  double level = 0.05;       ///< of tests; also of each of the two of an equivalence
+  double margin = 0.10;      ///< a preference is none within 50 % +- this
+  /// Renderings count as equal below it. In two intervals d' = 1 is 76 % right: about one JND at 75 %.
+  double d_prime_bound = 1.0;
+  std::optional<psychophysics::Interval> jnd_margins;  ///< a JND is as wanted within them, in (0, infinity)
+  std::vector<double> truths{0.75, 0.60};              ///< for which the power is told
+  FamilyCorrection correction = FamilyCorrection::holm;
+  std::optional<double> lapse;      ///< fixed; otherwise estimated in 0 to 6 %
+  std::optional<double> criterion;  ///< of a threshold; half the way from guessing to certainty otherwise
+  int bootstrap = 1000;             ///< samples; 0: none
+  bool curves = true;               ///< of main_result: also the curve over the levels, not the test alone
+  std::uint64_t seed = 1;
+};
+
+/// Everything about a study.
+struct Analysis {
+  AnalysisOptions options;
+  std::string name;
+  Design design = Design::preference;
+  std::vector<std::string> samples;
+  std::size_t trials = 0;
+  std::size_t practice = 0;                                   ///< trials left out
+  std::vector<std::string> subjects;                          ///< in order of appearance
+  std::vector<std::size_t> preferred;                         ///< of a preference: wins by sample
+  double p_value = std::numeric_limits<double>::quiet_NaN();  ///< of the main test; NaN: there is none
+  std::string main_test;                                      ///< what it is, in words, or why there is none
+  std::optional<AnswerGroup> all;  ///< none without answers, nor of preferences among more than two samples
+  std::vector<AnswerGroup> by_subject;
+  std::vector<AnswerGroup> by_tissue;  ///< only where each has one question; otherwise see by_pair
+  std::vector<AnswerGroup> by_pair;    ///< where a tissue has more than one
+  SubjectSpread spread;
+  SlotBias bias;
+  std::vector<TissueRanking> rankings;
+  std::optional<LevelAnalysis> levels;
+  std::vector<AdaptiveTrack> tracks;
+  ResponseTimes times;
+  std::vector<std::string> shows;      ///< sentences
+  std::vector<std::string> shows_not;  ///< what one might read into it
+  std::vector<std::string> warnings;
+};
+
+/// @throws std::invalid_argument: an option out of its range; a level that is no number where the design has
+///         levels.
+[[nodiscard]] Analysis analyse(const Study& study, const AnalysisOptions& options = {});
+
+/// The main test or fit of a study alone, for simulations that ask thousands of times. NaN: not of this
+/// design, or not estimable (`note` says why).
+struct MainResult {
+  std::size_t trials = 0;
+  double p_value = std::numeric_limits<double>::quiet_NaN();
+  double d_prime = std::numeric_limits<double>::quiet_NaN();
+  psychophysics::Interval d_prime_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
+                                           .upper = std::numeric_limits<double>::quiet_NaN()};
+  double jnd = std::numeric_limits<double>::quiet_NaN();
+  psychophysics::Interval jnd_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
+                                       .upper = std::numeric_limits<double>::quiet_NaN()};
+  double equality = std::numeric_limits<double>::quiet_NaN();  ///< PSE
+  bool equivalent = false;  ///< shown: d' below its bound, a preference in its margin, the JND in its
+  std::string note;
+};
+[[nodiscard]] MainResult main_result(const Study& study, const AnalysisOptions& options = {});
+
+/// Fills in the sentences: what is shown, what is not, and warnings.
+void add_findings(Analysis& analysis);
+
+/// The analysis in lines for a terminal.
+[[nodiscard]] std::vector<std::string> summary_lines(const Analysis& analysis);
+
+}  // namespace kerf::bench

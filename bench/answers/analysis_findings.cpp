@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "answers/analysis.h"
+#include "answers/analysis_words.h"
+
+namespace kerf::bench {
+namespace {
+
+/// Sentences of an analysis under way.
+class Findings {
+ public:
+  explicit Findings(Analysis& analysis) : analysis_(analysis), options_(analysis.options) {}
+
+  void write() {
+    if (analysis_.trials == 0) {
+      warn(analysis_.practice > 0 ? "there are no answers besides practice" : "there are no answers");
+      return;
+    }
+    if (analysis_.levels) write_levels(*analysis_.levels);
+    if (analysis_.all) {
+      if (is_preference()) {
+        write_preference(*analysis_.all);
+      } else {
+        write_discrimination(*analysis_.all);
+      }
+    }
+    write_family(analysis_.by_tissue.size() > 1 ? analysis_.by_tissue : analysis_.by_pair);
+    for (const TissueRanking& ranking : analysis_.rankings) write_ranking(ranking);
+    write_subjects();
+    write_bias();
+    write_times();
+  }
+
+ private:
+  [[nodiscard]] bool is_preference() const { return analysis_.design == Design::preference; }
+  [[nodiscard]] bool is_alarm(double p) const { return p <= options_.level; }
+  [[nodiscard]] double level_percent() const { return 100.0 * options_.level; }
+  void show(std::string text) { analysis_.shows.push_back(as_sentence(std::move(text))); }
+  void show_not(std::string text) { analysis_.shows_not.push_back(as_sentence(std::move(text))); }
+  void warn(std::string text) { analysis_.warnings.push_back(as_sentence(std::move(text))); }
+
+  [[nodiscard]] std::string chances(const AnswerGroup& group) const {
+    std::string text;
+    for (const TestPower& power : group.power) {
+      text += fmt::format("{}{:.0f} % to notice {:.3g} %", text.empty() ? "" : ", ", 100.0 * power.power,
+                          100.0 * power.truth);
+    }
+    return text;
+  }
+
+  void write_preference(const AnswerGroup& all) {
+    if (is_alarm(all.p_value)) {
+      show(fmt::format("a preference: {}, {}", count_text(all, options_.confidence), p_text(all.p_value)));
+    } else {
+      show(fmt::format("no sign of a preference: {}, {}", count_text(all, options_.confidence),
+                       p_text(all.p_value)));
+      show_not(
+          fmt::format("that there is none: {} answers had a chance of {}", all.count.trials, chances(all)));
+    }
+    if (all.excluded_margin < 0.5)
+      show(
+          fmt::format("over all answers a preference beyond {} either way is unlikely (excluded at {:.3g} %)",
+                      percent_text(all.chance + all.excluded_margin), level_percent()));
+    if (all.equivalence->is_shown)
+      show(fmt::format("the preference lies within 50 +- {:.3g} % ({})", 100.0 * options_.margin,
+                       p_text(all.equivalence->p)));
+    show_not(
+        "that the samples cannot be told apart: two that feel different and please equally give 50 % as "
+        "well; ABX or a forced choice asks for that");
+  }
+
+  void write_discrimination(const AnswerGroup& all) {
+    const char* who = analysis_.subjects.size() > 1 ? " by at least one of the subjects" : "";
+    const std::string count = count_text(all, options_.confidence);
+    if (std::isnan(all.p_value)) return;
+    if (is_alarm(all.p_value)) {
+      show(fmt::format("the difference is noticed{}: {}, {}", who, count, p_text(all.p_value)));
+    } else {
+      show(fmt::format("no sign that the difference is noticed: {}, {}", count, p_text(all.p_value)));
+      show_not(fmt::format("that nobody notices it: {} answers had a chance of {} right", all.count.trials,
+                           chances(all)));
+    }
+    if (!all.d_prime) return;
+    if (all.equivalence->is_shown) {
+      show(fmt::format("over all answers d' is below {:.3g} ({})", options_.d_prime_bound,
+                       p_text(all.equivalence->p)));
+    } else if (std::isfinite(all.excluded_d_prime)) {
+      show_not(fmt::format("that d' is below {:.3g} ({}): only a d' above {} is excluded at {:.3g} %",
+                           options_.d_prime_bound, p_text(all.equivalence->p),
+                           d_prime_text(all.excluded_d_prime), level_percent()));
+    }
+  }
+
+  void write_family(const std::vector<AnswerGroup>& family) {
+    if (family.size() < 2) return;
+    const auto& rankings = analysis_.rankings;
+    const bool is_ranked =
+        !rankings.empty() && std::all_of(rankings.begin(), rankings.end(),
+                                         [](const auto& each) { return each.bradley_terry.has_value(); });
+    for (const AnswerGroup& group : family) {
+      if (std::isnan(group.p_value)) return;
+      if (is_alarm(group.p_adjusted) && !is_ranked) {
+        show(fmt::format("{}: {}, {} after correction over {} tests", group.name,
+                         count_text(group, options_.confidence), p_text(group.p_adjusted), family.size()));
+      }
+    }
+    write_too_few(family);
+  }
+
+  void write_too_few(const std::vector<AnswerGroup>& family) {
+    std::string names;
+    for (const AnswerGroup& group : family) {
+      const psychophysics::Count best{.successes = group.count.trials, .trials = group.count.trials};
+      const double least = psychophysics::binomial_test(
+          best, group.chance,
+          group.one_sided ? psychophysics::Alternative::greater : psychophysics::Alternative::two_sided);
+      if (least <= options_.level) continue;
+      names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", group.name, group.count.trials);
+    }
+    if (!names.empty())
+      show_not(fmt::format("anything of {} taken alone: with so few answers no outcome reaches {:.3g} %",
+                           names, level_percent()));
+  }
+
+  void write_ranking(const TissueRanking& ranking) {
+    const std::string tissue = ranking.tissue.empty() ? "" : ranking.tissue + ": ";
+    if (!ranking.bradley_terry) {
+      warn(fmt::format("{}no ranking: {}", tissue, ranking.note));
+      return;
+    }
+    for (const RankedPair& pair : ranking.pairs) {
+      if (!is_alarm(pair.p_adjusted)) continue;
+      const bool first = pair.difference.value > 0.0;
+      show(fmt::format("{}{} is preferred to {} (worth apart {:.2f}, {} after correction over {} pairs)",
+                       tissue, analysis_.samples[ranking.samples[first ? pair.first : pair.second]],
+                       analysis_.samples[ranking.samples[first ? pair.second : pair.first]],
+                       std::abs(pair.difference.value), p_text(pair.p_adjusted), ranking.pairs.size()));
+    }
+    if (is_alarm(ranking.bradley_terry->deviance_p))
+      warn(
+          fmt::format("{}one scale does not describe the answers ({}): what is preferred depends on the pair",
+                      tissue, p_text(ranking.bradley_terry->deviance_p)));
+  }
+
+  void write_levels(const LevelAnalysis& levels) {
+    const LevelFit& pooled = levels.pooled;
+    if (pooled.jnd)
+      show(threshold_text("the JND is", *pooled.jnd, criterion_text(levels, *pooled.jnd).c_str(),
+                          options_.confidence));
+    if (pooled.equality)
+      show(threshold_text("equal strength is felt at", *pooled.equality, "from the standard",
+                          options_.confidence));
+    if (levels.across) {
+      show(fmt::format(
+          "the mean JND of the {} subjects is {} ({:.3g} % {}, Student): the one for people like them",
+          levels.by_subject.size(), percent_text(levels.across->mean), 100.0 * options_.confidence,
+          percent_text(levels.across->interval)));
+    }
+    if (pooled.jnd_within) {
+      const std::string margins = percent_text(*options_.jnd_margins);
+      if (*pooled.jnd_within) {
+        show(fmt::format("the JND lies within {}", margins));
+      } else {
+        show_not(fmt::format("that the JND lies within {}", margins));
+      }
+    }
+    if (pooled.jnd && is_adaptive(analysis_.design) && !pooled.by_posterior) {
+      warn(
+          "levels that follow the answers make the interval of the pooled JND too narrow; those of the "
+          "subjects are not, nor that of their mean");
+    }
+    for (const std::string& note : pooled.notes) warn(note);
+    for (const std::string& note : levels.notes) warn(note);
+    if (pooled.fit && is_alarm(pooled.fit->overdispersion_p)) {
+      warn(fmt::format(
+          "subjects differ ({}, correlation of answers {:.2f}): the mean over subjects is the one to "
+          "report, not the pooled JND",
+          p_text(pooled.fit->overdispersion_p), pooled.fit->overdispersion));
+    }
+    const auto check = [&](const LevelFit& fit) {
+      if (fit.bootstrap && is_alarm(fit.bootstrap->deviance_p))
+        warn(fmt::format("{}: the curve does not describe the answers (deviance {:.1f}, {})", fit.name,
+                         fit.fit->deviance, p_text(fit.bootstrap->deviance_p)));
+    };
+    if (levels.by_subject.empty()) check(pooled);
+    for (const LevelFit& subject : levels.by_subject) check(subject);
+    show_not("that the JND is the same for other motions, tissues or forces than those that were felt");
+  }
+
+  void write_subjects() {
+    const SubjectSpread& spread = analysis_.spread;
+    if (analysis_.subjects.size() < 2) {
+      show_not("anything of people: it is one subject");
+      return;
+    }
+    if (spread.population && !analysis_.levels) {
+      const auto& population = *spread.population;
+      const std::string mean = fmt::format("mean of the subjects {} ({:.3g} % {}, Student), {}",
+                                           percent_text(population.mean), 100.0 * options_.confidence,
+                                           percent_text(population.interval), p_text(population.p_value));
+      if (is_alarm(population.p_value)) {
+        show(fmt::format("it holds on the average for the people that the {} subjects stand for: {}",
+                         spread.subjects, mean));
+      } else {
+        show_not(
+            fmt::format("anything of the people that the {} subjects stand for: {}", spread.subjects, mean));
+      }
+    } else if (!spread.note.empty() && !analysis_.levels) {
+      show_not(fmt::format("anything of people in general: {}", spread.note));
+    }
+    if (is_alarm(spread.equal.p) && !analysis_.levels) {
+      warn(fmt::format(
+          "subjects differ ({}): the pooled count hides it, its interval is too narrow for people, "
+          "and those who notice stand beside those who do not; look at each subject",
+          p_text(spread.equal.p)));
+    } else if (is_preference()) {
+      const std::string agreement =
+          analysis_.by_subject.empty()
+              ? std::string("whether the subjects agree is not tested among more than two samples")
+              : fmt::format("that the subjects differ does not show ({}), which with few answers says little",
+                            p_text(spread.equal.p));
+      warn(fmt::format("{} answers of {} subjects are not as many independent ones; {}", analysis_.trials,
+                       analysis_.subjects.size(), agreement));
+    }
+  }
+
+  void write_bias() {
+    const SlotBias& bias = analysis_.bias;
+    if (!bias.note.empty()) {
+      warn(fmt::format("no test of answers that lean to one slot: {}", bias.note));
+      return;
+    }
+    if (!is_alarm(bias.test.p)) return;
+    std::string counts;
+    for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
+      counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ", label_of(analysis_.design, slot),
+                            bias.answers[slot]);
+    }
+    warn(fmt::format("answers lean to one slot ({}; {}){}", counts, p_text(bias.test.p),
+                     is_preference() ? ": a preference is seen less clearly for it"
+                                     : ": the count makes the difference look smaller than it is"));
+  }
+
+  void write_times() {
+    if (analysis_.times.trials > 0 && analysis_.times.median_s < 0.5)
+      warn(fmt::format("half of the answers came within {:.2f} s: too fast to have felt both samples",
+                       analysis_.times.median_s));
+  }
+
+  Analysis& analysis_;
+  const AnalysisOptions& options_;
+};
+
+}  // namespace
+
+void add_findings(Analysis& analysis) { Findings(analysis).write(); }
+
+}  // namespace kerf::bench

@@ -1,0 +1,346 @@
+#include "answers/analysis_json.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "answers/analysis_words.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json pair_of(psychophysics::Interval interval) {
+  return json::array({number(interval.lower), number(interval.upper)});
+}
+
+json note_of(const std::string& note) { return note.empty() ? json(nullptr) : json(note); }
+
+json count_as_json(psychophysics::Count count) {
+  return {{"successes", count.successes}, {"trials", count.trials}};
+}
+
+json equivalence_as_json(const AnswerGroup& group, const AnalysisOptions& options) {
+  if (!group.equivalence) return nullptr;
+  json result{{"of", group.d_prime ? "dprime" : "preference"}};
+  if (group.d_prime) {
+    result["bound"] = options.d_prime_bound;
+    result["excluded_above"] = number(group.excluded_d_prime);
+  } else {
+    result["margin"] = options.margin;
+    result["excluded_margin"] = number(group.excluded_margin);
+  }
+  result["level"] = options.level;
+  result["p_value"] = number(group.equivalence->p);
+  result["interval"] = pair_of(group.equivalence->interval);
+  result["shown"] = group.equivalence->is_shown;
+  return result;
+}
+
+json power_as_json(const AnswerGroup& group) {
+  json result = json::array();
+  for (const TestPower& power : group.power) {
+    result.push_back(
+        {{"truth", power.truth},
+         {"power", number(power.power)},
+         {"trials_for_0.8", power.trials_needed > 0 ? json(power.trials_needed) : json(nullptr)}});
+  }
+  return result;
+}
+
+/// What stands at the top for all answers and in lists for the others.
+void add_group(json& result, const AnswerGroup& group, const AnalysisOptions& options) {
+  result["trials"] = group.count.trials;
+  result["correct"] = group.counted == "right" ? json(group.count.successes) : json(nullptr);
+  result["counted"] = group.counted;
+  result["count"] = group.count.successes;
+  result["proportion"] = static_cast<double>(group.count.successes) / group.count.trials;
+  result["chance"] = group.chance;
+  result["p_value"] = number(group.p_value);
+  result["main_test"] = std::isnan(group.p_value) ? "none" : group.one_sided ? "one-sided" : "two-sided";
+  result["p_greater"] = number(group.p_greater);
+  result["p_two_sided"] = number(group.p_two_sided);
+  result["ci95"] = pair_of(group.interval);
+  result["wilson95"] = pair_of(group.wilson);
+  result["dprime"] = group.d_prime ? number(group.d_prime->value) : json(nullptr);
+  result["dprime_ci95"] = group.d_prime ? pair_of(group.d_prime->interval) : json(nullptr);
+  result["dprime_std_error"] = group.d_prime ? number(group.d_prime->standard_error) : json(nullptr);
+  result["power"] = power_as_json(group);
+  result["equivalence"] = equivalence_as_json(group, options);
+  result["note"] = note_of(group.note);
+}
+
+json groups_as_json(const std::vector<AnswerGroup>& groups, const char* key, const AnalysisOptions& options) {
+  json result = json::array();
+  for (const AnswerGroup& group : groups) {
+    json& one = result.emplace_back(json{{key, group.name}});
+    add_group(one, group, options);
+    one["p_adjusted"] = number(group.p_adjusted);
+  }
+  return result;
+}
+
+json spread_as_json(const SubjectSpread& spread) {
+  json result{{"subjects", spread.subjects},
+              {"equal",
+               {{"test", "Fisher-Freeman-Halton"},
+                {"chi_squared", number(spread.equal.statistic)},
+                {"freedom", spread.equal.freedom},
+                {"p_value", number(spread.equal.p)},
+                {"exact", spread.equal.is_exact}}},
+              {"mean", nullptr},
+              {"ci95", nullptr},
+              {"p_value", nullptr},
+              {"dprime", nullptr},
+              {"dprime_ci95", nullptr},
+              {"note", note_of(spread.note)}};
+  if (!spread.population) return result;
+  const auto& population = *spread.population;
+  result["mean"] = number(population.mean);
+  result["ci95"] = pair_of(population.interval);
+  result["p_value"] = number(population.p_value);
+  if (population.d_prime) {
+    result["dprime"] = number(population.d_prime_of_mean);
+    result["dprime_ci95"] = pair_of(*population.d_prime);
+  }
+  return result;
+}
+
+json bias_as_json(const SlotBias& bias, Design design) {
+  json result{{"slots", json::array()}, {"p_value", bias.note.empty() ? number(bias.test.p) : json(nullptr)}};
+  for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
+    result["slots"].push_back({{"slot", label_of(design, slot)},
+                               {"answers", bias.answers[slot]},
+                               {"right", count_as_json(bias.right_in[slot])}});
+  }
+  if (bias.detection) {
+    result["dprime"] = number(bias.detection->d_prime);
+    result["dprime_ci95"] = pair_of(bias.detection->interval);
+    result["criterion"] = number(bias.detection->criterion);
+    result["criterion_std_error"] = number(bias.detection->criterion_standard_error);
+  }
+  result["note"] = note_of(bias.note);
+  return result;
+}
+
+json scale_as_json(const psychophysics::Ranking& ranking) {
+  json worth = json::array();
+  json error = json::array();
+  for (const double value : ranking.worth) worth.push_back(number(value));
+  for (const double value : ranking.standard_error) error.push_back(number(value));
+  return {{"worth", std::move(worth)},
+          {"std_error", std::move(error)},
+          {"all_equal",
+           {{"ratio", number(ranking.ratio)},
+            {"freedom", ranking.ratio_freedom},
+            {"p_value", number(ranking.ratio_p)}}},
+          {"one_scale",
+           {{"deviance", number(ranking.deviance)},
+            {"freedom", ranking.deviance_freedom},
+            {"p_value", number(ranking.deviance_p)}}}};
+}
+
+json rankings_as_json(const Analysis& analysis) {
+  json result = json::array();
+  for (const TissueRanking& ranking : analysis.rankings) {
+    json names = json::array();
+    for (const std::size_t sample : ranking.samples) names.push_back(analysis.samples[sample]);
+    json intervals = json::array();
+    for (const psychophysics::Interval& interval : ranking.intervals) intervals.push_back(pair_of(interval));
+    json pairs = json::array();
+    for (const RankedPair& pair : ranking.pairs) {
+      pairs.push_back({{"first", names[pair.first]},
+                       {"second", names[pair.second]},
+                       {"difference", number(pair.difference.value)},
+                       {"std_error", number(pair.difference.standard_error)},
+                       {"p_value", number(pair.difference.p)},
+                       {"p_adjusted", number(pair.p_adjusted)}});
+    }
+    result.push_back(
+        {{"tissue", ranking.tissue},
+         {"samples", std::move(names)},
+         {"wins", ranking.wins},
+         {"bradley_terry", ranking.bradley_terry ? scale_as_json(*ranking.bradley_terry) : json(nullptr)},
+         {"thurstone", ranking.thurstone ? scale_as_json(*ranking.thurstone) : json(nullptr)},
+         {"pairs", std::move(pairs)},
+         {"note", note_of(ranking.note)}});
+  }
+  return result;
+}
+
+json threshold_as_json(const std::optional<psychophysics::Threshold>& threshold, const char* definition) {
+  if (!threshold) return nullptr;
+  return {{"value", number(threshold->value)},
+          {"ci95", pair_of(threshold->interval)},
+          {"criterion", threshold->criterion},
+          {"definition", definition},
+          {"unit", "1 (fraction of the standard)"}};
+}
+
+json curve_as_json(const psychophysics::PsychometricFit& fit) {
+  return {{"shape", name_of(fit.curve.shape)},
+          {"axis", fit.curve.axis == psychophysics::Axis::linear ? "linear" : "logarithmic"},
+          {"threshold", number(fit.curve.threshold)},
+          {"slope", number(fit.slope)},
+          {"slope_ci95", pair_of(fit.slope_interval)},
+          {"guess", fit.curve.guess},
+          {"lapse", number(fit.curve.lapse)},
+          {"log_likelihood", number(fit.log_likelihood)},
+          {"deviance", number(fit.deviance)},
+          {"freedom", fit.degrees_of_freedom},
+          {"overdispersion", number(fit.overdispersion)},
+          {"overdispersion_p", number(fit.overdispersion_p)}};
+}
+
+json level_fit_as_json(const LevelFit& fit, bool two_sided) {
+  json points = json::array();
+  for (const psychophysics::Level& level : fit.points) {
+    points.push_back(
+        {{"level", level.intensity}, {"count", level.answers.successes}, {"trials", level.answers.trials}});
+  }
+  json result{{"name", fit.name},
+              {"jnd", threshold_as_json(fit.jnd, two_sided ? "half the way from 25 to 75 %"
+                                                 : fit.by_posterior
+                                                     ? "level at the criterion, median of the posterior"
+                                                     : "level at the criterion")},
+              {"pse", threshold_as_json(fit.equality, "level at 50 %")},
+              {"jnd_within_margins", fit.jnd_within ? json(*fit.jnd_within) : json(nullptr)},
+              {"curve", fit.fit ? curve_as_json(*fit.fit) : json(nullptr)},
+              {"bootstrap", nullptr},
+              {"points", std::move(points)},
+              {"notes", fit.notes}};
+  if (fit.bootstrap) {
+    result["bootstrap"] = {{"samples", fit.bootstrap->samples},
+                           {"threshold_ci95", pair_of(fit.bootstrap->threshold)},
+                           {"slope_ci95", pair_of(fit.bootstrap->slope)},
+                           {"deviance_p", number(fit.bootstrap->deviance_p)}};
+  }
+  return result;
+}
+
+json across_as_json(const std::optional<psychophysics::AcrossSubjects>& across) {
+  if (!across) return nullptr;
+  return {{"mean", number(across->mean)},
+          {"ci95", pair_of(across->interval)},
+          {"deviation", number(across->deviation)}};
+}
+
+json levels_as_json(const LevelAnalysis& levels) {
+  json result{{"two_sided", levels.two_sided},
+              {"all", level_fit_as_json(levels.pooled, levels.two_sided)},
+              {"by_subject", json::array()},
+              {"mean_jnd", across_as_json(levels.across)},
+              {"mean_pse", across_as_json(levels.across_equality)},
+              {"shapes", json::array()},
+              {"notes", levels.notes}};
+  for (const LevelFit& subject : levels.by_subject)
+    result["by_subject"].push_back(level_fit_as_json(subject, levels.two_sided));
+  for (const ShapeFit& shape : levels.shapes) {
+    result["shapes"].push_back({{"shape", name_of(shape.shape)},
+                                {"parameters", shape.parameters},
+                                {"log_likelihood", number(shape.log_likelihood)},
+                                {"deviance", number(shape.deviance)},
+                                {"aic", number(shape.aic)},
+                                {"jnd", number(shape.jnd)}});
+  }
+  return result;
+}
+
+json tracks_as_json(const std::vector<AdaptiveTrack>& tracks) {
+  json result = json::array();
+  for (const AdaptiveTrack& track : tracks) {
+    json& one = result.emplace_back(json{{"subject", track.subject},
+                                         {"session", track.session},
+                                         {"trials", track.levels.size()},
+                                         {"reversals", track.reversals},
+                                         {"mean_of_reversals", nullptr},
+                                         {"quest_plus", nullptr},
+                                         {"note", note_of(track.note)}});
+    if (track.staircase) {
+      one["mean_of_reversals"] = {{"value", number(track.staircase->threshold)},
+                                  {"std_error_of_log", number(track.staircase->standard_error)},
+                                  {"criterion", number(track.staircase->probability)},
+                                  {"reversals", track.staircase->reversals}};
+    }
+    if (track.quest) {
+      one["quest_plus"] = {{"threshold", number(track.quest->threshold)},
+                           {"credible95", pair_of(track.quest->interval)},
+                           {"slope", number(track.quest->slope)},
+                           {"lapse", number(track.quest->lapse)}};
+    }
+  }
+  return result;
+}
+
+json times_as_json(const ResponseTimes& times) {
+  return {{"trials", times.trials},
+          {"median_s", number(times.median_s)},
+          {"quartiles_s", pair_of({.lower = times.lower_quartile_s, .upper = times.upper_quartile_s})},
+          {"median_right_s", number(times.median_right_s)},
+          {"median_wrong_s", number(times.median_wrong_s)},
+          {"right_is_faster", number(times.right_is_faster)},
+          {"p_value", number(times.p_value)},
+          {"note", note_of(times.note)}};
+}
+
+json corrections_as_json(const Analysis& analysis) {
+  json families = json::array();
+  const auto add = [&](const char* family, std::size_t tests) {
+    if (tests > 1) families.push_back({{"family", family}, {"tests", tests}});
+  };
+  add("by_subject", analysis.by_subject.size());
+  add("by_tissue", analysis.by_tissue.size());
+  add("by_pair", analysis.by_pair.size());
+  for (const TissueRanking& ranking : analysis.rankings) add("ranking", ranking.pairs.size());
+  return {{"method", analysis.options.correction == FamilyCorrection::holm ? "holm" : "benjamini-hochberg"},
+          {"families", std::move(families)}};
+}
+
+json preferred_as_json(const Analysis& analysis) {
+  if (analysis.design != Design::preference) return nullptr;
+  json result = json::object();
+  for (std::size_t sample = 0; sample < analysis.samples.size(); ++sample)
+    result[analysis.samples[sample]] = analysis.preferred[sample];
+  return result;
+}
+
+}  // namespace
+
+json analysis_as_json(const Analysis& analysis) {
+  const AnalysisOptions& options = analysis.options;
+  json result{{"name", analysis.name}, {"design", name_of(analysis.design)}};
+  if (analysis.all) {
+    add_group(result, *analysis.all, options);
+  } else {
+    for (const char* key : {"correct", "ci95", "dprime"}) result[key] = nullptr;
+    result["note"] = analysis.main_test;
+  }
+  result["trials"] = analysis.trials;
+  result["p_value"] = number(analysis.p_value);
+  result["main_test"] = analysis.main_test;
+  result["preferred"] = preferred_as_json(analysis);
+  result["practice"] = analysis.practice;
+  result["subjects"] = analysis.subjects;
+  result["confidence"] = options.confidence;
+  result["level"] = options.level;
+  result["seed"] = options.seed;
+  result["by_subject"] = groups_as_json(analysis.by_subject, "subject", options);
+  result["by_tissue"] = groups_as_json(analysis.by_tissue, "tissue", options);
+  result["by_pair"] = groups_as_json(analysis.by_pair, "pair", options);
+  result["across_subjects"] = spread_as_json(analysis.spread);
+  result["slot_bias"] = bias_as_json(analysis.bias, analysis.design);
+  result["ranking"] = rankings_as_json(analysis);
+  result["psychometric"] = analysis.levels ? levels_as_json(*analysis.levels) : json(nullptr);
+  result["tracks"] = tracks_as_json(analysis.tracks);
+  result["response_times"] = times_as_json(analysis.times);
+  result["corrections"] = corrections_as_json(analysis);
+  result["shown"] = analysis.shows;
+  result["not_shown"] = analysis.shows_not;
+  result["warnings"] = analysis.warnings;
+  return result;
+}
+
+}  // namespace kerf::bench

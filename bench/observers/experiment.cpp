@@ -1,0 +1,61 @@
+#include "observers/experiment.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "protocol/course.h"
+
+namespace kerf::bench {
+namespace {
+
+/// d' of one JND for a subject: the larger its own JND, the less.
+double sensitivity_of_one(const Participants& participants, psychophysics::Random& random) {
+  const Observer& observer = participants.observer;
+  const double deviation = observer.spread > 0.0 ? observer.spread * random.normal() : 0.0;
+  return participants.all_alike ? 0.0 : d_prime_per_jnd(observer) * std::exp(-deviation);
+}
+
+}  // namespace
+
+std::uint64_t experiment_seed(std::uint64_t seed, std::uint64_t kind, std::uint64_t index) noexcept {
+  const auto mixed = [](std::uint64_t value) {
+    value += 0x9e3779b97f4a7c15U;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
+    return value ^ (value >> 31);
+  };
+  return mixed(mixed(mixed(seed) ^ kind) ^ index);
+}
+
+Study simulated_study(const Protocol& protocol, const Sensation& sensation, const Participants& participants,
+                      std::uint64_t seed) {
+  Study study = study_of(protocol);
+  psychophysics::Random random(seed);
+  const Judging judging = judging_of(protocol);
+  const std::size_t slots = slots_of(protocol.design);
+  std::vector<Plan> plans = make_plans(protocol, participants.subjects, random.below(SIZE_MAX));
+  for (std::size_t subject = 0; subject < plans.size(); ++subject) {
+    const std::string code = fmt::format("S{:02}", subject + 1);
+    const double sensitivity = sensitivity_of_one(participants, random);
+    Course course(protocol, std::move(plans[subject]));
+    while (const std::optional<TrialPlan> trial = course.next()) {
+      const FeltTrial felt{.judging = judging,
+                           .slots = slots,
+                           .plays = trial->slots,
+                           .d_prime = sensitivity * sensation.jnds(trial->pair, trial->level)};
+      const std::size_t answer = drawn_answer(participants.observer, felt, random);
+      study.judgements.push_back({.subject = code,
+                                  .tissue = protocol.tissues[trial->tissue].name,
+                                  .pair = trial->pair,
+                                  .level = trial->level,
+                                  .right = trial->right(protocol),
+                                  .answer = answer,
+                                  .practice = trial->practice});
+      course.answer(answer);
+    }
+  }
+  return study;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,220 @@
+#include "observers/simulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "observers/simulated_design.h"
+#include "observers/simulated_findings.h"
+
+namespace kerf::bench {
+namespace {
+
+/// What a seed is for: experiments of different kinds share none.
+enum SeedKind : std::uint64_t { of_experiments = 1, of_nulls = 2, of_confirmation = 3, of_curve = 100 };
+
+constexpr std::size_t most_needed = 100000;
+
+/// Calls `work(i)` for every i, on so many threads; what one of them throws is thrown here.
+void for_each(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex failing;
+  const auto run = [&] {
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      next = count;
+      const std::scoped_lock lock(failing);
+      failure = std::current_exception();
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(threads, count); ++i) others.emplace_back(run);
+    run();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+std::size_t curve_experiments_of(const Protocol& protocol, const SimulationOptions& options) {
+  if (options.curve_experiments > 0) return options.curve_experiments;
+  return has_levels(protocol.design) ? std::max<std::size_t>(2, options.experiments / 5)
+                                     : options.experiments;
+}
+
+class Simulator {
+ public:
+  Simulator(const Protocol& protocol, const SimulationOptions& options, std::atomic<std::size_t>& done)
+      : protocol_(protocol),
+        options_(options),
+        done_(done),
+        sensation_(protocol, options.observer, options.sensation),
+        model_(protocol, sensation_, options.observer),
+        truth_(model_.truth(options.analysis.criterion)) {}
+
+  Simulation run() {
+    Simulation result{.options = options_,
+                      .name = protocol_.name,
+                      .design = protocol_.design,
+                      .device_uri = sensation_.device_uri(),
+                      .by_strength = sensation_.is_by_strength(),
+                      .scatter = sensation_.scatter(),
+                      .samples = sensation_.samples(),
+                      .truth = truth_,
+                      .curve_of = counted_on_curve(protocol_.design)};
+    result.found = findings_of(results_of(protocol_, of_experiments, options_.experiments), truth_,
+                               options_.analysis.level);
+    result.theory = power_by_theory(protocol_);
+    result.mean_session_s = session_seconds(
+        protocol_, result.found.trials / static_cast<double>(options_.subjects), options_.answer_s);
+    add_false_alarms(result);
+    add_needed(result);
+    add_curve(result);
+    add_example(result);
+    return result;
+  }
+
+ private:
+  std::vector<MainResult> results_of(const Protocol& protocol, std::uint64_t kind, std::size_t experiments) {
+    const Participants participants{
+        .observer = options_.observer, .subjects = options_.subjects, .all_alike = kind == of_nulls};
+    AnalysisOptions analysis = options_.analysis;
+    analysis.curves = kind != of_nulls && kind != of_confirmation;
+    std::vector<MainResult> results(experiments);
+    for_each(experiments, options_.jobs, [&](std::size_t i) {
+      const Study study =
+          simulated_study(protocol, sensation_, participants, experiment_seed(options_.seed, kind, i));
+      results[i] = main_result(study, analysis);
+      ++done_;
+    });
+    return results;
+  }
+
+  psychophysics::BinomialDesign binomial() const {
+    return {.chance = truth_.chance,
+            .truth = truth_.share,
+            .alternative = truth_.one_sided ? psychophysics::Alternative::greater
+                                            : psychophysics::Alternative::two_sided,
+            .level = options_.analysis.level};
+  }
+
+  double power_by_theory(const Protocol& protocol) const {
+    if (std::isnan(truth_.share)) return truth_.share;
+    const auto answers = protocol.trials * cells_of(protocol) * options_.subjects;
+    return psychophysics::binomial_power(binomial(), static_cast<int>(answers));
+  }
+
+  /// A staircase has no main test, and what has none needs no observers who feel nothing.
+  void add_false_alarms(Simulation& result) {
+    if (protocol_.design == Design::staircase) return;
+    SimulatedTruth nothing{.chance = truth_.chance};
+    result.false_alarms =
+        findings_of(results_of(protocol_, of_nulls, options_.experiments), nothing, options_.analysis.level)
+            .significant;
+  }
+
+  PowerPoint point_of(std::size_t size, std::uint64_t kind, std::size_t experiments) {
+    const Protocol design = resized(protocol_, size);
+    PowerPoint point{.trials = size, .theory = power_by_theory(design)};
+    point.found = findings_of(results_of(design, kind, experiments), truth_, options_.analysis.level);
+    point.total = point.found.trials;
+    return point;
+  }
+
+  void add_needed(Simulation& result) {
+    if (std::isnan(truth_.share)) return;
+    try {
+      result.needed_total =
+          static_cast<std::size_t>(psychophysics::trials_for_power(binomial(), options_.power));
+    } catch (const std::invalid_argument&) {
+      return;  // too close to chance
+    }
+    const std::size_t cells = cells_of(protocol_) * options_.subjects;
+    const std::size_t each = (result.needed_total + cells - 1) / cells;
+    if (result.needed_total <= most_needed / 10)
+      result.confirmed = point_of(each, of_confirmation, options_.experiments);
+  }
+
+  /// About the number that is needed where that is known, else about the protocol's own.
+  void add_curve(Simulation& result) {
+    result.curve_experiments = curve_experiments_of(protocol_, options_);
+    if (options_.curve_points < 2) return;
+    const bool by_need = result.confirmed && !has_levels(protocol_.design);
+    const double middle = static_cast<double>(by_need ? result.confirmed->trials : size_of(protocol_));
+    const double first = (has_levels(protocol_.design) ? 0.5 : 0.25) * middle;
+    const double last = (has_levels(protocol_.design) ? 4.0 : 2.0) * middle;
+    std::size_t before = protocol_.design == Design::staircase
+                             ? static_cast<std::size_t>(protocol_.scale.staircase.dropped + 1)
+                             : 0;
+    for (std::size_t i = 0; i < options_.curve_points; ++i) {
+      const double share = static_cast<double>(i) / static_cast<double>(options_.curve_points - 1);
+      const auto size = static_cast<std::size_t>(std::lround(first * std::pow(last / first, share)));
+      if (size <= before) continue;
+      result.curve.push_back(point_of(size, of_curve + i, result.curve_experiments));
+      before = size;
+    }
+  }
+
+  void add_example(Simulation& result) {
+    const Participants participants{.observer = options_.observer, .subjects = options_.subjects};
+    result.example = simulated_study(protocol_, sensation_, participants,
+                                     experiment_seed(options_.seed, of_experiments, 0));
+    if (!has_levels(protocol_.design)) return;
+    std::vector<const Judgement*> counted;
+    for (const Judgement& judgement : result.example->judgements) {
+      if (!judgement.practice) counted.push_back(&judgement);
+    }
+    AnalysisOptions quick = options_.analysis;
+    quick.bootstrap = 0;
+    result.example_fit = analyse_levels(*result.example, counted, quick, false);
+    const std::size_t standard = protocol_.scale.standard;
+    for (const double level : sensation_.levels()) {
+      const double jnds = sensation_.jnds({standard, standard}, level);
+      result.curve_truth.push_back({.level = level,
+                                    .jnds = jnds,
+                                    .d_prime = d_prime_per_jnd(options_.observer) * jnds,
+                                    .share = model_.share({standard, standard}, level)});
+    }
+  }
+
+  const Protocol& protocol_;
+  const SimulationOptions& options_;
+  std::atomic<std::size_t>& done_;
+  Sensation sensation_;
+  AnswerModel model_;
+  SimulatedTruth truth_;
+};
+
+void require_options(const SimulationOptions& options) {
+  require_observer(options.observer);
+  const auto require = [](bool holds, const std::string& message) {
+    if (!holds) throw std::invalid_argument(message);
+  };
+  require(options.experiments >= 2,
+          fmt::format("{} experiments say nothing; expected 2 at least, such as 1000", options.experiments));
+  require(options.subjects >= 1, "an experiment needs a subject at least");
+  require(options.power > 0.0 && options.power < 1.0,
+          fmt::format("the power wanted is {:g}, expected a number in 0 to 1, such as 0.8", options.power));
+  require(options.answer_s >= 0.0, "the time to answer is negative");
+}
+
+}  // namespace
+
+std::size_t simulated_experiments(const Protocol& protocol, const SimulationOptions& options) noexcept {
+  return 3 * options.experiments + options.curve_points * curve_experiments_of(protocol, options);
+}
+
+Simulation simulate(const Protocol& protocol, const SimulationOptions& options,
+                    std::atomic<std::size_t>& done) {
+  require_options(options);
+  return Simulator(protocol, options, done).run();
+}
+
+}  // namespace kerf::bench

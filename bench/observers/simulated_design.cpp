@@ -1,0 +1,60 @@
+#include "observers/simulated_design.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+namespace kerf::bench {
+
+Protocol with_trials(Protocol protocol, std::size_t trials) {
+  if (trials == 0) throw std::invalid_argument("a session needs a trial at least");
+  protocol.trials = trials;
+  protocol.scale.quest_trials = trials;
+  protocol.scale.staircase.most_trials = static_cast<int>(trials);
+  return protocol;
+}
+
+std::size_t cells_of(const Protocol& protocol) {
+  if (is_adaptive(protocol.design)) return 1;
+  std::size_t cells = 0;
+  for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue)
+    cells += pairs_of(protocol, tissue).size();
+  if (protocol.design == Design::constant)
+    cells *= static_cast<std::size_t>(
+        std::ranges::count_if(protocol.scale.levels, [](double level) { return level != 0.0; }));
+  return cells;
+}
+
+std::string counted_on_curve(Design design) {
+  if (design == Design::staircase) return "reversals of each subject";
+  if (design == Design::constant) return "trials of each level and subject";
+  if (design == Design::quest_plus) return "trials of each subject";
+  return "trials of each pair and subject";
+}
+
+Protocol resized(const Protocol& protocol, std::size_t size) {
+  if (protocol.design != Design::staircase) return with_trials(protocol, size);
+  const auto reversals = static_cast<std::size_t>(protocol.scale.staircase.reversals);
+  Protocol larger =
+      with_trials(protocol, std::max(protocol.trials, (protocol.trials * size + reversals - 1) / reversals));
+  larger.scale.staircase.reversals = static_cast<int>(size);
+  return larger;
+}
+
+std::size_t size_of(const Protocol& protocol) {
+  return protocol.design == Design::staircase ? static_cast<std::size_t>(protocol.scale.staircase.reversals)
+                                              : protocol.trials;
+}
+
+double session_seconds(const Protocol& protocol, double trials, double answer_s) {
+  const auto slots = static_cast<double>(slots_of(protocol.design));
+  const double trial_s = slots * protocol.interval_s + (slots - 1.0) * protocol.gap_s + answer_s;
+  const auto practice = static_cast<double>(protocol.practice);
+  double breaks = 0.0;
+  if (protocol.break_every > 0)
+    breaks = std::max(0.0, std::ceil(trials / static_cast<double>(protocol.break_every)) - 1.0);
+  return (trials + practice) * trial_s + breaks * protocol.break_s;
+}
+
+}  // namespace kerf::bench

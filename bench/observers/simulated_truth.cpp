@@ -1,0 +1,168 @@
+#include "observers/simulated_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/core.h>
+
+#include <kerf/psychophysics/dprime.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr int spread_nodes = 64;
+
+double normal_quantile(double probability) {
+  return psychophysics::d_prime({.intervals = 2}, probability) / std::numbers::sqrt2;
+}
+
+/// exp(-spread z) at equally likely z: how sensitive subjects are beside the observer.
+std::vector<double> sensitivities_of(double spread) {
+  if (spread <= 0.0) return {1.0};
+  std::vector<double> nodes;
+  for (int i = 0; i < spread_nodes; ++i)
+    nodes.push_back(std::exp(-spread * normal_quantile((i + 0.5) / spread_nodes)));
+  return nodes;
+}
+
+/// The ways to fill the slots that an answer may depend on.
+std::vector<std::array<std::uint8_t, most_slots>> unlike_arrangements(Judging judging, std::size_t slots) {
+  switch (judging) {
+    case Judging::abx_independent:
+    case Judging::abx_differencing:
+      return {{0, 1, 0}};
+    case Judging::odd_one_out:
+      return {{1, 0, 0}};
+    default:
+      if (slots == 3) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+      return {{1, 0, 0}, {0, 1, 0}};
+  }
+}
+
+}  // namespace
+
+AnswerModel::AnswerModel(const Protocol& protocol, const Sensation& sensation, const Observer& observer)
+    : protocol_(&protocol),
+      sensation_(&sensation),
+      observer_(observer),
+      per_jnd_(d_prime_per_jnd(observer)),
+      sensitivities_(sensitivities_of(observer.spread)) {}
+
+double AnswerModel::share(const std::array<std::size_t, 2>& pair, double level, bool lapses) const {
+  Observer observer = observer_;
+  if (!lapses) observer.lapse = 0.0;
+  const Judging judging = judging_of(*protocol_);
+  const std::size_t slots = slots_of(protocol_->design);
+  const auto arrangements = unlike_arrangements(judging, slots);
+  const double d_prime = per_jnd_ * sensation_->jnds(pair, level);
+  double sum = 0.0;
+  for (const auto& plays : arrangements) {
+    // X is A, the odd one is the first; otherwise right is what plays the second of the pair.
+    const bool first_is_right = judging == Judging::abx_independent || judging == Judging::abx_differencing;
+    const auto right =
+        first_is_right ? std::size_t{0}
+                       : static_cast<std::size_t>(std::find(plays.begin(), plays.end(), 1) - plays.begin());
+    for (const double sensitivity : sensitivities_) {
+      sum += answer_probability(
+          observer, {.judging = judging, .slots = slots, .plays = plays, .d_prime = sensitivity * d_prime},
+          right);
+    }
+  }
+  const double mean = sum / static_cast<double>(arrangements.size() * sensitivities_.size());
+  return protocol_->design == Design::preference ? 1.0 - mean : mean;
+}
+
+std::vector<CellTruth> AnswerModel::cells() const {
+  std::vector<CellTruth> cells;
+  std::string where;
+  const auto add = [&](std::string name, const std::array<std::size_t, 2>& pair, double level) {
+    const double jnds = sensation_->jnds(pair, level);
+    cells.push_back({.name = std::move(name),
+                     .tissue = where,
+                     .pair = pair,
+                     .level = level,
+                     .jnds = jnds,
+                     .d_prime = per_jnd_ * jnds,
+                     .share = share(pair, level)});
+  };
+  for (std::size_t tissue = 0; tissue < protocol_->tissues.size(); ++tissue) {
+    where = protocol_->tissues[tissue].name;
+    for (const auto& pair : pairs_of(*protocol_, tissue)) {
+      if (protocol_->design == Design::constant) {
+        for (const double level : protocol_->scale.levels)
+          add(fmt::format("{:+.4g} %", 100.0 * level), pair, level);
+      } else if (!has_levels(protocol_->design)) {
+        add(fmt::format("{}{}{} and {}", where, where.empty() ? "" : ": ", protocol_->samples[pair[0]].name,
+                        protocol_->samples[pair[1]].name),
+            pair, not_a_number);
+      }
+    }
+  }
+  return cells;
+}
+
+double AnswerModel::level_at(double wanted, double from, double to, bool lapses) const {
+  const std::size_t standard = protocol_->scale.standard;
+  const auto excess = [&](double level) { return share({standard, standard}, level, lapses) - wanted; };
+  double lower = from;
+  double upper = not_a_number;
+  for (const double level : sensation_->levels()) {
+    if (level <= from || level > to) continue;
+    if (excess(level) >= 0.0) {
+      upper = level;
+      break;
+    }
+    lower = level;
+  }
+  if (std::isnan(upper)) return not_a_number;
+  for (int halving = 0; halving < 60; ++halving) {
+    const double middle = 0.5 * (lower + upper);
+    (excess(middle) >= 0.0 ? upper : lower) = middle;
+  }
+  return upper;
+}
+
+void AnswerModel::find_jnd(std::optional<double> criterion, SimulatedTruth& truth) const {
+  const auto& levels = sensation_->levels();
+  if (protocol_->scale.two_sided()) {
+    // The curve of the analysis is freed of lapses; its JND is half the way from 25 to 75 %.
+    const double from = std::min(levels.front(), 0.0) - 1e-12;
+    const double quarter = level_at(0.25, from, levels.back(), false);
+    const double three_quarters = level_at(0.75, from, levels.back(), false);
+    truth.jnd = 0.5 * (three_quarters - quarter);
+    if (quarter <= levels.front()) truth.jnd = not_a_number;
+  } else {
+    truth.criterion = criterion.value_or(truth.chance + 0.5 * (1.0 - truth.chance));
+    truth.jnd = level_at(truth.criterion, 0.0, levels.back(), true);
+  }
+  if (std::isnan(truth.jnd))
+    truth.note = fmt::format("these observers do not reach {:g} % right within the levels of the protocol",
+                             100.0 * truth.criterion);
+}
+
+SimulatedTruth AnswerModel::truth(std::optional<double> criterion) const {
+  SimulatedTruth truth{.cells = cells(),
+                       .one_sided = protocol_->design != Design::preference,
+                       .is_of_levels = has_levels(protocol_->design)};
+  const Study study = study_of(*protocol_);
+  if (study.task) truth.chance = psychophysics::chance_of(*study.task);
+  double sum = 0.0;
+  std::size_t counted = 0;
+  for (const CellTruth& cell : truth.cells) {
+    if (cell.level == 0.0) continue;  // neither is stronger
+    sum += cell.level < 0.0 && protocol_->scale.two_sided() ? 1.0 - cell.share : cell.share;
+    ++counted;
+  }
+  const bool one_question = std::ranges::all_of(protocol_->tissues, [&](const SessionTissue& tissue) {
+    return protocol_->design != Design::preference || tissue.samples.size() == 2;
+  });
+  if (counted > 0 && one_question) truth.share = sum / static_cast<double>(counted);
+  if (study.task && !has_levels(protocol_->design))
+    truth.d_prime = psychophysics::d_prime(*study.task, truth.share);
+  if (has_levels(protocol_->design)) find_jnd(criterion, truth);
+  return truth;
+}
+
+}  // namespace kerf::bench

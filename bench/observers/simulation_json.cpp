@@ -1,0 +1,128 @@
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "observers/simulation_report.h"
+
+namespace kerf::bench {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// JSON knows no infinity and no NaN: null.
+ordered_json number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json json_of(const SimulatedShare& share) {
+  if (share.count.trials == 0) return nullptr;
+  const auto interval = share.interval();
+  return {{"share", share.value()},
+          {"ci95", {interval.lower, interval.upper}},
+          {"experiments", share.count.trials}};
+}
+
+ordered_json json_of(const SimulatedFindings& found) {
+  return {{"power", json_of(found.significant)},
+          {"equivalent", json_of(found.equivalent)},
+          {"answers", found.trials},
+          {"jnd_found", json_of(found.jnd_found)},
+          {"jnd_bounded", json_of(found.jnd_bounded)},
+          {"jnd_coverage", json_of(found.jnd_covered)},
+          {"jnd_bias", number(found.jnd_bias)},
+          {"jnd_spread", number(found.jnd_spread)},
+          {"jnd_interval_ratio", number(found.jnd_ratio)},
+          {"d_prime_coverage", json_of(found.d_prime_covered)},
+          {"d_prime_median", number(found.d_prime_median)},
+          {"notes", found.notes}};
+}
+
+ordered_json json_of(const PowerPoint& point) {
+  ordered_json json{{"trials", point.trials}, {"theory", number(point.theory)}};
+  json.update(json_of(point.found));
+  return json;
+}
+
+ordered_json json_of(const Observer& observer) {
+  return {{"jnd", observer.jnd},
+          {"least_jnd_N", observer.least_jnd_n},
+          {"criterion", observer.criterion},
+          {"lapse", observer.lapse},
+          {"bias", observer.bias},
+          {"preference", observer.preference},
+          {"spread", observer.spread}};
+}
+
+ordered_json json_of(const SimulatedTruth& truth) {
+  ordered_json cells = ordered_json::array();
+  for (const CellTruth& cell : truth.cells)
+    cells.push_back({{"name", cell.name},
+                     {"level", number(cell.level)},
+                     {"jnds", cell.jnds},
+                     {"d_prime", cell.d_prime},
+                     {"share", cell.share}});
+  return {{"chance", truth.chance},       {"share", number(truth.share)}, {"d_prime", number(truth.d_prime)},
+          {"criterion", truth.criterion}, {"jnd", number(truth.jnd)},     {"note", truth.note},
+          {"cells", std::move(cells)}};
+}
+
+}  // namespace
+
+ordered_json simulation_json(const Simulation& simulation) {
+  const SimulationOptions& options = simulation.options;
+  ordered_json samples = ordered_json::array();
+  for (const FeltSample& sample : simulation.samples)
+    samples.push_back({{"name", sample.name},
+                       {"rms_N", sample.rms_n},
+                       {"peak_N", sample.peak_n},
+                       {"limited_share", sample.limited_share}});
+  ordered_json curve = ordered_json::array();
+  for (const PowerPoint& point : simulation.curve) curve.push_back(json_of(point));
+  ordered_json psychometric = ordered_json::array();
+  for (const CellTruth& at : simulation.curve_truth)
+    psychometric.push_back({{"level", at.level}, {"jnds", at.jnds}, {"share", at.share}});
+  return {
+      {"protocol", simulation.name},
+      {"design", name_of(simulation.design)},
+      {"experiments", options.experiments},
+      {"subjects", options.subjects},
+      {"seed", options.seed},
+      {"observer", json_of(options.observer)},
+      {"device", simulation.device_uri.empty() ? ordered_json(nullptr) : ordered_json(simulation.device_uri)},
+      {"told_by", simulation.by_strength ? "strength" : "difference"},
+      {"samples", std::move(samples)},
+      {"truth", json_of(simulation.truth)},
+      {"rendering_scatter_jnd", simulation.scatter},
+      {"psychometric", std::move(psychometric)},
+      {"level", options.analysis.level},
+      {"found", json_of(simulation.found)},
+      {"power_by_theory", number(simulation.theory)},
+      {"false_alarms", json_of(simulation.false_alarms)},
+      {"session_s", simulation.mean_session_s},
+      {"power_wanted", options.power},
+      {"answers_needed",
+       simulation.needed_total == 0 ? ordered_json(nullptr) : ordered_json(simulation.needed_total)},
+      {"confirmed", simulation.confirmed ? json_of(*simulation.confirmed) : ordered_json(nullptr)},
+      {"curve_of", simulation.curve_of},
+      {"curve", std::move(curve)}};
+}
+
+std::string simulation_csv(const Simulation& simulation) {
+  std::string csv =
+      "trials,answers,experiments,power,power_lower,power_upper,power_by_theory,jnd_coverage,jnd_bias,"
+      "jnd_spread,jnd_interval_ratio\n";
+  const auto cell = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; };
+  for (const PowerPoint& point : simulation.curve) {
+    const SimulatedShare& power = point.found.significant;
+    const bool has_test = power.count.trials > 0;
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", point.trials, cell(point.found.trials),
+                       simulation.curve_experiments, cell(power.value()),
+                       has_test ? cell(power.interval().lower) : "",
+                       has_test ? cell(power.interval().upper) : "", cell(point.theory),
+                       cell(point.found.jnd_covered.value()), cell(point.found.jnd_bias),
+                       cell(point.found.jnd_spread), cell(point.found.jnd_ratio));
+  }
+  return csv;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,152 @@
+#include <cmath>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "observers/simulation_report.h"
+
+namespace kerf::bench {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.3g} %", 100.0 * share); }
+
+/// "83.2 % (80.7 to 85.5 %)"
+std::string with_interval(const SimulatedShare& share) {
+  const auto interval = share.interval();
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", 100.0 * share.value(), 100.0 * interval.lower,
+                     100.0 * interval.upper);
+}
+
+/// "0.832 (0.807 to 0.855)"
+std::string as_power(const SimulatedShare& share) {
+  const auto interval = share.interval();
+  return fmt::format("{:.2f} ({:.2f} to {:.2f})", share.value(), interval.lower, interval.upper);
+}
+
+std::string felt_line(const Simulation& simulation) {
+  std::string line = simulation.device_uri.empty()
+                         ? std::string("Felt along the protocol's motion, without a device's limits:")
+                         : fmt::format("Felt on {}, in closed loop:", simulation.device_uri);
+  for (const FeltSample& sample : simulation.samples) {
+    line += fmt::format(" {} {:.3g} N", sample.name, sample.rms_n);
+    if (sample.limited_share > 0.0) line += fmt::format(" (at a limit in {})", percent(sample.limited_share));
+    line += &sample == &simulation.samples.back() ? " rms." : ",";
+  }
+  if (simulation.truth.is_of_levels)
+    line += fmt::format(" Renderings of the levels scatter by {:.2f} JND about a smooth curve.",
+                        simulation.scatter);
+  return line;
+}
+
+std::string observer_line(const SimulationOptions& options) {
+  const Observer& observer = options.observer;
+  std::string line = fmt::format(
+      "Observers with a JND of {} of the force ({} right in two intervals) but at least {:g} N, "
+      "who lapse in {}",
+      percent(observer.jnd), percent(observer.criterion), observer.least_jnd_n, percent(observer.lapse));
+  if (observer.bias != 0.0) line += fmt::format(", lean to the first by d' = {:g}", observer.bias);
+  if (observer.preference != 0.0)
+    line += fmt::format(", like the second of a pair better by d' = {:g}", observer.preference);
+  if (observer.spread > 0.0)
+    line += fmt::format(", and differ by {} from each other", percent(observer.spread));
+  return line + ".";
+}
+
+void add_cells(const Simulation& simulation, std::vector<std::string>& lines) {
+  if (simulation.truth.is_of_levels) return;
+  for (const CellTruth& cell : simulation.truth.cells)
+    lines.push_back(fmt::format("  {:32} {:5.2f} JND apart, d' = {:.2f}: {:.1f} % {}", cell.name, cell.jnds,
+                                cell.d_prime, 100.0 * cell.share,
+                                simulation.design == Design::preference ? "for the first" : "right"));
+}
+
+void add_power(const Simulation& simulation, std::vector<std::string>& lines) {
+  const SimulatedFindings& found = simulation.found;
+  if (found.significant.count.trials == 0) {
+    lines.emplace_back("No power: this design has no main test, for the levels follow the answers.");
+  } else {
+    std::string line = fmt::format("Power {} over {} experiments of {:.0f} answers",
+                                   as_power(found.significant), found.significant.count.trials, found.trials);
+    if (std::isfinite(simulation.theory))
+      line += fmt::format("; {:.2f} by the exact probability of {:.1f} %", simulation.theory,
+                          100.0 * simulation.truth.share);
+    lines.push_back(line + ".");
+  }
+  if (simulation.false_alarms.count.trials > 0)
+    lines.push_back(fmt::format("False alarms {} with observers who feel no difference, at a level of {}.",
+                                with_interval(simulation.false_alarms),
+                                percent(simulation.options.analysis.level)));
+  if (found.equivalent.count.successes > 0)
+    lines.push_back(fmt::format("Called equivalent in {}.", with_interval(found.equivalent)));
+}
+
+void add_jnd(const Simulation& simulation, std::vector<std::string>& lines) {
+  const SimulatedTruth& truth = simulation.truth;
+  const SimulatedFindings& found = simulation.found;
+  if (!truth.is_of_levels) return;
+  if (!std::isfinite(truth.jnd)) {
+    lines.push_back(fmt::format("No true JND: {}.", truth.note));
+  } else {
+    lines.push_back(fmt::format(
+        "Intervals of {} covered the true JND of {:.4f} in {} of the {} experiments that told one.",
+        percent(simulation.options.analysis.confidence), truth.jnd, with_interval(found.jnd_covered),
+        found.jnd_covered.count.trials));
+    lines.push_back(fmt::format(
+        "The JND came out {:.1f} % too {} on the average (geometric mean), with a scatter of {:.0f} %; the "
+        "median interval ends at {:.2f} times its beginning.",
+        100.0 * std::abs(found.jnd_bias), found.jnd_bias < 0.0 ? "small" : "large", 100.0 * found.jnd_spread,
+        found.jnd_ratio));
+  }
+  const int none = found.jnd_found.count.trials - found.jnd_found.count.successes;
+  const int open = found.jnd_bounded.count.trials - found.jnd_bounded.count.successes;
+  if (none > 0 || open > 0)
+    lines.push_back(fmt::format("{} of the experiments told no JND, {} an interval that is open at one end.",
+                                none, open));
+  for (const std::string& note : found.notes) lines.push_back("  " + note);
+}
+
+void add_d_prime(const Simulation& simulation, std::vector<std::string>& lines) {
+  const SimulatedShare& covered = simulation.found.d_prime_covered;
+  if (covered.count.trials == 0) return;
+  lines.push_back(fmt::format(
+      "Intervals of {} covered the d' of {:.2f}, which belongs to {:.1f} % right, in {}; median {:.2f}.",
+      percent(simulation.options.analysis.confidence), simulation.truth.d_prime,
+      100.0 * simulation.truth.share, with_interval(covered), simulation.found.d_prime_median));
+}
+
+void add_needed(const Simulation& simulation, std::vector<std::string>& lines) {
+  if (simulation.needed_total == 0) {
+    if (std::isfinite(simulation.truth.share))
+      lines.push_back(
+          fmt::format("No number of trials up to 100,000 gives a power of {:g}.", simulation.options.power));
+    return;
+  }
+  std::string line = fmt::format("For a power of {:g} it takes {} answers by theory",
+                                 simulation.options.power, simulation.needed_total);
+  if (simulation.confirmed)
+    line += fmt::format(", {} {}; simulated {}", simulation.confirmed->trials, simulation.curve_of,
+                        as_power(simulation.confirmed->found.significant));
+  lines.push_back(line + ".");
+}
+
+}  // namespace
+
+std::vector<std::string> simulation_lines(const Simulation& simulation) {
+  std::vector<std::string> lines{
+      fmt::format("{}: {}, {} experiments of {} subject{}", simulation.name, name_of(simulation.design),
+                  simulation.options.experiments, simulation.options.subjects,
+                  simulation.options.subjects == 1 ? "" : "s"),
+      observer_line(simulation.options), felt_line(simulation)};
+  add_cells(simulation, lines);
+  add_power(simulation, lines);
+  add_jnd(simulation, lines);
+  add_d_prime(simulation, lines);
+  add_needed(simulation, lines);
+  lines.push_back(
+      fmt::format("A subject is busy for {:.0f} min, if each slot is felt once and an answer takes "
+                  "{:g} s.",
+                  std::ceil(simulation.mean_session_s / 60.0), simulation.options.answer_s));
+  return lines;
+}
+
+}  // namespace kerf::bench

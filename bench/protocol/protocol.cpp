@@ -1,0 +1,236 @@
+#include "protocol/protocol.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "files/whole_file.h"
+#include "protocol/protocol_parts.h"
+#include "regress/suite.h"
+#include "replay/table.h"
+#include "scene/read_trajectory.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double most_trials = 10000.0;
+constexpr double longest_session_part_s = 3600.0;
+
+double read_seconds(const Place& place, const toml::table& table, std::string_view key, double standard,
+                    double lower, double upper) {
+  return read_number(place, table,
+                     {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = upper});
+}
+
+Design read_design(const Place& place, const toml::table& root) {
+  if (!root.contains("design")) {
+    place.refuse(root,
+                 "a protocol needs a 'design': \"preference\", \"abx\", \"2ifc\", \"3ifc\", \"constant\", "
+                 "\"staircase\" or \"quest\"");
+  }
+  return read_choice(place, root, "design", Design::preference,
+                     {{"preference", Design::preference},
+                      {"abx", Design::abx},
+                      {"2ifc", Design::two_interval},
+                      {"3ifc", Design::three_interval},
+                      {"constant", Design::constant},
+                      {"staircase", Design::staircase},
+                      {"quest", Design::quest_plus}});
+}
+
+/// What a subject is asked; designs whose question is always the same have it without being told.
+std::string read_question(const Place& place, const toml::table& root, const Protocol& protocol) {
+  std::string question = read_plain_text(place, root, "question");
+  if (!question.empty()) return question;
+  if (protocol.design == Design::abx) return "Which one is X?";
+  if (protocol.odd_one_out) return "Which one is different from the other two?";
+  place.refuse(node_or_table(root, "question"),
+               "a protocol needs a 'question', such as question = \"Which felt stiffer?\"");
+}
+
+double standard_trials(Design design) {
+  if (design == Design::staircase) return 100.0;
+  return design == Design::quest_plus ? 60.0 : 12.0;
+}
+
+void read_trials(const Place& place, const toml::table& root, Protocol& protocol) {
+  const auto count = [&](std::string_view key, double standard, double lower) {
+    return read_count(place, root, {.key = key, .standard = standard, .lower = lower, .upper = most_trials});
+  };
+  protocol.trials = count("trials", standard_trials(protocol.design), 1.0);
+  protocol.practice = count("practice", 0.0, 0.0);
+  protocol.feedback = place.flag(root, "feedback", false);
+  if (const toml::node* node = root.get("strategy")) {
+    if (protocol.design != Design::abx)
+      place.refuse(*node, "'strategy' is for the design \"abx\", and this is \"{}\"",
+                   name_of(protocol.design));
+    protocol.differencing =
+        read_choice(place, root, "strategy", false, {{"independent", false}, {"differencing", true}});
+  }
+  if (!root.contains("break")) return;
+  const toml::table& pause = place.table(root, "break");
+  place.allow_only(pause, {"every", "at_least"}, "[break]");
+  if (!pause.contains("every")) place.refuse(pause, "[break] needs 'every', a number of trials");
+  protocol.break_every = read_count(place, pause, {.key = "every", .lower = 1.0, .upper = most_trials});
+  protocol.break_s = read_seconds(place, pause, "at_least", protocol.break_s, 0.0, longest_session_part_s);
+}
+
+void read_presentation(const Place& place, const toml::table& root, Protocol& protocol) {
+  const bool is_free = protocol.design == Design::preference || protocol.design == Design::abx;
+  protocol.presentation =
+      read_choice(place, root, "presentation", is_free ? Presentation::free : Presentation::sequence,
+                  {{"free", Presentation::free}, {"sequence", Presentation::sequence}});
+  protocol.interval_s = read_seconds(place, root, "interval", protocol.interval_s, 0.1, 600.0);
+  protocol.gap_s = read_seconds(place, root, "gap", protocol.gap_s, 0.0, 60.0);
+  protocol.switching =
+      read_choice(place, root, "switching", SwitchKind::blend,
+                  {{"blend", SwitchKind::blend}, {"through-zero", SwitchKind::through_zero}});
+  protocol.ramp_s = read_seconds(place, root, "ramp", protocol.ramp_s, 0.0, 10.0);
+  const auto slots = static_cast<double>(slots_of(protocol.design));
+  const bool in_sequence = protocol.presentation == Presentation::sequence;
+  const double all_s = in_sequence ? slots * protocol.interval_s + (slots - 1.0) * protocol.gap_s : 0.0;
+  protocol.longest_s =
+      read_seconds(place, root, "longest", std::max(protocol.longest_s, all_s), 1.0, longest_session_part_s);
+  if (protocol.longest_s < all_s) {
+    place.refuse(*root.get("longest"), "'longest' is {:g} s, and the {:g} intervals of a trial last {:g} s",
+                 protocol.longest_s, slots, all_s);
+  }
+  if (in_sequence && protocol.ramp_s >= protocol.interval_s) {
+    place.refuse(node_or_table(root, "ramp"),
+                 "the ramp lasts {:g} s, expected less than the interval of {:g} s", protocol.ramp_s,
+                 protocol.interval_s);
+  }
+}
+
+void read_rendering(const Place& place, const toml::table& root, Protocol& protocol) {
+  protocol.device_uri = read_plain_text(place, root, "device");
+  protocol.rate_hz = read_number(
+      place, root, {.key = "rate", .unit = "Hz", .standard = protocol.rate_hz, .lower = 10.0, .upper = 1e5});
+  protocol.loudness =
+      read_choice(place, root, "loudness", Loudness::as_they_are,
+                  {{"none", Loudness::as_they_are}, {"peak", Loudness::peak}, {"rms", Loudness::rms}});
+  if (protocol.loudness == Loudness::as_they_are) return;
+  if (has_levels(protocol.design)) {
+    place.refuse(*root.get("loudness"),
+                 "a design of levels asks how strong samples are; leave 'loudness' out");
+  }
+  if (!root.contains("motion"))
+    place.refuse(*root.get("loudness"), "'loudness' needs a table [motion] along which forces are compared");
+}
+
+/// The one unit in which all laws measure the axis of the strokes.
+std::string unit_of_strokes(const Place& place, const toml::table& table, const Protocol& protocol) {
+  const SessionSample& first = protocol.samples.front();
+  for (const SessionSample& sample : protocol.samples) {
+    if (sample.law.law.is_spatial()) {
+      place.refuse(table, "the law of sample '{}' acts on several axes; its [motion] is a 'scene'",
+                   sample.name);
+    }
+    if (sample.law.position_unit != first.law.position_unit) {
+      place.refuse(table, "sample '{}' moves in {} and sample '{}' in {}; one [motion] cannot serve both",
+                   first.name, first.law.position_unit, sample.name, sample.law.position_unit);
+    }
+  }
+  return first.law.position_unit;
+}
+
+void read_session_motion(const Place& place, const toml::table& root, Protocol& protocol) {
+  if (!root.contains("motion")) return;
+  const toml::table& table = place.table(root, "motion");
+  SessionMotion motion;
+  motion.seconds = read_seconds(place, table, "seconds", motion.seconds, 0.01, longest_session_part_s);
+  if (table.contains("scene")) {
+    place.allow_only(table, {"scene", "seconds"}, "a [motion] of a scene");
+    motion.scene = read_plain_text(place, table, "scene");
+    if (motion.scene.empty()) place.refuse(*table.get("scene"), "'scene' is empty, expected a file");
+  } else {
+    place.allow_only(table, {"from", "to", "stroke", "pause", "seconds"}, "a [motion] of strokes");
+    const std::string unit = unit_of_strokes(place, table, protocol);
+    motion.from = read_number(place, table, {.key = "from", .unit = unit, .required = true});
+    motion.to = read_number(place, table, {.key = "to", .unit = unit, .required = true});
+    if (motion.from == motion.to) place.refuse(*table.get("to"), "'to' is where 'from' is: nothing moves");
+    motion.stroke_s = read_seconds(place, table, "stroke", motion.stroke_s, 0.01, 600.0);
+    motion.pause_s = read_seconds(place, table, "pause", motion.pause_s, 0.0, 600.0);
+  }
+  protocol.motion = motion;
+}
+
+/// What only the whole of a protocol tells.
+void require_sense(const Place& place, const toml::table& root, const Protocol& protocol) {
+  if (protocol.feedback) {
+    const toml::node& node = *root.get("feedback");
+    if (protocol.design == Design::preference)
+      place.refuse(node, "no answer of a preference is right; leave 'feedback' out");
+    if (protocol.design == Design::constant && protocol.scale.two_sided())
+      place.refuse(node, "with levels on both sides no answer is right; leave 'feedback' out");
+    if (protocol.practice == 0)
+      place.refuse(node, "'feedback' is given in practice, and there is none; expected 'practice' above 0");
+  }
+  double trials = 0.0;
+  for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue)
+    trials += static_cast<double>(pairs_of(protocol, tissue).size() * protocol.trials);
+  if (protocol.design == Design::constant) trials *= static_cast<double>(protocol.scale.levels.size());
+  if (trials > most_trials) {
+    place.refuse(node_or_table(root, "trials"),
+                 "all pairs and levels together are {:.0f} trials a subject, expected at most {:.0f}", trials,
+                 most_trials);
+  }
+}
+
+}  // namespace
+
+Protocol parse_protocol(const std::string& text, const std::string& name,
+                        const std::function<std::string(const std::string&)>& law_text) {
+  const toml::table root = parse_toml(text, name);
+  const Place place(name);
+  place.allow_only(
+      root, {"name",     "design",   "question",  "instructions", "consent",     "trials",       "practice",
+             "feedback", "strategy", "break",     "signal",       "odd_one_out", "presentation", "interval",
+             "gap",      "longest",  "switching", "ramp",         "device",      "rate",         "loudness",
+             "sample",   "tissue",   "scale",     "motion"},
+      "a protocol");
+  Protocol protocol;
+  protocol.toml = text;
+  protocol.name = read_name(place, root, "a protocol");
+  protocol.design = read_design(place, root);
+  protocol.instructions = read_plain_text(place, root, "instructions", true);
+  protocol.consent = read_plain_text(place, root, "consent", true);
+  read_trials(place, root, protocol);
+  read_samples(place, root, law_text, protocol);
+  read_tissues(place, root, protocol);
+  read_signal(place, root, protocol);
+  protocol.question = read_question(place, root, protocol);
+  read_presentation(place, root, protocol);
+  read_rendering(place, root, protocol);
+  read_scale(place, root, protocol);
+  read_session_motion(place, root, protocol);
+  require_sense(place, root, protocol);
+  return protocol;
+}
+
+Protocol read_protocol(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  const auto existing = [&](const fs::path& named) {
+    fs::path found = folder / named;
+    if (!fs::is_regular_file(found))
+      throw std::invalid_argument(fmt::format("there is no file {}", found.string()));
+    return found;
+  };
+  const auto law_text = [&](const std::string& named) {
+    const fs::path found = existing(named);
+    if (found.extension() != ".h5") return read_whole_file(found);
+    return to_toml(table_of(schema::read_recording(found), found.string()).file);
+  };
+  Protocol protocol = parse_protocol(read_whole_file(file), file.string(), law_text);
+  if (protocol.motion && !protocol.motion->scene.empty()) {
+    try {
+      protocol.motion->scene = existing(protocol.motion->scene);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(fmt::format("{}: [motion]: {}", file.string(), error.what()));
+    }
+  }
+  return protocol;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,161 @@
+#include "protocol/samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include "regress/forces.h"
+#include "regress/path.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr double lever_m = 0.01;  ///< at which a torque is felt as a force
+constexpr double largest_gain = 20.0;
+
+RegressionPath path_along(const Protocol& protocol, const LawFile& law) {
+  if (!protocol.motion) {
+    throw std::invalid_argument(fmt::format(
+        "protocol '{}' has no [motion], so it does not say along what forces are rendered", protocol.name));
+  }
+  const SessionMotion& motion = *protocol.motion;
+  RegressionCase one{.law = law, .rate_hz = protocol.rate_hz, .seconds = motion.seconds};
+  if (motion.scene.empty()) {
+    if (law.law.is_spatial()) {
+      throw std::invalid_argument(
+          fmt::format("law '{}' acts on several axes; the [motion] of protocol '{}' has to be a 'scene'",
+                      law.law.model(), protocol.name));
+    }
+    one.motion = {
+        {.axis = 0,
+         .script = StrokesToAndFro{
+             .from = motion.from, .to = motion.to, .stroke_s = motion.stroke_s, .pause_s = motion.pause_s}}};
+  }
+  one.scene = motion.scene;
+  return trajectory_of(one);
+}
+
+/// N; a torque as the force at a lever.
+double as_force(double value, const std::string& unit) { return unit == "N·m" ? value / lever_m : value; }
+
+/// Peak or root mean square of the force of a sample, at a gain of 1 [N].
+double strength_of(const Protocol& protocol, std::size_t sample) {
+  const LawFile& law = protocol.samples[sample].law;
+  const std::vector<models::LawAxis> axes = axes_of(law);
+  const std::vector<double> forces = forces_along(protocol, {.law = law});
+  double sum = 0.0;
+  double peak = 0.0;
+  for (std::size_t i = 0; i < forces.size(); i += axes.size()) {
+    double squared = 0.0;
+    for (std::size_t axis = 0; axis < axes.size(); ++axis)
+      squared += std::pow(as_force(forces[i + axis], axes[axis].force_unit), 2);
+    sum += squared;
+    peak = std::max(peak, squared);
+  }
+  const auto ticks = static_cast<double>(forces.size() / axes.size());
+  return std::sqrt(protocol.loudness == Loudness::peak ? peak : sum / ticks);
+}
+
+/// What a sample has to be multiplied with to be as strong as the first of its tissue.
+double gain_beside(const Protocol& protocol, const std::vector<double>& strengths,
+                   const SessionTissue& tissue, std::size_t sample) {
+  const double gain = strengths[tissue.samples.front()] / strengths[sample];
+  if (gain >= 1.0 / largest_gain && gain <= largest_gain) return gain;
+  throw std::invalid_argument(fmt::format(
+      "sample '{}' would need a gain of {:.3g} to be as strong as '{}', expected one from {:g} to {:g}; they "
+      "are too unlike along the protocol's [motion]",
+      protocol.samples[sample].name, gain, protocol.samples[tissue.samples.front()].name, 1.0 / largest_gain,
+      largest_gain));
+}
+
+}  // namespace
+
+std::vector<std::size_t> parameters_named(const models::Law& law, std::string_view name) {
+  std::vector<std::size_t> places;
+  const auto infos = law.parameters();
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const std::string_view whole = infos[i].name;
+    if (whole == name || whole.substr(0, whole.find('[')) == name) places.push_back(i);
+  }
+  return places;
+}
+
+PlayedLaw played(const Protocol& protocol, std::size_t sample, double level) {
+  const SessionSample& standard = protocol.samples.at(sample);
+  PlayedLaw played{.law = standard.law, .gain = standard.gain};
+  if (std::isnan(level)) return played;
+  if (protocol.scale.parameters.empty()) {
+    played.gain *= 1.0 + level;
+    return played;
+  }
+  const models::Law& law = standard.law.law;
+  std::vector<bool> varies(law.values().size(), false);
+  for (const std::string& name : protocol.scale.parameters) {
+    for (const std::size_t place : parameters_named(law, name)) varies[place] = true;
+  }
+  std::vector<double> values = law.values();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (varies[i]) values[i] *= 1.0 + level;
+  }
+  try {
+    played.law.law = models::Law::make(law.model(), values, law.options());
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(
+        fmt::format("sample '{}' cannot be played at level {:g}: {}", standard.name, level, error.what()));
+  }
+  played.law.std_errors.clear();
+  return played;
+}
+
+std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial) {
+  constexpr double as_it_is = std::numeric_limits<double>::quiet_NaN();
+  return {played(protocol, trial.pair[0], as_it_is), played(protocol, trial.pair[1], trial.level)};
+}
+
+std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law) {
+  const models::Law& model = law.law.law;
+  const RenderedForces rendered = render_forces(model, law.law.contact, path_along(protocol, law.law));
+  if (rendered.first_fault) {
+    throw std::invalid_argument(
+        fmt::format("law '{}' faults along the [motion] of protocol '{}', first at {:.4g} s", model.model(),
+                    protocol.name, static_cast<double>(*rendered.first_fault) / protocol.rate_hz));
+  }
+  // A scalar law tells what resists; on the axis that pushes back.
+  const double sense = model.is_spatial() ? 1.0 : -law.law.contact.direction;
+  std::vector<double> forces = rendered.force;
+  for (double& force : forces) force *= sense * law.gain;
+  return forces;
+}
+
+void match_loudness(Protocol& protocol) {
+  if (protocol.loudness == Loudness::as_they_are) return;
+  std::vector<double> strengths;
+  for (std::size_t sample = 0; sample < protocol.samples.size(); ++sample) {
+    strengths.push_back(strength_of(protocol, sample));
+    if (strengths.back() > 0.0) continue;
+    throw std::invalid_argument(
+        fmt::format("sample '{}' has no force along the [motion] of protocol '{}', so it cannot be made as "
+                    "strong as the others; does the motion reach its contact?",
+                    protocol.samples[sample].name, protocol.name));
+  }
+  std::vector<std::optional<double>> gains(protocol.samples.size());
+  for (const SessionTissue& tissue : protocol.tissues) {
+    for (const std::size_t sample : tissue.samples) {
+      const double gain = gain_beside(protocol, strengths, tissue, sample);
+      const double before = gains[sample].value_or(gain);
+      if (std::abs(gain - before) > 1e-9 * before) {
+        throw std::invalid_argument(fmt::format(
+            "sample '{}' would need a gain of {:.4g} in tissue '{}' and of {:.4g} in one before it; give the "
+            "tissue a sample of its own",
+            protocol.samples[sample].name, gain, tissue.name, before));
+      }
+      gains[sample] = gain;
+    }
+  }
+  for (std::size_t sample = 0; sample < gains.size(); ++sample)
+    protocol.samples[sample].gain = gains[sample].value_or(1.0);
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,158 @@
+#include "sealed/session_export.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "files/whole_file.h"
+#include "recordings/provenance.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n#") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char letter : text) cell += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return cell + '"';
+}
+
+std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+
+/// "second/first": which of the pair each slot played.
+std::string slots_in_words(const Protocol& protocol, const TrialPlan& trial) {
+  std::string words;
+  for (std::size_t slot = 0; slot < slots_of(protocol.design); ++slot) {
+    words += fmt::format("{}{}", slot > 0 ? "/" : "", trial.slots[slot] == 0 ? "first" : "second");
+  }
+  return words;
+}
+
+std::string row_of(const SessionStore& store, std::size_t index, bool some_answer_is_right) {
+  const Protocol& protocol = store.protocol();
+  const RecordedTrial& trial = store.trials()[index];
+  const std::size_t right = trial.what.right(protocol);
+  const auto label = [&](std::size_t slot) { return label_of(protocol.design, slot); };
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject, store.session().number,
+      index + 1, trial.what.practice ? 1 : 0, quoted(protocol.tissues[trial.what.tissue].name),
+      quoted(protocol.samples[trial.what.pair[0]].name), quoted(protocol.samples[trial.what.pair[1]].name),
+      number(trial.what.level), slots_in_words(protocol, trial.what), label(right), label(trial.answer),
+      some_answer_is_right ? (trial.answer == right ? "1" : "0") : "", number(trial.response_s),
+      trial.switches, trial.at);
+}
+
+/// What the design alone does not say of how d' is reckoned.
+std::string task_line(const Protocol& protocol) {
+  if (protocol.design == Design::three_interval && protocol.odd_one_out) return "# task = \"oddity\"\n";
+  return protocol.design == Design::abx && protocol.differencing ? "# task = \"differencing\"\n" : "";
+}
+
+std::string table_of(const SessionStore& store) {
+  const bool some_answer_is_right = study_of(store.protocol()).task.has_value();
+  std::string table = fmt::format(
+      "# name = \"{}\"\n# design = \"{}\"\n{}"
+      "# level: the second is the first times 1 + level; slots: which of the two each slot played, in the "
+      "order "
+      "of their labels; right: of a preference the slot that played the second; response_s [s]: from the "
+      "first "
+      "force to the answer; at: UTC\n"
+      "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
+      "switches,"
+      "at\n",
+      store.protocol().name, name_of(store.protocol().design), task_line(store.protocol()));
+  for (std::size_t i = 0; i < store.trials().size(); ++i) table += row_of(store, i, some_answer_is_right);
+  return table;
+}
+
+/// "A: 'soft' (soft.law.toml, force x 1.2)"
+std::string slot_in_words(const Protocol& protocol, const TrialPlan& trial, std::size_t slot) {
+  const std::size_t which = trial.slots[slot];
+  const SessionSample& sample = protocol.samples[trial.pair[which]];
+  std::string words =
+      fmt::format("{}: '{}' ({}", label_of(protocol.design, slot), sample.name, sample.law_name);
+  if (sample.gain != 1.0) words += fmt::format(", force x {:.6g}", sample.gain);
+  if (which == 1 && !std::isnan(trial.level)) words += fmt::format(", level {:+.6g}", trial.level);
+  return words + ')';
+}
+
+void add_events(schema::Recording& recording, const Protocol& protocol, const RecordedTrial& trial) {
+  std::uint8_t playing = 255;
+  for (const TraceRow& tick : trial.trace) {
+    if (tick.slot == playing) continue;
+    playing = tick.slot;
+    const bool plays = playing < slots_of(protocol.design);
+    recording.events.push_back({.time_s = tick.row.time_s,
+                                .kind = "slot",
+                                .text = plays ? slot_in_words(protocol, trial.what, playing) : "none"});
+  }
+}
+
+void add_rows(schema::Recording& recording, const RecordedTrial& trial) {
+  const std::size_t axes = trial.axes.size();
+  bool measured = false;
+  const auto put = [&](std::vector<double>& column, const std::array<double, schema::max_axes>& values) {
+    column.insert(column.end(), values.begin(), values.begin() + static_cast<std::ptrdiff_t>(axes));
+  };
+  for (const TraceRow& tick : trial.trace) {
+    const schema::Row& row = tick.row;
+    recording.time.push_back(row.time_s);
+    recording.tick.push_back(row.tick);
+    put(recording.position, row.position);
+    put(recording.velocity, row.velocity);
+    put(recording.force_commanded, row.force_commanded);
+    put(recording.force_measured, row.force_measured);
+    recording.wake_latency.push_back(row.wake_latency_s);
+    recording.read_time.push_back(row.read_time_s);
+    recording.compute_time.push_back(row.compute_time_s);
+    recording.write_time.push_back(row.write_time_s);
+    recording.flags.push_back(row.flags);
+    for (std::size_t i = 0; i < recording.channels.size(); ++i) {
+      recording.channels[i].values.push_back(row.channels[i]);
+    }
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      measured = measured || (std::isfinite(row.force_measured[axis]) && row.force_measured[axis] != 0.0);
+    }
+  }
+  if (!measured) recording.force_measured.clear();  // there was no sensor
+}
+
+schema::Recording recording_of(const SessionStore& store, std::size_t index) {
+  const Protocol& protocol = store.protocol();
+  const RecordedTrial trial = store.trial(index);
+  schema::Recording recording;
+  recording.header = schema::new_header(software());
+  recording.header.created = trial.at;
+  recording.header.device_uri = protocol.device_uri;
+  std::string step = fmt::format("trial {} of session {}, subject {}", index + 1, store.session().uuid,
+                                 store.session().subject);
+  for (std::size_t slot = 0; slot < slots_of(protocol.design); ++slot) {
+    step += fmt::format("{} {}", slot == 0 ? ";" : ",", slot_in_words(protocol, trial.what, slot));
+  }
+  step += fmt::format("; answered {}", label_of(protocol.design, trial.answer));
+  add_history(recording.header, step);
+  recording.axes = trial.axes;
+  recording.channels = trial.channels;
+  add_rows(recording, trial);
+  add_events(recording, protocol, trial);
+  return recording;
+}
+
+}  // namespace
+
+void export_session(const SessionStore& store, const fs::path& folder, bool replace) {
+  const fs::path table = folder / "trials.csv";
+  const auto file_of = [&](std::size_t trial) { return folder / fmt::format("trial-{:03}.h5", trial + 1); };
+  refuse_to_replace(table, replace);
+  for (std::size_t i = 0; i < store.trials().size(); ++i) refuse_to_replace(file_of(i), replace);
+  fs::create_directories(folder);
+  for (std::size_t i = 0; i < store.trials().size(); ++i) {
+    const schema::Recording recording = recording_of(store, i);
+    if (recording.rows() > 0) schema::write_recording(file_of(i), recording);
+  }
+  write_whole_file(table, table_of(store));
+}
+
+}  // namespace kerf::bench

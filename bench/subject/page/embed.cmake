@@ -1,0 +1,17 @@
+# cmake -D OUTPUT=page_files.cpp -D FILES="a;b" -P embed.cmake: the files as arrays of characters, for page_files.h.
+set(arrays "")
+set(table "")
+set(index 0)
+foreach(file IN LISTS FILES)
+  get_filename_component(name "${file}" NAME)
+  file(READ "${file}" bytes HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
+  string(APPEND arrays "constexpr char file_${index}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${name}\", {file_${index}, sizeof file_${index}}},\n")
+  math(EXPR index "${index} + 1")
+endforeach()
+file(
+  WRITE "${OUTPUT}"
+  "#include \"subject/page_files.h\"\n\nnamespace kerf::bench {\nnamespace {\n\n${arrays}"
+  "constexpr PageFile files[] = {\n${table}};\n\n}  // namespace\n\n"
+  "std::span<const PageFile> page_files() noexcept { return files; }\n\n}  // namespace kerf::bench\n")

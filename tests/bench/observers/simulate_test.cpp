@@ -1,0 +1,158 @@
+#include "observers/simulate.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/observers/simulated_protocols.h"
+#include "observers/simulation_report.h"
+
+namespace kerf::bench {
+namespace {
+
+SimulationOptions options_of(std::size_t experiments) {
+  return {.sensation = {.felt = {.renderings = 1}}, .experiments = experiments, .curve_points = 0, .jobs = 2};
+}
+
+Simulation simulated(const Protocol& protocol, const SimulationOptions& options) {
+  std::atomic<std::size_t> done{0};
+  return simulate(protocol, options, done);
+}
+
+const std::string abx = "design = \"abx\"\ntrials = 40\n";
+const std::string two_intervals = "design = \"2ifc\"\nsignal = \"second\"\ntrials = 24\n";
+
+TEST(Simulate, FindsWhatTheExactProbabilitySays) {
+  const Simulation simulation =
+      simulated(simulated_protocol(two_intervals + two_springs(8, 8.8)), options_of(1000));
+  ASSERT_GT(simulation.theory, 0.3);
+  ASSERT_LT(simulation.theory, 0.95);
+  const auto interval = psychophysics::clopper_pearson(simulation.found.significant.count, 0.9999);
+  EXPECT_LT(interval.lower, simulation.theory);
+  EXPECT_GT(interval.upper, simulation.theory);
+  EXPECT_NEAR(simulation.found.d_prime_median, simulation.truth.d_prime, 0.15);
+  EXPECT_GT(simulation.found.d_prime_covered.value(), 0.94);  // Clopper and Pearson: at least 95 %
+}
+
+TEST(Simulate, OfTwoOfTheSameHasNothingToFindButFalseAlarms) {
+  const Simulation simulation = simulated(simulated_protocol(abx + two_springs(8, 8)), options_of(1000));
+  ASSERT_EQ(simulation.truth.cells.size(), 1U);
+  EXPECT_EQ(simulation.truth.cells[0].d_prime, 0.0);
+  EXPECT_LT(simulation.found.significant.value(), 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 1000));
+  EXPECT_EQ(simulation.needed_total, 0U);
+}
+
+TEST(Simulate, ObserversWhoFeelNothingRaiseFalseAlarmsInAtMostFivePercent) {
+  const double most = 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 1000);
+  for (const std::string& design : {abx, two_intervals}) {
+    const Simulation simulation =
+        simulated(simulated_protocol(design + two_springs(8, 12)), options_of(1000));
+    EXPECT_GT(simulation.truth.cells[0].d_prime, 0.9);
+    EXPECT_LT(simulation.false_alarms.value(), most);
+    EXPECT_GT(simulation.false_alarms.value(), 0.005);
+  }
+}
+
+TEST(Simulate, TheTrialsThatItTakesGiveThePowerThatWasWanted) {
+  SimulationOptions options = options_of(1000);
+  options.power = 0.9;
+  const Simulation simulation = simulated(simulated_protocol(two_intervals + two_springs(8, 8.8)), options);
+  ASSERT_TRUE(simulation.confirmed);
+  EXPECT_EQ(simulation.confirmed->trials, simulation.needed_total);
+  EXPECT_GT(simulation.confirmed->found.significant.value(), 0.9 - 4.0 * std::sqrt(0.09 / 1000));
+}
+
+TEST(Simulate, IntervalsOfAJndCoverItAsOftenAsTheySay) {
+  const Simulation simulation = simulated(simulated_protocol(force_levels(40)), options_of(200));
+  EXPECT_GT(simulation.truth.jnd, 0.08);  // lapses, and a hand that gives way to more force
+  EXPECT_LT(simulation.truth.jnd, 0.13);
+  EXPECT_GT(simulation.found.jnd_found.value(), 0.95);
+  EXPECT_NEAR(simulation.found.jnd_covered.value(), 0.95, 4.0 * std::sqrt(0.95 * 0.05 / 200));
+  EXPECT_NEAR(simulation.found.jnd_bias, 0.0, 0.1);
+}
+
+TEST(Simulate, TheJndOfOneWhoNeverLapsesIsItsWeberFraction) {
+  // Strong forces along a motion that nothing disturbs, so that Weber's law holds and nothing is clipped.
+  Protocol protocol = simulated_protocol(force_levels(10));
+  protocol.samples[0].gain = 10.0;
+  SimulationOptions options = options_of(2);
+  options.observer.lapse = 0.0;
+  options.sensation.felt.open_loop = true;
+  EXPECT_NEAR(simulated(protocol, options).truth.jnd, 0.07, 2e-4);
+}
+
+TEST(Simulate, GivesTheSameForEveryNumberOfThreads) {
+  const Protocol protocol = simulated_protocol(force_levels(10));
+  SimulationOptions options = options_of(12);
+  options.curve_points = 3;
+  options.curve_experiments = 4;
+  options.jobs = 1;
+  const Simulation one = simulated(protocol, options);
+  options.jobs = 2;
+  const Simulation two = simulated(protocol, options);
+  EXPECT_EQ(simulation_json(one).dump(), simulation_json(two).dump());
+  options.seed = 2;
+  EXPECT_NE(simulation_json(one).dump(), simulation_json(simulated(protocol, options)).dump());
+}
+
+TEST(Simulate, LetsEveryAdaptiveDesignRunToItsEnd) {
+  const std::string sample = "[[sample]]\nname = \"spring\"\nlaw = \"law 8\"\n[scale]\nvary = \"force\"\n";
+  const Simulation staircase =
+      simulated(simulated_protocol(
+                    "design = \"staircase\"\ntrials = 80\n" + sample +
+                    "staircase = { start = 0.3, reversals = 10, dropped = 2, least = 0.005, most = 1.0 }\n"),
+                options_of(4));
+  EXPECT_EQ(staircase.false_alarms.count.trials, 0);  // no main test
+  EXPECT_GT(staircase.found.trials, 20.0);
+  EXPECT_LE(staircase.found.trials, 80.0);
+  const Simulation quest = simulated(
+      simulated_protocol("design = \"quest\"\n" + sample + "quest = { trials = 20, expected_jnd = 0.1 }\n"),
+      options_of(2));
+  EXPECT_EQ(quest.found.trials, 20.0);
+}
+
+TEST(Simulate, APreferenceIsFoundOnlyWhereThereIsOne) {
+  const Protocol protocol = simulated_protocol("design = \"preference\"\ntrials = 60\n" + two_springs(8, 16));
+  SimulationOptions options = options_of(500);
+  const double most = 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 500);
+  EXPECT_LT(simulated(protocol, options).found.significant.value(), most);
+  options.observer.preference = 1.0;
+  const Simulation preferring = simulated(protocol, options);
+  EXPECT_GT(preferring.found.significant.value(), 0.8);
+  EXPECT_LT(preferring.truth.share, 0.5);  // counted is the first, liked the second
+}
+
+TEST(Simulate, SubjectsWhoDifferHaveTheJndOfTheirMeanCurve) {
+  SimulationOptions options = options_of(2);
+  const Protocol protocol = simulated_protocol(force_levels(10));
+  const double alike = simulated(protocol, options).truth.jnd;
+  options.observer.spread = 0.5;
+  const double unlike = simulated(protocol, options).truth.jnd;
+  EXPECT_GT(std::abs(unlike / alike - 1.0), 0.01);  // a flatter curve
+  EXPECT_NEAR(unlike, alike, 0.15 * alike);         // about the same middle
+}
+
+TEST(Simulate, TellsOnItsPageWhatItTellsInItsLines) {
+  SimulationOptions options = options_of(10);
+  options.curve_points = 2;
+  options.curve_experiments = 5;
+  const Simulation simulation = simulated(simulated_protocol(abx + two_springs(8, 12)), options);
+  const std::string csv = simulation_csv(simulation);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
+  EXPECT_EQ(simulation_charts(simulation).size(), 3U);
+  const auto json = simulation_json(simulation);
+  EXPECT_EQ(json["found"]["power"]["experiments"], 10);
+  EXPECT_TRUE(json["truth"]["jnd"].is_null());
+}
+
+TEST(Simulate, RefusesWhatSaysNothing) {
+  const Protocol protocol = simulated_protocol(abx + two_springs(8, 12));
+  EXPECT_THROW(simulated(protocol, options_of(1)), std::invalid_argument);
+  SimulationOptions options = options_of(10);
+  options.subjects = 0;
+  EXPECT_THROW(simulated(protocol, options), std::invalid_argument);
+  options = options_of(10);
+  options.observer.jnd = -0.1;
+  EXPECT_THROW(simulated(protocol, options), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kerf::bench
