@@ -8,7 +8,7 @@ const element = (id) => document.getElementById(id);
 let view = null;
 let free = false;      // the subject has been able to switch in this trial
 let armed = false;     // Enter was pressed: the next label is the answer
-let sending = false;
+let sending = '';      // the screen whose one answer, or leave, is on its way
 let connected = true;
 let readyAt = 0;       // when a break may be left, on the clock of performance.now()
 
@@ -161,9 +161,10 @@ function show(next) {
 // ---- What is done
 
 async function act(kind, slot) {
-  if (!view || sending || !connected) return;
-  const once = kind !== 'play';  // a double click is one answer
-  sending = once;
+  if (!view || !connected) return;
+  const screen = `${view.stage} ${view.trial}`;
+  if (sending === screen) return;  // a double click is one answer
+  if (kind !== 'play') sending = screen;
   try {
     const response = await fetch('/action', {
       method: 'POST',
@@ -175,7 +176,7 @@ async function act(kind, slot) {
   } catch {
     say('That did not arrive. Please try again.');  // follow() finds out whether the connection is lost
   } finally {
-    sending = false;
+    if (sending === screen && kind !== 'play') sending = '';
   }
 }
 

@@ -5,9 +5,11 @@ without a browser.
 """
 
 import pathlib
+import queue
 import subprocess
 import sys
 import tempfile
+import threading
 import urllib.error
 import urllib.request
 
@@ -54,14 +56,19 @@ class Session:
 
     def __init__(self, program, browser):
         self.demo = subprocess.Popen([program], stdout=subprocess.PIPE, text=True)
-        self.url = self.demo.stdout.readline().strip()
+        self.lines = queue.Queue()
+        threading.Thread(target=lambda: [self.lines.put(line.strip()) for line in self.demo.stdout], daemon=True).start()
+        self.url = self.lines.get(timeout=20)
         self.browser = browser
 
     def heading(self, text):
         self.browser.wait_for(f"the heading {text!r}", "return document.querySelector('h1').textContent === arguments[0]", text)
 
     def action(self, kind, slot):
-        line = self.demo.stdout.readline().strip()
+        try:
+            line = self.lines.get(timeout=20)
+        except queue.Empty:
+            line = "nothing"
         expect(line == f"action {kind} {slot}", f"expected action {kind} {slot}, got {line!r}")
 
     def said(self, text):
