@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "answers/analysis.h"
+#include "protocol/course.h"
 
 namespace kerf::bench {
 namespace {
@@ -56,7 +57,7 @@ void follow_staircase(const psychophysics::StaircaseOptions& options, AdaptiveTr
 
 void follow_quest(const Study& study, const AnalysisOptions& options, AdaptiveTrack& track) {
   const double guess = study.task ? psychophysics::chance_of(*study.task) : 0.5;
-  psychophysics::QuestPlusOptions grid = quest_grid(study.scale, guess);
+  psychophysics::QuestPlusOptions grid = quest_options_of(study.scale, guess);
   // Only what was shown matters to the posterior, and less of it is faster.
   grid.intensities = track.levels;
   std::sort(grid.intensities.begin(), grid.intensities.end());
@@ -74,16 +75,6 @@ void follow_quest(const Study& study, const AnalysisOptions& options, AdaptiveTr
 }
 
 }  // namespace
-
-psychophysics::QuestPlusOptions quest_grid(const IntensityScale& scale, double guess) {
-  constexpr std::size_t thresholds = 41;
-  return {.shape = scale.shape,
-          .guess = guess,
-          .intensities = scale.levels,
-          .thresholds =
-              psychophysics::geometric_grid(0.1 * scale.expected_jnd, 10.0 * scale.expected_jnd, thresholds),
-          .trials = static_cast<int>(scale.quest_trials)};
-}
 
 std::vector<AdaptiveTrack> adaptive_tracks(const Study& study,
                                            const std::vector<const Judgement*>& judgements,

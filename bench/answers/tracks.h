@@ -26,9 +26,6 @@ struct AdaptiveTrack {
   std::string note;  ///< why there is no estimate
 };
 
-/// The grid that a scale gives to QUEST+: thresholds from a tenth to ten times the expected JND, flat.
-[[nodiscard]] psychophysics::QuestPlusOptions quest_grid(const IntensityScale& scale, double guess);
-
 /// Of staircase and QUEST+, one a session.
 [[nodiscard]] std::vector<AdaptiveTrack> adaptive_tracks(const Study& study,
                                                          const std::vector<const Judgement*>& judgements,

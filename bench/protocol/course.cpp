@@ -9,11 +9,10 @@
 
 namespace kerf::bench {
 
-psychophysics::QuestPlusOptions quest_options_of(const Protocol& protocol) {
-  const IntensityScale& scale = protocol.scale;
+psychophysics::QuestPlusOptions quest_options_of(const IntensityScale& scale, double guess) {
   return {
       .shape = scale.shape,
-      .guess = psychophysics::chance_of(task_of(protocol)),
+      .guess = guess,
       .intensities = scale.levels,
       .thresholds = psychophysics::geometric_grid(0.1 * scale.expected_jnd, 10.0 * scale.expected_jnd, 41),
       .weights_of_thresholds = {},
@@ -22,7 +21,8 @@ psychophysics::QuestPlusOptions quest_options_of(const Protocol& protocol) {
 
 Course::Course(Protocol protocol, Plan plan) : protocol_(std::move(protocol)), plan_(std::move(plan)) {
   if (protocol_.design == Design::staircase) staircase_.emplace(protocol_.scale.staircase);
-  if (protocol_.design == Design::quest_plus) quest_.emplace(quest_options_of(protocol_));
+  if (protocol_.design == Design::quest_plus)
+    quest_.emplace(quest_options_of(protocol_.scale, psychophysics::chance_of(task_of(protocol_))));
 }
 
 std::optional<TrialPlan> Course::next() const {

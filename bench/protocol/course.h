@@ -13,7 +13,7 @@ namespace kerf::bench {
 
 /// What QUEST+ takes for granted of a scale: thresholds from a tenth to ten times the expected JND, equally
 /// likely on a logarithmic axis; slopes and lapse rates as usual.
-[[nodiscard]] psychophysics::QuestPlusOptions quest_options_of(const Protocol& protocol);
+[[nodiscard]] psychophysics::QuestPlusOptions quest_options_of(const IntensityScale& scale, double guess);
 
 /// How a session goes on from the answers so far: which trial is next, at which level. A value without clock
 /// or chance, so that a session is resumed by giving it the recorded answers again.

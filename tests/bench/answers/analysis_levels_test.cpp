@@ -7,6 +7,7 @@
 #include "answers/analysis.h"
 #include "answers/analysis_json.h"
 #include "bench/answers/studies.h"
+#include "protocol/course.h"
 
 namespace kerf::bench {
 namespace {
@@ -236,7 +237,7 @@ TEST(AStaircase, WhoseLevelsAreNotThoseOfItsRuleHasNoMeanOfReversals) {
 TEST(AQuestSession, HasItsPosteriorAndACurve) {
   Study study = study_with(Design::quest_plus);
   study.scale.levels = psychophysics::geometric_grid(0.01, 1.0, 17);
-  psychophysics::QuestPlus quest(quest_grid(study.scale, 0.5));
+  psychophysics::QuestPlus quest(quest_options_of(study.scale, 0.5));
   Random random(10);
   while (!quest.finished()) {
     const double level = quest.next();

@@ -274,8 +274,9 @@ TEST(RunSession, LetsTheAnswersChooseTheLevelsOfAStaircase) {
                                "standard = \"soft\"\nvary = \"force\"\nstaircase = { up = 1, down = 2, start "
                                "= 0.4, reversals = 6, dropped = 2 }\n"));
   test::BlindRun session(protocol);
-  RehearsalSubject subject(2);
+  test::WatchingSubject subject(2);
   EXPECT_EQ(session.run(subject).end, SessionEnd::finished);
+  EXPECT_THAT(subject.seen, Contains(HasSubstr("Trial 3 of at most 60")));
   const SessionStore store = session.read();
   EXPECT_EQ(store.trials().front().what.level, 0.4);
   std::set<double> levels;
