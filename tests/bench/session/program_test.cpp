@@ -198,6 +198,18 @@ TEST(SessionProgram, RefusesASecondRunOfOneFile) {
   EXPECT_EQ(folder.run().exit_status, 0) << "and nothing is lost";
 }
 
+TEST(SessionProgram, GoesOnAfterTheDeviceWasLost) {
+  const SessionFolder folder;
+  ASSERT_EQ(folder.make().exit_status, 0);
+  const Outcome lost = folder.run({"--rehearse", "--no-check", "--device", "sim:scissors?fault=unplug@5s"});
+  EXPECT_EQ(lost.exit_status, 3);
+  EXPECT_THAT(lost.errors, HasSubstr("the device was lost"));
+  const Outcome info = run_kerf({"info", folder.path("s.h5"), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(info.output)["trials"], 2) << "two of them took 4.8 s";
+  ASSERT_EQ(folder.run().exit_status, 0);
+  EXPECT_EQ(nlohmann::json::parse(run_kerf({"info", folder.path("s.h5"), "--json"}).output)["trials"], 4);
+}
+
 TEST(SessionProgram, SaysWhatIsMissingOnTheCommandLine) {
   const SessionFolder folder;
   expect_refused(run_kerf({"session"}), "subcommand");
