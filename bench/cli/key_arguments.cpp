@@ -1,9 +1,11 @@
 #include "cli/key_arguments.h"
 
-#include <cstdio>
-#include <memory>
+#include <cerrno>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <termios.h>
 #include <unistd.h>
@@ -11,13 +13,16 @@
 namespace kerf::bench {
 namespace {
 
-/// The terminal without echo, and as it was again.
+/// The terminal without echo, and as it was again. Ctrl-C comes as a character, so that it cannot leave the
+/// terminal silent.
 class WithoutEcho {
  public:
   explicit WithoutEcho(int terminal) : terminal_(terminal) {
     tcgetattr(terminal_, &before_);
     termios silent = before_;
-    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO | ISIG | ICANON);
+    silent.c_cc[VMIN] = 1;
+    silent.c_cc[VTIME] = 0;
     tcsetattr(terminal_, TCSAFLUSH, &silent);
   }
   WithoutEcho(const WithoutEcho&) = delete;
@@ -29,18 +34,58 @@ class WithoutEcho {
   termios before_{};
 };
 
+/// The terminal of the program, whatever its input and output are.
+class Terminal {
+ public:
+  Terminal() : number_(open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY)) {
+    if (number_ < 0)
+      throw std::invalid_argument(
+          "the passphrase is asked for at a terminal, and there is none; give a key file with --key-file");
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+  ~Terminal() { close(number_); }
+
+  [[nodiscard]] int number() const noexcept { return number_; }
+  void say(std::string_view text) const {
+    [[maybe_unused]] const ssize_t ignored = write(number_, text.data(), text.size());
+  }
+  /// The next character; nothing at the end.
+  [[nodiscard]] std::optional<char> next() const {
+    char c = 0;
+    ssize_t count = -1;
+    while ((count = read(number_, &c, 1)) < 0 && errno == EINTR) {
+    }
+    return count == 1 ? std::optional(c) : std::nullopt;
+  }
+
+ private:
+  int number_;
+};
+
+void take_back(std::string& text) {
+  const auto is_within = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };  // UTF-8
+  while (!text.empty() && is_within(text.back())) text.pop_back();
+  if (!text.empty()) text.pop_back();
+}
+
 std::string ask(std::string_view prompt) {
-  const std::unique_ptr<FILE, int (*)(FILE*)> terminal(std::fopen("/dev/tty", "r+"), &std::fclose);
-  if (!terminal)
-    throw std::invalid_argument(
-        "the passphrase is asked for at a terminal, and there is none; give a key file with --key-file");
-  const WithoutEcho silent(fileno(terminal.get()));
-  fmt::print(terminal.get(), "{}: ", prompt);
-  std::fflush(terminal.get());
+  constexpr std::string_view leaves("\3\4");  // Ctrl-C, Ctrl-D
+  const Terminal terminal;
+  const WithoutEcho silent(terminal.number());
+  terminal.say(fmt::format("{}: ", prompt));
   std::string text;
-  for (int c = std::fgetc(terminal.get()); c != EOF && c != '\n'; c = std::fgetc(terminal.get()))
-    text.push_back(static_cast<char>(c));
-  fmt::print(terminal.get(), "\n");
+  std::optional<char> c = terminal.next();
+  for (; c && *c != '\n' && *c != '\r' && leaves.find(*c) == std::string_view::npos; c = terminal.next()) {
+    if (*c == '\b' || *c == '\x7f') {
+      take_back(text);
+    } else {
+      text.push_back(*c);
+    }
+  }
+  terminal.say("\n");
+  if (!c || leaves.find(*c) != std::string_view::npos)
+    throw std::invalid_argument("no passphrase was given; nothing was done");
   return text;
 }
 

@@ -76,8 +76,9 @@ SessionRunOptions run_options_of(const Arguments& arguments, const Protocol& pro
   options.loop.virtual_time = arguments.rehearse;
   // The subject's terminal is no place for progress: it is on the screen there already.
   if (arguments.page) {
-    options.progress = [](std::size_t answered, std::size_t at_most) {
-      say(fmt::format("trial {} of {}{} is done", answered, at_most, ""));
+    const std::string_view of = is_adaptive(protocol.design) ? "at most " : "";
+    options.progress = [of](std::size_t answered, std::size_t at_most) {
+      say(fmt::format("{} of {}{} trials are done", answered, of, at_most));
     };
   }
   if (buttons != nullptr) {
@@ -107,7 +108,7 @@ void report(const Arguments& arguments, Context& context, const SessionRunResult
       say("Consent was not given; nothing was felt.");
       break;
     default:
-      say(fmt::format("{} trials of at most {} are done; 'kerf session run {}' goes on", result.answered,
+      say(fmt::format("{} of {} trials are done; 'kerf session run {}' goes on", result.answered,
                       result.at_most, arguments.file));
   }
   if (!arguments.rehearse)

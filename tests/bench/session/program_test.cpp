@@ -2,11 +2,15 @@
 
 #include "support/program.h"
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "bench/protocol/written_protocol.h"
 #include "sealed/session_store.h"
@@ -54,6 +58,34 @@ class SessionFolder {
   }
   TemporaryFolder folder_;
 };
+
+/// Runs a program at a terminal of its own and answers whatever ends with a colon.
+Outcome at_a_terminal(std::vector<std::string> command, std::vector<std::string> answers) {
+  command.insert(command.begin(), KERF_PROGRAM);
+  std::vector<char*> arguments;
+  for (std::string& argument : command) arguments.push_back(argument.data());
+  arguments.push_back(nullptr);
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    execv(arguments[0], arguments.data());
+    _exit(127);
+  }
+  Outcome outcome;
+  std::array<char, 512> bytes{};
+  for (ssize_t count = 0; (count = read(terminal, bytes.data(), bytes.size())) > 0;) {
+    outcome.errors.append(bytes.data(), static_cast<std::size_t>(count));
+    if (answers.empty() || !outcome.errors.ends_with(": ")) continue;
+    const std::string answer = answers.front() + "\n";
+    EXPECT_EQ(write(terminal, answer.data(), answer.size()), static_cast<ssize_t>(answer.size()));
+    answers.erase(answers.begin());
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  close(terminal);
+  outcome.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
 
 /// Refused with exit status 2 and one line that says so.
 void expect_refused(const Outcome& outcome, const std::string& why) {
@@ -172,6 +204,26 @@ TEST(SessionProgram, RefusesWhoIsNotItsSubjectOrHasNotItsKey) {
       "key");
   expect_refused(run_kerf({"session", "key", folder.path("k.key")}), "k.key");
   expect_refused(run_kerf({"session", "run", folder.path("s.h5"), "--rehearse"}), "--key-file");
+}
+
+TEST(SessionProgram, TakesAPassphraseThatNobodySees) {
+  const SessionFolder folder;
+  const auto make = [&](const std::vector<std::string>& answers) {
+    return at_a_terminal({"session", "new", folder.protocol(), "--subject", "S01", "-o", folder.path("s.h5")},
+                         answers);
+  };
+  expect_refused(make({"short"}), "expected 8 at least");
+  expect_refused(make({"four words of mine", "four words of thine"}), "are not the same");
+  expect_refused(make({"\x03"}), "no passphrase was given");
+  const Outcome made = make({"four words of mine", "four w\x7fwords\x7f\x7f\x7f\x7f\x7fwords of mine"});
+  ASSERT_EQ(made.exit_status, 0) << made.errors;
+  EXPECT_THAT(made.errors, Not(HasSubstr("words")));
+  const auto run = [&](const std::string& passphrase) {
+    return at_a_terminal({"session", "run", folder.path("s.h5"), "--rehearse"}, {passphrase});
+  };
+  expect_refused(run("four words of thine"), "does not open with this key");
+  EXPECT_EQ(run("four words of mine").exit_status, 0);
+  expect_refused(folder.analyze(), "--key-file: the session was sealed with a passphrase");
 }
 
 TEST(SessionProgram, RefusesASessionThatIsFinishedOrTamperedWith) {
