@@ -220,7 +220,7 @@ TEST(Blindness, NobodyWhoSeesEverythingButTheForceGuessesTheSamples) {
   // By chance 500 of 1,000; more than 577 or less than 423 happens once in a million.
   EXPECT_GT(right, 423U);
   EXPECT_LT(right, 577U);
-  // An entry that were two ticks longer for one of the laws would do; of less, the test before tells.
+  // An entry that were four ticks longer for one of the laws would do; of less, the test before tells.
   for (SeenTrial& trial : trials) trial.features[0] += trial.second_first ? 400.0 : 0.0;
   EXPECT_GT(guesses_right(trials), 950U) << "it finds a leak where there is one";
 }
