@@ -13,16 +13,14 @@
 
 #include "laws/placement.h"
 #include "loop/run.h"
+#include "protocol/samples.h"
 #include "regress/suite.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr double lever_m = 0.01;  ///< at which a torque is felt as a force
 constexpr double soft_start_s = 0.5;
 constexpr double no_force_n = 1e-9;
-
-double to_newtons(const std::string& unit) { return unit == "N·m" ? 1.0 / lever_m : 1.0; }
 
 std::string with_seed(const std::string& uri, std::size_t seed) {
   return fmt::format("{}{}seed={}", uri, uri.find('?') == std::string::npos ? '?' : '&', seed);
@@ -54,7 +52,7 @@ class FeltRows {
   FeltRows(const drivers::DeviceInfo& device, std::size_t ticks, FeltForces& felt) : felt_(felt) {
     felt_.axes = device.axes.size();
     felt_.force_n.reserve(felt_.force_n.size() + ticks * felt_.axes);
-    for (const drivers::AxisInfo& axis : device.axes) newtons_.push_back(to_newtons(axis.force_unit));
+    for (const drivers::AxisInfo& axis : device.axes) newtons_.push_back(felt_newtons(axis.force_unit));
   }
   void take(const schema::Row& row) {
     if (row.time_s < soft_start_s || felt_.force_n.size() + felt_.axes > felt_.force_n.capacity()) return;
@@ -157,7 +155,7 @@ FeltForces FeltRenderer::along_motion(const PlayedLaw& law) const {
   const auto law_axes = axes_of(law.law);
   FeltForces felt{.axes = law_axes.size(), .force_n = forces_along(*protocol_, law)};
   for (std::size_t i = 0; i < felt.force_n.size(); ++i)
-    felt.force_n[i] *= to_newtons(law_axes[i % felt.axes].force_unit);
+    felt.force_n[i] *= felt_newtons(law_axes[i % felt.axes].force_unit);
   return felt;
 }
 

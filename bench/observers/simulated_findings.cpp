@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <utility>
 
 #include <fmt/core.h>
+
+#include "signal/signal.h"
 
 namespace kerf::bench {
 namespace {
@@ -18,11 +22,9 @@ bool holds(const psychophysics::Interval& interval, double value) {
   return interval.lower <= value && value <= interval.upper;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+/// NaN of nothing.
+double middle_of(std::vector<double> values) {
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : median(std::move(values));
 }
 
 /// Mean and standard deviation of ln(estimate / truth), and how wide the intervals are.
@@ -43,7 +45,7 @@ void add_jnds(const std::vector<MainResult>& results, double truth, SimulatedFin
     errors.push_back(std::log(result.jnd / truth));
     sum += errors.back();
   }
-  found.jnd_ratio = median(ratios);
+  found.jnd_ratio = middle_of(ratios);
   if (errors.size() < 2) return;
   const auto n = static_cast<double>(errors.size());
   const double mean = sum / n;
@@ -93,7 +95,7 @@ SimulatedFindings findings_of(const std::vector<MainResult>& results, const Simu
       count(found.d_prime_covered, holds(result.d_prime_interval, truth.d_prime));
     }
   }
-  found.d_prime_median = median(std::move(d_primes));
+  found.d_prime_median = middle_of(std::move(d_primes));
   if (truth.is_of_levels) add_jnds(results, truth.jnd, found);
   found.notes = counted_notes(results);
   return found;

@@ -12,7 +12,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double lever_m = 0.01;  ///< at which a torque is felt as a force
 constexpr double largest_gain = 20.0;
 
 RegressionPath path_along(const Protocol& protocol, const LawFile& law) {
@@ -38,7 +37,6 @@ RegressionPath path_along(const Protocol& protocol, const LawFile& law) {
 }
 
 /// N; a torque as the force at a lever.
-double as_force(double value, const std::string& unit) { return unit == "N·m" ? value / lever_m : value; }
 
 /// Peak or root mean square of the force of a sample, at a gain of 1 [N].
 double strength_of(const Protocol& protocol, std::size_t sample) {
@@ -50,7 +48,7 @@ double strength_of(const Protocol& protocol, std::size_t sample) {
   for (std::size_t i = 0; i < forces.size(); i += axes.size()) {
     double squared = 0.0;
     for (std::size_t axis = 0; axis < axes.size(); ++axis)
-      squared += std::pow(as_force(forces[i + axis], axes[axis].force_unit), 2);
+      squared += std::pow(felt_newtons(axes[axis].force_unit) * forces[i + axis], 2);
     sum += squared;
     peak = std::max(peak, squared);
   }

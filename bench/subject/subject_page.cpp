@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <unistd.h>
+#include <sodium.h>
 
 #include "subject/page_files.h"
 #include "subject/subject_rules.h"
@@ -27,21 +25,13 @@ double now_s() {
 
 std::string new_token() {
   std::array<unsigned char, 16> bytes{};
-  if (getentropy(bytes.data(), bytes.size()) != 0) {
-    throw std::system_error(errno, std::generic_category(), "random bytes for the page of the session");
-  }
+  randombytes_buf(bytes.data(), bytes.size());
   return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 /// In a time that does not tell how much of it is right.
 bool is_same_secret(std::string_view given, std::string_view secret) noexcept {
-  if (given.size() != secret.size()) return false;
-  unsigned difference = 0;
-  for (std::size_t i = 0; i < secret.size(); ++i) {
-    difference |=
-        static_cast<unsigned>(static_cast<unsigned char>(given[i]) ^ static_cast<unsigned char>(secret[i]));
-  }
-  return difference == 0;
+  return given.size() == secret.size() && sodium_memcmp(given.data(), secret.data(), secret.size()) == 0;
 }
 
 std::string_view type_of(std::string_view name) noexcept {

@@ -16,6 +16,7 @@
 
 #include "datasets-schema/same_recording.h"
 #include "datasets-schema/sample_recording.h"
+#include "support/full_disk.h"
 #include "support/program.h"
 
 namespace kerf::schema {
@@ -254,29 +255,8 @@ TEST(RecordingWriter, RefusesAStatusThatDoesNotEndARecording) {
   writer.close("complete");
 }
 
-/// No file of this process grows beyond `bytes` while the object lives: a disk that is full, as a test can
-/// have.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
-
 std::error_code write_on_full_disk(const std::filesystem::path& file, rlim_t bytes) {
-  const FullDisk disk(bytes);
+  const kerf::test::FullDisk disk(bytes);
   try {
     write_recording(file, test::sample_recording(2000));
     return {};
@@ -303,7 +283,7 @@ TEST(FullDisk, LeavesTheEarlierRecordingInItsPlace) {
 /// Records until the disk is full; how many rows had been flushed by then.
 std::uint64_t record_until_full(const std::filesystem::path& file, rlim_t bytes) {
   std::uint64_t flushed = 0;
-  const FullDisk disk(bytes);
+  const kerf::test::FullDisk disk(bytes);
   try {
     RecordingWriter writer(file, header(), axes(), {.measures_force = true, .chunk_rows = 250});
     for (std::size_t begin = 0; begin < 4000; begin += 250) {
@@ -334,7 +314,7 @@ TEST(FullDisk, IsToldOfAgainByEveryLaterCall) {
   const test::TemporaryFolder folder;
   RecordingWriter writer(folder / "r.h5", header(), axes(), {});
   {
-    const FullDisk disk(30'000);
+    const kerf::test::FullDisk disk(30'000);
     writer.append(rows_of(0, 5000));
     EXPECT_THROW(writer.flush(), std::system_error);
   }

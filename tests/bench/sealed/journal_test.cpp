@@ -251,7 +251,7 @@ TEST(FullDisk, RefusesAnEntryAndGoesOnWhenThereIsRoomAgain) {
   run.append("trial", "trial 1", test::bytes_of("A"));
   const auto size = std::filesystem::file_size(session.journal());
   for (const rlim_t room : {0U, 1U, 30U, 100U, 4000U}) {
-    const test::FullDisk disk(size + room);
+    const kerf::test::FullDisk disk(size + room);
     try {
       run.append("trial", "trial 2", chance(5000));
       FAIL() << room;
@@ -271,7 +271,7 @@ TEST(FullDisk, LeavesTheJournalWhenARunCannotBeClosed) {
   auto run = session.run();
   run.append("trial", "trial 1", chance(20'000));
   {
-    const test::FullDisk disk(10'000);
+    const kerf::test::FullDisk disk(10'000);
     EXPECT_THROW(run.close(), std::system_error);
   }
   EXPECT_TRUE(session.has_journal());
@@ -286,7 +286,7 @@ TEST(FullDisk, LeavesTheJournalWhenARunCannotBeClosed) {
 TEST(FullDisk, AtTheBeginningOfARunLeavesNothing) {
   const test::SealedSession session;
   {
-    const test::FullDisk disk(10);
+    const kerf::test::FullDisk disk(10);
     EXPECT_THROW((void)session.run(), std::system_error);
   }
   EXPECT_FALSE(session.has_journal());

@@ -113,7 +113,7 @@ TEST(NewKeyFile, BelongsToItsOwnerAndIsNeverReplaced) {
 TEST(NewKeyFile, LeavesNothingOnAFullDisk) {
   const kerf::test::TemporaryFolder folder;
   {
-    const test::FullDisk disk(8);
+    const kerf::test::FullDisk disk(8);
     EXPECT_THROW(write_new_key_file(folder / "key"), std::system_error);
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

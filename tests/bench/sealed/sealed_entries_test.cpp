@@ -89,7 +89,7 @@ TEST(SealedEntries, ThatCannotBeWrittenLeaveNothing) {
   };
   EXPECT_THROW(create(folder / "none/s.h5"), std::system_error);
   {
-    const test::FullDisk disk(100);
+    const kerf::test::FullDisk disk(100);
     EXPECT_THROW(create(folder / "s.h5"), std::system_error);
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

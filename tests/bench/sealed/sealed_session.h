@@ -1,6 +1,5 @@
 #pragma once
 
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -8,12 +7,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <kerf/schema/session.h>
 
 #include "sealed/seal.h"
 #include "sealed/sealed_entries.h"
+#include "support/full_disk.h"
 #include "support/program.h"
 
 namespace kerf::bench::test {
@@ -73,27 +72,6 @@ class SealedSession {
   kerf::test::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "s.session.h5";
   SealKey key_;
-};
-
-/// No file of this process grows beyond `bytes` while the object lives: a disk that is full, as a test can
-/// have.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
 };
 
 }  // namespace kerf::bench::test

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/session/blind_run.h"
+#include "signal/signal.h"
 
 namespace kerf::bench {
 namespace {
@@ -134,12 +135,7 @@ class Onlooker : public test::WatchingSubject {
   std::chrono::steady_clock::time_point last_;
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+double typical(const std::vector<double>& values) { return values.empty() ? 0.0 : median(values); }
 
 /// One session, watched.
 std::vector<SeenTrial> watch(const Protocol& protocol, std::uint64_t seed) {
@@ -155,8 +151,8 @@ std::vector<SeenTrial> watch(const Protocol& protocol, std::uint64_t seed) {
   for (const schema::SessionEntry& entry : file.entries) {
     if (entry.kind != "trial") continue;
     const Onlooker::Trial& trial = onlooker.trials[at];
-    const double first_s = median(trial.tick_s[0]);
-    const double second_s = median(trial.tick_s[1]);
+    const double first_s = typical(trial.tick_s[0]);
+    const double second_s = typical(trial.tick_s[1]);
     seen.push_back(
         {.features = {static_cast<double>(entry.sealed.size()), static_cast<double>(entry.text.size()),
                       bits_in(entry.sealed), order_in(entry.sealed),
