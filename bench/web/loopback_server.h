@@ -13,6 +13,7 @@ namespace kerf::bench {
 
 /// One request, taken apart. Nothing is decoded: what needs a %-sequence is not for us.
 struct HttpRequest {
+  std::uint64_t number = 0;                    ///< of this request, from 1; the same when it is asked again
   std::string method;                          ///< "GET"
   std::string path;                            ///< "/view"
   std::map<std::string, std::string> query;    ///< "after" = "12"
