@@ -200,6 +200,31 @@ Handle open(hid_t parent, const std::string& path) {
   return Handle(call(H5Oopen, parent, path.c_str(), H5P_DEFAULT));
 }
 
+namespace {
+
+/// Bytes of a chunk that has to be unpacked as a whole; 0 for any other.
+std::size_t bytes_to_unpack(hid_t dataset) {
+  const Handle creation(call(H5Dget_create_plist, dataset));
+  if (H5Pget_layout(creation.id()) != H5D_CHUNKED || call(H5Pget_nfilters, creation.id()) == 0) return 0;
+  Extent chunk(extent_of(Handle(call(H5Dget_space, dataset))).size());
+  call(H5Pget_chunk, creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  std::size_t bytes = H5Tget_size(Handle(call(H5Dget_type, dataset)).id());
+  for (const auto length : chunk) bytes *= length;
+  return bytes;
+}
+
+}  // namespace
+
+Handle open_to_pass_through(hid_t parent, const std::string& path) {
+  // What is open already would be opened with the cache that it has.
+  const std::size_t bytes = bytes_to_unpack(open(parent, path).id());
+  constexpr std::size_t most_bytes = std::size_t{32} << 20U;
+  const auto access = property_list(H5P_DATASET_ACCESS);
+  call(H5Pset_chunk_cache, access.id(), std::size_t{11}, std::min(bytes, most_bytes),
+       H5D_CHUNK_CACHE_W0_DEFAULT);
+  return Handle(call(H5Dopen2, parent, path.c_str(), access.id()));
+}
+
 std::vector<std::string> children(hid_t group) {
   std::vector<std::string> names;
   const H5L_iterate_t collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {

@@ -331,4 +331,14 @@ Inspection inspect(const std::filesystem::path& file) {
   return inspection;
 }
 
+Inspection inspect_readable(const std::filesystem::path& file) {
+  auto inspection = inspect(file);
+  if (const auto* fatal = inspection.first_fatal()) {
+    const auto& [where, found, expected] = fatal->violation;
+    throw FormatError(file.string() + ": " + where + ": found " + found + ", expected " + expected +
+                      "; 'kerf validate' lists everything that is wrong");
+  }
+  return inspection;
+}
+
 }  // namespace kerf::schema

@@ -39,6 +39,10 @@ struct DamageError : FormatError {
 ///         std::system_error if it cannot be opened.
 [[nodiscard]] Inspection inspect(const std::filesystem::path& file);
 
+/// As inspect(). @throws also FormatError that names the first finding for which the recording cannot be
+/// read.
+[[nodiscard]] Inspection inspect_readable(const std::filesystem::path& file);
+
 /// Reads what was inspected; nothing in it may be fatal.
 [[nodiscard]] Recording read_inspected(const Inspection& inspection);
 
