@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include <hdf5_hl.h>
 
@@ -126,7 +128,18 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
 WritableFile WritableFile::open(const std::filesystem::path& file) {
   auto failure = std::make_unique<int>(0);
   const auto access = sturdy_access(*failure);
-  return {std::move(failure), Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()))};
+  // A reader locks a file for the moment in which it learns that the file is written.
+  constexpr int most_attempts = 20;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      Handle handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()));
+      return {std::move(failure), std::move(handle)};
+    } catch (const Error& error) {
+      const bool is_locked = std::string_view(error.what()).find("unable to lock") != std::string_view::npos;
+      if (!is_locked || attempt == most_attempts) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(attempt));
+    }
+  }
 }
 
 void WritableFile::start_live() {
@@ -158,10 +171,17 @@ Handle open_file(const std::filesystem::path& file) {
   try {
     return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   } catch (const Error& error) {
-    if (std::string_view(error.what()).find("already open for") == std::string_view::npos) throw;
+    const std::string_view why(error.what());
+    // The second is said where another thread follows the file just now.
+    if (why.find("already open for") == std::string_view::npos &&
+        why.find("locking flag values don't match") == std::string_view::npos) {
+      throw;
+    }
     // Each attempt to read what is just being written waits twice as long as the one before: 34 ms in all.
     const auto access = property_list(H5P_FILE_ACCESS);
     call(H5Pset_metadata_read_attempts, access.id(), 25U);
+    // Whoever follows a recording must not keep its writer from closing it.
+    call(H5Pset_file_locking, access.id(), hbool_t{false}, hbool_t{true});
     const hid_t live = H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());
     if (live < 0) throw;
     return Handle(live);

@@ -1,9 +1,15 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cerrno>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <system_error>
 #include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <kerf/schema/recording_file.h>
 
@@ -24,9 +30,28 @@ constexpr std::size_t index_of(Column column) { return static_cast<std::size_t>(
 
 constexpr bool is_of_floats(Column column) { return column >= Column::wake_latency; }
 
-h5::Handle open_if_there(hid_t file, const std::string& path) {
-  return h5::is_dataset(file, path) ? h5::open_to_pass_through(file, path) : h5::Handle();
-}
+/// Holds on to a file whatever it is renamed to, without anything of HDF5.
+class Held {
+ public:
+  explicit Held(const std::filesystem::path& file) : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ < 0) {
+      throw std::system_error(errno, std::generic_category(), file.string() + ": cannot read");
+    }
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+  ~Held() { ::close(descriptor_); }
+  [[nodiscard]] std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+struct Dataset {
+  std::string path;
+  bool is_there = false;
+  h5::Handle handle;  ///< closed in a live recording
+};
 
 template <typename T>
 void read_in_pieces(const h5::Handle& dataset, std::uint64_t first, std::uint64_t rows, std::size_t width,
@@ -43,24 +68,37 @@ void read_in_pieces(const h5::Handle& dataset, std::uint64_t first, std::uint64_
 }  // namespace
 
 struct RecordingFile::Implementation {
-  explicit Implementation(const std::filesystem::path& file)
-      : path(file), inspection(inspect_readable(file)) {
+  Implementation(const std::filesystem::path& file, Texts texts) : path(file) {
+    auto inspection = inspect_readable(file, texts == Texts::looked_through);
+    is_live = inspection.live;
     guarded([&] {
       about = read_all_but_rows(inspection);
       rows = rows_in_every_dataset(inspection);
       const hid_t id = inspection.file.id();
-      for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = open_if_there(id, column_paths[i]);
-      ticks = open_if_there(id, "/samples/tick");
-      flags = open_if_there(id, "/samples/flags");
+      for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = dataset_at(id, column_paths[i]);
+      ticks = dataset_at(id, "/samples/tick");
+      flags = dataset_at(id, "/samples/flags");
       for (const auto& channel : about.channels) {
-        channels.push_back(h5::open_to_pass_through(id, channel_path(channel.name)));
+        channels.push_back(dataset_at(id, channel_path(channel.name)));
       }
-      if (rows > 0) {
-        first_time_s = time_at(0);
-        last_time_s = time_at(rows - 1);
-      }
-      period_s = median_step();
     });
+    if (is_live) held.emplace(file);
+    opened = is_live ? h5::Handle() : std::move(inspection.file);
+    inspection = {};
+    if (rows > 0) {
+      first_time_s = time_at(0);
+      last_time_s = time_at(rows - 1);
+    }
+    period_s = median_step();
+  }
+
+  /// The writer of a live recording opens it anew to close it, and readers then find what they held before:
+  /// nothing of such a file stays open from one call to the next.
+  [[nodiscard]] Dataset dataset_at(hid_t file, std::string name) const {
+    Dataset dataset{.path = std::move(name), .is_there = false, .handle = {}};
+    dataset.is_there = h5::is_dataset(file, dataset.path);
+    if (dataset.is_there && !is_live) dataset.handle = h5::open_to_pass_through(file, dataset.path);
+    return dataset;
   }
 
   template <typename Action>
@@ -74,9 +112,11 @@ struct RecordingFile::Implementation {
     }
   }
 
+  [[nodiscard]] const Dataset& time() const { return columns[index_of(Column::time)]; }
+
   [[nodiscard]] double time_at(std::uint64_t row) const {
     double time_s = 0.0;
-    read_in_pieces(columns[index_of(Column::time)], row, 1, 1, &time_s);
+    read(time(), row, 1, 1, std::span(&time_s, 1));
     return time_s;
   }
 
@@ -84,10 +124,10 @@ struct RecordingFile::Implementation {
     constexpr std::uint64_t stretch = 4096;
     std::vector<double> steps;
     for (const std::uint64_t begin : {std::uint64_t{0}, rows / 2, rows - std::min(rows, stretch)}) {
-      std::vector<double> time(std::min(stretch, rows - begin));
-      if (!time.empty()) read_in_pieces(columns[index_of(Column::time)], begin, time.size(), 1, time.data());
-      for (std::size_t i = 1; i < time.size(); ++i) {
-        if (time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+      std::vector<double> times(std::min(stretch, rows - begin));
+      read(time(), begin, times.size(), 1, std::span(times));
+      for (std::size_t i = 1; i < times.size(); ++i) {
+        if (times[i] > times[i - 1]) steps.push_back(times[i] - times[i - 1]);
       }
     }
     if (steps.empty()) return 0.0;
@@ -97,32 +137,39 @@ struct RecordingFile::Implementation {
   }
 
   template <typename T>
-  void read(const h5::Handle& dataset, const char* name, std::uint64_t first, std::uint64_t count,
-            std::size_t width, std::span<T> values) const {
-    if (dataset.id() < 0) throw std::invalid_argument(path.string() + " has no " + name);
+  void read(const Dataset& dataset, std::uint64_t first, std::uint64_t count, std::size_t width,
+            std::span<T> values) const {
+    if (!dataset.is_there) throw std::invalid_argument(path.string() + " has no " + dataset.path);
     if (first > rows || count > rows - first) {
       throw std::out_of_range(path.string() + " has " + std::to_string(rows) + " rows, not the " +
                               std::to_string(count) + " from " + std::to_string(first) + " on");
     }
     if (values.size() != count * width) throw std::invalid_argument("values and rows differ in number");
-    guarded([&] { read_in_pieces(dataset, first, count, width, values.data()); });
+    if (count == 0) return;
+    guarded([&] {
+      if (!is_live) return read_in_pieces(dataset.handle, first, count, width, values.data());
+      const auto file = h5::open_file(held->path());
+      read_in_pieces(h5::open_to_pass_through(file.id(), dataset.path), first, count, width, values.data());
+    });
   }
 
   std::filesystem::path path;
-  Inspection inspection;
+  bool is_live = false;
+  std::optional<Held> held;
+  h5::Handle opened;
   Recording about;
   std::uint64_t rows = 0;
   double first_time_s = std::numeric_limits<double>::quiet_NaN();
   double last_time_s = std::numeric_limits<double>::quiet_NaN();
   double period_s = 0.0;
-  std::array<h5::Handle, column_paths.size()> columns;
-  h5::Handle ticks;
-  h5::Handle flags;
-  std::vector<h5::Handle> channels;
+  std::array<Dataset, column_paths.size()> columns;
+  Dataset ticks;
+  Dataset flags;
+  std::vector<Dataset> channels;
 };
 
-RecordingFile::RecordingFile(const std::filesystem::path& file)
-    : implementation_(std::make_unique<Implementation>(file)) {}
+RecordingFile::RecordingFile(const std::filesystem::path& file, Texts texts)
+    : implementation_(std::make_unique<Implementation>(file, texts)) {}
 
 RecordingFile::RecordingFile(RecordingFile&&) noexcept = default;
 RecordingFile& RecordingFile::operator=(RecordingFile&&) noexcept = default;
@@ -132,7 +179,7 @@ const Recording& RecordingFile::about() const noexcept { return implementation_-
 
 std::uint64_t RecordingFile::rows() const noexcept { return implementation_->rows; }
 
-bool RecordingFile::is_live() const noexcept { return implementation_->inspection.live; }
+bool RecordingFile::is_live() const noexcept { return implementation_->is_live; }
 
 double RecordingFile::first_time_s() const noexcept { return implementation_->first_time_s; }
 
@@ -141,22 +188,21 @@ double RecordingFile::last_time_s() const noexcept { return implementation_->las
 double RecordingFile::period_s() const noexcept { return implementation_->period_s; }
 
 std::size_t RecordingFile::width(Column column) const noexcept {
-  if (implementation_->columns[index_of(column)].id() < 0) return 0;
+  if (!implementation_->columns[index_of(column)].is_there) return 0;
   const bool is_per_axis = column >= Column::position && column <= Column::force_measured;
   return is_per_axis ? implementation_->about.dimensions() : 1;
 }
 
-bool RecordingFile::has_flags() const noexcept { return implementation_->flags.id() >= 0; }
+bool RecordingFile::has_flags() const noexcept { return implementation_->flags.is_there; }
 
 void RecordingFile::read(Column column, std::uint64_t first_row, std::uint64_t rows,
                          std::span<double> values) const {
   const auto& self = *implementation_;
   const auto& dataset = self.columns[index_of(column)];
-  const char* name = column_paths[index_of(column)];
-  if (!is_of_floats(column)) return self.read(dataset, name, first_row, rows, width(column), values);
+  if (!is_of_floats(column)) return self.read(dataset, first_row, rows, width(column), values);
   // HDF5 converts more slowly than the processor.
   std::vector<float> floats(values.size());
-  self.read(dataset, name, first_row, rows, 1, std::span(floats));
+  self.read(dataset, first_row, rows, 1, std::span(floats));
   std::ranges::copy(floats, values.begin());
 }
 
@@ -167,15 +213,15 @@ void RecordingFile::read_channel(std::size_t channel, std::uint64_t first_row,
     throw std::invalid_argument(self.path.string() + " has " + std::to_string(self.channels.size()) +
                                 " channels, there is no channel " + std::to_string(channel));
   }
-  self.read(self.channels[channel], "channel", first_row, values.size(), 1, values);
+  self.read(self.channels[channel], first_row, values.size(), 1, values);
 }
 
 void RecordingFile::read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const {
-  implementation_->read(implementation_->ticks, "/samples/tick", first_row, values.size(), 1, values);
+  implementation_->read(implementation_->ticks, first_row, values.size(), 1, values);
 }
 
 void RecordingFile::read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const {
-  implementation_->read(implementation_->flags, "/samples/flags", first_row, values.size(), 1, values);
+  implementation_->read(implementation_->flags, first_row, values.size(), 1, values);
 }
 
 }  // namespace kerf::schema

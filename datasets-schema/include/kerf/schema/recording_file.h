@@ -25,14 +25,19 @@ enum class Column : std::uint8_t {
 
 /// An open recording whose rows stay in the file until they are asked for; also the `NAME.partial` of a
 /// writer that is still at work or has died. What is in it when it is opened is what it holds: open it again
-/// for the rows that came since.
+/// for the rows that came since. A file that is written is never kept open, and may be renamed meanwhile.
 ///
 /// May be read by several threads. HDF5 has one lock for the whole process, so that every read is cut into
 /// pieces of some milliseconds at most: a recorder in the same process never waits for longer.
 class RecordingFile {
  public:
+  /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
+  /// long as reading the file once. Known to be sound are those of a file that was opened before and has not
+  /// changed since.
+  enum class Texts : std::uint8_t { looked_through, known_to_be_sound };
+
   /// @throws FormatError, std::invalid_argument, std::system_error, all as read_recording().
-  explicit RecordingFile(const std::filesystem::path& file);
+  explicit RecordingFile(const std::filesystem::path& file, Texts texts = Texts::looked_through);
   RecordingFile(RecordingFile&&) noexcept;
   RecordingFile& operator=(RecordingFile&&) noexcept;
   ~RecordingFile();
