@@ -152,6 +152,13 @@ const std::vector<MinMaxPyramid>& RecordingView::pyramids_of(std::size_t at) {
   return *pyramids;
 }
 
+const AxisCycles& RecordingView::cycles_along(std::size_t axis) {
+  const std::lock_guard lock(mutex_);
+  const auto found = cycles_.find(axis);
+  return found != cycles_.end() ? found->second
+                                : cycles_.emplace(axis, axis_cycles(file_, axis)).first->second;
+}
+
 TraceView RecordingView::view(std::span<const std::size_t> traces, double from_s, double to_s,
                               std::size_t columns) {
   for (const std::size_t trace : traces) {

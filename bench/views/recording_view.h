@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -13,6 +14,7 @@
 
 #include <kerf/schema/recording_file.h>
 
+#include "views/loops.h"
 #include "views/pyramid.h"
 #include "views/row_index.h"
 #include "views/trace_view.h"
@@ -58,6 +60,9 @@ class RecordingView {
   [[nodiscard]] TraceView view(std::span<const std::size_t> traces, double from_s, double to_s,
                                std::size_t columns);
 
+  /// The cycles along an axis; sought once if the recording was not segmented. @throws FormatError.
+  [[nodiscard]] const AxisCycles& cycles_along(std::size_t axis);
+
   /// Memory that the pyramids take.
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
@@ -85,7 +90,8 @@ class RecordingView {
   std::vector<Trace> traces_;
   std::vector<Place> places_;  ///< of each trace
   std::optional<RowIndex> rows_;
-  std::mutex mutex_;                                                 ///< of pyramids_
+  std::mutex mutex_;  ///< of all below
+  std::map<std::size_t, AxisCycles> cycles_;
   std::vector<std::optional<std::vector<MinMaxPyramid>>> pyramids_;  ///< of each source
   std::atomic<std::size_t> bytes_ = 0;
 };
