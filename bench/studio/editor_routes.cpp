@@ -28,10 +28,12 @@ class KeptCurves {
   explicit KeptCurves(Workspace& workspace) : workspace_(workspace) {}
 
   const KeptCurve& of(const std::string& id, std::size_t axis) {
-    const WorkspaceEntry file = workspace_.find(id, FileKind::recording);
-    const auto kept = std::find_if(curves_.begin(), curves_.end(),
-                                   [&](const KeptCurve& it) { return it.file.id == id && it.axis == axis; });
-    if (kept != curves_.end() && kept->file.modified == file.modified && kept->file.bytes == file.bytes) {
+    WorkspaceEntry file = workspace_.find(id, FileKind::recording);
+    file.modified = std::filesystem::last_write_time(file.path);  // not that of the last scan
+    const auto kept = std::find_if(curves_.begin(), curves_.end(), [&](const KeptCurve& it) {
+      return it.file.id == id && it.axis == axis;
+    });
+    if (kept != curves_.end() && kept->file.modified == file.modified) {
       curves_.splice(curves_.begin(), curves_, kept);
       return curves_.front();
     }
