@@ -39,6 +39,7 @@ export class Canvas {
       this.above,
       this.handles.group,
     );
+    this.plot.svg.querySelector(".curves")?.setAttribute("clip-path", "url(#editor_frame)");
     this.cursor = this.fromSpot(this.onLaw(0.5 * (curve.penetration[0]! + curve.penetration[curve.penetration.length - 1]!)));
     this.fit();
   }

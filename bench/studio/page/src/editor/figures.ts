@@ -9,7 +9,7 @@ import { inUnits } from "./scale";
 export class Figures {
   readonly table: HTMLTableElement;
   error: LawError | null = null;
-  private readonly cells = ["rmse", "rmse_jnd", "worst", "worst_at", "jnd", "segments"].map((it) =>
+  private readonly cells = ["rmse", "rmse_jnd", "worst", "worst_jnd", "worst_at", "jnd", "segments"].map((it) =>
     element("td", { class: "number", id: `error_${it}` }),
   );
   private waiting = 0;
@@ -19,7 +19,7 @@ export class Figures {
     private readonly drawing: Drawing,
     private readonly announce: (text: string) => void,
   ) {
-    const heads = ["Error (rms)", "in JNDs", "Worst", "at", "JND at the rms force", "Segments"];
+    const heads = ["Error (rms)", "in JNDs", "Worst", "in JNDs there", "at", "JND at rms force", "Segments"];
     this.table = element(
       "table",
       { class: "figures" },
@@ -41,19 +41,20 @@ export class Figures {
       ? [
           inUnits(error.rmse_n, force),
           `${plain(error.rmse_jnd)} JND`,
-          `${inUnits(error.worst_n, force)}, ${plain(error.worst_jnd)} JND`,
+          inUnits(error.worst_n, force),
+          `${plain(error.worst_jnd)} JND`,
           `${inUnits(error.worst_penetration, position)}, ${error.worst_branch}`,
           inUnits(error.jnd_n, force),
           String(segments),
         ]
-      : ["–", "–", "–", "–", "–", String(segments)];
+      : ["–", "–", "–", "–", "–", "–", String(segments)];
     texts.forEach((text, i) => (this.cells[i]!.textContent = text));
     if (this.told === knots) return;
     this.told = knots;
     clearTimeout(this.waiting);
     this.waiting = window.setTimeout(() => {
       this.announce(
-        `Error ${texts[0]}, ${texts[1]}; worst ${texts[2]} at ${texts[3]}; ${segments} ${segments === 1 ? "segment" : "segments"}`,
+        `Error ${texts[0]}, ${texts[1]}; worst ${texts[2]} at ${texts[4]}; ${segments} ${segments === 1 ? "segment" : "segments"}`,
       );
     }, 500);
   }

@@ -2,7 +2,7 @@ import type { Knots } from "../api";
 import { button, element } from "../ui/dom";
 import type { Drawing } from "./drawing";
 import { faultOf } from "./knots";
-import type { Scale } from "./scale";
+import { asField, type Scale } from "./scale";
 
 type Column = keyof Knots;
 
@@ -32,7 +32,7 @@ export class KnotTable {
   private fill(): void {
     for (const column of ["penetration", "closing", "opening"] as const) {
       this.inputs[column].forEach((input, i) => {
-        const text = String(Number((this.drawing.knots[column][i]! * this.scale(column).perUnit).toPrecision(6)));
+        const text = asField(this.drawing.knots[column][i]!, this.scale(column));
         if (document.activeElement !== input || Number(input.value) !== Number(text)) input.value = text;
       });
     }

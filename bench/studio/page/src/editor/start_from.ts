@@ -38,9 +38,9 @@ export function startFrom(context: Context, drawing: Drawing, workspace: Workspa
         if (law) void take(law.id, law.name);
       },
     },
-    element("option", { value: "" }, laws.length > 0 ? "choose" : "no piecewise law fits"),
+    element("option", { value: "" }, laws.length > 0 ? "choose" : "none here fits"),
     ...laws.map((it) => element("option", { value: it.id }, it.name)),
   );
   node.disabled = laws.length === 0;
-  return labelled("Start from a law file", node);
+  return labelled("Start from law", node);
 }

@@ -104,9 +104,11 @@ export function optima(context: Context, drawing: Drawing, axis: number, settled
       context.complain(error);
     }
   };
-  const best = button("Fill in", () => void take("/api/editor/best", { segments: Number(count.value), loop: drawing.hasOpening }), {
-    "aria-label": "Fill in the best breakpoints",
+  const best = button("Fill in the best", () => void take("/api/editor/best", { segments: Number(count.value), loop: drawing.hasOpening }), {
+    title: "The breakpoints with the least error for so many segments",
   });
-  const forces = button("Best forces here", () => void take("/api/editor/forces", { knots: drawing.knots }));
-  return element("div", { class: "optima" }, labelled("Best with segments", count), best, forces);
+  const forces = button("Best forces here", () => void take("/api/editor/forces", { knots: drawing.knots }), {
+    title: "The forces with the least error at the penetrations that are drawn",
+  });
+  return element("div", { class: "optima" }, labelled("Segments", count), best, forces);
 }

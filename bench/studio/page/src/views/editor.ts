@@ -123,8 +123,8 @@ function legend(): HTMLElement {
   const entries: [string, string][] = [
     ["closing", "averaged closing"],
     ["opening", "averaged opening"],
-    ["law", "drawn law, closing"],
-    ["law dashed", "opening"],
+    ["law", "law, closing"],
+    ["law dashed", "law, opening"],
   ];
   return element(
     "ul",
