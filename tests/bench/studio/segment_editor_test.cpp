@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -17,13 +18,12 @@
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
+#include "studio/editor_json.h"
 
 namespace kerf::bench {
 namespace {
 
-using testing::DoubleEq;
 using testing::DoubleNear;
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pointwise;
 using testing::ThrowsMessage;
@@ -138,6 +138,33 @@ TEST(LawError, GoesOnBeyondTheBreakpointsAsTheRenderedLawDoes) {
   const Knots inside{.penetration = {0.005, 0.01}, .closing = {1.0, 2.0}, .opening = {}};
   const Knots rendered{.penetration = {0.0, 0.005, 0.02}, .closing = {1.0, 1.0, 4.0}, .opening = {}};
   EXPECT_LT(law_error(curve_along(rendered), inside).rmse_n, 1e-14);
+}
+
+TEST(LawError, IsThatOfTheTableThatThePageIsHeldToToo) {
+  const auto near = [](double value) { return DoubleNear(value, 1e-9 * std::abs(value)); };
+  const auto cases = nlohmann::json::parse(
+      std::ifstream(std::filesystem::path(KERF_SOURCE_DIR) / "tests/bench/studio/editor_errors.json"));
+  ASSERT_GE(cases.size(), 5U);
+  for (const auto& one : cases) {
+    const auto& of = one["curve"];
+    const auto forces = [&](const char* branch) {
+      std::vector<double> all;
+      for (const auto& force : of[branch]) all.push_back(force.is_null() ? nothing : force.get<double>());
+      return all;
+    };
+    EditorCurve curve{
+        .penetration = of["penetration"], .closing = forces("closing"), .opening = forces("opening")};
+    curve.jnd = {.weber_fraction = of["jnd"]["weber_fraction"], .threshold_n = of["jnd"]["threshold_n"]};
+    const LawError error = law_error(curve, knots_in(one, "knots"));
+    const auto expected = one["error"];
+    EXPECT_THAT(error.rmse_n, near(expected["rmse_n"])) << one["name"];
+    EXPECT_THAT(error.worst_n, near(expected["worst_n"])) << one["name"];
+    EXPECT_EQ(error.worst_penetration, expected["worst_penetration"].get<double>()) << one["name"];
+    EXPECT_EQ(error.worst_is_closing, expected["worst_branch"] == "closing") << one["name"];
+    EXPECT_THAT(error.jnd_n, near(expected["jnd_n"])) << one["name"];
+    EXPECT_THAT(error.rmse_jnd, near(expected["rmse_jnd"])) << one["name"];
+    EXPECT_THAT(error.worst_jnd, near(expected["worst_jnd"])) << one["name"];
+  }
 }
 
 TEST(BestKnots, FindTheBreaksOfACurveThatHasThem) {
@@ -326,6 +353,42 @@ TEST(DrawnLaw, LiesWhereKerfFitPutsIts) {
       fit_recording(recording, {.models = {"piecewise"}, .segments = 3, .law_options = {"loop=true"}})
           .laws.at(0);
   EXPECT_LT(law_error(curve, knots_of(fitted.file)).rmse_jnd, 1.0) << "of the same forces, with their signs";
+}
+
+/// A punch through a meniscus: its averaged cycle is as the measured one, and takes a fit as `kerf fit` does.
+TEST(DrawnLaw, OfAMeniscusIsCloserTheMoreSegmentsItHas) {
+  const std::filesystem::path file =
+      std::filesystem::path(KERF_SHARED_DATA) / "meniscus/9_meniscus_slow_1824.txt";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
+  const schema::Recording punch =
+      import_text(file, {.map = parse_map("time=5[ms],position=4[deg],force=2[gf]"), .rate_hz = 0.0})
+          .recording;
+  const EditorCurve curve = editor_curve(punch, 0);
+  EXPECT_EQ(curve.cycles, 10U);
+  double last = std::numeric_limits<double>::infinity();
+  for (const std::size_t segments : {1U, 2U, 4U, 7U}) {
+    const Knots best = best_knots(curve, segments, true);
+    const LawError error = law_error(curve, best);
+    EXPECT_LT(error.rmse_n, last) << segments;
+    last = error.rmse_n;
+    EXPECT_NEAR(law_error(curve, best_forces(curve, best)).rmse_n, error.rmse_n, 1e-6 * error.rmse_n);
+    std::vector<double> force;
+    std::vector<double> place;
+    std::vector<std::uint8_t> branch;
+    for (std::size_t i = 0; i < curve.penetration.size(); ++i) {
+      for (std::uint8_t of = 0; of < 2; ++of) {
+        const double mean = of == 0 ? curve.closing[i] : curve.opening[i];
+        if (std::isnan(mean)) continue;
+        place.push_back(curve.penetration[i]);
+        force.push_back(mean);
+        branch.push_back(of);
+      }
+    }
+    const auto fitted = fitting::fit_segments(
+        {.position = place, .force = force, .weight = {}, .branch = branch}, {.most_segments = segments});
+    EXPECT_NEAR(error.rmse_n, fitted.back().rmse, 1e-9 * fitted.back().rmse) << "as the fit has it";
+  }
+  EXPECT_LT(last, 0.3) << "of up to 6 N";
 }
 
 struct BadKnots {
