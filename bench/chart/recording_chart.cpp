@@ -204,8 +204,7 @@ class RecordingChart {
 
 FitSource charted(const schema::Recording& recording, const std::string& name, const std::string& axis) {
   const std::size_t place = find_cut_axis(recording, axis);
-  return {
-      .recording = &recording, .name = name, .axis = place, .contact = contact_of(recording, place)};
+  return {.recording = &recording, .name = name, .axis = place, .contact = contact_of(recording, place)};
 }
 
 SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options) {

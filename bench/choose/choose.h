@@ -20,7 +20,7 @@ struct ChooseOptions {
   std::size_t threads = 1;  ///< among which the candidates are shared out; the choice does not depend on it
   std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
   std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates
-  bool richer_too = true;   ///< also fit what is richer than the law that serves, for the table
+  bool richer_too = true;  ///< also fit what is richer than the law that serves, for the table
   WalkOptions walk;
 };
 

@@ -21,7 +21,7 @@ enum class TriedBy : std::uint8_t {
 };
 
 struct DeviceChoiceOptions {
-  ChooseOptions choose;  ///< with the contact; its walk's checks are set here
+  ChooseOptions choose;   ///< with the contact; its walk's checks are set here
   LoopCheckOptions loop;  ///< without a device: device_for() the recording
   TriedBy tried_by = TriedBy::wall_clock;
   /// Before a law is tried, with the device's URI.

@@ -56,8 +56,7 @@ void check(const Arguments& arguments) {
 
 SpeedAccuracy chart_of_recording(const Arguments& arguments, const ChartOptions& options) {
   const schema::Recording recording = schema::read_recording(arguments.recording);
-  const FitSource source =
-      charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
+  const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
   try {
     return chart_recording(source, options);
   } catch (const std::invalid_argument& error) {
@@ -87,7 +86,8 @@ SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
                                  .deepest = deepest_of(scene, path, options.rate_hz)});
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
-    if (!scene.deeper.empty()) chart.notes.emplace_back("only the first layer of the scene's tissue is charted");
+    if (!scene.deeper.empty())
+      chart.notes.emplace_back("only the first layer of the scene's tissue is charted");
     return chart;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.scene, error.what()));
@@ -166,7 +166,8 @@ void add_chart(CLI::App& app, Context& context) {
   verb.add_flag("--no-hold", arguments->no_hold,
                 "Cross out nothing because it hums when the scene's hand presses it and holds still");
   verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
-  verb.add_option("-o,--output", arguments->output, "Folder for chart.svg, .csv, .json, .html, and points/ with the law of each point");
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder for chart.svg, .csv, .json, .html, and points/ with the law of each point");
   verb.add_flag("--force", arguments->force, "Replace existing files");
 }
 

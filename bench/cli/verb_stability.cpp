@@ -87,8 +87,7 @@ void add_stability(CLI::App& app, Context& context) {
   verb.add_option("--mass", on.mass_kg, "Mass instead of the device's [kg]").positive();
   verb.add_option("--viscous", on.viscous_n_s_per_m, "Viscous friction instead of the device's [N·s/m]")
       .not_negative();
-  verb.add_option("--coulomb", on.coulomb_n, "Coulomb friction instead of the device's [N]")
-      .not_negative();
+  verb.add_option("--coulomb", on.coulomb_n, "Coulomb friction instead of the device's [N]").not_negative();
   verb.add_option("--encoder", on.encoder_step_m, "Encoder step in travel instead of the device's [m]")
       .not_negative();
   verb.add_option("--filter", on.velocity_corner_rad_s,
@@ -99,11 +98,15 @@ void add_stability(CLI::App& app, Context& context) {
       .one_of({"none", "light", "firm", "arm"})
       .with_default();
   verb.add_option("--hand-mass", on.hand_mass_kg, "Instead of the grip's [kg]").not_negative();
-  verb.add_option("--hand-damping", on.hand_damping_n_s_per_m, "Instead of the grip's [N·s/m]").not_negative();
+  verb.add_option("--hand-damping", on.hand_damping_n_s_per_m, "Instead of the grip's [N·s/m]")
+      .not_negative();
   verb.add_option("--hand-stiffness", on.hand_stiffness_n_per_m, "Instead of the grip's [N/m]")
       .not_negative();
-  verb.add_option("--stiffness", arguments->study.stiffness_n_per_m, "Walls from so stiff to so stiff [N/m]").taking(2);
-  verb.add_option("--damping", arguments->study.damping_n_s_per_m, "Walls from so damped to so damped [N·s/m]").taking(2);
+  verb.add_option("--stiffness", arguments->study.stiffness_n_per_m, "Walls from so stiff to so stiff [N/m]")
+      .taking(2);
+  verb.add_option("--damping", arguments->study.damping_n_s_per_m,
+                  "Walls from so damped to so damped [N·s/m]")
+      .taking(2);
   verb.add_option("--cells", arguments->study.cells, "Cells along each side of a map")
       .within(2, 1000)
       .with_default();
@@ -115,7 +118,8 @@ void add_stability(CLI::App& app, Context& context) {
       .not_negative()
       .with_default();
   verb.add_flag("--boundaries", arguments->no_cells, "Only the boundaries, by bisection");
-  verb.add_option("--depth", arguments->study.range.depth_m, "How deep a tool goes into the law, in travel [m]")
+  verb.add_option("--depth", arguments->study.range.depth_m,
+                  "How deep a tool goes into the law, in travel [m]")
       .positive()
       .with_default();
   verb.add_option("--speed", arguments->study.range.speed_m_s, "How fast [m/s]").positive().with_default();

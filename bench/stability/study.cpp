@@ -58,8 +58,7 @@ Range range_of(const std::vector<double>& given, const char* option, Range stand
 }
 
 StudiedAxis studied(const StudyOptions& options, const drivers::DeviceInfo& info, std::size_t axis) {
-  return {
-      .device_uri = options.on.device_uri, .axis = info.axes[axis].name, .grip = options.on.grip};
+  return {.device_uri = options.on.device_uri, .axis = info.axes[axis].name, .grip = options.on.grip};
 }
 
 }  // namespace
@@ -69,8 +68,8 @@ Findings study_walls(const StudyOptions& options) {
   const std::size_t axis = axis_of(options.on, info);
   const SampledDevice device = device_of(options.on, info, axis);
   Grid2 grid = wall_grid(device, options.cells, options.cells);
-  const Range stiffness = range_of(options.stiffness_n_per_m, "--stiffness",
-                                   {grid.first.front(), grid.first.back()}, false);
+  const Range stiffness =
+      range_of(options.stiffness_n_per_m, "--stiffness", {grid.first.front(), grid.first.back()}, false);
   const Range damping =
       range_of(options.damping_n_s_per_m, "--damping", {grid.second.front(), grid.second.back()}, true);
   grid = {.first = logarithmic(stiffness.begin, stiffness.end, options.cells),

@@ -28,8 +28,8 @@ struct StudyOptions {
   std::size_t cells = 100;  ///< along each side of a map
   MapOptions map;
 
-  std::vector<double> stiffness_n_per_m;   ///< lower and upper end of the walls; empty: wall_grid()
-  std::vector<double> damping_n_s_per_m;   ///< likewise
+  std::vector<double> stiffness_n_per_m;  ///< lower and upper end of the walls; empty: wall_grid()
+  std::vector<double> damping_n_s_per_m;  ///< likewise
   WallTrial trial{.seconds = 2.0, .push_n = 2.0};
 
   ToolRange range;  ///< of a law

@@ -27,8 +27,8 @@ fs::path free_name(const Workspace& workspace, const std::string& stem, std::str
       if (taken.status != 409) throw;
     }
   }
-  throw RequestError(409,
-                     fmt::format("{}{} and {} more are there; remove some of them", stem, ending, most_names));
+  throw RequestError(
+      409, fmt::format("{}{} and {} more are there; remove some of them", stem, ending, most_names));
 }
 
 }  // namespace

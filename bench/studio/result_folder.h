@@ -20,8 +20,8 @@ class ResultFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Gives it its name in the workspace, STEM with the ending, or STEM-2, STEM-3, ... where that is taken, and
-  /// finds its file there. The file's id. @throws std::system_error, RequestError.
+  /// Gives it its name in the workspace, STEM with the ending, or STEM-2, STEM-3, ... where that is taken,
+  /// and finds its file there. The file's id. @throws std::system_error, RequestError.
   [[nodiscard]] std::string publish(Workspace& workspace, const std::string& stem, std::string_view ending,
                                     std::string_view file);
 

@@ -48,11 +48,12 @@ std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProg
   options.threads = usable_processors();
   options.stop = &progress.stop;
   options.done = &progress.done;
-  SpeedAccuracy chart = chart_recording(
-      charted(recording, request.recording.path.stem().string(), request.axis), options);
+  SpeedAccuracy chart =
+      chart_recording(charted(recording, request.recording.path.stem().string(), request.axis), options);
   if (chart.stopped) throw std::runtime_error("stopped");
   chart.notes.emplace_back(
-      "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they are "
+      "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they "
+      "are "
       "in a loop of their own; 'kerf chart' measures them in peace");
   ResultFolder folder(workspace);
   write_chart(chart, folder.path());
@@ -121,11 +122,12 @@ JobOrder choice_job(Workspace& workspace, ChoiceRequest request) {
 }
 
 JobOrder stability_job(Workspace& workspace, StabilityRequest request) {
-  return {.kind = "stability",
-          .title = fmt::format("Stability of {}", request.law ? request.law->name : request.study.on.device_uri),
-          .work = [&workspace, request = std::move(request)](JobProgress& progress) {
-            return run_stability(workspace, request, progress);
-          }};
+  return {
+      .kind = "stability",
+      .title = fmt::format("Stability of {}", request.law ? request.law->name : request.study.on.device_uri),
+      .work = [&workspace, request = std::move(request)](JobProgress& progress) {
+        return run_stability(workspace, request, progress);
+      }};
 }
 
 }  // namespace kerf::bench

@@ -11,9 +11,10 @@
 
 namespace kerf::bench {
 
-// What the program's own verbs do with a recording or a device, as jobs of a studio. Each writes what the verb
-// writes into a new folder of the workspace, which appears when all of it is there. Recordings are fitted and
-// charted by as many threads as there are processors beside the loop's. The workspace must outlive the jobs.
+// What the program's own verbs do with a recording or a device, as jobs of a studio. Each writes what the
+// verb writes into a new folder of the workspace, which appears when all of it is there. Recordings are
+// fitted and charted by as many threads as there are processors beside the loop's. The workspace must outlive
+// the jobs.
 
 /// `kerf fit`: NAME.fit.
 struct FitRequest {
