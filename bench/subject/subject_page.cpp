@@ -85,6 +85,11 @@ HttpResponse refused(int status, std::string_view why) {
 PageSubject::PageSubject(Gate gate, std::function<void()> wake)
     : gate_(std::move(gate)), wake_(std::move(wake)) {}
 
+std::optional<SessionStage> PageSubject::stage() {
+  const std::lock_guard lock(mutex_);
+  return number_ > 0 ? std::optional(view_.stage) : std::nullopt;
+}
+
 void PageSubject::wait_until_fetched() {
   std::unique_lock lock(mutex_);
   if (fetched_ > 0) fetch_.wait_for(lock, std::chrono::seconds(1), [this] { return fetched_ == number_; });

@@ -35,6 +35,8 @@ class PageSubject final : public Subject {
   [[nodiscard]] const Gate& gate() const noexcept { return gate_; }
   /// As HttpServer::Handler, with the folder taken off the path.
   [[nodiscard]] std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
+  /// Of the view that is shown; nothing before the first.
+  [[nodiscard]] std::optional<SessionStage> stage();
   /// Gives an open page up to a second to fetch the last view.
   void wait_until_fetched();
 

@@ -43,6 +43,10 @@ class HttpServer::State {
       : most_body_(options.most_body), acceptor_(io_), pause_(io_), end_(io_) {
     error_code error;
     const tcp::endpoint address(asio::ip::make_address(options.address, error), options.port);
+    if (!error && address.address().is_unspecified())
+      throw std::invalid_argument(fmt::format(
+          "{} stands for every address of this machine; give one of them, by which browsers call it",
+          options.address));
     if (!error) acceptor_.open(address.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor_.bind(address, error);
@@ -296,6 +300,7 @@ std::vector<std::string> HttpServer::hosts() const {
   if (local.address().is_loopback()) names.push_back(fmt::format("localhost:{}", local.port()));
   return names;
 }
+bool HttpServer::is_loopback() const noexcept { return state_->local().address().is_loopback(); }
 void HttpServer::start(Handler handler) { state_->start(std::move(handler)); }
 void HttpServer::wake() noexcept { state_->wake(); }
 void HttpServer::stop() { state_->end(); }

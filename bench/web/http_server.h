@@ -59,7 +59,9 @@ class HttpServer {
   /// 20 s with `overdue`, where it has to answer. Called from the server's thread; must not throw.
   using Handler = std::function<std::optional<HttpResponse>(const HttpRequest& request, bool overdue)>;
 
-  /// @throws std::invalid_argument: no such address, the port is in use, or not permitted.
+  /// @throws std::invalid_argument: no such address, or one that stands for all (0.0.0.0); the port is in
+  /// use,
+  ///         or not permitted.
   explicit HttpServer(const ServerOptions& options);
   explicit HttpServer(std::uint16_t port = 0) : HttpServer(ServerOptions{.port = port}) {}
   HttpServer(const HttpServer&) = delete;
@@ -70,6 +72,7 @@ class HttpServer {
   [[nodiscard]] std::uint16_t port() const noexcept;
   /// How browsers name it: "127.0.0.1:8000", and "localhost:8000" where it listens on loopback.
   [[nodiscard]] std::vector<std::string> hosts() const;
+  [[nodiscard]] bool is_loopback() const noexcept;
   void start(Handler handler);
   void wake() noexcept;
   /// Calls the handler no more: what it uses may go. As the destructor.
