@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "choose/candidates.h"
 #include "stability/study.h"
 #include "studio/jobs.h"
 #include "studio/workspace.h"
@@ -39,6 +40,7 @@ struct ChoiceRequest {
   WorkspaceEntry recording;
   std::string axis;  ///< empty: that of the cycles, or the first
   double rate_hz = 1000.0;
+  std::size_t most_segments = CandidateOptions{}.most_segments;  ///< of the piecewise law, 1 to 16
 };
 [[nodiscard]] JobOrder choice_job(Workspace& workspace, ChoiceRequest request);
 

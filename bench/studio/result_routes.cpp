@@ -80,9 +80,12 @@ HttpResponse order_chart(const HttpRequest& request, Workspace& workspace, Jobs&
 
 HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
   const nlohmann::json given = json_in(request);
-  return order(jobs, choice_job(workspace, {.recording = recording_in(given, workspace),
-                                            .axis = text_or(given, "axis", ""),
-                                            .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)}));
+  ChoiceRequest choice{.recording = recording_in(given, workspace),
+                       .axis = text_or(given, "axis", ""),
+                       .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)};
+  if (given.contains("most_segments"))
+    choice.most_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
+  return order(jobs, choice_job(workspace, std::move(choice)));
 }
 
 HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {

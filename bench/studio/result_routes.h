@@ -12,7 +12,7 @@ namespace kerf::bench {
 ///     GET  /api/jobs         POST /api/jobs/stop {job}
 ///     POST /api/fit          {recording, axis, models, folds}
 ///     POST /api/chart        {recording, axis, models}
-///     POST /api/choose       {recording, axis, rate_hz?}
+///     POST /api/choose       {recording, axis, rate_hz?, most_segments?}
 ///     POST /api/stability    {device, axis?, rate_hz, grip?, law?, depth_m?, speed_m_s?, cells}
 ///     GET  /api/result?id=   fit.json, chart.json, choose.json or stability.json as it stands
 ///     GET  /api/law?id=      law_as_json()
