@@ -1,7 +1,7 @@
 import { linearTicks } from "./numbers";
 
 /**
- * Limits of a value axis that stay calm: round, and kept while the values stay within and fill a third of them.
+ * Limits of a value axis that stay calm: round, and kept while the values stay within and fill two fifths of them.
  * Logarithmic axes are given and give logarithms to base 10.
  */
 export function calmLimits(
@@ -18,11 +18,11 @@ export function calmLimits(
     lower -= room;
     upper += room;
   }
-  if (before && lower >= before[0] && upper <= before[1] && upper - lower > 0.33 * (before[1] - before[0])) {
+  if (before && lower >= before[0] && upper <= before[1] && upper - lower > 0.4 * (before[1] - before[0])) {
     return [before[0], before[1]];
   }
   const room = 0.06 * (upper - lower);
-  const ticks = linearTicks(lower - room, upper + room, 5);
+  const ticks = linearTicks(lower - room, upper + room, 16); // finer than any axis writes them
   const step = (ticks[1] ?? 1) - (ticks[0] ?? 0);
   return [Math.floor((lower - room) / step) * step, Math.ceil((upper + room) / step) * step];
 }

@@ -4,8 +4,9 @@ import { drawn, element } from "./dom";
 import { linearTicks, plain, unitFor } from "./numbers";
 import { dashes, palette } from "./palette";
 import { calmLimits } from "./time_limits";
-import { columnAt, drawLine, widen, type Mapping, type TimeLine } from "./time_line";
+import { columnAt, widen, type Mapping, type TimeLine } from "./time_line";
 import { drawEvents, drawGround, type TimeMarks } from "./time_marks";
+import { TimeRaster } from "./time_raster";
 import type { TimeRange } from "./time_range";
 
 const axisWidth = 76;
@@ -22,7 +23,7 @@ export interface Shared {
 }
 
 /**
- * One plot of quantities of one unit over time: axes by uPlot, lines as drawLine() does, a legend that is the
+ * One plot of quantities of one unit over time: axes by uPlot, lines by TimeRaster, a legend that is the
  * cursor's read-out too. Its size is its box's; nothing in it moves anything outside.
  */
 export class TimePlot {
@@ -36,6 +37,7 @@ export class TimePlot {
   private unit: { factor: number; text: string };
   private readonly found = { lower: 0, upper: 0 };
   private readonly map: Mapping;
+  private readonly raster = new TimeRaster();
 
   constructor(
     readonly title: string,
@@ -201,7 +203,7 @@ export class TimePlot {
   }
 
   private valueTicks(lower: number, upper: number, height: number): number[] {
-    const count = Math.max(2, height / 34);
+    const count = Math.max(2, height / 26);
     if (!this.logarithmic) return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
     const ticks: number[] = [];
     const every = Math.max(1, Math.ceil((upper - lower) / count));
@@ -232,17 +234,9 @@ export class TimePlot {
     const { ctx: context } = plot;
     const { map } = this;
     const colours = palette();
-    context.save();
-    context.beginPath();
-    context.rect(map.left, map.top, map.width, map.height);
-    context.clip();
-    context.lineWidth = 1.5 * map.pixels;
-    context.lineJoin = "bevel";
-    for (const line of this.lines) {
-      context.strokeStyle = context.fillStyle = colours.lines[line.look] ?? colours.ink;
-      drawLine(context, line, map, dashes[line.look] ?? []);
-    }
-    context.restore();
+    this.raster.begin(map);
+    for (const line of this.lines) this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
+    this.raster.paint(context);
     drawEvents(context, this.shared.marks, map);
   }
 }
