@@ -28,6 +28,7 @@ export interface WorkspaceRecording {
   bytes: number;
   modified: string; // ISO 8601
   partial: boolean; // not closed: being written, or left by a crash
+  seconds?: number; // where the server knows it without opening the file
 }
 export interface WorkspaceLaw {
   id: string;

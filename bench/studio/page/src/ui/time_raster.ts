@@ -71,8 +71,10 @@ export class TimeRaster {
       const upper = y0 - (map.logarithmic ? Math.log10(largest > floor ? largest : floor) : largest) * perValue;
       const lower = y0 - (map.logarithmic ? Math.log10(smallest > floor ? smallest : floor) : smallest) * perValue;
       this.put(Math.floor(x), upper, lower);
-      if (spacing > 12 * map.pixels || !(x - before < furthest)) this.dot(x, upper, lower, map.pixels);
-      if (x - before < furthest) this.join(before, upperBefore, lowerBefore, x, upper, lower);
+      const joined = x - before < furthest;
+      const alone = !joined && !(x0 + (line.time[i + 1] ?? Infinity) * perSecond - x < furthest);
+      if (alone || spacing > 12 * map.pixels) this.dot(x, upper, lower, map.pixels);
+      if (joined) this.join(before, upperBefore, lowerBefore, x, upper, lower);
       before = x;
       upperBefore = upper;
       lowerBefore = lower;
