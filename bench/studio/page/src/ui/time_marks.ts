@@ -31,6 +31,7 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
   context.textBaseline = "top";
   for (const span of marks.spans) {
     if (span.to_s < map.from || span.from_s > map.to) continue;
+    if (((span.to_s - span.from_s) / (map.to - map.from)) * map.width < 2 * map.pixels) continue; // a blur
     const [left, width] = within(map, span.from_s, span.to_s);
     context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0] as string;
     if (span.shade !== "plain") {

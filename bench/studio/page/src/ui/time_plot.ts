@@ -34,6 +34,7 @@ export class TimePlot {
   private readonly line = element("div", { class: "time_cursor", hidden: true });
   private readonly values: HTMLElement[] = [];
   private limits: [number, number] | null = null;
+  private seen = false; // any value yet
   private unit: { factor: number; text: string };
   private readonly found = { lower: 0, upper: 0 };
   private readonly map: Mapping;
@@ -78,10 +79,13 @@ export class TimePlot {
     this.found.upper = -Infinity;
     for (const line of this.lines) widen(this.found, line, range.from, range.to, this.logarithmic);
     const { lower, upper } = this.found;
+    const before = this.seen ? this.limits : null;
+    this.seen ||= lower <= upper;
     this.limits = this.logarithmic
-      ? calmLimits(Math.log10(lower), Math.log10(Math.max(upper, lower)), this.limits, true)
-      : calmLimits(lower, upper, this.limits, false);
-    this.unit = unitFor(this.logarithmic ? 1 : Math.max(-this.limits[0], this.limits[1]), this.lines[0]?.unit ?? "");
+      ? calmLimits(Math.log10(lower), Math.log10(Math.max(upper, lower)), before, true)
+      : calmLimits(lower, upper, before, false);
+    const limits = this.limits;
+    this.unit = unitFor(this.logarithmic ? 1 : Math.max(-limits[0], limits[1]), this.lines[0]?.unit ?? "");
     this.plot.redraw(true, true);
     this.point();
   }

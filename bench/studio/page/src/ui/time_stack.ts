@@ -1,7 +1,7 @@
 import "./time_plot.css";
 
 import { button, element } from "./dom";
-import { withUnit } from "./numbers";
+import { plain, withUnit } from "./numbers";
 import { onColours } from "./palette";
 import { timeGestures, timeKey } from "./time_gestures";
 import type { TimeLine } from "./time_line";
@@ -127,7 +127,7 @@ export class TimeStack {
     const decimals = Math.min(6, Math.max(2, Math.ceil(3 - Math.log10(Math.max(span, 1e-9)))));
     const at = (t: number): string => `${(t - origin).toFixed(decimals).replace("-", "−")} s`;
     const seen = cursor !== null && cursor >= from && cursor <= to;
-    const text = `${at(from)} to ${at(to)} (${withUnit(span, "s", 4)})${seen ? `, cursor at ${at(cursor)}` : ""}`;
+    const text = `${at(from)} to ${at(to)} (${span < 1 ? withUnit(span, "s", 3) : `${plain(span, 5)} s`})${seen ? `, cursor at ${at(cursor)}` : ""}`;
     if (this.reading.textContent !== text) this.reading.textContent = text;
   }
 

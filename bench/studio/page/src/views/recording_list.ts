@@ -9,10 +9,11 @@ export function recordingList(workspace: Workspace): HTMLElement {
   const all = [...workspace.recordings].sort((a, b) => b.modified.localeCompare(a.modified));
   const count = element("p", { class: "quiet", role: "status" });
   const body = element("tbody");
+  const timed = all.some((it) => it.seconds !== undefined);
   const show = (): void => {
     const wanted = filter.value.trim().toLowerCase().split(/\s+/);
     const found = all.filter((it) => wanted.every((word) => it.name.toLowerCase().includes(word)));
-    body.replaceChildren(...found.slice(0, shownAtOnce).map(row));
+    body.replaceChildren(...found.slice(0, shownAtOnce).map((it) => row(it, timed)));
     const more = found.length > shownAtOnce ? `; the newest ${shownAtOnce} are shown` : "";
     count.textContent = `${found.length} of ${all.length} recordings${more}`;
   };
@@ -21,7 +22,7 @@ export function recordingList(workspace: Workspace): HTMLElement {
     "tr",
     {},
     element("th", { scope: "col" }, "Name"),
-    element("th", { scope: "col", class: "number" }, "Length"),
+    timed ? element("th", { scope: "col", class: "number" }, "Length") : null,
     element("th", { scope: "col", class: "number" }, "Size"),
     element("th", { scope: "col" }, "Changed"),
   );
@@ -36,7 +37,7 @@ export function recordingList(workspace: Workspace): HTMLElement {
   );
 }
 
-function row(it: WorkspaceRecording): HTMLElement {
+function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
   return element(
     "tr",
     {},
@@ -48,7 +49,7 @@ function row(it: WorkspaceRecording): HTMLElement {
         ? element("p", { class: "partial" }, "Not closed: being written, or left by a crash. Then mend it: ", element("code", {}, `kerf repair ${it.name}`))
         : null,
     ),
-    element("td", { class: "number" }, it.seconds === undefined ? "–" : length(it.seconds)),
+    timed ? element("td", { class: "number" }, it.seconds === undefined ? "–" : length(it.seconds)) : null,
     element("td", { class: "number" }, bytes(it.bytes)),
     element("td", {}, date(it.modified)),
   );
