@@ -31,10 +31,14 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", std::string("kerf " KERF_VERSION));
   app.require_subcommand(1);
   Context context;
-  for (const auto add : {add_blade,   add_chart,     add_check,  add_choose,  add_demo,      add_devices,
-                         add_fit,     add_import,    add_info,   add_laws,    add_prepare,   add_record,
-                         add_regress, add_repair,    add_replay, add_report,  add_reproduce, add_segment,
-                         add_session, add_stability, add_train,  add_validate}) {
+  for (const auto add :
+       {add_blade,  add_chart,   add_check,     add_choose,  add_demo,    add_devices,   add_fit,
+        add_import, add_info,    add_laws,      add_prepare, add_record,  add_regress,   add_repair,
+        add_replay, add_report,  add_reproduce, add_segment, add_session, add_stability,
+#ifdef KERF_STUDIO
+        add_studio,
+#endif
+        add_train,  add_validate}) {
     add(app, context);
   }
   try {

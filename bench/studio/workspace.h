@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 namespace kerf::bench {
 
 enum class FileKind : std::uint8_t {
@@ -60,8 +58,12 @@ class Workspace {
   [[nodiscard]] std::string id_of(const std::filesystem::path& file) const;
 
  private:
+  [[nodiscard]] std::map<std::string, WorkspaceEntry> known_files() const;
+  /// Whether a file of HDF5 is one of ours, and which; what has not changed is not opened again.
+  static bool look_into(WorkspaceEntry& entry, const std::map<std::string, WorkspaceEntry>& known);
+
   std::filesystem::path folder_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::string, WorkspaceEntry> found_;  ///< by id
 };
 

@@ -42,10 +42,10 @@ export interface WorkspaceLaw {
 export interface WorkspaceSession {
   id: string;
   name: string;
-  study: string;
+  subject: string; // a code
+  key: string; // "key file" or "passphrase"
   finished: boolean;
   answered: number;
-  at_most: number;
   error: string;
 }
 export interface WorkspaceFile {

@@ -1,11 +1,143 @@
-import { element } from "../ui/dom";
-import type { View } from "../ui/view";
+import "./sessions.css";
 
-export const sessions: View = {
-  name: "sessions",
-  title: "Sessions",
-  mount(root) {
-    root.append(element("h1", {}, "Sessions"));
-    return () => {};
-  },
+import type { SessionState, Workspace, WorkspaceSession } from "../api";
+import { button, element, labelled } from "../ui/dom";
+import type { Context, View } from "../ui/view";
+
+const stages: Record<string, string> = {
+  checking: "The laws are tried on the device",
+  welcome: "Waiting for the subject",
+  consent: "The subject reads the consent",
+  instructions: "The subject reads the instructions",
+  trial: "A trial is under way",
+  feedback: "The subject reads how practice went",
+  pause: "A break",
+  finished: "The subject has finished",
 };
+
+/** How far a session is: nothing of what was felt or answered. */
+function progressCard(): { root: HTMLElement; show(state: SessionState): void; stop: HTMLButtonElement } {
+  const name = element("h2", {}, "No session is running");
+  const stage = element("p", { role: "status" });
+  const bar = element("progress", { max: 1, value: 0, "aria-label": "Trials done" });
+  const count = element("p", { class: "count" });
+  const link = element("a", { target: "_blank", rel: "noopener noreferrer" }, "Open the subject's page");
+  const warnings = element("ul", { class: "warnings", "aria-label": "Warnings" });
+  const stop = button("Stop the session", () => {});
+  const root = element("section", { class: "card progress", "aria-label": "Progress" }, name, stage, bar, count, link, warnings, stop);
+  return {
+    root,
+    stop,
+    show(state) {
+      name.textContent = state.name || "No session is running";
+      stage.textContent = state.running ? (stages[state.stage] ?? state.stage) : state.ended && `Ended: ${state.ended}`;
+      bar.max = Math.max(1, state.at_most);
+      bar.value = state.answered;
+      count.textContent = state.at_most > 0 ? `${state.answered} of ${state.adaptive ? "at most " : ""}${state.at_most} trials` : "";
+      link.hidden = !state.subject_url;
+      if (state.subject_url && link.getAttribute("href") !== state.subject_url) link.href = state.subject_url;
+      stop.hidden = !state.running;
+      if (warnings.childElementCount !== state.warnings.length)
+        warnings.replaceChildren(...state.warnings.map((it) => element("li", {}, it)));
+    },
+  };
+}
+
+function whereItStands(session: WorkspaceSession): string {
+  if (session.error) return session.error;
+  if (session.finished) return "finished";
+  return session.answered > 0 ? `${session.answered} trials done` : "not begun";
+}
+
+/** What is needed to begin: the device, and the passphrase of whoever keeps the blinding. */
+function startForm(session: WorkspaceSession, device: string, start: (order: Record<string, unknown>) => void): HTMLFormElement {
+  const uri = element("input", { type: "text", placeholder: "the protocol's", spellcheck: "false", autocomplete: "off" });
+  const passphrase = element("input", { type: "password", autocomplete: "off", required: session.key === "passphrase" });
+  const check = element("input", { type: "checkbox", checked: true });
+  return element(
+    "form",
+    {
+      class: "card start",
+      submit: (event: SubmitEvent) => {
+        event.preventDefault();
+        start({ session: session.id, device: uri.value.trim(), passphrase: passphrase.value, check: check.checked });
+        passphrase.value = "";
+      },
+    },
+    element("h2", {}, `Subject ${session.subject}, ${session.name}`),
+    labelled(`Device (empty: the protocol's; this studio's is ${device})`, uri),
+    session.key === "passphrase"
+      ? labelled("Passphrase of whoever keeps the blinding", passphrase)
+      : element("p", { class: "quiet" }, "Sealed with a key file: the studio has to be started with --key-file."),
+    element("label", { class: "tick" }, check, element("span", {}, "Try the laws on the device first")),
+    element("button", { type: "submit", class: "firm" }, session.answered > 0 ? "Go on with the session" : "Begin the session"),
+  );
+}
+
+function mount(root: HTMLElement, context: Context): () => void {
+  const card = progressCard();
+  const list = element("ul", { class: "files", "aria-label": "Sessions" });
+  const form = element("div", { class: "form" });
+  const intro = element(
+    "p",
+    { class: "quiet" },
+    "While a session runs the scope shows nothing, and nobody can tell here which sample is felt. ",
+    "Sessions are made by 'kerf session new' and read by 'kerf session analyze'.",
+  );
+  root.append(
+    element("h1", { tabindex: -1 }, "Sessions"),
+    element("div", { class: "columns" }, element("div", {}, intro, list, form), card.root),
+  );
+  let device = "";
+  let running = false;
+
+  const choose = (session: WorkspaceSession): void => {
+    form.replaceChildren(
+      startForm(session, device, (order) => {
+        context.say("The session is being opened");
+        context.api.post<SessionState>("/api/session/start", order).then((state) => {
+          card.show(state);
+          form.replaceChildren();
+          context.say("");
+        }, context.complain);
+      }),
+    );
+    form.querySelector("input")?.focus();
+  };
+
+  const refresh = async (): Promise<void> => {
+    const workspace = await context.api.get<Workspace>("/api/workspace");
+    device = workspace.device;
+    list.replaceChildren(
+      ...workspace.sessions.map((it) =>
+        element(
+          "li",
+          {},
+          element("span", { class: "name" }, it.name),
+          element("span", {}, it.subject ? `subject ${it.subject}` : ""),
+          element("span", { class: "quiet" }, whereItStands(it)),
+          button(it.answered > 0 ? "Go on" : "Begin", () => choose(it), {
+            disabled: it.finished || it.error !== "",
+            "aria-label": `${it.answered > 0 ? "Go on with" : "Begin"} ${it.name}`,
+          }),
+        ),
+      ),
+    );
+    if (workspace.sessions.length === 0)
+      list.replaceChildren(element("li", {}, "There is no session in this folder: make one by 'kerf session new'."));
+  };
+
+  const look = async (): Promise<void> => {
+    const state = await context.api.get<SessionState>("/api/session");
+    card.show(state);
+    if (running && !state.running) await refresh();
+    running = state.running;
+  };
+  card.stop.addEventListener("click", () => context.api.post("/api/session/stop").then(look).catch(context.complain));
+  refresh().catch(context.complain);
+  look().catch(context.complain);
+  const timer = setInterval(() => look().catch(context.complain), 500);
+  return () => clearInterval(timer);
+}
+
+export const sessions: View = { name: "sessions", title: "Sessions", mount };

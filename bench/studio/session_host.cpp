@@ -1,0 +1,142 @@
+#include "studio/session_host.h"
+
+#include <csignal>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "protocol/protocol.h"
+#include "sealed/session_store.h"
+#include "session/device_check.h"
+#include "session/run_session.h"
+#include "subject/subject_words.h"
+#include "web/routes.h"
+
+namespace kerf::bench {
+namespace {
+
+SealKey key_of(const SessionHost::Order& order, const schema::KeyDerivation& derivation) {
+  if (derivation.kind == "passphrase") {
+    if (order.passphrase.empty())
+      throw RequestError(400, "the session was sealed with a passphrase; give it");
+    return SealKey::from_passphrase(order.passphrase, derivation);
+  }
+  if (order.key_file.empty())
+    throw RequestError(400,
+                       "the session was sealed with a key file; start the studio with --key-file to run it");
+  return SealKey::from_file(order.key_file, derivation);
+}
+
+std::string end_in_words(const SessionRunResult& result) {
+  switch (result.end) {
+    case SessionEnd::finished:
+      return fmt::format("finished: {} trials", result.answered);
+    case SessionEnd::declined:
+      return "consent was not given; nothing was felt";
+    default:
+      return fmt::format("stopped after {} of {} trials; it can be gone on with", result.answered,
+                         result.at_most);
+  }
+}
+
+}  // namespace
+
+/// A session that is open, until its thread has ended.
+class SessionHost::Running {
+ public:
+  explicit Running(const Order& order)
+      : order_(order),
+        store_(order.file, key_of(order, derivation_of(order.file)), SessionStore::Purpose::run) {
+    order_.passphrase.assign(order_.passphrase.size(), '\0');
+    if (store_.finished())
+      throw RequestError(409, "the session is finished; 'kerf session analyze' opens it");
+    if (order_.device_uri.empty()) order_.device_uri = store_.protocol().device_uri;
+    if (order_.device_uri.empty()) throw RequestError(400, "the protocol names no device; give one");
+  }
+
+  Order order_;
+  SessionStore store_;
+};
+
+SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake)
+    : hosts_(std::move(hosts)), wake_(std::move(wake)) {}
+
+SessionHost::~SessionHost() { stop(); }
+
+void SessionHost::start(const Order& order) {
+  if (running_.exchange(true)) throw RequestError(409, "a session is running");
+  std::shared_ptr<Running> running;
+  try {
+    running = std::make_shared<Running>(order);
+  } catch (...) {
+    running_ = false;
+    throw;
+  }
+  stop_ = false;
+  if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  page_ = std::make_shared<PageSubject>(Gate(hosts_), wake_);
+  progress_ = {.running = true,
+               .name = order.name,
+               .subject_url = page_->gate().url("/subject/"),
+               .answered = running->store_.trials().size(),
+               .at_most = running->store_.plan().size(),
+               .adaptive = is_adaptive(running->store_.protocol().design),
+               .stage = "checking",
+               .ended = {},
+               .warnings = running->store_.warnings()};
+  // Signals are for the threads that know what to do at the end of the program.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  thread_ = std::jthread([this, running] { run(*running); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void SessionHost::run(Running& running) {
+  std::string ended;
+  try {
+    if (running.order_.check) {
+      auto remarks = check_samples(running.store_.protocol(), running.order_.device_uri, stop_);
+      const std::lock_guard lock(mutex_);
+      progress_.warnings.insert(progress_.warnings.end(), remarks.begin(), remarks.end());
+    }
+    SessionRunOptions options;
+    options.loop.device_uri = running.order_.device_uri;
+    options.loop.sensor_uri = running.order_.sensor_uri;
+    options.progress = [this](std::size_t answered, std::size_t at_most) {
+      const std::lock_guard lock(mutex_);
+      progress_.answered = answered;
+      progress_.at_most = at_most;
+    };
+    ended = end_in_words(run_session(running.store_, *page(), options, stop_));
+    running.store_.close();
+  } catch (const std::exception& error) {
+    ended = error.what();
+  }
+  const std::lock_guard lock(mutex_);
+  progress_.running = false;
+  progress_.ended = ended;
+  running_ = false;
+}
+
+std::shared_ptr<PageSubject> SessionHost::page() const {
+  const std::lock_guard lock(mutex_);
+  return page_;
+}
+
+SessionProgress SessionHost::progress() const {
+  const std::lock_guard lock(mutex_);
+  SessionProgress progress = progress_;
+  if (page_ && page_->stage()) progress.stage = name_of(*page_->stage());
+  return progress;
+}
+
+std::optional<HttpResponse> SessionHost::respond(const HttpRequest& request, bool overdue) {
+  const std::shared_ptr<PageSubject> page = this->page();
+  if (!page) return refusal(404);
+  return page->respond(request, overdue);
+}
+
+}  // namespace kerf::bench

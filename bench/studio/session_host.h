@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "loop/run.h"
+#include "subject/subject_page.h"
+#include "web/http_server.h"
+
+namespace kerf::bench {
+
+/// What the experimenter may see of a session: how far it is, and nothing of what was felt or answered.
+struct SessionProgress {
+  bool running = false;
+  std::string name;         ///< of the file
+  std::string subject_url;  ///< of the page for the subject; empty before the session has begun
+  std::size_t answered = 0;
+  std::size_t at_most = 0;
+  bool adaptive = false;
+  std::string stage;  ///< "checking", "welcome", "trial", ...
+  std::string ended;  ///< why it is not running any more; empty before one ran
+  std::vector<std::string> warnings;
+};
+
+/// Runs one blind session at a time in a thread of its own, its subject on a page below /subject/ with a
+/// token of its own: who has it gets at nothing else of the studio.
+class SessionHost {
+ public:
+  struct Order {
+    std::filesystem::path file;
+    std::string name;
+    std::string device_uri;  ///< empty: the protocol's
+    std::string sensor_uri;
+    std::filesystem::path key_file;  ///< for a session that was sealed with one
+    std::string passphrase;          ///< for one that was sealed with a passphrase
+    bool check = true;               ///< the laws on the device first
+  };
+
+  /// `hosts` and `wake` are the server's.
+  SessionHost(std::vector<std::string> hosts, std::function<void()> wake);
+  SessionHost(const SessionHost&) = delete;
+  SessionHost& operator=(const SessionHost&) = delete;
+  ~SessionHost();  ///< ends a session as stop() does
+
+  /// Opens the session and begins it. @throws RequestError 409 while one runs; as SessionStore and SealKey.
+  void start(const Order& order);
+  /// Asks the session to end for now; it can be gone on with.
+  void stop() noexcept { stop_ = true; }
+  [[nodiscard]] bool is_running() const noexcept { return running_; }
+  [[nodiscard]] SessionProgress progress() const;
+
+  /// What is asked for below /subject, with that taken off the path. Server's thread.
+  [[nodiscard]] std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
+
+ private:
+  class Running;
+  void run(Running& running);
+  [[nodiscard]] std::shared_ptr<PageSubject> page() const;
+
+  std::vector<std::string> hosts_;
+  std::function<void()> wake_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> running_{false};
+  mutable std::mutex mutex_;  ///< of what follows
+  SessionProgress progress_;
+  std::shared_ptr<PageSubject> page_;  ///< kept after the end, so that it can show the last screen
+  std::jthread thread_;
+};
+
+}  // namespace kerf::bench

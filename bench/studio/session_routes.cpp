@@ -1,0 +1,48 @@
+#include "studio/session_routes.h"
+
+#include <utility>
+
+namespace kerf::bench {
+namespace {
+
+std::string text_or_empty(const nlohmann::json& json, const std::string& name) {
+  return json.contains(name) ? text_in(json, name) : std::string();
+}
+
+nlohmann::ordered_json as_json(const SessionProgress& progress) {
+  return {
+      {"running", progress.running},   {"name", progress.name},       {"subject_url", progress.subject_url},
+      {"answered", progress.answered}, {"at_most", progress.at_most}, {"adaptive", progress.adaptive},
+      {"stage", progress.stage},       {"ended", progress.ended},     {"warnings", progress.warnings}};
+}
+
+}  // namespace
+
+void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
+                        std::filesystem::path key_file, std::function<void()> clear_the_device) {
+  using Pace = Routes::Pace;
+  routes.get("/api/session", Pace::at_once,
+             [&host](const HttpRequest&) { return json_response(as_json(host.progress())); });
+  routes.post("/api/session/start", Pace::slow,
+              [&host, &workspace, key_file = std::move(key_file),
+               clear = std::move(clear_the_device)](const HttpRequest& request) {
+                const nlohmann::json json = json_in(request);
+                const WorkspaceEntry entry = workspace.find(text_in(json, "session"), FileKind::session);
+                if (host.is_running()) throw RequestError(409, "a session is running");
+                clear();
+                host.start({.file = entry.path,
+                            .name = entry.name,
+                            .device_uri = text_or_empty(json, "device"),
+                            .sensor_uri = text_or_empty(json, "sensor"),
+                            .key_file = key_file,
+                            .passphrase = text_or_empty(json, "passphrase"),
+                            .check = flag_in(json, "check", true)});
+                return json_response(as_json(host.progress()));
+              });
+  routes.post("/api/session/stop", Pace::at_once, [&host](const HttpRequest&) {
+    host.stop();
+    return json_response({{"stopping", true}});
+  });
+}
+
+}  // namespace kerf::bench

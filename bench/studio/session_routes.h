@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+
+#include "studio/session_host.h"
+#include "studio/workspace.h"
+#include "web/routes.h"
+
+namespace kerf::bench {
+
+/// The experimenter's page.
+///
+///     GET  /api/session         how far it is
+///     POST /api/session/start   {"session": ID, "device", "sensor", "passphrase", "check"}
+///     POST /api/session/stop
+///
+/// `clear_the_device` is called before a session begins: whatever else moves the device has to end, and its
+/// forces are shown to nobody.
+void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
+                        std::filesystem::path key_file, std::function<void()> clear_the_device);
+
+}  // namespace kerf::bench

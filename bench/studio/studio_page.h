@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+
+#include "web/page_files.h"
+
+namespace kerf::bench {
+
+/// The bundled page: studio.html and what it loads.
+[[nodiscard]] std::span<const PageFile> studio_page() noexcept;
+
+}  // namespace kerf::bench

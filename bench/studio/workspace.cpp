@@ -1,0 +1,163 @@
+#include "studio/workspace.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <openssl/sha.h>
+
+#include <kerf/schema/session.h>
+#include <kerf/schema/validate.h>
+
+#include "web/routes.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int deepest = 4;
+constexpr std::size_t most_files = 10'000;
+constexpr std::size_t longest_name = 80;
+
+struct Ending {
+  std::string_view text;
+  FileKind kind;
+};
+constexpr std::array endings{Ending{".law.toml", FileKind::law}, Ending{".suite.toml", FileKind::suite},
+                             Ending{".scene.toml", FileKind::scene},
+                             Ending{".protocol.toml", FileKind::protocol}};
+constexpr std::array whole_names{Ending{"fit.json", FileKind::fit}, Ending{"chart.json", FileKind::chart},
+                                 Ending{"choose.json", FileKind::choice},
+                                 Ending{"stability.json", FileKind::stability}};
+
+/// By its name; a file of HDF5 is taken for a recording until it was looked into.
+std::optional<FileKind> kind_of(const std::string& name) {
+  for (const Ending& it : whole_names) {
+    if (name == it.text) return it.kind;
+  }
+  for (const Ending& it : endings) {
+    if (name.ends_with(it.text)) return it.kind;
+  }
+  if (name.ends_with(".h5") || name.ends_with(".h5.partial")) return FileKind::recording;
+  return std::nullopt;
+}
+
+std::string id_of_name(const std::string& name) {
+  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
+  SHA256(reinterpret_cast<const unsigned char*>(name.data()), name.size(), digest.data());
+  return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + 8, ""));
+}
+
+bool is_name(std::string_view name) {
+  const auto is_letter_or_digit = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  };
+  return !name.empty() && name.size() <= longest_name && is_letter_or_digit(name.front()) &&
+         std::all_of(name.begin(), name.end(),
+                     [&](char c) { return is_letter_or_digit(c) || c == '_' || c == '-' || c == '.'; });
+}
+
+}  // namespace
+
+std::string_view name_of(FileKind kind) noexcept {
+  constexpr std::array<std::string_view, 10> names{"recording", "law",       "session", "fit",   "chart",
+                                                   "choice",    "stability", "suite",   "scene", "protocol"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+Workspace::Workspace(fs::path folder) {
+  std::error_code error;
+  folder_ = fs::canonical(folder, error);
+  if (error || !fs::is_directory(folder_))
+    throw std::invalid_argument(
+        fmt::format("{}: no such folder; make it first, or name another", folder.string()));
+}
+
+std::map<std::string, WorkspaceEntry> Workspace::known_files() const {
+  const std::lock_guard lock(mutex_);
+  return found_;
+}
+
+bool Workspace::look_into(WorkspaceEntry& entry, const std::map<std::string, WorkspaceEntry>& known) {
+  if (!entry.name.ends_with(".h5")) return true;
+  const auto before = known.find(entry.id);
+  if (before != known.end() && before->second.bytes == entry.bytes &&
+      before->second.modified == entry.modified) {
+    entry.kind = before->second.kind;
+    return true;
+  }
+  const std::string schema = schema::schema_of(entry.path);
+  if (schema == schema::session_schema_name) entry.kind = FileKind::session;
+  return schema == schema::session_schema_name || schema == schema::schema_name;
+}
+
+std::vector<WorkspaceEntry> Workspace::scan() {
+  std::map<std::string, WorkspaceEntry> found;
+  std::vector<WorkspaceEntry> all;
+  std::error_code error;
+  fs::recursive_directory_iterator at(folder_, fs::directory_options::skip_permission_denied, error);
+  const auto known = known_files();
+  for (; !error && at != fs::recursive_directory_iterator() && all.size() < most_files; at.increment(error)) {
+    const bool is_hidden = at->path().filename().string().starts_with('.');
+    if (at->is_symlink(error) || is_hidden || at.depth() >= deepest) at.disable_recursion_pending();
+    if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;
+    const auto kind = kind_of(at->path().filename().string());
+    if (!kind) continue;
+    WorkspaceEntry entry{.name = at->path().lexically_relative(folder_).generic_string(),
+                         .kind = *kind,
+                         .path = at->path(),
+                         .bytes = at->file_size(error),
+                         .modified = at->last_write_time(error)};
+    entry.id = id_of_name(entry.name);
+    error.clear();  // a file that has just gone
+    if (!look_into(entry, known)) continue;
+    found.emplace(entry.id, entry);
+    all.push_back(std::move(entry));
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  const std::lock_guard lock(mutex_);
+  found_ = std::move(found);
+  return all;
+}
+
+WorkspaceEntry Workspace::find(const std::string& id, FileKind kind) {
+  const auto known = [&]() -> std::optional<WorkspaceEntry> {
+    const std::lock_guard lock(mutex_);
+    const auto found = found_.find(id);
+    if (found == found_.end() || found->second.kind != kind) return std::nullopt;
+    return found->second;
+  };
+  std::error_code error;
+  for (const bool anew : {false, true}) {
+    if (anew) (void)scan();
+    const auto entry = known();
+    if (entry && fs::is_regular_file(fs::symlink_status(entry->path, error))) return *entry;
+  }
+  throw RequestError(404, fmt::format("there is no such {} in this folder any more", name_of(kind)));
+}
+
+fs::path Workspace::new_file(const std::string& name, std::string_view ending, bool replace) const {
+  if (!is_name(name))
+    throw RequestError(400, fmt::format("a name has 1 to {} letters, digits, '_', '-' or '.', the first a "
+                                        "letter or digit",
+                                        longest_name));
+  const fs::path file = folder_ / fmt::format("{}{}", name, ending);
+  std::error_code error;
+  if (!replace && fs::exists(fs::symlink_status(file, error)))
+    throw RequestError(409, fmt::format("{} is there already; choose another name, or replace it",
+                                        file.filename().string()));
+  return file;
+}
+
+std::string Workspace::id_of(const fs::path& file) const {
+  const fs::path relative = fs::weakly_canonical(file).lexically_relative(folder_);
+  if (relative.empty() || *relative.begin() == "..")
+    throw std::invalid_argument(fmt::format("{} is not in {}", file.string(), folder_.string()));
+  return id_of_name(relative.generic_string());
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,89 @@
+#include "studio/workspace_routes.h"
+
+#include <chrono>
+
+#include <fmt/chrono.h>
+
+#include "laws/law_file.h"
+#include "recordings/provenance.h"
+#include "sealed/session_facts.h"
+
+namespace kerf::bench {
+namespace {
+
+std::string iso_8601(std::filesystem::file_time_type time) {
+  const auto on_the_wall = std::chrono::file_clock::to_sys(time);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(
+                         std::chrono::time_point_cast<std::chrono::system_clock::duration>(on_the_wall))));
+}
+
+nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry) {
+  return {{"id", entry.id},
+          {"name", entry.name},
+          {"bytes", entry.bytes},
+          {"modified", iso_8601(entry.modified)},
+          {"partial", entry.name.ends_with(".partial")}};
+}
+
+nlohmann::ordered_json law_entry(const WorkspaceEntry& entry) {
+  nlohmann::ordered_json json{{"id", entry.id},      {"name", entry.name}, {"model", ""}, {"axis", ""},
+                              {"position_unit", ""}, {"force_unit", ""},   {"error", ""}};
+  try {
+    const LawFile law = read_law_file(entry.path);
+    json["model"] = law.law.model();
+    json["axis"] = law.axis;
+    json["position_unit"] = law.position_unit;
+    json["force_unit"] = law.force_unit;
+  } catch (const std::exception& error) {
+    json["error"] = error.what();
+  }
+  return json;
+}
+
+nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
+  nlohmann::ordered_json json{{"id", entry.id},    {"name", entry.name}, {"subject", ""}, {"key", ""},
+                              {"finished", false}, {"answered", 0},      {"error", ""}};
+  try {
+    const nlohmann::ordered_json facts = session_facts(entry.path);
+    json["subject"] = facts.at("subject");
+    json["key"] = facts.at("key");
+    json["finished"] = facts.at("finished");
+    json["answered"] = facts.at("trials");
+  } catch (const std::exception& error) {
+    json["error"] = error.what();
+  }
+  return json;
+}
+
+}  // namespace
+
+void add_workspace_routes(Routes& routes, Workspace& workspace, const std::string& device) {
+  routes.get("/api/workspace", Routes::Pace::slow, [&workspace, device](const HttpRequest&) {
+    nlohmann::ordered_json json{{"folder", workspace.folder().filename().string()},
+                                {"version", software()},
+                                {"device", device},
+                                {"recordings", nlohmann::ordered_json::array()},
+                                {"laws", nlohmann::ordered_json::array()},
+                                {"sessions", nlohmann::ordered_json::array()},
+                                {"files", nlohmann::ordered_json::array()}};
+    for (const WorkspaceEntry& entry : workspace.scan()) {
+      switch (entry.kind) {
+        case FileKind::recording:
+          json["recordings"].push_back(recording_entry(entry));
+          break;
+        case FileKind::law:
+          json["laws"].push_back(law_entry(entry));
+          break;
+        case FileKind::session:
+          json["sessions"].push_back(session_entry(entry));
+          break;
+        default:
+          json["files"].push_back({{"id", entry.id}, {"name", entry.name}, {"kind", name_of(entry.kind)}});
+      }
+    }
+    return json_response(json);
+  });
+}
+
+}  // namespace kerf::bench
