@@ -1,7 +1,9 @@
 #include "loop/recorder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <span>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -18,7 +20,7 @@ constexpr auto pause = std::chrono::milliseconds(5);
 
 Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
     : writer_(std::move(writer)),
-      ring_(options.ring_rows),
+      tap_(options.ring_rows),
       lossless_(options.lossless),
       on_failure_(options.on_failure),
       chunk_(RowRing::most_popped) {
@@ -39,12 +41,23 @@ void Recorder::guarded(Action action) {
   }
 }
 
+void Recorder::mark(schema::Event event) {
+  const std::lock_guard lock(mutex_);
+  marks_.push_back(std::move(event));
+}
+
+std::vector<schema::Event> Recorder::marked() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(marks_, {});
+}
+
 std::size_t Recorder::write_chunk() {
-  const std::span<const schema::Row> rows(chunk_.data(), ring_.pop(chunk_.data()));
-  if (rows.empty()) return 0;
-  std::vector<schema::Event> found;
+  const std::span<const schema::Row> rows(chunk_.data(), tap_.pop(chunk_.data()));
+  std::vector<schema::Event> found = marked();
+  if (rows.empty() && found.empty()) return 0;
   for (const schema::Row& row : rows) finder_.look_at(row, found);
-  last_time_s_ = rows.back().time_s;
+  std::ranges::stable_sort(found, {}, &schema::Event::time_s);
+  if (!rows.empty()) last_time_s_ = rows.back().time_s;
   guarded([&] {
     writer_.append(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
