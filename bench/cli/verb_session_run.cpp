@@ -43,7 +43,7 @@ Answering answering_of(const Arguments& arguments, std::uint64_t seed) {
   if (arguments.rehearse) {
     answering.parts.push_back(std::make_unique<RehearsalSubject>(seed));
   } else if (arguments.page) {
-    auto page = std::make_unique<PageSubject>(static_cast<std::uint16_t>(arguments.port));
+    auto page = std::make_unique<ServedSubject>(static_cast<std::uint16_t>(arguments.port));
     say(fmt::format("The subject's page: {}", page->url()));
     answering.parts.push_back(std::move(page));
   } else {

@@ -5,12 +5,11 @@
 #include <charconv>
 #include <chrono>
 #include <string_view>
+#include <utility>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sodium.h>
 
-#include "subject/page_files.h"
+#include "subject/session_page.h"
 #include "subject/subject_rules.h"
 #include "subject/subject_words.h"
 
@@ -21,33 +20,6 @@ constexpr std::size_t most_actions = 16;  // that wait to be taken
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-std::string new_token() {
-  std::array<unsigned char, 16> bytes{};
-  randombytes_buf(bytes.data(), bytes.size());
-  return fmt::format("{:02x}", fmt::join(bytes, ""));
-}
-
-/// In a time that does not tell how much of it is right.
-bool is_same_secret(std::string_view given, std::string_view secret) noexcept {
-  return given.size() == secret.size() && sodium_memcmp(given.data(), secret.data(), secret.size()) == 0;
-}
-
-std::string_view type_of(std::string_view name) noexcept {
-  if (name.ends_with(".css")) return "text/css; charset=utf-8";
-  if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
-  if (name.ends_with(".svg")) return "image/svg+xml";
-  return "text/html; charset=utf-8";
-}
-
-std::string with_token(std::string_view html, const std::string& token) {
-  constexpr std::string_view mark = "{{token}}";
-  std::string text(html);
-  for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) {
-    text.replace(at, mark.size(), token);
-  }
-  return text;
 }
 
 std::string json_of(const SubjectView& view, std::uint64_t number, double wait_s) {
@@ -110,17 +82,12 @@ HttpResponse refused(int status, std::string_view why) {
 
 }  // namespace
 
-PageSubject::PageSubject(std::uint16_t port) : token_(new_token()), server_(port) {
-  server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
-}
+PageSubject::PageSubject(Gate gate, std::function<void()> wake)
+    : gate_(std::move(gate)), wake_(std::move(wake)) {}
 
-PageSubject::~PageSubject() {
+void PageSubject::wait_until_fetched() {
   std::unique_lock lock(mutex_);
   if (fetched_ > 0) fetch_.wait_for(lock, std::chrono::seconds(1), [this] { return fetched_ == number_; });
-}
-
-std::string PageSubject::url() const {
-  return fmt::format("http://127.0.0.1:{}/?token={}", server_.port(), token_);
 }
 
 void PageSubject::show(const SubjectView& view) {
@@ -132,7 +99,7 @@ void PageSubject::show(const SubjectView& view) {
     ++number_;
     shown_s_ = now_s();
   }
-  server_.wake();
+  wake_();
 }
 
 std::optional<SubjectAction> PageSubject::next() {
@@ -143,43 +110,15 @@ std::optional<SubjectAction> PageSubject::next() {
   return action;
 }
 
-bool PageSubject::is_from_the_page(const HttpRequest& request) const {
-  const std::array hosts{fmt::format("127.0.0.1:{}", server_.port()),
-                         fmt::format("localhost:{}", server_.port())};
-  const auto is_ours = [&](std::string_view host) { return host == hosts[0] || host == hosts[1]; };
-  if (!is_ours(request.header("host"))) return false;
-  if (request.headers.contains("origin")) {
-    std::string_view origin = request.header("origin");
-    if (!origin.starts_with("http://")) return false;
-    origin.remove_prefix(7);
-    if (!is_ours(origin)) return false;
-  }
-  if (request.headers.contains("x-kerf-token")) return is_same_secret(request.header("x-kerf-token"), token_);
-  // An address can be opened from anywhere; an action only by the page, which sends the header.
-  const auto in_address = request.query.find("token");
-  return request.method != "POST" && in_address != request.query.end() &&
-         is_same_secret(in_address->second, token_);
-}
-
 std::optional<HttpResponse> PageSubject::respond(const HttpRequest& request, bool overdue) {
-  if (!is_from_the_page(request)) {
+  if (!gate_.admits(request)) {
     return HttpResponse{.status = 403,
-                        .body = "This address is not valid. Open the one that kerf session run shows.\n"};
+                        .body = "This address is not valid. Open the one that was shown for this session.\n"};
   }
   if (request.path == "/action") return request.method == "POST" ? take_action(request) : refusal(405);
   if (request.method != "GET") return refusal(405);
   if (request.path == "/view") return view_after(request, overdue);
-  return file(request.path);
-}
-
-HttpResponse PageSubject::file(const std::string& path) const {
-  for (const PageFile& it : page_files()) {
-    const bool is_page = it.name == "page.html";
-    if (path != (is_page ? std::string("/") : fmt::format("/{}", it.name))) continue;
-    return {.type = std::string(type_of(it.name)),
-            .body = is_page ? with_token(it.content, token_) : std::string(it.content)};
-  }
-  return refusal(404);
+  return page_file(session_page(), request.path, gate_.token());
 }
 
 std::optional<HttpResponse> PageSubject::view_after(const HttpRequest& request, bool overdue) {
@@ -210,6 +149,16 @@ HttpResponse PageSubject::take_action(const HttpRequest& request) {
   if (actions_.size() >= most_actions) return refusal(503);
   actions_.push_back(asked->action);
   return as_json(200, "{}");
+}
+
+ServedSubject::ServedSubject(std::uint16_t port)
+    : server_(port), page_(Gate(server_.hosts()), [this] { server_.wake(); }) {
+  server_.start([this](const HttpRequest& request, bool overdue) { return page_.respond(request, overdue); });
+}
+
+ServedSubject::~ServedSubject() {
+  page_.wait_until_fetched();
+  server_.stop();
 }
 
 }  // namespace kerf::bench

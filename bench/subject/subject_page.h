@@ -4,51 +4,49 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include "subject/subject.h"
-#include "web/loopback_server.h"
+#include "web/gate.h"
+#include "web/http_server.h"
 
 namespace kerf::bench {
 
-/// A web page for the subject, for a browser on this machine.
+/// A web page for the subject, in a server of this machine: what the server answers below one folder of it.
 ///
-/// Whoever asks has to know the token of the address (128 random bits, compared in constant time), to have
-/// called the server by 127.0.0.1 or localhost, and not to come from another site: otherwise 403, whatever
-/// was asked for. The token is in the address and then in a header that no other site can send, not in a
-/// cookie, which a browser would show to every server of this machine.
-///
-///     GET  /?token=T               the page, which loads /page.css, /page.js and /icon.svg
+///     GET  /?token=T               the page, which loads page.css, page.js and icon.svg
 ///     GET  /view?after=N           the view as JSON, once its number is above N; 204 after 20 s without one
 ///     POST /action                 {"kind", "slot", "stage", "trial"}: 200; 409 if the view was of another
-///     stage or
-///                                  trial, or does not permit it
+///                                  stage or trial, or does not permit it
 ///
-/// Several pages may be open: all show the view, and the action of either counts.
+/// Several pages may be open: all show the view, and the action of either counts. Whoever the gate does not
+/// admit gets 403, whatever was asked for.
 class PageSubject final : public Subject {
  public:
-  /// Port 0: any that is free. @throws std::invalid_argument: the port is in use; std::system_error.
-  explicit PageSubject(std::uint16_t port = 0);
+  /// `wake` is HttpServer's. Both are called until this ends.
+  PageSubject(Gate gate, std::function<void()> wake);
   PageSubject(const PageSubject&) = delete;
   PageSubject& operator=(const PageSubject&) = delete;
-  ~PageSubject() override;  ///< gives an open page up to a second to fetch the last view
+  ~PageSubject() override = default;
 
-  /// Where the page is, with its token.
-  [[nodiscard]] std::string url() const;
+  [[nodiscard]] const Gate& gate() const noexcept { return gate_; }
+  /// As HttpServer::Handler, with the folder taken off the path.
+  [[nodiscard]] std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
+  /// Gives an open page up to a second to fetch the last view.
+  void wait_until_fetched();
 
   void show(const SubjectView& view) override;
   [[nodiscard]] std::optional<SubjectAction> next() override;
 
  private:
-  std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
-  [[nodiscard]] bool is_from_the_page(const HttpRequest& request) const;
-  [[nodiscard]] HttpResponse file(const std::string& path) const;
   std::optional<HttpResponse> view_after(const HttpRequest& request, bool overdue);
   HttpResponse take_action(const HttpRequest& request);
 
-  std::string token_;
+  Gate gate_;
+  std::function<void()> wake_;
   std::mutex mutex_;  ///< of all that follows, between the session's thread and the server's
   SubjectView view_;
   std::uint64_t number_ = 0;   ///< of the view; 0: none was shown yet
@@ -56,7 +54,25 @@ class PageSubject final : public Subject {
   double shown_s_ = 0.0;
   std::deque<SubjectAction> actions_;
   std::condition_variable fetch_;
-  LoopbackServer server_;  ///< last: its thread uses the rest
+};
+
+/// The page in a server of its own, as `kerf session run --page` has it.
+class ServedSubject final : public Subject {
+ public:
+  /// Port 0: any that is free. @throws std::invalid_argument: the port is in use.
+  explicit ServedSubject(std::uint16_t port = 0);
+  ServedSubject(const ServedSubject&) = delete;
+  ServedSubject& operator=(const ServedSubject&) = delete;
+  ~ServedSubject() override;  ///< PageSubject::wait_until_fetched()
+
+  /// Where the page is, with its token.
+  [[nodiscard]] std::string url() const { return page_.gate().url("/"); }
+  void show(const SubjectView& view) override { page_.show(view); }
+  [[nodiscard]] std::optional<SubjectAction> next() override { return page_.next(); }
+
+ private:
+  HttpServer server_;
+  PageSubject page_;
 };
 
 }  // namespace kerf::bench

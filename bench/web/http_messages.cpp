@@ -79,7 +79,7 @@ http::response<http::string_body> on_the_wire(const HttpResponse& response) {
   if (response.status == 204) return message;
   message.set(http::field::content_type, response.type);
   message.body() = response.body;
-  message.prepare_payload();
+  if (!response.more) message.prepare_payload();
   return message;
 }
 

@@ -4,7 +4,7 @@
 
 #include <boost/beast/http.hpp>
 
-#include "web/loopback_server.h"
+#include "web/http_server.h"
 
 // Between Boost.Beast's messages and ours; included by sources of this folder alone.
 

@@ -3,21 +3,19 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "web/loopback_server.h"
+#include "web/http_server.h"
 
 namespace kerf::bench {
 
@@ -67,10 +65,10 @@ class Routes {
   void get(const std::string& path, Pace pace, Answer answer);
   void post(const std::string& path, Pace pace, Answer answer);
 
-  /// As LoopbackServer::Handler; nothing while a slow answer is on its way. 404 for an unknown path, 405 for
-  /// another method, 503 where 64 slow answers are waited for.
+  /// As HttpServer::Handler; nothing while a slow answer is on its way. 404 for an unknown path, 405 for
+  /// another method, 503 where 64 slow answers are waited for. What nobody waits for any more is not begun.
   [[nodiscard]] std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
-  /// Called from the slow thread whenever an answer is ready: the server's wake().
+  /// Called from the slow thread whenever an answer is ready: the server's wake(). Before the first request.
   void on_ready(std::function<void()> wake);
 
  private:
@@ -87,6 +85,9 @@ class Routes {
   };
 
   void answer_slowly(const std::stop_token& stop);
+  /// Nothing: the request is new. Nothing within: its answer is not there yet.
+  std::optional<std::optional<HttpResponse>> answer_of(const HttpRequest& request, bool overdue);
+  void forget_the_abandoned();
 
   std::map<std::string, std::vector<Route>> routes_;
   std::function<void()> wake_;

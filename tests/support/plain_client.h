@@ -47,6 +47,13 @@ class PlainClient {
     }
   }
 
+  /// What comes next; empty at the end of the connection.
+  [[nodiscard]] std::string some() const {
+    std::array<char, 4096> buffer;
+    const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
+    return count <= 0 ? std::string() : std::string(buffer.data(), static_cast<std::size_t>(count));
+  }
+
   [[nodiscard]] bool is_open() const {
     char byte = 0;
     return recv(socket_, &byte, 1, MSG_DONTWAIT | MSG_PEEK) < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);

@@ -166,7 +166,7 @@ async function act(kind, slot) {
   if (sending === screen) return;  // a double click is one answer
   if (kind !== 'play') sending = screen;
   try {
-    const response = await fetch('/action', {
+    const response = await fetch('action', {
       method: 'POST',
       headers: {'Content-Type': 'application/json', 'X-Kerf-Token': token},
       body: JSON.stringify({kind, slot, stage: view.stage, trial: view.trial}),
@@ -250,7 +250,7 @@ async function follow() {
   let number = 0;
   while (!view || view.stage !== 'finished') {
     try {
-      const response = await fetch(`/view?after=${number}`,
+      const response = await fetch(`view?after=${number}`,
         {headers: {'X-Kerf-Token': token}, cache: 'no-store', signal: AbortSignal.timeout(30000)});
       if (response.status === 403) {
         disconnect('This page belongs to another session. Open the new address.');

@@ -32,7 +32,7 @@ SubjectView trial_view(std::size_t number, std::vector<std::string> labels, std:
           .at_most = 24};
 }
 
-SubjectAction wait_for_action(PageSubject& subject) {
+SubjectAction wait_for_action(ServedSubject& subject) {
   while (true) {
     if (const auto action = subject.next()) {
       std::cout << "action " << static_cast<int>(action->kind) << ' ' << action->slot << std::endl;
@@ -43,12 +43,12 @@ SubjectAction wait_for_action(PageSubject& subject) {
   }
 }
 
-void show_text(PageSubject& subject, const SubjectView& view) {
+void show_text(ServedSubject& subject, const SubjectView& view) {
   subject.show(view);
   wait_for_action(subject);
 }
 
-void free_trial(PageSubject& subject, SubjectView view) {
+void free_trial(ServedSubject& subject, SubjectView view) {
   view.playing = 0;
   view.may_switch = true;
   while (true) {
@@ -60,7 +60,7 @@ void free_trial(PageSubject& subject, SubjectView view) {
   }
 }
 
-void sequence_trial(PageSubject& subject, SubjectView view) {
+void sequence_trial(ServedSubject& subject, SubjectView view) {
   for (std::size_t slot = 0; slot < view.labels.size(); ++slot) {
     view.playing = slot;
     subject.show(view);
@@ -72,7 +72,7 @@ void sequence_trial(PageSubject& subject, SubjectView view) {
   wait_for_action(subject);
 }
 
-void take_a_break(PageSubject& subject) {
+void take_a_break(ServedSubject& subject) {
   SubjectView view = text_view(SessionStage::pause, "");
   view.wait_s = 0.6;
   view.may_go_on = false;
@@ -87,7 +87,7 @@ void take_a_break(PageSubject& subject) {
 }  // namespace
 
 int main() {
-  PageSubject subject;
+  ServedSubject subject;
   std::cout << subject.url() << std::endl;
   // To be read as it stands, with all its signs.
   show_text(subject, text_view(SessionStage::welcome, "You will feel tissues, <b>two</b> &amp; two."));

@@ -45,19 +45,19 @@ class SubjectPage : public testing::Test {
         post(nlohmann::json{{"kind", kind}, {"slot", slot}, {"stage", stage}, {"trial", trial}}.dump()));
   }
 
-  PageSubject page_;
+  ServedSubject page_;
 };
 
 TEST_F(SubjectPage, IsOpenedByItsAddressAlone) {
   const std::string answer = get("/?token=" + token(), "Host: " + host() + "\r\n");
   EXPECT_EQ(status_of(answer), "200");
   EXPECT_THAT(answer, HasSubstr("Content-Type: text/html"));
-  EXPECT_THAT(answer, HasSubstr("/page.js?token=" + token()));
+  EXPECT_THAT(answer, HasSubstr("page.js?token=" + token()));
   EXPECT_EQ(body_of(answer).find("{{"), std::string::npos);
 }
 
 TEST_F(SubjectPage, HasAnotherTokenOf128BitsEachTime) {
-  const PageSubject other;
+  const ServedSubject other;
   EXPECT_EQ(token().size(), 32U);
   EXPECT_EQ(token().find_first_not_of("0123456789abcdef"), std::string::npos);
   EXPECT_NE(token(), other.url().substr(other.url().find('=') + 1));
@@ -143,7 +143,7 @@ TEST_F(SubjectPage, TellsAWaitingPageOfTheNextView) {
 }
 
 TEST_F(SubjectPage, ShowsItsLastViewBeforeItEnds) {
-  auto page = std::make_unique<PageSubject>();
+  auto page = std::make_unique<ServedSubject>();
   const std::string url = page->url();
   const auto its_port = static_cast<std::uint16_t>(std::stoi(url.substr(17)));
   const std::string headers =

@@ -1,9 +1,12 @@
-#include "web/loopback_server.h"
+#include "web/http_server.h"
 
 #include <atomic>
 #include <list>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,15 +20,16 @@ using test::answer_to;
 using test::PlainClient;
 using test::status_of;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string question = "GET / HTTP/1.1\r\nHost: a\r\n\r\n";
 
-LoopbackServer::Handler always(const std::string& body) {
+HttpServer::Handler always(const std::string& body) {
   return [body](const HttpRequest&, bool) { return HttpResponse{.body = body}; };
 }
 
-TEST(LoopbackServer, AnswersAndHangsUp) {
-  LoopbackServer server(0);
+TEST(HttpServer, AnswersAndHangsUp) {
+  HttpServer server(0);
   server.start(always("hello"));
   const std::string answer = answer_to(server.port(), question);
   EXPECT_EQ(status_of(answer), "200");
@@ -33,8 +37,8 @@ TEST(LoopbackServer, AnswersAndHangsUp) {
   EXPECT_THAT(answer, HasSubstr("Connection: close\r\n"));
 }
 
-TEST(LoopbackServer, LetsNothingOfOthersBeLoadedFramedOrStored) {
-  LoopbackServer server(0);
+TEST(HttpServer, LetsNothingOfOthersBeLoadedFramedOrStored) {
+  HttpServer server(0);
   server.start(always("hello"));
   for (const std::string& request : {question, std::string("nonsense\r\n\r\n")}) {
     const std::string answer = answer_to(server.port(), request);
@@ -46,16 +50,16 @@ TEST(LoopbackServer, LetsNothingOfOthersBeLoadedFramedOrStored) {
   }
 }
 
-TEST(LoopbackServer, TakesARequestInPieces) {
-  LoopbackServer server(0);
+TEST(HttpServer, TakesARequestInPieces) {
+  HttpServer server(0);
   server.start(always("hello"));
   const PlainClient client(server.port());
   for (const char c : question) client.send_text(std::string(1, c));
   EXPECT_EQ(status_of(client.answer()), "200");
 }
 
-TEST(LoopbackServer, IsNotHeldUpByTwoHundredIdleConnections) {
-  LoopbackServer server(0);
+TEST(HttpServer, IsNotHeldUpByTwoHundredIdleConnections) {
+  HttpServer server(0);
   server.start(always("hello"));
   std::list<PlainClient> idle;
   for (int i = 0; i < 200; ++i) idle.emplace_back(server.port());
@@ -63,8 +67,8 @@ TEST(LoopbackServer, IsNotHeldUpByTwoHundredIdleConnections) {
   EXPECT_TRUE(idle.front().is_open()) << "the answer came only when the idle had been sent away";
 }
 
-TEST(LoopbackServer, SendsTheLongestIdleAwayWhereThereAreTooMany) {
-  LoopbackServer server(0);
+TEST(HttpServer, SendsTheLongestIdleAwayWhereThereAreTooMany) {
+  HttpServer server(0);
   server.start(always("hello"));
   std::list<PlainClient> idle;
   for (int i = 0; i < 400; ++i) idle.emplace_back(server.port());
@@ -73,15 +77,15 @@ TEST(LoopbackServer, SendsTheLongestIdleAwayWhereThereAreTooMany) {
   EXPECT_TRUE(idle.back().is_open());
 }
 
-TEST(LoopbackServer, DeliversALargeAnswerWhole) {
-  LoopbackServer server(0);
+TEST(HttpServer, DeliversALargeAnswerWhole) {
+  HttpServer server(0);
   const std::string large(8'000'000, 'x');
   server.start(always(large));
   EXPECT_EQ(test::body_of(answer_to(server.port(), question)), large);
 }
 
-TEST(LoopbackServer, RefusesAHeadWithoutEndWithoutTakingItIn) {
-  LoopbackServer server(0);
+TEST(HttpServer, RefusesAHeadWithoutEndWithoutTakingItIn) {
+  HttpServer server(0);
   server.start(always("hello"));
   const PlainClient client(server.port());
   client.send_text("GET / HTTP/1.1\r\n");
@@ -90,8 +94,8 @@ TEST(LoopbackServer, RefusesAHeadWithoutEndWithoutTakingItIn) {
   EXPECT_EQ(status_of(client.answer()), "431");
 }
 
-TEST(LoopbackServer, AsksAgainWhenWoken) {
-  LoopbackServer server(0);
+TEST(HttpServer, AsksAgainWhenWoken) {
+  HttpServer server(0);
   std::atomic<int> asked = 0;
   std::atomic<bool> ready = false;
   server.start([&](const HttpRequest&, bool) -> std::optional<HttpResponse> {
@@ -109,8 +113,8 @@ TEST(LoopbackServer, AsksAgainWhenWoken) {
   EXPECT_EQ(asked, 2);
 }
 
-TEST(LoopbackServer, RefusesWhatNoBrowserSends) {
-  LoopbackServer server(0);
+TEST(HttpServer, RefusesWhatNoBrowserSends) {
+  HttpServer server(0);
   server.start(always("hello"));
   const auto status = [&](const std::string& request) {
     return status_of(answer_to(server.port(), request));
@@ -124,8 +128,8 @@ TEST(LoopbackServer, RefusesWhatNoBrowserSends) {
   EXPECT_EQ(status("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 1000000000000000000000\r\n\r\n"), "400");
 }
 
-TEST(LoopbackServer, TakesARequestApart) {
-  LoopbackServer server(0);
+TEST(HttpServer, TakesARequestApart) {
+  HttpServer server(0);
   HttpRequest taken;
   server.start([&](const HttpRequest& request, bool) {
     taken = request;
@@ -143,15 +147,87 @@ TEST(LoopbackServer, TakesARequestApart) {
   EXPECT_EQ(taken.body.size(), 4096U) << "the longest that is taken";
 }
 
-TEST(LoopbackServer, OfATakenPortSaysSo) {
-  const LoopbackServer server(0);
+TEST(HttpServer, OfATakenPortSaysSo) {
+  const HttpServer server(0);
   try {
-    const LoopbackServer second(server.port());
+    const HttpServer second(server.port());
     FAIL();
   } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), HasSubstr(std::to_string(server.port()) + " of 127.0.0.1"));
     EXPECT_THAT(error.what(), HasSubstr("give another one, or 0"));
   }
+}
+
+TEST(HttpServer, StreamsWhatComesAfterTheBodyUntilTheBrowserLeaves) {
+  std::atomic<int> asked = 0;
+  HttpServer server(0);
+  server.start([&](const HttpRequest&, bool) {
+    return HttpResponse{.body = "first;", .more = [&] { return std::string(++asked <= 3 ? "more;" : ""); }};
+  });
+  const PlainClient client(server.port());
+  client.send_text(question);
+  std::string text;
+  while (text.find("more;more;more;") == std::string::npos) {
+    server.wake();
+    text += client.some();
+  }
+  EXPECT_EQ(test::body_of(text), "first;more;more;more;");
+  EXPECT_THAT(text, Not(HasSubstr("Content-Length")));
+  EXPECT_TRUE(client.is_open());
+  server.stop();
+  EXPECT_EQ(client.answer(), "");
+}
+
+TEST(HttpServer, AsksNothingMoreForABrowserThatTakesNothing) {
+  std::atomic<int> asked = 0;
+  HttpServer server(0);
+  server.start([&](const HttpRequest&, bool) {
+    return HttpResponse{.more = [&] {
+      ++asked;
+      return std::string(1 << 20, 'x');
+    }};
+  });
+  const PlainClient client(server.port());
+  client.send_text(question);
+  EXPECT_EQ(status_of(client.some()), "200");
+  // What the system's buffers hold, some MB at most, then nothing more.
+  for (int i = 0; i < 2000; ++i) server.wake();
+  EXPECT_EQ(status_of(answer_to(server.port(), "nonsense\r\n\r\n")), "400");
+  EXPECT_LT(asked, 50);
+}
+
+TEST(HttpServer, TakesBodiesUpToItsLimit) {
+  HttpServer server({.most_body = 10});
+  server.start([](const HttpRequest& request, bool) { return HttpResponse{.body = request.body}; });
+  const auto post = [&](const std::string& body) {
+    return answer_to(server.port(), "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: " +
+                                        std::to_string(body.size()) + "\r\n\r\n" + body);
+  };
+  EXPECT_EQ(test::body_of(post("0123456789")), "0123456789");
+  EXPECT_EQ(status_of(post("0123456789a")), "413");
+}
+
+TEST(HttpServer, KnowsWhenNobodyWaitsForAnAnswer) {
+  std::mutex mutex;
+  std::vector<HttpRequest> asked;
+  HttpServer server(0);
+  server.start([&](const HttpRequest& request, bool) -> std::optional<HttpResponse> {
+    const std::lock_guard lock(mutex);
+    asked.push_back(request);
+    return std::nullopt;
+  });
+  const auto number_asked = [&] {
+    const std::lock_guard lock(mutex);
+    return asked.size();
+  };
+  {
+    const PlainClient client(server.port());
+    client.send_text(question);
+    while (number_asked() == 0) std::this_thread::yield();
+    EXPECT_FALSE(asked.front().asker.expired());
+  }
+  while (!asked.front().asker.expired()) std::this_thread::yield();
+  EXPECT_EQ(asked.front().number, 1U);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-# cmake -D OUTPUT=page_files.cpp -D FILES="a;b" -P embed.cmake: the files as arrays of characters, for page_files.h.
+# cmake -D OUTPUT=page_files.cpp -D FUNCTION=session_page -D HEADER=subject/session_page.h -D FILES="a;b" -P embed.cmake:
+# the files as arrays of characters, behind a function that the header declares.
 set(arrays "")
 set(table "")
 set(index 0)
@@ -12,6 +13,6 @@ foreach(file IN LISTS FILES)
 endforeach()
 file(
   WRITE "${OUTPUT}"
-  "#include \"subject/page_files.h\"\n\nnamespace kerf::bench {\nnamespace {\n\n${arrays}"
+  "#include \"${HEADER}\"\n\nnamespace kerf::bench {\nnamespace {\n\n${arrays}"
   "constexpr PageFile files[] = {\n${table}};\n\n}  // namespace\n\n"
-  "std::span<const PageFile> page_files() noexcept { return files; }\n\n}  // namespace kerf::bench\n")
+  "std::span<const PageFile> ${FUNCTION}() noexcept { return files; }\n\n}  // namespace kerf::bench\n")

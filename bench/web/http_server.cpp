@@ -1,4 +1,4 @@
-#include "web/loopback_server.h"
+#include "web/http_server.h"
 
 #include <array>
 #include <chrono>
@@ -30,7 +30,6 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t most_connections = 256;
 constexpr std::uint32_t most_head = 8192;
-constexpr std::size_t most_body = 4096;
 constexpr auto time_to_send = 5s;           // of a browser, for a request or for taking an answer
 constexpr auto time_to_wait = 20s;          // of a request that was put off
 constexpr auto time_to_hang_up = 1s;        // of a browser, after the answer
@@ -38,29 +37,28 @@ constexpr auto time_without_files = 100ms;  // before accepting again when the p
 
 }  // namespace
 
-class LoopbackServer::State {
+class HttpServer::State {
  public:
-  explicit State(std::uint16_t port) : acceptor_(io_), pause_(io_), end_(io_) {
-    const tcp::endpoint address(asio::ip::address_v4::loopback(), port);
+  explicit State(const ServerOptions& options)
+      : most_body_(options.most_body), acceptor_(io_), pause_(io_), end_(io_) {
     error_code error;
-    acceptor_.open(address.protocol(), error);
+    const tcp::endpoint address(asio::ip::make_address(options.address, error), options.port);
+    if (!error) acceptor_.open(address.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor_.bind(address, error);
     if (!error) acceptor_.listen(64, error);
     if (error) {
-      throw std::invalid_argument(fmt::format(
-          "port {} of 127.0.0.1: {}; give another one, or 0 for any that is free", port, error.message()));
+      throw std::invalid_argument(
+          fmt::format("port {} of {}: {}; give another one, or 0 for any that is free", options.port,
+                      options.address, error.message()));
     }
-    port_ = acceptor_.local_endpoint().port();
+    local_ = acceptor_.local_endpoint();
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
-  ~State() {
-    asio::post(io_, [this] { stop(); });
-    if (thread_.joinable()) thread_.join();
-  }
+  ~State() { end(); }
 
-  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  [[nodiscard]] const tcp::endpoint& local() const noexcept { return local_; }
 
   void start(Handler handler) {
     handler_ = std::move(handler);
@@ -72,6 +70,12 @@ class LoopbackServer::State {
     pthread_sigmask(SIG_SETMASK, &all, &before);
     thread_ = std::thread([this] { io_.run(); });
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  void end() {
+    if (!thread_.joinable()) return;
+    asio::post(io_, [this] { stop(); });
+    thread_.join();
   }
 
   void wake() {
@@ -88,11 +92,13 @@ class LoopbackServer::State {
   void stop();
   void forget(const Connection& connection);
 
+  std::size_t most_body_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
   asio::steady_timer end_;
-  std::uint16_t port_ = 0;
+  tcp::endpoint local_;
+  std::uint64_t requests_ = 0;
   Handler handler_;
   Connections connections_;  ///< oldest first
   bool stopping_ = false;
@@ -100,14 +106,14 @@ class LoopbackServer::State {
 };
 
 /// One request and its answer. It lives as long as an operation of it is under way.
-class LoopbackServer::State::Connection : public std::enable_shared_from_this<Connection> {
+class HttpServer::State::Connection : public std::enable_shared_from_this<Connection> {
  public:
-  enum class Step { reading, waiting, writing, hanging_up };
+  enum class Step { reading, waiting, writing, streaming, hanging_up };
 
   Connection(State& server, tcp::socket socket)
       : server_(server), stream_(std::move(socket)), overdue_(stream_.get_executor()) {
     parser_.header_limit(most_head);
-    parser_.body_limit(most_body);
+    parser_.body_limit(server.most_body_);
   }
 
   [[nodiscard]] Step step() const noexcept { return step_; }
@@ -127,6 +133,21 @@ class LoopbackServer::State::Connection : public std::enable_shared_from_this<Co
     }
   }
 
+  /// Sends what has come since, if the browser has taken the rest.
+  void go_on() {
+    if (step_ != Step::streaming || is_sending_) return;
+    piece_ = more_();
+    if (piece_.empty()) return;
+    is_sending_ = true;
+    stream_.expires_after(time_to_send);
+    asio::async_write(stream_, asio::buffer(piece_),
+                      [self = shared_from_this()](error_code error, std::size_t) {
+                        self->is_sending_ = false;
+                        if (error) return self->done();
+                        self->stream_.expires_never();
+                      });
+  }
+
   void close() {
     error_code ignored;
     stream_.socket().close(ignored);
@@ -140,6 +161,8 @@ class LoopbackServer::State::Connection : public std::enable_shared_from_this<Co
     auto request = taken_apart(parser_.get());
     if (!request) return write(refusal(400));
     request_ = std::move(*request);
+    request_.number = ++server_.requests_;
+    request_.asker = weak_from_this();
     ask(false);
   }
 
@@ -158,10 +181,12 @@ class LoopbackServer::State::Connection : public std::enable_shared_from_this<Co
     step_ = Step::writing;
     overdue_.cancel();
     response_ = on_the_wire(response);
+    more_ = response.more;
     stream_.expires_after(time_to_send);
     http::async_write(stream_, response_,
                       [self = shared_from_this(), is_listening](error_code error, std::size_t) {
                         if (error) return self->done();
+                        if (self->more_) return self->stream(is_listening);
                         // Closing while bytes are still coming in would take the answer back: wait for the
                         // browser to hang up.
                         error_code ignored;
@@ -172,13 +197,21 @@ class LoopbackServer::State::Connection : public std::enable_shared_from_this<Co
                       });
   }
 
+  void stream(bool is_listening) {
+    step_ = Step::streaming;
+    stream_.expires_never();
+    if (!is_listening) drop();
+    go_on();
+  }
+
   /// Reads what nobody asked for, until the browser hangs up.
   void drop() {
-    stream_.async_read_some(asio::buffer(dropped_),
-                            [self = shared_from_this()](error_code error, std::size_t) {
-                              if (error || self->step_ == Step::waiting) return self->done();
-                              self->drop();
-                            });
+    stream_.async_read_some(
+        asio::buffer(dropped_), [self = shared_from_this()](error_code error, std::size_t) {
+          const bool is_over = self->step_ != Step::writing && self->step_ != Step::hanging_up;
+          if (error || is_over) return self->done();
+          self->drop();
+        });
   }
 
   void done() {
@@ -194,10 +227,13 @@ class LoopbackServer::State::Connection : public std::enable_shared_from_this<Co
   http::request_parser<http::string_body> parser_;
   HttpRequest request_;
   http::response<http::string_body> response_;
+  std::function<std::string()> more_;
+  std::string piece_;
+  bool is_sending_ = false;
   std::array<char, 1024> dropped_{};
 };
 
-void LoopbackServer::State::accept() {
+void HttpServer::State::accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (stopping_) return;
     if (error) {
@@ -213,7 +249,7 @@ void LoopbackServer::State::accept() {
   });
 }
 
-void LoopbackServer::State::make_room() {
+void HttpServer::State::make_room() {
   const auto idle = std::find_if(connections_.begin(), connections_.end(), [](const auto& it) {
     return it->step() == Connection::Step::reading || it->step() == Connection::Step::hanging_up;
   });
@@ -222,14 +258,15 @@ void LoopbackServer::State::make_room() {
   connections_.erase(gives_way);
 }
 
-void LoopbackServer::State::ask_again() {
+void HttpServer::State::ask_again() {
   const Connections all = connections_;
   for (const auto& it : all) {
     if (it->step() == Connection::Step::waiting) it->ask(false);
+    it->go_on();
   }
 }
 
-void LoopbackServer::State::stop() {
+void HttpServer::State::stop() {
   stopping_ = true;
   error_code ignored;
   acceptor_.close(ignored);
@@ -243,15 +280,24 @@ void LoopbackServer::State::stop() {
   if (connections_.empty()) end_.cancel();
 }
 
-void LoopbackServer::State::forget(const Connection& connection) {
+void HttpServer::State::forget(const Connection& connection) {
   std::erase_if(connections_, [&](const auto& it) { return it.get() == &connection; });
   if (stopping_ && connections_.empty()) end_.cancel();
 }
 
-LoopbackServer::LoopbackServer(std::uint16_t port) : state_(std::make_unique<State>(port)) {}
-LoopbackServer::~LoopbackServer() = default;
-std::uint16_t LoopbackServer::port() const noexcept { return state_->port(); }
-void LoopbackServer::start(Handler handler) { state_->start(std::move(handler)); }
-void LoopbackServer::wake() noexcept { state_->wake(); }
+HttpServer::HttpServer(const ServerOptions& options) : state_(std::make_unique<State>(options)) {}
+HttpServer::~HttpServer() = default;
+std::uint16_t HttpServer::port() const noexcept { return state_->local().port(); }
+std::vector<std::string> HttpServer::hosts() const {
+  const tcp::endpoint& local = state_->local();
+  const std::string address = local.address().to_string();
+  std::vector<std::string> names{
+      fmt::format("{}:{}", local.address().is_v6() ? fmt::format("[{}]", address) : address, local.port())};
+  if (local.address().is_loopback()) names.push_back(fmt::format("localhost:{}", local.port()));
+  return names;
+}
+void HttpServer::start(Handler handler) { state_->start(std::move(handler)); }
+void HttpServer::wake() noexcept { state_->wake(); }
+void HttpServer::stop() { state_->end(); }
 
 }  // namespace kerf::bench

@@ -1,0 +1,298 @@
+// What the server answers. Every request carries the token in a header that no other site can send.
+
+export interface Axis {
+  name: string;
+  position_unit: string;
+  force_unit: string;
+}
+
+export interface Trace {
+  name: string;
+  unit: string;
+  group: "position" | "velocity" | "force" | "timing" | "channel";
+}
+
+export interface KerfEvent {
+  time_s: number;
+  kind: string;
+  text: string;
+}
+
+// Workspace
+
+export interface WorkspaceRecording {
+  id: string;
+  name: string; // path within the workspace
+  bytes: number;
+  modified: string; // ISO 8601
+  partial: boolean; // not closed: being written, or left by a crash
+}
+export interface WorkspaceLaw {
+  id: string;
+  name: string;
+  model: string;
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  error: string; // why it cannot be read; empty if it can
+}
+export interface WorkspaceSession {
+  id: string;
+  name: string;
+  study: string;
+  finished: boolean;
+  answered: number;
+  at_most: number;
+  error: string;
+}
+export interface WorkspaceFile {
+  id: string;
+  name: string;
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol";
+}
+export interface Workspace {
+  folder: string;
+  version: string;
+  device: string;
+  recordings: WorkspaceRecording[];
+  laws: WorkspaceLaw[];
+  sessions: WorkspaceSession[];
+  files: WorkspaceFile[];
+}
+
+// The running loop
+
+export interface Percentiles {
+  p50: number;
+  p99: number;
+  p999: number;
+  max: number;
+}
+export interface LoopStatus {
+  running: boolean;
+  device: string;
+  axes: Axis[];
+  rate_hz: number;
+  law: string; // empty: nothing is rendered
+  released: boolean; // zero force was asked for
+  blending: boolean;
+  recording: { name: string; rows: number; seconds: number } | null;
+  recording_failure: string;
+  ticks: number;
+  missed: number;
+  rows_lost: number;
+  wake_s: Percentiles; // of the last ten seconds
+  cycle_s: Percentiles;
+  ended: string; // why the loop is not running any more; empty if it was stopped or never started
+  session: boolean; // a session is running: nothing of the loop is shown
+}
+export interface LiveFrame {
+  from: number; // tick of the first column
+  ticks: number; // in a column
+  period_s: number;
+  smallest: (number | null)[][]; // [trace][column]
+  largest: (number | null)[][];
+  events: KerfEvent[];
+}
+
+// Recordings
+
+export interface CycleSpan {
+  cycle: number;
+  phase: "opening" | "open_to_close" | "closing" | "close_to_open";
+  from_s: number;
+  to_s: number;
+}
+export interface Recording {
+  id: string;
+  rows: number;
+  seconds: number;
+  from_s: number;
+  period_s: number;
+  status: string;
+  device: string;
+  software: string;
+  created: string;
+  history: string;
+  source: string;
+  axes: Axis[];
+  traces: Trace[];
+  events: KerfEvent[];
+  events_in_all: number;
+  gaps: [number, number][];
+  gaps_in_all: number;
+  cycles: { axis: number; closing_direction: number; contact_position: number; spans: CycleSpan[] } | null;
+}
+export interface Loops {
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  cycles_in_all: number;
+  segmented_here: boolean;
+  loops: { cycle: number; position: number[]; force: (number | null)[] }[];
+  average: { position: number[]; closing: (number | null)[]; opening: (number | null)[] };
+}
+/** Columns of smallest and largest values; bytes_of() in the server's trace_view.h. */
+export interface TraceView {
+  rowsPerColumn: number;
+  time: Float64Array;
+  traces: { smallest: Float32Array; largest: Float32Array }[];
+}
+
+// Segment editor: penetration is position along the closing, from first contact; forces resist closing.
+
+export interface EditorCurve {
+  recording: string;
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  cycles: number;
+  segmented_here: boolean;
+  contact_position: number;
+  closing_direction: number;
+  penetration: number[];
+  closing: (number | null)[];
+  opening: (number | null)[];
+  jnd: { weber_fraction: number; threshold_n: number };
+}
+export interface Knots {
+  penetration: number[];
+  closing: number[];
+  opening: number[]; // empty: one branch
+}
+export interface LawError {
+  rmse_n: number;
+  worst_n: number;
+  worst_penetration: number;
+  worst_branch: "closing" | "opening";
+  jnd_n: number; // at the root mean square force
+  rmse_jnd: number;
+  worst_jnd: number; // largest error in JNDs of the force there
+}
+export interface DrawnLaw {
+  name: string; // of the file, without .law.toml
+  recording: string; // id
+  axis: number;
+  knots: Knots;
+  replace: boolean;
+}
+
+// Work that takes a while: fits, charts, choices, stability maps
+
+export interface Job {
+  job: number;
+  kind: "fit" | "chart" | "choice" | "stability";
+  title: string;
+  state: "waiting" | "running" | "done" | "failed" | "stopped";
+  share: number; // 0 to 1; -1 where it is not known
+  error: string;
+  file: string; // id of the result in the workspace; empty if there is none yet
+}
+
+// Sessions
+
+export interface SessionState {
+  running: boolean;
+  name: string;
+  subject_url: string;
+  answered: number;
+  at_most: number;
+  adaptive: boolean;
+  stage: string;
+  ended: string;
+  warnings: string[];
+}
+
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+type Parameters = Record<string, string | number | readonly number[]>;
+
+export class Api {
+  constructor(private readonly token: string) {}
+
+  async get<Answer>(path: string, parameters: Parameters = {}): Promise<Answer> {
+    return (await (await this.send(address(path, parameters), {})).json()) as Answer;
+  }
+
+  async post<Answer = unknown>(path: string, body: unknown = {}): Promise<Answer> {
+    const answer = await this.send(path, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    return (await answer.json()) as Answer;
+  }
+
+  /** A stretch of traces: /api/live/view or /api/recording/view. */
+  async view(path: string, parameters: Parameters, signal?: AbortSignal): Promise<TraceView> {
+    const answer = await this.send(address(path, parameters), signal ? { signal } : {});
+    return traceView(await answer.arrayBuffer());
+  }
+
+  /** Server-sent events; the browser connects again by itself. */
+  stream(path: string, parameters: Parameters = {}): EventSource {
+    return new EventSource(address(path, { ...parameters, token: this.token }));
+  }
+
+  /** Asks for zero force until somebody has heard it: needs nothing that this page knows. */
+  async zeroForce(): Promise<void> {
+    for (let tries = 0; ; ++tries) {
+      try {
+        await this.send("/api/live/zero", { method: "POST", keepalive: true });
+        return;
+      } catch (error) {
+        if (tries >= 20) throw error;
+        await new Promise((go) => setTimeout(go, 100));
+      }
+    }
+  }
+
+  private async send(path: string, options: RequestInit): Promise<Response> {
+    const headers = { ...(options.headers as Record<string, string>), "X-Kerf-Token": this.token };
+    let answer: Response;
+    try {
+      answer = await fetch(path, { ...options, headers });
+    } catch (error) {
+      if (error instanceof DOMException && error.name === "AbortError") throw error;
+      throw new ApiError(0, "The studio does not answer. Is 'kerf studio' still running?");
+    }
+    if (answer.ok) return answer;
+    const text = await answer.text();
+    throw new ApiError(answer.status, errorIn(text) ?? `${answer.status} ${text.trim()}`);
+  }
+}
+
+function address(path: string, parameters: Parameters): string {
+  const parts = Object.entries(parameters).map(([name, value]) => `${name}=${String(value)}`);
+  return parts.length > 0 ? `${path}?${parts.join("&")}` : path;
+}
+
+function errorIn(text: string): string | null {
+  try {
+    const json = JSON.parse(text) as { error?: unknown };
+    return typeof json.error === "string" ? json.error : null;
+  } catch {
+    return null;
+  }
+}
+
+export function traceView(bytes: ArrayBuffer): TraceView {
+  const [columns = 0, count = 0] = new Uint32Array(bytes, 0, 2);
+  const rowsPerColumn = new Float64Array(bytes, 8, 1)[0] ?? 1;
+  const time = new Float64Array(bytes, 16, columns);
+  const traces = [];
+  for (let trace = 0, at = 16 + 8 * columns; trace < count; ++trace, at += 8 * columns) {
+    traces.push({
+      smallest: new Float32Array(bytes, at, columns),
+      largest: new Float32Array(bytes, at + 4 * columns, columns),
+    });
+  }
+  return { rowsPerColumn, time, traces };
+}

@@ -1,0 +1,76 @@
+import "./studio.css";
+
+import { Api } from "./api";
+import { loopState } from "./ui/loop_state";
+import { element } from "./ui/dom";
+import type { Place, View } from "./ui/view";
+import { chart } from "./views/chart";
+import { editor } from "./views/editor";
+import { fits } from "./views/fits";
+import { recordings } from "./views/recordings";
+import { scope } from "./views/scope";
+import { sessions } from "./views/sessions";
+import { stability } from "./views/stability";
+
+const views: readonly View[] = [scope, recordings, editor, fits, chart, stability, sessions];
+
+function byId(id: string): HTMLElement {
+  const node = document.getElementById(id);
+  if (!node) throw new Error(`no element ${id}`);
+  return node;
+}
+
+const api = new Api(document.querySelector<HTMLMetaElement>("meta[name=kerf-token]")?.content ?? "");
+const root = byId("view");
+const notice = byId("notice");
+const links = new Map<string, HTMLAnchorElement>();
+let end: () => void = () => {};
+
+function placeOf(hash: string): Place {
+  const [view = "", id = ""] = hash.replace(/^#\/?/, "").split("/");
+  return { view: views.some((it) => it.name === view) ? view : "scope", id };
+}
+
+function say(text: string): void {
+  notice.textContent = text;
+  notice.classList.remove("wrong");
+}
+
+function complain(error: unknown): void {
+  if (error instanceof DOMException && error.name === "AbortError") return;
+  notice.textContent = error instanceof Error ? error.message : String(error);
+  notice.classList.add("wrong");
+}
+
+function show(): void {
+  const place = placeOf(location.hash);
+  const view = views.find((it) => it.name === place.view);
+  if (!view) return;
+  end();
+  say("");
+  for (const [name, link] of links) {
+    if (name === place.view) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+  document.title = `${view.title} – Kerf studio`;
+  root.className = view.name;
+  root.replaceChildren();
+  end = view.mount(root, {
+    api,
+    place,
+    go: (name, id = "") => {
+      location.hash = id ? `#/${name}/${id}` : `#/${name}`;
+    },
+    say,
+    complain,
+  });
+}
+
+for (const view of views) {
+  const link = element("a", { href: `#/${view.name}` }, view.title);
+  links.set(view.name, link);
+  byId("places").append(link);
+}
+loopState(api, byId("loop_state"), byId("zero") as HTMLButtonElement, complain);
+addEventListener("hashchange", show);
+show();

@@ -1,0 +1,47 @@
+// Numbers with units, as the field writes them.
+
+const prefixes: readonly [number, string][] = [
+  [1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"],
+];
+
+/** 0.00123 "s" -> "1.23 ms"; three digits unless told. */
+export function withUnit(value: number | null | undefined, unit: string, digits = 3): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (unit === "1" || unit === "") return plain(value, digits);
+  if (value === 0) return `0 ${unit}`;
+  const size = Math.abs(value);
+  const [factor, prefix] = prefixes.find(([it]) => size >= it * 0.9995) ?? [1e-9, "n"];
+  return `${plain(value / factor, digits)} ${prefix}${unit}`;
+}
+
+export function plain(value: number | null | undefined, digits = 3): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace("-", "−");
+  return value.toLocaleString("en-GB", { maximumSignificantDigits: digits, useGrouping: false }).replace("-", "−");
+}
+
+/** Round steps for an axis: about `count` ticks between the ends. */
+export function linearTicks(lower: number, upper: number, count: number): number[] {
+  const range = upper - lower;
+  if (!(range > 0)) return [lower];
+  const rough = range / Math.max(1, count);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = ([1, 2, 5, 10].find((it) => it * power >= rough * 0.999) ?? 10) * power;
+  const ticks: number[] = [];
+  for (let k = Math.ceil(lower / step - 1e-9); k * step <= upper + 1e-9 * range; ++k) ticks.push(k * step);
+  return ticks;
+}
+
+/** Decades; with 2 and 5 between them where there are few. */
+export function logarithmicTicks(lower: number, upper: number): number[] {
+  const first = Math.floor(Math.log10(lower));
+  const last = Math.ceil(Math.log10(upper));
+  const within = last - first <= 2 ? [1, 2, 5] : [1];
+  const ticks: number[] = [];
+  for (let decade = first; decade <= last; ++decade) {
+    for (const factor of within) ticks.push(factor * 10 ** decade);
+  }
+  return ticks.filter((it) => it >= lower * 0.999 && it <= upper * 1.001);
+}

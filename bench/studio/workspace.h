@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace kerf::bench {
+
+enum class FileKind : std::uint8_t {
+  recording,  ///< .h5 of schema kerf.recording, also NAME.h5.partial
+  law,        ///< .law.toml
+  session,    ///< .h5 of schema kerf.session
+  fit,        ///< fit.json
+  chart,      ///< chart.json
+  choice,     ///< choose.json
+  stability,  ///< stability.json
+  suite,      ///< .suite.toml
+  scene,      ///< .scene.toml
+  protocol    ///< .protocol.toml
+};
+[[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
+
+/// A file of the workspace.
+struct WorkspaceEntry {
+  std::string id;    ///< 16 hexadecimal digits of its name's SHA-256
+  std::string name;  ///< path within the workspace, with "/"
+  FileKind kind = FileKind::recording;
+  std::filesystem::path path;
+  std::uintmax_t bytes = 0;
+  std::filesystem::file_time_type modified;
+};
+
+/// The folder that a studio works in: what is in it, four folders deep, hidden ones and symbolic links left
+/// out.
+///
+/// A page names a file by its id, which is looked up among those that a scan has found: no path comes in from
+/// outside, so that none can lead out of the folder. Names of new files are checked instead. For any thread.
+class Workspace {
+ public:
+  /// @throws std::invalid_argument: no such folder.
+  explicit Workspace(std::filesystem::path folder);
+
+  [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
+  /// Looks again; in order of their names. Up to 10,000 files.
+  [[nodiscard]] std::vector<WorkspaceEntry> scan();
+  /// The file of an id. @throws RequestError 404: none has it, or it is of another kind or gone.
+  [[nodiscard]] WorkspaceEntry find(const std::string& id, FileKind kind);
+  /// Where a new file of the folder itself goes: NAME and the ending, such as ".law.toml".
+  /// @throws RequestError 400 for a name that is not 1 to 80 letters, digits, "_", "-", "." beginning with a
+  ///         letter or digit; 409 if it is there and may not be replaced.
+  [[nodiscard]] std::filesystem::path new_file(const std::string& name, std::string_view ending,
+                                               bool replace = false) const;
+  /// The id that a file of this folder has. @throws std::invalid_argument if it is not within the folder.
+  [[nodiscard]] std::string id_of(const std::filesystem::path& file) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::mutex mutex_;
+  std::map<std::string, WorkspaceEntry> found_;  ///< by id
+};
+
+}  // namespace kerf::bench

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <span>
+
+#include "web/page_files.h"
+
+namespace kerf::bench {
+
+/// The files of the folder page/: page.html and what it loads.
+[[nodiscard]] std::span<const PageFile> session_page() noexcept;
+
+}  // namespace kerf::bench
