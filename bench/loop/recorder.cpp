@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -46,18 +47,23 @@ void Recorder::mark(schema::Event event) {
   marks_.push_back(std::move(event));
 }
 
-std::vector<schema::Event> Recorder::marked() {
+std::vector<schema::Event> Recorder::marked(double until_s) {
   const std::lock_guard lock(mutex_);
-  return std::exchange(marks_, {});
+  const auto later = std::ranges::stable_partition(
+      marks_, [until_s](const schema::Event& mark) { return mark.time_s <= until_s; });
+  std::vector<schema::Event> due(std::make_move_iterator(marks_.begin()),
+                                 std::make_move_iterator(later.begin()));
+  marks_.erase(marks_.begin(), later.begin());
+  return due;
 }
 
 std::size_t Recorder::write_chunk() {
   const std::span<const schema::Row> rows(chunk_.data(), tap_.pop(chunk_.data()));
-  std::vector<schema::Event> found = marked();
+  if (!rows.empty()) last_time_s_ = rows.back().time_s;
+  std::vector<schema::Event> found = marked(last_time_s_);
   if (rows.empty() && found.empty()) return 0;
   for (const schema::Row& row : rows) finder_.look_at(row, found);
   std::ranges::stable_sort(found, {}, &schema::Event::time_s);
-  if (!rows.empty()) last_time_s_ = rows.back().time_s;
   guarded([&] {
     writer_.append(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
@@ -93,6 +99,7 @@ void Recorder::close(const std::string& status, const schema::Properties& device
          .kind = "gap",
          .text = fmt::format("{} rows lost in all, because the writer did not keep up", lost())});
   }
+  for (const schema::Event& event : marks_) writer_.append_event(event);
   for (const schema::Event& event : events_) writer_.append_event(event);
   writer_.close(status, device);
 }

@@ -52,8 +52,8 @@ class Recorder {
 
   /// An event for the end of the file; not to be called from the tick.
   void note(schema::Event event) { events_.push_back(std::move(event)); }
-  /// An event that is written beside the rows of its time, so that a crash keeps it. From any thread but the
-  /// tick's.
+  /// An event that is written once the rows of its time are, so that a crash keeps it. From any thread but
+  /// the tick's.
   void mark(schema::Event event);
 
   /// Writes what is left, ends the recording with a status and what the device counted, and puts the file in
@@ -66,7 +66,7 @@ class Recorder {
 
  private:
   void write_until_stopped(const std::stop_token& stop);
-  [[nodiscard]] std::vector<schema::Event> marked();
+  [[nodiscard]] std::vector<schema::Event> marked(double until_s);
   /// Returns how many rows there were to write.
   std::size_t write_chunk();
   template <typename Action>
@@ -80,7 +80,7 @@ class Recorder {
   std::function<void(std::string_view)> on_failure_;
   std::vector<schema::Row> chunk_;
   EventFinder finder_;
-  double last_time_s_ = 0.0;
+  double last_time_s_ = 0.0;  ///< of the last row that was written
   std::vector<schema::Event> events_;
   std::mutex mutex_;  ///< of marks_
   std::vector<schema::Event> marks_;
