@@ -15,6 +15,29 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t most_events = 10'000;
 
+/// The smallest and the largest of many numbers, those that are not finite passed over: four at a time beside
+/// each other, as one alone waits for the one before it.
+struct Lanes {
+  static constexpr std::size_t width = 4;
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::array<double, width> smallest{infinity, infinity, infinity, infinity};
+  std::array<double, width> largest{-infinity, -infinity, -infinity, -infinity};
+
+  void add(std::span<const double> values) noexcept {
+    std::size_t at = 0;
+    for (; at + width <= values.size(); at += width) {
+      for (std::size_t lane = 0; lane < width; ++lane) add(lane, values[at + lane]);
+    }
+    for (; at < values.size(); ++at) add(0, values[at]);
+  }
+  void add(std::size_t lane, double value) noexcept {
+    const double low = value > -infinity ? value : infinity;
+    const double high = value < infinity ? value : -infinity;
+    smallest[lane] = low < smallest[lane] ? low : smallest[lane];
+    largest[lane] = high > largest[lane] ? high : largest[lane];
+  }
+};
+
 float rounded_down(double value) noexcept {
   const auto rounded = static_cast<float>(value);
   return static_cast<double>(rounded) > value
@@ -173,18 +196,15 @@ void RowHistory::fill(LiveFrame& frame) const {
 }
 
 RowHistory::Range RowHistory::range_of(std::size_t trace, RowNumber begin, RowNumber end) const noexcept {
-  double smallest = std::numeric_limits<double>::infinity();
-  double largest = -smallest;
   const double* const values = values_.data() + trace * tick_.size();
-  std::size_t slot = slot_of(begin);
-  for (RowNumber row = begin; row < end; ++row) {
-    const double value = values[slot];
-    if (std::isfinite(value)) {
-      smallest = std::min(smallest, value);
-      largest = std::max(largest, value);
-    }
-    slot = slot + 1 < tick_.size() ? slot + 1 : 0;
-  }
+  const std::size_t slot = slot_of(begin);
+  const auto count = static_cast<std::size_t>(end - begin);
+  const std::size_t before_turn = std::min(count, tick_.size() - slot);
+  Lanes lanes;
+  lanes.add({values + slot, before_turn});
+  lanes.add({values, count - before_turn});
+  const double smallest = std::ranges::min(lanes.smallest);
+  const double largest = std::ranges::max(lanes.largest);
   if (smallest > largest) return {.smallest = not_a_number, .largest = not_a_number};
   return {.smallest = smallest, .largest = largest};
 }
