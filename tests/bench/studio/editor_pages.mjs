@@ -33,7 +33,7 @@ function expectThatItRuns(studio, name) {
 }
 
 async function save(page, name) {
-  await page.getByLabel("Name of the law").fill(name);
+  await page.getByLabel("Name", { exact: true }).fill(name);
   await page.getByRole("button", { name: "Save law" }).click();
 }
 
