@@ -1,3 +1,5 @@
+import { Requests } from "./requests";
+
 // What the server answers. Every request carries the token in a header that no other site can send.
 
 export interface Axis {
@@ -26,6 +28,7 @@ export interface WorkspaceRecording {
   bytes: number;
   modified: string; // ISO 8601
   partial: boolean; // not closed: being written, or left by a crash
+  seconds?: number; // where the server knows it without opening the file
 }
 export interface WorkspaceLaw {
   id: string;
@@ -382,10 +385,12 @@ export class ApiError extends Error {
 type Parameters = Record<string, string | number | readonly number[]>;
 
 export class Api {
+  private readonly requests = new Requests();
+
   constructor(private readonly token: string) {}
 
-  async get<Answer>(path: string, parameters: Parameters = {}): Promise<Answer> {
-    return (await (await this.send(address(path, parameters), {})).json()) as Answer;
+  async get<Answer>(path: string, parameters: Parameters = {}, signal?: AbortSignal): Promise<Answer> {
+    return this.read(path, parameters, signal, async (answer) => (await answer.json()) as Answer);
   }
 
   async post<Answer = unknown>(path: string, body: unknown = {}): Promise<Answer> {
@@ -399,8 +404,7 @@ export class Api {
 
   /** A stretch of traces: /api/live/view or /api/recording/view. */
   async view(path: string, parameters: Parameters, signal?: AbortSignal): Promise<TraceView> {
-    const answer = await this.send(address(path, parameters), signal ? { signal } : {});
-    return traceView(await answer.arrayBuffer());
+    return this.read(path, parameters, signal, async (answer) => traceView(await answer.arrayBuffer()));
   }
 
   /** Server-sent events; the browser connects again by itself. */
@@ -408,17 +412,34 @@ export class Api {
     return new EventSource(address(path, { ...parameters, token: this.token }));
   }
 
-  /** Asks for zero force until somebody has heard it: needs nothing that this page knows. */
+  /**
+   * Asks for zero force until somebody has heard it: needs nothing that this page knows. What else waits for an
+   * answer is given up first, since a browser opens only six connections to one server.
+   */
   async zeroForce(): Promise<void> {
+    this.requests.giveUp();
     for (let tries = 0; ; ++tries) {
+      const patience = new AbortController();
+      const timer = setTimeout(() => patience.abort(), 1000);
       try {
-        await this.send("/api/live/zero", { method: "POST", keepalive: true });
+        await this.send("/api/live/zero", { method: "POST", keepalive: true, signal: patience.signal });
         return;
       } catch (error) {
-        if (tries >= 20) throw error;
+        if (tries >= 20) throw error instanceof ApiError ? error : silent();
         await new Promise((go) => setTimeout(go, 100));
+      } finally {
+        clearTimeout(timer);
       }
     }
+  }
+
+  private read<Answer>(
+    path: string,
+    parameters: Parameters,
+    signal: AbortSignal | undefined,
+    take: (answer: Response) => Promise<Answer>,
+  ): Promise<Answer> {
+    return this.requests.take(async (own) => take(await this.send(address(path, parameters), { signal: own })), signal);
   }
 
   private async send(path: string, options: RequestInit): Promise<Response> {
@@ -428,12 +449,16 @@ export class Api {
       answer = await fetch(path, { ...options, headers });
     } catch (error) {
       if (error instanceof DOMException && error.name === "AbortError") throw error;
-      throw new ApiError(0, "The studio does not answer. Is 'kerf studio' still running?");
+      throw silent();
     }
     if (answer.ok) return answer;
     const text = await answer.text();
     throw new ApiError(answer.status, errorIn(text) ?? `${answer.status} ${text.trim()}`);
   }
+}
+
+function silent(): ApiError {
+  return new ApiError(0, "The studio does not answer. Is 'kerf studio' still running?");
 }
 
 function address(path: string, parameters: Parameters): string {

@@ -42,7 +42,7 @@ function complain(error: unknown): void {
   notice.classList.add("wrong");
 }
 
-function show(): void {
+function show(first = false): void {
   const place = placeOf(location.hash);
   const view = views.find((it) => it.name === place.view);
   if (!view) return;
@@ -63,7 +63,17 @@ function show(): void {
     },
     say,
     complain,
+    focusHead,
   });
+  if (!first) focusHead();
+}
+
+/** Whoever cannot see that the page has changed is told by the focus. */
+function focusHead(): void {
+  const head = root.querySelector("h1");
+  head?.setAttribute("tabindex", "-1");
+  (head ?? root).focus({ preventScroll: true });
+  scrollTo(0, 0);
 }
 
 for (const view of views) {
@@ -72,5 +82,5 @@ for (const view of views) {
   byId("places").append(link);
 }
 loopState(api, byId("loop_state"), byId("zero") as HTMLButtonElement, complain);
-addEventListener("hashchange", show);
-show();
+addEventListener("hashchange", () => show());
+show(true);

@@ -22,6 +22,19 @@ export function plain(value: number | null | undefined, digits = 3): string {
   return value.toLocaleString("en-GB", { maximumSignificantDigits: digits, useGrouping: false }).replace("-", "−");
 }
 
+/** The prefix that suits an axis reaching to `largest`: value / factor is a number of `text`. */
+export function unitFor(largest: number, unit: string): { factor: number; text: string } {
+  const size = Math.abs(largest);
+  if (!takesPrefix(unit) || !(size > 0) || !Number.isFinite(size)) return { factor: 1, text: unit === "1" ? "" : unit };
+  const [factor, prefix] = prefixes.find(([it]) => size >= it * 0.9995) ?? [1e-9, "n"];
+  return { factor, text: `${prefix}${unit}` };
+}
+
+/** Degrees, percents, numbers and what already has a prefix are written as they are. */
+function takesPrefix(unit: string): boolean {
+  return /^(rad|m|N|V|A|W|J|s|Hz|Pa)([/·*].*)?$/.test(unit);
+}
+
 /** Round steps for an axis: about `count` ticks between the ends. */
 export function linearTicks(lower: number, upper: number, count: number): number[] {
   const range = upper - lower;

@@ -15,6 +15,8 @@ export interface Context {
   say(text: string): void;
   /** What did not work, in a line that stays until the next. */
   complain(error: unknown): void;
+  /** Puts the focus on the page's h1, where it has changed. */
+  focusHead(): void;
 }
 
 /** A page of the studio. mount() fills the root and gives back what ends it: timers, streams, listeners. */

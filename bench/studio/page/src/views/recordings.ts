@@ -1,11 +1,40 @@
+import "./recordings.css";
+
+import type { Recording, Workspace } from "../api";
 import { element } from "../ui/dom";
-import type { View } from "../ui/view";
+import type { Context, View } from "../ui/view";
+import { recordingList } from "./recording_list";
+import { recordingPage } from "./recording_page";
 
 export const recordings: View = {
   name: "recordings",
   title: "Recordings",
-  mount(root) {
-    root.append(element("h1", {}, "Recordings"));
-    return () => {};
+  mount(root, context) {
+    const gone = new AbortController();
+    let end: () => void = () => {};
+    const waiting = element("h1", {}, "Recordings");
+    root.append(waiting);
+    load(context, gone.signal).then(
+      ([workspace, recording]) => {
+        if (gone.signal.aborted) return;
+        if (!recording) return root.append(recordingList(workspace));
+        const hadFocus = document.activeElement === waiting;
+        waiting.remove();
+        end = recordingPage(context, root, recording, workspace);
+        if (hadFocus) context.focusHead();
+      },
+      (error: unknown) => gone.signal.aborted || context.complain(error),
+    );
+    return () => {
+      gone.abort();
+      end();
+    };
   },
 };
+
+function load({ api, place }: Context, signal: AbortSignal): Promise<[Workspace, Recording | null]> {
+  return Promise.all([
+    api.get<Workspace>("/api/workspace", {}, signal),
+    place.id ? api.get<Recording>("/api/recording", { id: place.id }, signal) : null,
+  ]);
+}

@@ -1,11 +1,198 @@
-import { element } from "../ui/dom";
-import type { View } from "../ui/view";
+import "./scope.css";
+
+import type { LoopStatus, Trace, Workspace } from "../api";
+import { button, element, labelled, select } from "../ui/dom";
+import { isTyping } from "../ui/keys";
+import type { Context, View } from "../ui/view";
+import { LastEvents, LiveStream } from "./live_stream";
+import { ScopeControls } from "./scope_controls";
+import { ScopeFigures } from "./scope_figures";
+import { ScopePicture } from "./scope_picture";
+import { axisOf } from "./trace_groups";
+
+const windows_s = [1, 2, 5, 10, 30, 60];
+
+/** The scope: what the loop does now. */
+class Scope {
+  private readonly root = element("div", { class: "scope_page" });
+  private readonly forbidden = element("p", { class: "forbidden", hidden: true });
+  private readonly stale = element("p", { class: "stale", role: "status" });
+  private readonly controls: ScopeControls;
+  private readonly figures = new ScopeFigures();
+  private readonly picture: ScopePicture;
+  private readonly stream: LiveStream;
+  private readonly events = new LastEvents();
+  private readonly list = element("ol", { class: "event_list", tabindex: 0, "aria-label": "Events, newest first" });
+  private readonly window: HTMLSelectElement;
+  private readonly pauseButton = button("Pause", () => this.togglePause(), { title: "Space", "aria-keyshortcuts": "Space" });
+  private readonly axis = select([{ value: "", text: "all axes" }], "", () => this.chooseTraces());
+  private readonly scale = select(
+    [{ value: "linear", text: "linear" }, { value: "log", text: "logarithmic" }],
+    "linear",
+    (value) => this.picture.stack.logarithmic("Timing", value === "log"),
+  );
+  private status: LoopStatus | null = null;
+  private traces: Trace[] = [];
+  private asking = false;
+  private readonly observer: ResizeObserver;
+  private readonly key = (event: KeyboardEvent): void => this.onKey(event);
+
+  constructor(
+    private readonly context: Context,
+    parent: HTMLElement,
+  ) {
+    const { api, complain } = context;
+    this.controls = new ScopeControls(context);
+    this.window = select(
+      windows_s.map((it) => ({ value: String(it), text: `${it} s` })),
+      "5",
+      (value) => this.picture.setWindow(Number(value)),
+    );
+    this.picture = new ScopePicture(api, (ticks) => this.stream?.open(ticks), (factor) => this.otherWindow(factor), complain);
+    this.stream = new LiveStream(api, {
+      frame: (frame) => {
+        if (this.events.add(frame.events)) this.showEvents();
+        this.picture.push(frame);
+      },
+      status: (status) => this.show(status),
+      stale: (seconds) => this.showStale(seconds),
+      session: (line) => this.forbid(line),
+    });
+    this.observer = new ResizeObserver(() => this.picture.fit());
+    this.build(parent);
+    addEventListener("keydown", this.key);
+    this.stream.open(1);
+    api.get<Workspace>("/api/workspace").then((it) => this.controls.fill(it), complain);
+  }
+
+  end(): void {
+    removeEventListener("keydown", this.key);
+    this.observer.disconnect();
+    this.stream.close();
+    this.picture.end();
+  }
+
+  private build(parent: HTMLElement): void {
+    this.root.append(
+      element(
+        "section",
+        { class: "scope_plots", "aria-label": "Traces" },
+        element(
+          "div",
+          { class: "scope_head" },
+          element("h1", {}, "Scope"),
+          this.stale,
+          labelled("Window", this.window),
+          labelled("Axis", this.axis),
+          labelled("Timing", this.scale),
+          this.pauseButton,
+        ),
+        this.picture.stack.root,
+      ),
+      element(
+        "aside",
+        { class: "scope_panel", "aria-label": "Loop" },
+        this.controls.root,
+        this.figures.root,
+        element("div", { class: "events" }, element("h2", {}, "Events"), this.list),
+      ),
+    );
+    parent.append(this.root, this.forbidden);
+    this.observer.observe(this.picture.stack.root);
+  }
+
+  private show(status: LoopStatus): void {
+    const before = this.status;
+    this.status = status;
+    this.root.hidden = false;
+    this.forbidden.hidden = true;
+    this.controls.show(status);
+    this.figures.show(status);
+    this.pauseButton.disabled = this.traces.length === 0;
+    const restarted = !before || (status.running && (!before.running || status.ticks < before.ticks));
+    if (status.running && (restarted || this.traces.length === 0)) void this.askTraces(before !== null);
+  }
+
+  /** Which traces a loop has is known once it runs. */
+  private async askTraces(another: boolean): Promise<void> {
+    if (this.asking) return;
+    this.asking = true;
+    try {
+      this.traces = await this.context.api.get<Trace[]>("/api/live/traces");
+      const axes = this.status?.axes ?? [];
+      const chosen = this.axis.value;
+      this.axis.replaceChildren(
+        element("option", { value: "" }, "all axes"),
+        ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
+      );
+      if (another) this.picture.restart();
+      this.chooseTraces();
+    } catch (error) {
+      this.context.complain(error);
+    } finally {
+      this.asking = false;
+    }
+  }
+
+  private chooseTraces(): void {
+    const axes = this.status?.axes ?? [];
+    const chosen = this.traces
+      .map((trace, k) => ({ trace, k, axis: axisOf(trace, axes) }))
+      .filter((it) => it.axis === "" || this.axis.value === "" || it.axis === this.axis.value)
+      .map((it) => it.k);
+    this.picture.setTraces(this.traces, chosen, this.status?.rate_hz ?? 1000, this.scale.value === "log");
+  }
+
+  private otherWindow(factor: number): void {
+    const at = windows_s.indexOf(Number(this.window.value)) + (factor < 1 ? -1 : 1);
+    const window_s = windows_s[at];
+    if (window_s === undefined) return;
+    this.window.value = String(window_s);
+    this.picture.setWindow(window_s);
+  }
+
+  private togglePause(): void {
+    if (this.picture.paused) this.picture.resume();
+    else this.picture.pause();
+    this.pauseButton.textContent = this.picture.paused ? "Go on" : "Pause";
+    this.pauseButton.setAttribute("aria-pressed", String(this.picture.paused));
+  }
+
+  private onKey(event: KeyboardEvent): void {
+    if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey || isTyping(event)) return;
+    event.preventDefault();
+    if (!this.pauseButton.disabled) this.togglePause();
+  }
+
+  private showEvents(): void {
+    const items = this.events.events
+      .slice(-50)
+      .reverse()
+      .map((it) => element("li", {}, `${it.time_s.toFixed(3)} s ${it.kind}${it.text ? `: ${it.text}` : ""}`));
+    this.list.replaceChildren(...items);
+    this.picture.showEvents(this.events.events);
+  }
+
+  private showStale(seconds: number): void {
+    const text = seconds > 0 ? `Stale since ${seconds} s` : "";
+    if (this.stale.textContent !== text) this.stale.textContent = text;
+    this.root.classList.toggle("is_stale", seconds > 0);
+  }
+
+  /** During a blind session: just one line. */
+  private forbid(line: string): void {
+    this.status = null;
+    this.root.hidden = true;
+    this.forbidden.hidden = false;
+    if (this.forbidden.textContent !== line) this.forbidden.textContent = line;
+  }
+}
 
 export const scope: View = {
   name: "scope",
   title: "Scope",
-  mount(root) {
-    root.append(element("h1", {}, "Scope"));
-    return () => {};
+  mount(root, context) {
+    const it = new Scope(context, root);
+    return () => it.end();
   },
 };

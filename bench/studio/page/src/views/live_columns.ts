@@ -1,0 +1,141 @@
+import type { LiveFrame, TraceView } from "../api";
+
+/**
+ * The newest columns of the running loop, oldest first, in arrays that stay: column k holds the smallest and the
+ * largest of ticks [k N, (k + 1) N), NaN where there are none.
+ */
+export class LiveColumns {
+  readonly time: Float64Array; // of each column's first tick
+  readonly smallest: readonly Float64Array[];
+  readonly largest: readonly Float64Array[];
+  period_s = 1e-3;
+  private newest = -1; // the column at the end of the arrays; -1: none yet
+  private firstLive = Infinity; // the first column that came by the stream
+
+  constructor(
+    readonly traces: number,
+    readonly ticks: number, // in a column
+    readonly capacity: number,
+  ) {
+    this.time = new Float64Array(capacity);
+    const arrays = (): Float64Array[] => Array.from({ length: traces }, () => new Float64Array(capacity).fill(NaN));
+    this.smallest = arrays();
+    this.largest = arrays();
+    this.setTimes();
+  }
+
+  get column_s(): number {
+    return this.ticks * this.period_s;
+  }
+
+  /** Where the newest column ends. */
+  get end_s(): number {
+    return (this.newest + 1) * this.column_s;
+  }
+
+  /** False if the frame is of another loop or another grid: a new one of these is needed. */
+  push(frame: LiveFrame): boolean {
+    if (frame.ticks !== this.ticks || frame.smallest.length !== this.traces) return false;
+    const columns = frame.smallest[0]?.length ?? 0;
+    if (columns === 0) return true;
+    const first = Math.round(frame.from / this.ticks);
+    if (this.newest >= 0 && first + columns < this.newest - 64) return false;
+    this.period_s = frame.period_s;
+    if (this.newest < 0) this.newest = first - 1;
+    this.firstLive = Math.min(this.firstLive, first);
+    this.advance(first + columns - 1);
+    const at = this.capacity - 1 - this.newest + first;
+    for (let trace = 0; trace < this.traces; ++trace) {
+      const [smallest, largest] = [frame.smallest[trace], frame.largest[trace]];
+      const [to, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
+      for (let k = Math.max(0, -at); k < columns; ++k) {
+        to[at + k] = smallest?.[k] ?? NaN;
+        up[at + k] = largest?.[k] ?? NaN;
+      }
+    }
+    return true;
+  }
+
+  /** Takes what a finer or coarser one holds: no value is lost, but one may show in two neighbouring columns. */
+  takeFrom(other: LiveColumns): void {
+    if (other.newest < 0 || other.traces !== this.traces) return;
+    this.period_s = other.period_s;
+    this.newest = Math.ceil(((other.newest + 1) * other.ticks) / this.ticks) - 1;
+    this.setTimes();
+    for (let k = 0; k < other.capacity; ++k) {
+      const tick = (other.newest - other.capacity + 1 + k) * other.ticks;
+      if (tick >= 0) this.merge(tick, tick + other.ticks, other.smallest, other.largest, k);
+    }
+  }
+
+  /** Fills in what was before the stream began. */
+  fill(view: TraceView): void {
+    if (this.newest < 0) return;
+    const rows = view.rowsPerColumn;
+    const [smallest, largest] = [view.traces.map((it) => it.smallest), view.traces.map((it) => it.largest)];
+    if (smallest.length !== this.traces) return;
+    const oldest = this.newest - this.capacity + 1;
+    const until = Math.min(this.firstLive, this.newest + 1);
+    const cleared = Math.round((view.time[0] ?? Infinity) / this.period_s / this.ticks);
+    for (let trace = 0; trace < this.traces; ++trace) {
+      this.smallest[trace]?.fill(NaN, Math.max(0, cleared - oldest), Math.max(0, until - oldest));
+      this.largest[trace]?.fill(NaN, Math.max(0, cleared - oldest), Math.max(0, until - oldest));
+    }
+    const last = until * this.ticks;
+    for (let k = 0; k < view.time.length; ++k) {
+      const tick = Math.round((view.time[k] as number) / this.period_s);
+      if (tick < last) this.merge(tick, Math.min(last, tick + rows), smallest, largest, k);
+    }
+  }
+
+  /** Widens the columns of ticks [from, to) by column k of others. */
+  private merge(
+    from: number,
+    to: number,
+    smallest: readonly (Float64Array | Float32Array)[],
+    largest: readonly (Float64Array | Float32Array)[],
+    k: number,
+  ): void {
+    const oldest = this.newest - this.capacity + 1;
+    const first = Math.max(0, Math.floor(from / this.ticks) - oldest);
+    const end = Math.min(this.capacity, Math.ceil(to / this.ticks) - oldest);
+    for (let trace = 0; trace < this.traces; ++trace) {
+      const low = smallest[trace]?.[k] ?? NaN;
+      const high = largest[trace]?.[k] ?? NaN;
+      if (Number.isNaN(low)) continue;
+      const [to_, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
+      for (let i = first; i < end; ++i) {
+        if (!((to_[i] as number) <= low)) to_[i] = low;
+        if (!((up[i] as number) >= high)) up[i] = high;
+      }
+    }
+  }
+
+  private advance(newest: number): void {
+    const by = newest - this.newest;
+    this.newest = Math.max(newest, this.newest);
+    if (by > 0) {
+      for (let trace = 0; trace < this.traces; ++trace) {
+        shift(this.smallest[trace] as Float64Array, by);
+        shift(this.largest[trace] as Float64Array, by);
+      }
+    }
+    this.setTimes();
+  }
+
+  private setTimes(): void {
+    const first = this.newest - this.capacity + 1;
+    for (let i = 0; i < this.capacity; ++i) this.time[i] = (first + i) * this.column_s;
+  }
+}
+
+function shift(values: Float64Array, by: number): void {
+  const kept = values.length - by;
+  if (kept > 0) values.copyWithin(0, by);
+  values.fill(NaN, Math.max(0, kept));
+}
+
+/** Ticks in a column, so that a column is at most a pixel wide. */
+export function ticksInColumn(window_s: number, rate_hz: number, pixels: number): number {
+  return Math.max(1, Math.floor((window_s * rate_hz) / Math.max(1, pixels)));
+}

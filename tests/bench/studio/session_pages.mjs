@@ -1,0 +1,112 @@
+// A whole blind session: the experimenter begins it, the subject answers every trial on a page of their own.
+
+import { readFile, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+
+const protocol = `name = "one law or another"
+design = "abx"
+instructions = "Close and open the scissors."
+trials = 4
+practice = 0
+device = "sim:scissors"
+
+[[sample]]
+name = "soft"
+law = "soft.law.toml"
+
+[[sample]]
+name = "hard"
+law = "hard.law.toml"
+`;
+
+/** The Kelvin law of the examples, with another parallel spring. */
+async function law(stiffness) {
+  const example = await readFile(new URL("../../../examples/kelvin.law.toml", import.meta.url), "utf8");
+  return example.replace(/(parallel_stiffness = { value = )\d+/, `$1${stiffness}`);
+}
+
+async function prepare(studio) {
+  await writeFile(join(studio.folder, "abx.protocol.toml"), protocol);
+  await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
+  await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
+  studio.kerfOrThrow("session", "key", "keeper.key");
+  studio.kerfOrThrow("session", "new", "abx.protocol.toml", "--subject", "S01", "--key-file", "keeper.key", "-o", "S01.h5",
+                     "--no-check");
+  await studio.serve("--key-file", join(studio.folder, "keeper.key"));
+}
+
+/** Goes on, feels every slot and answers, as long as the page lets. */
+async function takePart(page) {
+  const press = async (selector) => {
+    const button = page.locator(selector).first();
+    if (!(await button.isVisible()) || !(await button.isEnabled())) return;
+    // It may go while it is being pressed: the next round sees what there is then.
+    await button.click({ timeout: 500 }).catch(() => {});
+  };
+  while ((await page.textContent("#heading")) !== "Finished") {
+    await press("#go_on button.firm");
+    for (const slot of [1, 2, 3]) {
+      await press(`#feel_row button:nth-child(${slot})`);
+      await page.waitForTimeout(550);
+    }
+    await press("#answer_row button");
+  }
+}
+
+export const tests = {
+  async "a whole ABX session is run from the experimenter's page"({ browser, studio, screenshots }) {
+    await prepare(studio);
+    const experimenter = await openPage(browser);
+    await experimenter.goto(studio.page("sessions"));
+    await experimenter.getByRole("button", { name: "Begin S01.h5" }).click();
+    await experimenter.getByLabel("Try the laws on the device first").uncheck();
+    await experimenter.getByRole("button", { name: "Begin the session" }).click();
+    const link = experimenter.getByRole("link", { name: "Open the subject's page" });
+    await link.waitFor();
+
+    const subject = await openPage(browser);
+    await subject.goto(await link.getAttribute("href"));
+    await subject.screenshot({ path: join(screenshots, "subject.png") });
+    await Promise.all([
+      takePart(subject),
+      experimenter
+        .getByText("1 of 4 trials")
+        .waitFor()
+        .then(() => experimenter.screenshot({ path: join(screenshots, "experimenter.png") })),
+    ]);
+    await experimenter.getByText("Ended: finished: 4 trials").waitFor();
+    expectNoComplaints(experimenter);
+    expectNoComplaints(subject);
+    const analysis = JSON.parse(studio.kerfOrThrow("session", "analyze", "S01.h5", "--key-file", "keeper.key", "--json").stdout);
+    expect(JSON.stringify(analysis).includes("S01"), "the analysis knows the subject");
+    const facts = JSON.parse(studio.kerfOrThrow("info", "S01.h5", "--json").stdout);
+    expectEqual([facts.finished, facts.trials], [true, 4], "what the file says");
+  },
+
+  async "who has the subject's address gets at nothing else, and sees nothing of the loop"({ browser, studio }) {
+    await prepare(studio);
+    const id = await studio.id("sessions", "S01.h5");
+    await studio.api("/api/session/start", { session: id, check: false });
+    const state = await until("the session runs", async () => {
+      const { json } = await studio.api("/api/session");
+      return json.running && json.subject_url ? json : null;
+    });
+    const subject = new URL(state.subject_url);
+    const token = subject.searchParams.get("token");
+    expect(token !== studio.token, "the subject has a token of their own");
+    for (const path of ["/", "/api/workspace", "/api/live/status", "/api/session", "/studio.js"]) {
+      const answer = await fetch(`${studio.origin}${path}?token=${token}`);
+      expectEqual(answer.status, 403, path);
+    }
+    expectEqual((await fetch(`${studio.origin}/subject/?token=${studio.token}`)).status, 403, "the other way round");
+    for (const path of ["/api/live/view?traces=0&from=0&to=1&columns=10", "/api/live/traces"])
+      expectEqual((await studio.api(path)).status, 409, path);
+    expectEqual((await studio.api("/api/live/start", { device: "sim:scissors" })).status, 409, "the loop cannot be had");
+    const page = await openPage(browser);
+    await page.goto(studio.page("sessions"));
+    await page.getByRole("button", { name: "Stop the session" }).click();
+    await page.getByText("it can be gone on with").waitFor();
+  },
+};

@@ -1,0 +1,246 @@
+// What somebody who should not, or something that has gone wrong, can ask of the studio.
+
+#include <list>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "studio/studio.h"
+#include "support/plain_client.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using test::answer_to;
+using test::body_of;
+using test::PlainClient;
+using test::status_of;
+using testing::HasSubstr;
+using testing::Not;
+
+class StudioUnderAttack : public testing::Test {
+ protected:
+  [[nodiscard]] std::string url() const { return studio_.url(); }
+  [[nodiscard]] std::uint16_t port() const {
+    return static_cast<std::uint16_t>(std::stoi(url().substr(std::string("http://127.0.0.1:").size())));
+  }
+  [[nodiscard]] std::string token() const { return url().substr(url().find('=') + 1); }
+  [[nodiscard]] std::string host() const { return fmt::format("Host: 127.0.0.1:{}\r\n", port()); }
+  [[nodiscard]] std::string ours() const { return fmt::format("{}X-Kerf-Token: {}\r\n", host(), token()); }
+  [[nodiscard]] std::string get(const std::string& target, const std::string& headers) const {
+    return answer_to(port(), fmt::format("GET {} HTTP/1.1\r\n{}\r\n", target, headers));
+  }
+  [[nodiscard]] std::string post(const std::string& target, const std::string& body,
+                                 const std::string& more = {}) const {
+    return answer_to(port(), fmt::format("POST {} HTTP/1.1\r\n{}{}Content-Type: application/json\r\n"
+                                         "Content-Length: {}\r\n\r\n{}",
+                                         target, ours(), more, body.size(), body));
+  }
+
+  test::TemporaryFolder folder_;
+  Studio studio_{{.folder = folder_.path()}};
+};
+
+const std::vector<std::string> gets{"/",
+                                    "/studio.js",
+                                    "/studio.css",
+                                    "/icon.svg",
+                                    "/api/workspace",
+                                    "/api/live/status",
+                                    "/api/live/traces",
+                                    "/api/live/stream?ticks=1",
+                                    "/api/recording?id=0",
+                                    "/api/editor/curve?id=0&axis=0",
+                                    "/api/jobs",
+                                    "/api/session",
+                                    "/nothing"};
+const std::vector<std::string> posts{"/api/live/start", "/api/live/zero",   "/api/live/record",
+                                     "/api/live/feel",  "/api/editor/save", "/api/fit",
+                                     "/api/chart",      "/api/stability",   "/api/session/start"};
+
+std::string with_parameter(const std::string& target, const std::string& parameter) {
+  return target + (target.find('?') == std::string::npos ? "?" : "&") + parameter;
+}
+
+TEST_F(StudioUnderAttack, AnswersNobodyWithoutTheToken) {
+  for (const std::string& path : gets) {
+    EXPECT_EQ(status_of(get(path, host())), "403") << path;
+    EXPECT_EQ(status_of(get(with_parameter(path, "token=" + std::string(32, '0')), host())), "403") << path;
+    EXPECT_EQ(status_of(get(path, host() + "X-Kerf-Token: \r\n")), "403") << path;
+    EXPECT_EQ(status_of(get(path, host() + "Cookie: token=" + token() + "\r\n")), "403") << path;
+  }
+  for (const std::string& path : posts) {
+    const auto answer = answer_to(
+        port(),
+        fmt::format("POST {}?token={} HTTP/1.1\r\n{}Content-Type: application/json\r\nContent-Length: "
+                    "2\r\n\r\n{{}}",
+                    path, token(), host()));
+    EXPECT_EQ(status_of(answer), "403") << path;  // by the address alone, as a form of another site could
+  }
+}
+
+TEST_F(StudioUnderAttack, AnswersNoOtherSiteAndByNoOtherName) {
+  for (const std::string& path : gets) {
+    EXPECT_EQ(status_of(get(path, ours() + "Origin: http://evil.example\r\n")), "403") << path;
+    EXPECT_EQ(status_of(get(path, ours() + "Origin: null\r\n")), "403") << path;
+    const std::string by_another_name =
+        fmt::format("Host: evil.example:{}\r\nX-Kerf-Token: {}\r\n", port(), token());
+    EXPECT_EQ(status_of(get(path, by_another_name)), "403") << path;
+  }
+  for (const std::string& path : posts)
+    EXPECT_EQ(status_of(post(path, "{}", "Origin: http://evil.example\r\n")), "403") << path;
+}
+
+TEST_F(StudioUnderAttack, GivesEachAnswerItsPolicyWithoutInlineCode) {
+  for (const std::string& path : gets) {
+    if (path.find("stream") != std::string::npos) continue;  // it does not end
+    const std::string answer = get(path, ours());
+    EXPECT_THAT(answer, HasSubstr("Content-Security-Policy: default-src 'none'; script-src 'self'; style-src "
+                                  "'self'; img-src 'self'; connect-src 'self'; form-action 'none'; "
+                                  "frame-ancestors 'none'; base-uri 'none'\r\n"))
+        << path;
+    EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff\r\n")) << path;
+    EXPECT_THAT(answer, Not(HasSubstr("unsafe"))) << path;
+    EXPECT_THAT(answer, Not(HasSubstr("Access-Control-Allow"))) << path;
+  }
+  EXPECT_THAT(body_of(get("/", ours())), Not(testing::ContainsRegex("<style|<script>|style=| on[a-z]+=")));
+}
+
+/// Ways out of the folder.
+const std::vector<std::string> ways_out{"..",
+                                        "../../etc/passwd",
+                                        "..%2f..%2fetc%2fpasswd",
+                                        "/etc/passwd",
+                                        "%2fetc%2fpasswd",
+                                        "....//....//etc/passwd",
+                                        "..\\..\\etc\\passwd",
+                                        "file:///etc/passwd",
+                                        "%00",
+                                        "a/../../b",
+                                        "~root"};
+
+TEST_F(StudioUnderAttack, LeadsNowhereByThePath) {
+  for (const std::string& way : ways_out) {
+    for (const char* before : {"/", "/api/", "/subject/", "//", "/studio.js/"}) {
+      const std::string answer = get(before + way, ours());
+      EXPECT_THAT(status_of(answer), testing::AnyOf("404", "403", "400")) << before << way;
+      EXPECT_THAT(answer, Not(HasSubstr("root:"))) << before << way;
+    }
+  }
+}
+
+TEST_F(StudioUnderAttack, LeadsNowhereByAnyParameterOfAnAddress) {
+  const std::vector<std::string> targets{"/api/recording?id={}",
+                                         "/api/recording/view?id={}&traces=0&from=0&to=1&columns=10",
+                                         "/api/recording/loops?id={}&axis=0&first=1&count=1",
+                                         "/api/editor/curve?id={}&axis=0",
+                                         "/api/editor/law?id={}",
+                                         "/api/result?id={}",
+                                         "/api/law?id={}",
+                                         "/api/residuals?id={}&axis=0&law={}&columns=10",
+                                         "/api/live/view?traces={}&from=0&to=1&columns=10",
+                                         "/api/live/view?traces=0&from={}&to=1&columns=10",
+                                         "/api/live/stream?ticks={}"};
+  for (const std::string& target : targets) {
+    for (const std::string& way : ways_out) {
+      const std::string answer = get(fmt::format(fmt::runtime(target), way, way), ours());
+      EXPECT_THAT(status_of(answer), testing::AnyOf("404", "400")) << target << ' ' << way;
+      EXPECT_THAT(answer, Not(HasSubstr("root:"))) << target << ' ' << way;
+    }
+  }
+}
+
+TEST_F(StudioUnderAttack, LeadsNowhereByAnyTextOfABody) {
+  const std::vector<std::pair<std::string, std::string>> bodies{
+      {"/api/live/feel", R"({{"law": "{}"}})"},
+      {"/api/live/start", R"({{"device": "sim:scissors", "scene_id": "{}"}})"},
+      {"/api/editor/error", R"({{"recording": "{}", "axis": 0, "knots": {{}}}})"},
+      {"/api/editor/best", R"({{"recording": "{}", "axis": 0, "segments": 3, "loop": false}})"},
+      {"/api/editor/save",
+       R"({{"name": "x", "recording": "{}", "axis": 0, "knots": {{}}, "replace": false}})"},
+      {"/api/fit", R"({{"recording": "{}", "axis": 0, "models": []}})"},
+      {"/api/chart", R"({{"recording": "{}", "axis": 0, "models": []}})"},
+      {"/api/choose", R"({{"recording": "{}", "axis": 0}})"},
+      {"/api/stability", R"({{"device": "sim:scissors", "rate_hz": 1000, "law": "{}", "cells": 10}})"},
+      {"/api/session/start", R"({{"session": "{}"}})"}};
+  for (const auto& [path, body] : bodies) {
+    for (std::string way : ways_out) {
+      for (std::size_t at = way.find('\\'); at != std::string::npos; at = way.find('\\', at + 2))
+        way.insert(at, 1, '\\');
+      const std::string answer = post(path, fmt::format(fmt::runtime(body), way));
+      EXPECT_THAT(status_of(answer), testing::AnyOf("404", "400")) << path << ' ' << way << ' ' << answer;
+      EXPECT_THAT(answer, Not(HasSubstr("root:"))) << path << ' ' << way;
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(StudioUnderAttack, TakesNoDeviceThatIsAFileOrACommand) {
+  for (const char* device :
+       {"/etc/passwd", "file:///etc/passwd", "sim:../../etc/passwd", "sim:scissors; id", "$(id)"}) {
+    const std::string answer = post("/api/live/start", fmt::format(R"({{"device": "{}"}})", device));
+    EXPECT_THAT(status_of(answer), testing::AnyOf("400", "500")) << device;
+    EXPECT_THAT(answer, Not(HasSubstr("root:"))) << device;
+  }
+}
+
+TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {
+  const std::string head =
+      fmt::format("POST /api/live/feel HTTP/1.1\r\n{}Content-Type: application/json\r\n", ours());
+  EXPECT_EQ(status_of(answer_to(port(), head + "Content-Length: 1073741824\r\n\r\n")), "413");
+  // In pieces, whose sum nobody has said: the memory of this process must not grow with it.
+  const auto memory = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const auto before_kb = memory();
+  const PlainClient client(port());
+  client.send_text(head + "Transfer-Encoding: chunked\r\n\r\n");
+  const std::string piece = "100000\r\n" + std::string(1 << 20, ' ') + "\r\n";
+  for (int megabyte = 0; megabyte < 1024 && client.is_open(); ++megabyte) client.send_text(piece);
+  EXPECT_THAT(status_of(client.answer()), testing::AnyOf("413", ""));
+  EXPECT_LT(memory() - before_kb, 50'000);
+}
+
+TEST_F(StudioUnderAttack, AnswersWithAThousandSocketsOpen) {
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  const rlimit before = files;
+  files.rlim_cur = std::min<rlim_t>(files.rlim_max, 4096);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  {
+    std::list<PlainClient> open;
+    for (int i = 0; i < 1000; ++i) {
+      open.emplace_back(port());
+      open.back().send_text("GET /");
+    }
+    EXPECT_EQ(status_of(post("/api/live/zero", "")), "200");
+    EXPECT_EQ(status_of(get("/", ours())), "200");
+  }
+  setrlimit(RLIMIT_NOFILE, &before);
+}
+
+TEST_F(StudioUnderAttack, IsNotHeldUpByOneThatReadsNothing) {
+  std::list<PlainClient> slow;
+  for (int i = 0; i < 50; ++i) {
+    slow.emplace_back(port());
+    slow.back().send_text(fmt::format("GET /api/live/stream?ticks=1 HTTP/1.1\r\n{}\r\n", ours()));
+  }
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(status_of(post("/api/live/zero", "")), "200");
+}
+
+TEST(StudioOnANetwork, TakesNoAddressThatStandsForAll) {
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(Studio({.folder = folder.path(), .address = "0.0.0.0"}), std::invalid_argument);
+  EXPECT_THROW(Studio({.folder = folder.path(), .address = "::"}), std::invalid_argument);
+  EXPECT_TRUE(Studio({.folder = folder.path()}).is_loopback());
+}
+
+}  // namespace
+}  // namespace kerf::bench

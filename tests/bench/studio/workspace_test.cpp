@@ -1,0 +1,120 @@
+#include "studio/workspace.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/schema/recording.h>
+
+#include "support/program.h"
+#include "web/routes.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+void put(const fs::path& file, const std::string& text = "x") {
+  fs::create_directories(file.parent_path());
+  std::ofstream(file) << text;
+}
+
+void write_recording_of_one_row(const fs::path& file) {
+  fs::create_directories(file.parent_path());
+  schema::Recording recording;
+  recording.header = schema::new_header("test");
+  recording.axes = {schema::Axis{}};
+  recording.time = {0.0};
+  recording.tick = {0};
+  recording.position = {0.0};
+  recording.velocity = {0.0};
+  schema::write_recording(file, recording);
+}
+
+class WorkspaceOfALab : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> names() {
+    std::vector<std::string> all;
+    for (const WorkspaceEntry& it : workspace_.scan())
+      all.push_back(fmt::format("{} {}", name_of(it.kind), it.name));
+    return all;
+  }
+
+  test::TemporaryFolder folder_;
+  Workspace workspace_{folder_.path()};
+};
+
+TEST_F(WorkspaceOfALab, KnowsFilesByTheirNamesAndWhatIsInThem) {
+  write_recording_of_one_row(folder_.path() / "b" / "cut.h5");
+  put(folder_.path() / "a.law.toml");
+  put(folder_.path() / "cut.fit" / "fit.json");
+  put(folder_.path() / "cut.h5.partial");
+  put(folder_.path() / "notes.txt");
+  put(folder_.path() / "not hdf5.h5");
+  EXPECT_THAT(names(), ElementsAre("law a.law.toml", "recording b/cut.h5", "fit cut.fit/fit.json",
+                                   "recording cut.h5.partial"));
+}
+
+TEST_F(WorkspaceOfALab, LeavesOutWhatIsHiddenDeepOrLeadsOutside) {
+  const test::TemporaryFolder outside;
+  put(outside.path() / "secret.law.toml");
+  put(folder_.path() / ".hidden.law.toml");
+  put(folder_.path() / ".git" / "x.law.toml");
+  put(folder_.path() / "1/2/3/4/deep.law.toml");
+  put(folder_.path() / "1/2/3/4/5/deeper.law.toml");
+  fs::create_symlink(outside.path() / "secret.law.toml", folder_.path() / "link.law.toml");
+  fs::create_directory_symlink(outside.path(), folder_.path() / "link");
+  EXPECT_THAT(names(), ElementsAre("law 1/2/3/4/deep.law.toml"));
+}
+
+TEST_F(WorkspaceOfALab, FindsByIdAloneAndOnlyTheKindAskedFor) {
+  put(folder_.path() / "a.law.toml");
+  const std::string id = workspace_.id_of(folder_.path() / "a.law.toml");
+  EXPECT_EQ(id.size(), 16U);
+  EXPECT_EQ(workspace_.find(id, FileKind::law).name, "a.law.toml");
+  EXPECT_THROW((void)workspace_.find(id, FileKind::recording), RequestError);
+  for (const char* other : {"a.law.toml", "../a.law.toml", "", "/etc/passwd", "0000000000000000"})
+    EXPECT_THROW((void)workspace_.find(other, FileKind::law), RequestError) << other;
+}
+
+TEST_F(WorkspaceOfALab, FindsWhatHasComeAndNotWhatHasGone) {
+  EXPECT_THAT(names(), ElementsAre());
+  const fs::path file = folder_.path() / "a.law.toml";
+  put(file);
+  const std::string id = workspace_.id_of(file);
+  EXPECT_EQ(workspace_.find(id, FileKind::law).path.filename(), "a.law.toml");
+  fs::remove(file);
+  EXPECT_THROW((void)workspace_.find(id, FileKind::law), RequestError);
+  // In place of the file a link that leads outside.
+  fs::create_symlink("/etc/passwd", file);
+  EXPECT_THROW((void)workspace_.find(id, FileKind::law), RequestError);
+}
+
+TEST_F(WorkspaceOfALab, NamesNewFilesWithinItselfAlone) {
+  EXPECT_EQ(workspace_.new_file("cut-2_a.b", ".h5"), workspace_.folder() / "cut-2_a.b.h5");
+  for (const char* name :
+       {"", ".", "..", "../x", "a/b", "/x", "-x", ".x", "a b", "a\nb", "ü", "a%2fb", "~", "a\\b"})
+    EXPECT_THROW((void)workspace_.new_file(name, ".h5"), RequestError) << name;
+  EXPECT_THROW((void)workspace_.new_file(std::string(81, 'a'), ".h5"), RequestError);
+  EXPECT_THROW((void)workspace_.new_file(std::string("a\0b", 3), ".h5"), RequestError);
+}
+
+TEST_F(WorkspaceOfALab, ReplacesNothingUnasked) {
+  put(folder_.path() / "a.law.toml");
+  EXPECT_THROW((void)workspace_.new_file("a", ".law.toml"), RequestError);
+  EXPECT_EQ(workspace_.new_file("a", ".law.toml", true).filename(), "a.law.toml");
+  fs::create_symlink("/nowhere", folder_.path() / "b.law.toml");
+  EXPECT_THROW((void)workspace_.new_file("b", ".law.toml"), RequestError);
+}
+
+TEST(Workspace, IsAFolderThatIsThere) {
+  EXPECT_THROW(Workspace("/no/such/folder"), std::invalid_argument);
+  EXPECT_THROW(Workspace("/etc/passwd"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kerf::bench
