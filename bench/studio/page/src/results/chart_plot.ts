@@ -5,6 +5,7 @@ import type { PlacedChart, PlacedPoint } from "./chart_points";
 import { markClass, markPath, markSample } from "./marks";
 
 const radius = 7;
+const reach = 14; // of a pointer
 
 /** Cost of a tick over error, both logarithmic; a point opens its law. Arrow keys go from point to point. */
 export class ChartPlot {
@@ -36,6 +37,17 @@ export class ChartPlot {
       this.readout,
       this.legend(),
     );
+    // Marks lie on each other: the nearest is meant, and a second press means the one below it.
+    const { svg } = this.plot;
+    svg.addEventListener("pointermove", (event) => {
+      const at = this.near(event)[0];
+      if (at) this.tell(at, -1);
+    });
+    svg.addEventListener("click", (event) => {
+      const near = this.near(event);
+      const next = near[(near.findIndex((it) => it.index === this.opened) + 1) % near.length];
+      if (next) this.open(next);
+    });
     this.plot.show([], chart.limits());
   }
 
@@ -84,7 +96,8 @@ export class ChartPlot {
     const had_focus = this.marks.includes(document.activeElement as unknown as SVGGElement);
     this.marks.length = 0;
     this.byError.forEach((at, place) => this.marks.push(this.mark(at, place)));
-    plot.layer.replaceChildren(...this.marks);
+    const on_top = (mark: SVGGElement): number => Number(mark.classList.contains("on_front")) + 2 * Number(mark.classList.contains("opened"));
+    plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
     if (had_focus) this.marks[this.current]?.focus();
   }
 
@@ -111,16 +124,30 @@ export class ChartPlot {
         role: "button",
         tabindex: place === this.current ? 0 : -1,
         "aria-label": pointInWords(at),
-        click: () => this.open(at),
         keydown: (event: KeyboardEvent) => this.key(event, at),
         focus: () => this.tell(at, place),
-        mouseenter: () => this.tell(at, -1),
+        // Of who presses it without a pointer.
+        click: (event: MouseEvent) => {
+          if (event.detail !== 0) return;
+          event.stopPropagation();
+          this.open(at);
+        },
       },
       drawn("circle", { class: "reach", cx: x, cy: y, r: 12 }),
       drawn("path", { class: markClass(at.law), d: markPath(at.law, x, y, at.point.on_front ? radius + 1 : radius - 1) }),
     );
     if (!at.point.stable) mark.append(drawn("path", { class: "cross", d: crossPath(x, y) }));
     return mark;
+  }
+
+  /** The points about a pointer, nearest first; of those that lie together the front's. */
+  private near(event: MouseEvent): PlacedPoint[] {
+    const pointer = this.plot.pointer(event);
+    return this.chart.points
+      .map((at) => ({ at, far: Math.hypot(this.plot.x(at.error) - pointer.x, this.plot.y(at.cost_us) - pointer.y) }))
+      .filter((it) => it.far <= reach)
+      .sort((a, b) => Math.round((a.far - b.far) / 4) || Number(b.at.point.on_front) - Number(a.at.point.on_front))
+      .map((it) => it.at);
   }
 
   private tell(at: PlacedPoint, place: number): void {

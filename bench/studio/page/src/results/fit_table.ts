@@ -1,7 +1,7 @@
 import type { FitFile, LawFit } from "../api";
 import { element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
-import { intervalBar, intervalOf } from "./interval_bar";
+import { intervalBar, intervalOf, reachOf } from "./interval_bar";
 
 const most_shown = 40;
 const entangled = 0.95; // correlations beyond it are told
@@ -41,7 +41,7 @@ export class FitTable {
         cell(withUnit(fit.rmse, "N")),
         cell(withUnit(fit.cv_rmse, "N")),
         cell(plain(errorOf(fit) / file.jnd, 2)),
-        cell(fit.bic.toFixed(0)),
+        cell(fit.bic.toFixed(0).replace("-", "−")),
         element("td", {}, marks.join(", ")),
       );
       row.classList.toggle("taken", fit.model === file.choice.model);
@@ -87,6 +87,7 @@ export function entanglements(fit: LawFit): string[] {
 export function parameterTable(fit: LawFit): HTMLElement {
   const all = Object.entries(fit.parameters);
   const name = all[0] ? intervalOf(all[0][1]).name.replace("ci", "") : "95";
+  const reach = reachOf(all.map(([, estimate]) => estimate));
   const rows = all.slice(0, most_shown).map(([parameter, estimate]) => {
     const { lower, upper } = intervalOf(estimate);
     const interval = lower === null || upper === null ? "not determined" : `${lower.toPrecision(4)} to ${upper.toPrecision(4)}`;
@@ -97,7 +98,7 @@ export function parameterTable(fit: LawFit): HTMLElement {
       cell(estimate.value.toPrecision(5)),
       element("td", {}, estimate.unit),
       cell(interval),
-      element("td", {}, intervalBar(estimate)),
+      element("td", {}, intervalBar(estimate, reach)),
     );
   });
   const more = all.length - most_shown;
@@ -108,7 +109,7 @@ export function parameterTable(fit: LawFit): HTMLElement {
       "table",
       {},
       element("caption", {}, `Parameters of ${fit.model}`),
-      element("thead", {}, element("tr", {}, head("parameter", false), head("value"), head("unit", false), head(`${name} % interval`), head("−100 % to +100 %", false))),
+      element("thead", {}, element("tr", {}, head("parameter", false), head("value"), head("unit", false), head(`${name} % interval`), head(`−${100 * reach} % to +${100 * reach} %`, false))),
       element("tbody", {}, ...rows),
     ),
     more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the law file`) : null,

@@ -11,16 +11,27 @@ export function intervalOf(estimate: Estimate): { name: string; lower: number | 
 const width = 160;
 const height = 20;
 
+/** How far the bars of some estimates reach, as a share of the value: what holds all that are known, or 100 %. */
+export function reachOf(estimates: readonly Estimate[]): number {
+  let most = 0;
+  for (const estimate of estimates) {
+    const { lower, upper } = intervalOf(estimate);
+    if (lower === null || upper === null || estimate.value === 0) continue;
+    most = Math.max(most, Math.max(upper - estimate.value, estimate.value - lower) / Math.abs(estimate.value));
+  }
+  return [0.01, 0.1].find((it) => most <= it) ?? 1;
+}
+
 /**
- * An interval as a bar: the middle is the value, the ends are 100 % off it. One that the data do not determine goes from end
- * to end, dashed.
+ * An interval as a bar: the middle is the value, the ends are the reach off it. One that the data do not determine goes from
+ * end to end, dashed.
  */
-export function intervalBar(estimate: Estimate): SVGSVGElement {
+export function intervalBar(estimate: Estimate, reach: number): SVGSVGElement {
   const { lower, upper } = intervalOf(estimate);
   const size = Math.abs(estimate.value);
   const known = lower !== null && upper !== null && size > 0;
   const at = (value: number): number => {
-    const share = Math.max(-1, Math.min(1, (value - estimate.value) / size));
+    const share = Math.max(-1, Math.min(1, (value - estimate.value) / (reach * size)));
     return width / 2 + (share * (width - 8)) / 2;
   };
   const from = known ? at(lower) : 4;

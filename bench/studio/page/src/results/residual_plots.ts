@@ -32,14 +32,14 @@ export class ResidualPlots {
     const depth = `penetration [${position_unit}]`;
     this.time = new XyPlot({ label: "time [s]" }, { label: residual }, "Residual over time", () => this.drawTime());
     this.penetration = new XyPlot({ label: depth }, { label: residual }, "Residual over penetration", () => this.drawPenetration());
-    this.loop = new XyPlot({ label: depth }, { label: `force [${force_unit}]` }, "Law over the data");
+    this.loop = new XyPlot({ label: depth }, { label: `force [${force_unit}]` }, "Law over the data", () => this.drawLoop());
     const figure = (title: string, plot: XyPlot, note: string): HTMLElement =>
       element("figure", { class: "card" }, element("figcaption", {}, title), element("div", { class: "plot" }, plot.svg), element("p", { class: "quiet" }, note));
     this.root = element(
       "div",
       { class: "residuals" },
       this.words,
-      figure("Law over the data", this.loop, "Means of each penetration. Data: thin dots; law: thick lines; out of the tissue: dashed."),
+      figure("Law over the data", this.loop, "Means of each penetration. Lines: the law; dots: the data. Out of the tissue: dashed, and open dots."),
       figure("Residual over time", this.time, "Smallest to largest of each stretch."),
       figure("Residual over penetration", this.penetration, "Mean, and one standard deviation about it."),
     );
@@ -58,12 +58,23 @@ export class ResidualPlots {
     this.penetration.show([{ x: of.penetration, y: of.mean, class: "residual" }], over_depth);
     const x = of.penetration;
     const lines = [
-      { x, y: of.loop.measured_closing, class: "measured closing" },
-      { x, y: of.loop.measured_opening, class: "measured opening" },
       { x, y: of.loop.law_closing, class: "law closing" },
       { x, y: of.loop.law_opening, class: "law opening" },
     ];
-    this.loop.show(lines, XyPlot.around(lines));
+    const data = [of.loop.measured_closing, of.loop.measured_opening].map((y) => ({ x, y, class: "" }));
+    this.loop.show(lines, XyPlot.around([...lines, ...data]));
+  }
+
+  private drawLoop(): void {
+    const of = this.residuals;
+    if (!of) return;
+    const dots = (kind: string, forces: readonly (number | null)[]): SVGElement[] =>
+      forces.flatMap((force, i) => {
+        const x = of.penetration[i];
+        if (force === null || x === undefined) return [];
+        return [drawn("circle", { class: `measured ${kind}`, cx: this.loop.x(x), cy: this.loop.y(force), r: 4 })];
+      });
+    this.loop.layer.replaceChildren(...dots("closing", of.loop.measured_closing), ...dots("opening", of.loop.measured_opening));
   }
 
   private drawTime(): void {
