@@ -2,6 +2,7 @@ import "./scope.css";
 
 import type { LoopStatus, Trace, Workspace } from "../api";
 import { button, element, labelled, select } from "../ui/dom";
+import { singleKeysOn } from "../ui/help";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
 import { LastEvents, LiveStream } from "./live_stream";
@@ -160,6 +161,7 @@ class Scope {
 
   private onKey(event: KeyboardEvent): void {
     if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey || isTyping(event)) return;
+    if (!singleKeysOn()) return;
     event.preventDefault();
     if (!this.pauseButton.disabled) this.togglePause();
   }
