@@ -28,7 +28,7 @@ class Scope {
   private readonly pauseButton = button("Pause", () => this.togglePause(), { title: "Space", "aria-keyshortcuts": "Space" });
   private readonly axis = select([{ value: "", text: "all axes" }], "", () => this.chooseTraces());
   private readonly scale = select(
-    [{ value: "linear", text: "linear" }, { value: "log", text: "logarithmic" }],
+    [{ value: "linear", text: "linear" }, { value: "log", text: "log" }],
     "linear",
     (value) => this.picture.stack.logarithmic("Timing", value === "log"),
   );
@@ -82,13 +82,13 @@ class Scope {
           "div",
           { class: "scope_head" },
           element("h1", {}, "Scope"),
-          this.stale,
           labelled("Window", this.window),
           labelled("Axis", this.axis),
           labelled("Timing", this.scale),
           this.pauseButton,
         ),
         this.picture.stack.root,
+        this.stale,
       ),
       element(
         "aside",
@@ -126,7 +126,11 @@ class Scope {
         element("option", { value: "" }, "all axes"),
         ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
       );
-      if (another) this.picture.restart();
+      if (another) {
+        this.events.clear();
+        this.showEvents();
+        this.picture.restart();
+      }
       this.chooseTraces();
     } catch (error) {
       this.context.complain(error);
