@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "files/whole_file.h"
 #include "report/html.h"
 
 namespace kerf::bench {
@@ -148,9 +150,12 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"points", json::array()},
               {"front", json::array()},
               {"notes", chart.notes}};
+  const std::vector<std::string> files = point_file_names(chart);
+  auto file = files.begin();
   for (const ChartPoint& point : chart.points) {
     result["points"].push_back({{"law", point.law},
                                 {"fidelity", point.fidelity},
+                                {"law_file", *file++},
                                 {"parameters", point.parameters},
                                 {"rate_hz", point.rate_hz},
                                 {"p50_ns", number(point.cost.p50_ns)},
@@ -182,6 +187,36 @@ std::string chart_csv(const SpeedAccuracy& chart) {
                        point.on_front ? 1 : 0);
   }
   return csv;
+}
+
+std::vector<std::string> point_file_names(const SpeedAccuracy& chart) {
+  std::vector<std::string> names;
+  for (const ChartPoint& point : chart.points) {
+    std::string label;
+    for (const char c : point.law + "-" + point.fidelity) {
+      const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+      if (plain) label += c;
+      if (!plain && !label.empty() && label.back() != '-') label += '-';
+    }
+    while (label.ends_with('-')) label.pop_back();
+    std::string name = fmt::format("points/{}.law.toml", label);
+    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i)
+      name = fmt::format("points/{}-{}.law.toml", label, i);
+    names.push_back(name);
+  }
+  return names;
+}
+
+void write_chart(const SpeedAccuracy& chart, const std::filesystem::path& folder) {
+  const std::string page = chart_page(chart);
+  const std::string svg = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + draw(chart_picture(chart));
+  std::filesystem::create_directories(folder / "points");
+  const std::vector<std::string> files = point_file_names(chart);
+  for (std::size_t i = 0; i < files.size(); ++i) write_law_file(folder / files[i], chart.points[i].file);
+  write_whole_file(folder / "chart.svg", svg);
+  write_whole_file(folder / "chart.csv", chart_csv(chart));
+  write_whole_file(folder / "chart.html", page);
+  write_whole_file(folder / "chart.json", chart_as_json(chart).dump(2) + "\n");
 }
 
 Chart chart_picture(const SpeedAccuracy& chart) {

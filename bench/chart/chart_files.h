@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -9,7 +11,7 @@
 
 namespace kerf::bench {
 
-/// Everything about a chart, one object a point.
+/// Everything about a chart, one object a point. Each names the file of its law that write_chart() writes.
 [[nodiscard]] nlohmann::ordered_json chart_as_json(const SpeedAccuracy& chart);
 
 /// One row a point, its units in the head.
@@ -22,5 +24,12 @@ namespace kerf::bench {
 
 /// One self-contained page: the picture, the front, every point, and what was left out.
 [[nodiscard]] std::string chart_page(const SpeedAccuracy& chart);
+
+/// Where write_chart() puts the law of each point within its folder: "points/piecewise-5-segments.law.toml".
+[[nodiscard]] std::vector<std::string> point_file_names(const SpeedAccuracy& chart);
+
+/// Writes chart.svg, chart.csv, chart.json, chart.html and the law of every point into a folder.
+/// @throws std::system_error.
+void write_chart(const SpeedAccuracy& chart, const std::filesystem::path& folder);
 
 }  // namespace kerf::bench

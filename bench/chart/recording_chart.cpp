@@ -8,6 +8,7 @@
 #include "chart/fit_plan.h"
 #include "chart/speed_accuracy.h"
 #include "fits/fit_series.h"
+#include "recordings/axes.h"
 
 namespace kerf::bench {
 namespace {
@@ -200,6 +201,11 @@ class RecordingChart {
 };
 
 }  // namespace
+
+FitSource charted(const schema::Recording& recording, const std::string& name, const std::string& axis) {
+  const std::size_t place = find_cut_axis(recording, axis);
+  return {.recording = &recording, .name = name, .axis = place, .contact = contact_of(recording, place)};
+}
 
 SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options) {
   return RecordingChart(source, options).run();

@@ -90,6 +90,12 @@ inline constexpr double fingers_m = 0.01;
 /// @throws std::invalid_argument if no law can be fitted.
 [[nodiscard]] SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options);
 
+/// A recording as it is charted: along the axis of that name, or of its cycles. The recording must outlive
+/// it.
+/// @throws std::invalid_argument: it has no such axis.
+[[nodiscard]] FitSource charted(const schema::Recording& recording, const std::string& name,
+                                const std::string& axis);
+
 /// Marks the points of the front (front.h), costs p50 and warm, errors in JNDs, those under a thousandth of a
 /// JND alike.
 void mark_front(std::vector<ChartPoint>& points, double rate_hz);

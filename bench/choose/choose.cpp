@@ -54,6 +54,7 @@ class Making {
 
   LawChoice make() {
     std::vector<Candidate>& all = choice_.candidates;
+    if (options_.of != nullptr) *options_.of = all.size();
     if (options_.richer_too) fit_all(all);
     std::size_t begin = 0;
     while (begin < all.size() && !(choice_.taken && !options_.richer_too)) {
@@ -146,8 +147,10 @@ class Making {
   void fit_all(std::span<Candidate> candidates) const {
     std::atomic<std::size_t> begun{0};
     const auto work = [&] {
-      for (std::size_t i = begun++; i < candidates.size() && !stop_; i = begun++)
+      for (std::size_t i = begun++; i < candidates.size() && !stop_; i = begun++) {
         fit_one(candidates[candidates.size() - 1 - i]);
+        if (options_.done != nullptr) ++*options_.done;
+      }
     };
     {
       std::vector<std::jthread> others;

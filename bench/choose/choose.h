@@ -18,7 +18,9 @@ struct ChooseOptions {
   CandidateOptions candidates;
   fitting::FitOptions fit;  ///< JND and folds
   std::size_t threads = 1;  ///< among which the candidates are shared out; the choice does not depend on it
-  bool richer_too = true;   ///< also fit what is richer than the law that serves, for the table
+  std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
+  std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates
+  bool richer_too = true;  ///< also fit what is richer than the law that serves, for the table
   WalkOptions walk;
 };
 

@@ -17,9 +17,7 @@
 #include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "laws/placement.h"
-#include "laws/render.h"
 #include "loop/run.h"
-#include "recordings/axes.h"
 
 namespace kerf::bench {
 namespace {
@@ -58,12 +56,7 @@ void check(const Arguments& arguments) {
 
 SpeedAccuracy chart_of_recording(const Arguments& arguments, const ChartOptions& options) {
   const schema::Recording recording = schema::read_recording(arguments.recording);
-  const std::size_t axis = arguments.axis.empty() && recording.cycles ? recording.cycles->axis
-                                                                      : find_axis(recording, arguments.axis);
-  const FitSource source{.recording = &recording,
-                         .name = fs::path(arguments.recording).stem().string(),
-                         .axis = axis,
-                         .contact = contact_of(recording, axis)};
+  const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
   try {
     return chart_recording(source, options);
   } catch (const std::invalid_argument& error) {
@@ -93,7 +86,8 @@ SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
                                  .deepest = deepest_of(scene, path, options.rate_hz)});
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
-    if (!scene.deeper.empty()) chart.notes.push_back("only the first layer of the scene's tissue is charted");
+    if (!scene.deeper.empty())
+      chart.notes.emplace_back("only the first layer of the scene's tissue is charted");
     return chart;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.scene, error.what()));
@@ -115,17 +109,6 @@ void print(const SpeedAccuracy& chart) {
                     1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
   }
   say("  * on the front, x not stable");
-}
-
-void write(const SpeedAccuracy& chart, const nlohmann::ordered_json& json, const fs::path& folder) {
-  const std::string page = chart_page(chart);
-  const std::string svg = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n" + draw(chart_picture(chart));
-  fs::create_directories(folder);
-  write_whole_file(folder / "chart.svg", svg);
-  write_whole_file(folder / "chart.csv", chart_csv(chart));
-  write_whole_file(folder / "chart.json", json.dump(2) + "\n");
-  write_whole_file(folder / "chart.html", page);
-  say(fmt::format("chart.svg, chart.csv, chart.json and chart.html are in {}", folder.string()));
 }
 
 void run_chart(const Arguments& arguments, Context& context) {
@@ -153,7 +136,10 @@ void run_chart(const Arguments& arguments, Context& context) {
   for (const std::string& note : chart.notes) warn(note);
   context.result = chart_as_json(chart);
   print(chart);
-  if (!arguments.output.empty()) write(chart, context.result, arguments.output);
+  if (arguments.output.empty()) return;
+  write_chart(chart, arguments.output);
+  say(fmt::format("chart.svg, chart.csv, chart.json, chart.html and the points' laws are in {}",
+                  arguments.output));
 }
 
 }  // namespace
@@ -180,7 +166,8 @@ void add_chart(CLI::App& app, Context& context) {
   verb.add_flag("--no-hold", arguments->no_hold,
                 "Cross out nothing because it hums when the scene's hand presses it and holds still");
   verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
-  verb.add_option("-o,--output", arguments->output, "Folder for chart.svg, .csv, .json and .html");
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder for chart.svg, .csv, .json, .html, and points/ with the law of each point");
   verb.add_flag("--force", arguments->force, "Replace existing files");
 }
 

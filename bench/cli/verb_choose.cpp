@@ -10,6 +10,7 @@
 
 #include "choose/choice_files.h"
 #include "choose/choose.h"
+#include "choose/choose_on_device.h"
 #include "choose/fidelity.h"
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
@@ -36,11 +37,6 @@ struct Arguments {
   LoopCheckOptions loop;
   ChooseOptions choose;
 };
-
-std::size_t axis_of(const Arguments& arguments, const schema::Recording& recording) {
-  if (arguments.axis.empty() && recording.cycles) return recording.cycles->axis;
-  return find_axis(recording, arguments.axis);
-}
 
 models::Contact contact_for(const Arguments& arguments, const schema::Recording& recording,
                             std::size_t axis) {
@@ -72,11 +68,10 @@ void say_choice(const LawChoice& choice) {
   say("");
 }
 
-/// Says, keeps and prints what was chosen; `about` names it.
+/// Says, keeps and prints what was chosen.
 void finish(const Arguments& arguments, Context& context, LawChoice& choice,
-            const nlohmann::ordered_json& about, const fs::path& recording) {
-  context.result = about;
-  context.result.update(choice_as_json(choice));
+            const nlohmann::ordered_json& json, const fs::path& recording) {
+  context.result = json;
   for (const std::string& warning : choice.warnings) warn(warning);
   say_choice(choice);
   say(choice.why);
@@ -88,69 +83,41 @@ void finish(const Arguments& arguments, Context& context, LawChoice& choice,
   if (!choice.serves) context.exit = Exit::check_failed;
 }
 
-/// The closed loop with a device, unless there is to be none.
-std::optional<LoopChecks> checks_for(const Arguments& arguments, const std::string& device_uri,
-                                     WalkOptions& walk, const std::atomic<bool>& stop) {
-  std::optional<LoopChecks> checks;
-  if (arguments.no_loop) return checks;
-  LoopCheckOptions options = arguments.loop;
-  options.device_uri = device_uri;
-  checks.emplace(std::move(options), stop);
-  walk.begins = [device_uri](const std::string& law) {
-    say(fmt::format("{} in closed loop with {} ...", law, device_uri));
-  };
-  return checks;
-}
-
-void connect(const LoopChecks& checks, WalkOptions& walk) {
-  walk.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
-  walk.stability = [&checks](const LawFile& law, const schema::Recording&) {
-    return checks.instability(law);
-  };
+void say_begins(const std::string& law, const std::string& device_uri) {
+  say(fmt::format("{} in closed loop with {} ...", law, device_uri));
 }
 
 void choose_for_recording(const Arguments& arguments, Context& context, const schema::Recording& recording,
                           const fs::path& file, const std::atomic<bool>& stop) {
-  ChooseOptions options = arguments.choose;
-  options.axis = axis_of(arguments, recording);
-  options.contact = contact_for(arguments, recording, options.axis);
-  options.threads = std::max(1U, std::thread::hardware_concurrency());
-  std::string uri = arguments.loop.device_uri;
-  if (uri.empty() && !arguments.no_loop) uri = device_for(recording, options.axis);
-  std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
-  if (checks) {
-    checks->place(recording, options.axis, *options.contact);
-    connect(*checks, options.walk);
-  }
-  LawChoice choice = choose_law(recording, options, stop);
-  if (checks && !checks->placed_in_words().empty()) choice.warnings.push_back(checks->placed_in_words());
-  if (checks && !checks->simulated()) {
-    choice.warnings.emplace_back(
-        "on a real device the closed loop is judged by its deadlines alone, and stability by what is known "
-        "of "
-        "its mass and friction");
-  }
-  finish(arguments, context, choice,
-         {{"name", file.stem().string()},
-          {"recording", file.string()},
-          {"uuid", recording.header.uuid},
-          {"axis", recording.axes[options.axis].name},
-          {"device", checks ? nlohmann::ordered_json(checks->device_uri()) : nullptr}},
-         file);
+  DeviceChoiceOptions options{.choose = arguments.choose,
+                              .loop = arguments.loop,
+                              .tried_by = arguments.no_loop ? TriedBy::data : TriedBy::wall_clock,
+                              .begins = say_begins};
+  options.choose.axis = find_cut_axis(recording, arguments.axis);
+  options.choose.contact = contact_for(arguments, recording, options.choose.axis);
+  options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
+  DeviceChoice made = choose_on_device(recording, file, std::move(options), stop);
+  finish(arguments, context, made.choice, made.json, file);
 }
 
 void choose_for_blade(const Arguments& arguments, Context& context, const Scene& scene,
                       const std::atomic<bool>& stop) {
   FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
-  const std::string uri = arguments.loop.device_uri.empty() ? device_of(scene) : arguments.loop.device_uri;
-  const std::optional<LoopChecks> checks = checks_for(arguments, uri, options.walk, stop);
-  if (checks) connect(*checks, options.walk);
+  LoopCheckOptions loop = arguments.loop;
+  if (loop.device_uri.empty()) loop.device_uri = device_of(scene);
+  const std::string uri = loop.device_uri;
+  std::optional<LoopChecks> checks;
+  if (!arguments.no_loop) {
+    checks.emplace(std::move(loop), stop);
+    options.walk.begins = [uri](const std::string& law) { say_begins(law, uri); };
+    connect(*checks, TriedBy::wall_clock, options.walk);
+  }
   LawChoice choice = choose_fidelity(scene, options, stop);
-  finish(arguments, context, choice,
-         {{"name", scene.name},
-          {"scene", arguments.scene},
-          {"device", checks ? nlohmann::ordered_json(uri) : nullptr}},
-         {});
+  nlohmann::ordered_json json{{"name", scene.name},
+                              {"scene", arguments.scene},
+                              {"device", checks ? nlohmann::ordered_json(uri) : nullptr}};
+  json.update(choice_as_json(choice));
+  finish(arguments, context, choice, json, {});
 }
 
 void choose_for_scene(const Arguments& arguments, Context& context, const std::atomic<bool>& stop) {

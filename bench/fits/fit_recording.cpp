@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
 
@@ -84,6 +85,20 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   fitted.rmse_rendered = std::sqrt(squares / static_cast<double>(sources.pool.force.size()));
   return fitted;
 }
+
+/// Counts one more at the end of its scope.
+class CountWhenLeft {
+ public:
+  explicit CountWhenLeft(std::atomic<std::size_t>* count) : count_(count) {}
+  CountWhenLeft(const CountWhenLeft&) = delete;
+  CountWhenLeft& operator=(const CountWhenLeft&) = delete;
+  ~CountWhenLeft() {
+    if (count_ != nullptr) ++*count_;
+  }
+
+ private:
+  std::atomic<std::size_t>* count_;
+};
 
 bool units_fit(const std::string& model, const schema::Axis& axis) {
   const models::LawInfo info = models::law_info(model);
@@ -199,6 +214,9 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   };
   std::vector<fitting::FitResult> results;
   for (const std::string& model : models) {
+    if (options.stop != nullptr && *options.stop)
+      throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
+    const CountWhenLeft counted(options.done);
     if (!named(model) && !units_fit(model, axis)) continue;
     try {
       check_units(model, axis);

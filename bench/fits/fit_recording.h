@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,6 +22,8 @@ struct FitRecordingOptions {
   std::size_t segments = 5;                ///< of the piecewise law
   std::vector<std::string> law_options;    ///< NAME=VALUE, each for the laws that have it
   fitting::FitOptions fit;
+  const std::atomic<bool>* stop = nullptr;   ///< no further law is begun then
+  std::atomic<std::size_t>* done = nullptr;  ///< counts the laws of models_of()
 };
 
 /// A recording with what a fit has to know of it.
@@ -73,7 +77,8 @@ struct RecordingFit {
 };
 
 /// Fits laws to an axis of a recording. A law that cannot be fitted is a refusal.
-/// @throws std::invalid_argument for an unknown law or option, or a recording without force.
+/// @throws std::invalid_argument for an unknown law or option, or a recording without force;
+///         std::system_error if it was stopped.
 [[nodiscard]] RecordingFit fit_recording(const schema::Recording& recording,
                                          const FitRecordingOptions& options);
 

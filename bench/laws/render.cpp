@@ -11,6 +11,10 @@
 
 namespace kerf::bench {
 
+double resisting(double force, bool is_measured, const models::Contact& contact) {
+  return is_measured ? force : -contact.direction * force;
+}
+
 AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, const models::Contact& contact) {
   const std::size_t dimensions = recording.dimensions();
   if (axis >= dimensions) throw std::invalid_argument("the recording has no such axis");
@@ -25,8 +29,7 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
     const models::Motion motion = contact.motion(recording.position[at], recording.velocity[at]);
     series.penetration.push_back(motion.penetration);
     series.velocity.push_back(motion.velocity);
-    // A sensor gives the resisting force as it is; a command pushes against the direction of engagement.
-    series.force.push_back(measured ? force[at] : -contact.direction * force[at]);
+    series.force.push_back(resisting(force[at], measured, contact));
   }
   if (recording.cycles) {
     series.cycle.assign(recording.rows(), 0);

@@ -16,6 +16,10 @@ struct AxisSeries {
   std::vector<std::uint32_t> cycle;  ///< cycle of each row, 0 for none; empty if the recording has no cycles
 };
 
+/// A force as it resists engagement: a sensor gives it as it is, a command pushes against the direction of
+/// engagement.
+[[nodiscard]] double resisting(double force, bool is_measured, const models::Contact& contact);
+
 /// Takes the series of an axis out of a recording; the force is the measured one where there is a sensor,
 /// else the commanded one with its sign turned to resisting. @throws std::invalid_argument (no such axis).
 [[nodiscard]] AxisSeries axis_series(const schema::Recording& recording, std::size_t axis,

@@ -1,5 +1,6 @@
 #include "loop/realtime.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -86,6 +87,17 @@ void stay_off_loop_processor() noexcept {
   if (CPU_COUNT(&others) < 2) return;
   CPU_CLR(loop_processor(others), &others);
   (void)sched_setaffinity(0, sizeof others, &others);
+}
+
+void give_way() noexcept {
+  constexpr int least_urgent = 19;
+  // Of a thread, not of the process: Linux keeps it for each.
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), least_urgent);
+}
+
+std::size_t usable_processors() noexcept {
+  const cpu_set_t allowed = allowed_processors();
+  return static_cast<std::size_t>(std::max(1, CPU_COUNT(&allowed)));
 }
 
 void be_more_urgent_than_the_loop() noexcept {

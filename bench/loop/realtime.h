@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -23,6 +24,11 @@ struct RealtimeMeasure {
 /// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel
 /// cannot always be interrupted.
 void stay_off_loop_processor() noexcept;
+/// Makes the calling thread, and those that it starts, give way to everything else: the least urgent of the
+/// ordinary threads. Not SCHED_IDLE, under which a busy machine would never come to it.
+void give_way() noexcept;
+/// How many processors the calling thread may use, at least 1.
+[[nodiscard]] std::size_t usable_processors() noexcept;
 /// Makes the calling thread more urgent than the loop, where permitted.
 void be_more_urgent_than_the_loop() noexcept;
 

@@ -16,6 +16,10 @@ std::size_t find_axis(const schema::Recording& recording, const std::string& nam
   throw std::invalid_argument(fmt::format("the recording has no axis '{}'; it has {}", name, known));
 }
 
+std::size_t find_cut_axis(const schema::Recording& recording, const std::string& name) {
+  return name.empty() && recording.cycles ? recording.cycles->axis : find_axis(recording, name);
+}
+
 std::vector<schema::Axis> axes_of(const drivers::DeviceInfo& device) {
   std::vector<schema::Axis> axes;
   for (const drivers::AxisInfo& axis : device.axes) {

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/whole_file.h"
 #include "report/html.h"
 
 namespace kerf::bench {
@@ -177,6 +178,17 @@ Chart chart_of(const LawStudy& study) {
   return chart;
 }
 
+/// The axis that was studied, and what it can do by itself.
+json as_json(const StudiedAxis& on, const SampledDevice& device) {
+  return {{"device", on.device_uri},
+          {"axis", on.axis},
+          {"grip", on.grip},
+          {"rate_hz", 1.0 / device.period_s},
+          {"damping_n_s_per_m", device.viscous_n_s_per_m},
+          {"passive_stiffness_n_per_m", passive_stiffness(device, 0.0)},
+          {"colgate_schenkel_n_per_m", colgate_schenkel(device, 0.0)}};
+}
+
 }  // namespace
 
 json as_json(const SampledDevice& device) {
@@ -214,7 +226,22 @@ std::string page_body(const Findings& findings) {
   return html + rest;
 }
 
-Findings findings_of(const WallMap& map) {
+void refuse_to_replace_findings(const std::filesystem::path& folder, bool replace) {
+  for (const auto* name : {"stability.json", "stability.csv", "stability.html"})
+    refuse_to_replace(folder / name, replace);
+}
+
+void write_findings(const Findings& findings, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const Figure& figure : findings.figures)
+    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart) + "\n");
+  write_whole_file(folder / "stability.csv", findings.csv);
+  write_whole_file(folder / "stability.html",
+                   html_page("Stability", "<h1>Where it breaks</h1>\n" + page_body(findings)));
+  write_whole_file(folder / "stability.json", findings.json.dump(2) + "\n");
+}
+
+Findings findings_of(const WallMap& map, const StudiedAxis& on) {
   Findings found;
   json cells = json::array();
   found.csv = "K_n_per_m,B_n_s_per_m,stable,theory\n";
@@ -249,6 +276,7 @@ Findings findings_of(const WallMap& map) {
     table.push_back(std::move(row));
   }
   found.json = {{"study", "wall"},
+                {"on", as_json(on, map.device)},
                 {"device", as_json(map.device)},
                 {"push_n", map.trial.push_n},
                 {"seconds", map.trial.seconds},
@@ -258,12 +286,13 @@ Findings findings_of(const WallMap& map) {
                 {"boundaries", std::move(boundaries)},
                 {"cells", std::move(cells)}};
   found.lines = comparison(map);
+  found.json["in_words"] = found.lines;
   found.figures.push_back({"wall", chart_of(map)});
   found.html = device_table(map.device) + "<h2>Boundaries</h2>\n" + html_table(table);
   return found;
 }
 
-Findings findings_of(const LawStudy& study) {
+Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   Findings found;
   const LawLimits& limits = study.limits;
   json cells = json::array();
@@ -279,6 +308,7 @@ Findings findings_of(const LawStudy& study) {
   }
   found.json = {{"study", "law"},
                 {"law", study.model},
+                {"on", as_json(on, study.device)},
                 {"device", as_json(study.device)},
                 {"range", {{"depth_m", study.range.depth_m}, {"speed_m_s", study.range.speed_m_s}}},
                 {"passive", study.passive},
@@ -331,6 +361,7 @@ Findings findings_of(const LawStudy& study) {
         "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
+  found.json["in_words"] = found.lines;
   found.figures.push_back({"law", chart_of(study)});
   found.html = device_table(study.device);
   return found;

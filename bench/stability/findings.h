@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,13 @@
 #include "stability/maps.h"
 
 namespace kerf::bench {
+
+/// What was studied, by its name: empty where no device was named.
+struct StudiedAxis {
+  std::string device_uri;
+  std::string axis;
+  std::string grip;
+};
 
 /// What a study leaves behind: the numbers, a table of them, pictures, a page, and lines for a terminal.
 struct Findings {
@@ -39,10 +47,16 @@ struct LawStudy {
 [[nodiscard]] nlohmann::ordered_json as_json(const SampledDevice& device);
 /// The body of a page: the lines, the pictures (drawn here), and what else there is.
 [[nodiscard]] std::string page_body(const Findings& findings);
-[[nodiscard]] Findings findings_of(const WallMap& map);
-[[nodiscard]] Findings findings_of(const LawStudy& study);
+[[nodiscard]] Findings findings_of(const WallMap& map, const StudiedAxis& on = {});
+[[nodiscard]] Findings findings_of(const LawStudy& study, const StudiedAxis& on = {});
 [[nodiscard]] Findings findings_of(const std::vector<NamedCase>& cases,
                                    const std::optional<ControlCosts>& costs);
+
+/// @throws std::invalid_argument if a file that write_findings() always writes stands in the folder.
+void refuse_to_replace_findings(const std::filesystem::path& folder, bool replace);
+/// Writes stability.json, stability.csv, stability.html and the pictures into a folder.
+/// @throws std::system_error.
+void write_findings(const Findings& findings, const std::filesystem::path& folder);
 
 /// Whether every case fails without its remedy and holds with it.
 [[nodiscard]] bool behave(const std::vector<NamedCase>& cases);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <system_error>
 #include <thread>
 
 #include "stability/bisection.h"
@@ -10,16 +11,25 @@
 namespace kerf::bench {
 namespace {
 
+bool is_stopped(const MapOptions& options) { return options.stop != nullptr && *options.stop; }
+
 /// Calls `work(row)` for every row, on so many threads. Rows share nothing.
 template <typename Work>
-void for_each_row(std::size_t rows, std::size_t threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t row = next++; row < rows; row = next++) work(row);
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(threads, rows); ++i) others.emplace_back(run);
-  run();
+void for_each_row(std::size_t rows, const MapOptions& options, const Work& work) {
+  {
+    std::atomic<std::size_t> next{0};
+    const auto run = [&] {
+      for (std::size_t row = next++; row < rows && !is_stopped(options); row = next++) {
+        work(row);
+        if (options.done != nullptr) ++*options.done;
+      }
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t i = 1; i < std::min(options.threads, rows); ++i) others.emplace_back(run);
+    run();
+  }
+  if (is_stopped(options))
+    throw std::system_error(std::make_error_code(std::errc::interrupted), "the map is not complete");
 }
 
 double share_of_agreement(const std::vector<Cell>& cells) {
@@ -103,7 +113,7 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
   const WallSimulation linear_walls(linear_device);
   map.boundaries.resize(grid.second.size());
   if (options.with_cells) map.cells.resize(columns * grid.second.size());
-  for_each_row(grid.second.size(), options.threads, [&](std::size_t row) {
+  for_each_row(grid.second.size(), options, [&](std::size_t row) {
     const double damping = grid.second[row];
     const double softest = grid.first.front();
     const double stiffest = grid.first.back();
@@ -126,11 +136,11 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
 }
 
 LawMap law_map(const SampledDevice& device, const AxisLaw& law, double speed_m_s, const Grid2& grid,
-               std::size_t threads) {
+               const MapOptions& options) {
   LawMap map{.device = device, .speed_m_s = speed_m_s, .grid = grid};
   const std::size_t columns = grid.first.size();
   map.cells.resize(columns * grid.second.size());
-  for_each_row(grid.second.size(), threads, [&](std::size_t row) {
+  for_each_row(grid.second.size(), options, [&](std::size_t row) {
     SampledDevice at = device;
     at.period_s = 1.0 / grid.second[row];
     Cell so_far{.stable = true, .theory = true};  // what fails at a depth fails beyond it

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -57,9 +58,12 @@ struct WallMap {
 
 struct MapOptions {
   bool with_cells = true;
-  std::size_t threads = 1;  ///< the result is the same for any number
+  std::size_t threads = 1;                   ///< the result is the same for any number
+  const std::atomic<bool>* stop = nullptr;   ///< ends it, without a result
+  std::atomic<std::size_t>* done = nullptr;  ///< counts the rows
 };
 
+/// @throws std::system_error if it was stopped.
 [[nodiscard]] WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid2& grid,
                                const MapOptions& options);
 
@@ -73,7 +77,8 @@ struct LawMap {
   [[nodiscard]] double agreement() const;
 };
 
+/// Always with cells. @throws std::system_error if it was stopped.
 [[nodiscard]] LawMap law_map(const SampledDevice& device, const AxisLaw& law, double speed_m_s,
-                             const Grid2& grid, std::size_t threads);
+                             const Grid2& grid, const MapOptions& options);
 
 }  // namespace kerf::bench

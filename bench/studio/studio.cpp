@@ -3,6 +3,8 @@
 #include <optional>
 #include <string_view>
 
+#include "studio/jobs.h"
+#include "studio/result_routes.h"
 #include "studio/session_host.h"
 #include "studio/session_routes.h"
 #include "studio/studio_page.h"
@@ -29,6 +31,7 @@ class Studio::State {
         sessions_(server_.hosts(), [this] { server_.wake(); }) {
     routes_.on_ready([this] { server_.wake(); });
     add_workspace_routes(routes_, workspace_, options.device_uri);
+    add_result_routes(routes_, workspace_, jobs_);
     add_session_routes(routes_, workspace_, sessions_, options.key_file, [] {});
     server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
   }
@@ -57,6 +60,7 @@ class Studio::State {
 
   // In the order in which they may go, the last one first, once the server has stopped.
   Workspace workspace_;
+  Jobs jobs_;
   HttpServer server_;
   Gate gate_;
   SessionHost sessions_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include <hdf5_hl.h>
 
@@ -126,7 +128,18 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
 WritableFile WritableFile::open(const std::filesystem::path& file) {
   auto failure = std::make_unique<int>(0);
   const auto access = sturdy_access(*failure);
-  return {std::move(failure), Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()))};
+  // A reader locks a file for the moment in which it learns that the file is written.
+  constexpr int most_attempts = 20;
+  for (int attempt = 1;; ++attempt) {
+    try {
+      Handle handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()));
+      return {std::move(failure), std::move(handle)};
+    } catch (const Error& error) {
+      const bool is_locked = std::string_view(error.what()).find("unable to lock") != std::string_view::npos;
+      if (!is_locked || attempt == most_attempts) throw;
+      std::this_thread::sleep_for(std::chrono::milliseconds(attempt));
+    }
+  }
 }
 
 void WritableFile::start_live() {
@@ -158,10 +171,17 @@ Handle open_file(const std::filesystem::path& file) {
   try {
     return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   } catch (const Error& error) {
-    if (std::string_view(error.what()).find("already open for") == std::string_view::npos) throw;
+    const std::string_view why(error.what());
+    // The second is said where another thread follows the file just now.
+    if (why.find("already open for") == std::string_view::npos &&
+        why.find("locking flag values don't match") == std::string_view::npos) {
+      throw;
+    }
     // Each attempt to read what is just being written waits twice as long as the one before: 34 ms in all.
     const auto access = property_list(H5P_FILE_ACCESS);
     call(H5Pset_metadata_read_attempts, access.id(), 25U);
+    // Whoever follows a recording must not keep its writer from closing it.
+    call(H5Pset_file_locking, access.id(), hbool_t{false}, hbool_t{true});
     const hid_t live = H5Fopen(file.c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, access.id());
     if (live < 0) throw;
     return Handle(live);
@@ -198,6 +218,31 @@ Handle create_group(hid_t parent, const std::string& path) {
 
 Handle open(hid_t parent, const std::string& path) {
   return Handle(call(H5Oopen, parent, path.c_str(), H5P_DEFAULT));
+}
+
+namespace {
+
+/// Bytes of a chunk that has to be unpacked as a whole; 0 for any other.
+std::size_t bytes_to_unpack(hid_t dataset) {
+  const Handle creation(call(H5Dget_create_plist, dataset));
+  if (H5Pget_layout(creation.id()) != H5D_CHUNKED || call(H5Pget_nfilters, creation.id()) == 0) return 0;
+  Extent chunk(extent_of(Handle(call(H5Dget_space, dataset))).size());
+  call(H5Pget_chunk, creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  std::size_t bytes = H5Tget_size(Handle(call(H5Dget_type, dataset)).id());
+  for (const auto length : chunk) bytes *= length;
+  return bytes;
+}
+
+}  // namespace
+
+Handle open_to_pass_through(hid_t parent, const std::string& path) {
+  // What is open already would be opened with the cache that it has.
+  const std::size_t bytes = bytes_to_unpack(open(parent, path).id());
+  constexpr std::size_t most_bytes = std::size_t{32} << 20U;
+  const auto access = property_list(H5P_DATASET_ACCESS);
+  call(H5Pset_chunk_cache, access.id(), std::size_t{11}, std::min(bytes, most_bytes),
+       H5D_CHUNK_CACHE_W0_DEFAULT);
+  return Handle(call(H5Dopen2, parent, path.c_str(), access.id()));
 }
 
 std::vector<std::string> children(hid_t group) {

@@ -106,6 +106,9 @@ class WritableFile {
 [[nodiscard]] bool is_dataset(hid_t parent, const std::string& path);
 [[nodiscard]] Handle create_group(hid_t parent, const std::string& path);
 [[nodiscard]] Handle open(hid_t parent, const std::string& path);
+/// A dataset whose rows are read once, from the first to the last: no chunk of it is kept, and none is copied
+/// on its way, unless it has to be unpacked.
+[[nodiscard]] Handle open_to_pass_through(hid_t parent, const std::string& path);
 /// Names in a group, in the order in which they were made where the file knows it.
 [[nodiscard]] std::vector<std::string> children(hid_t group);
 

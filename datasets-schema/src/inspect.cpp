@@ -314,7 +314,7 @@ const Finding* Inspection::first_fatal() const {
   return found == findings.end() ? nullptr : &*found;
 }
 
-Inspection inspect(const std::filesystem::path& file) {
+Inspection inspect(const std::filesystem::path& file, bool look_through_texts) {
   require_readable(file);
   if (!h5::is_hdf5(file)) {
     throw FormatError(file.string() + ": not an HDF5 file; expected a recording of schema '" +
@@ -322,11 +322,22 @@ Inspection inspect(const std::filesystem::path& file) {
   }
   Inspection inspection;
   try {
-    if (!are_text_heaps_sound(file)) throw h5::Error("its texts are overwritten or cut off", 0);
+    if (look_through_texts && !are_text_heaps_sound(file))
+      throw h5::Error("its texts are overwritten or cut off", 0);
     inspection.file = h5::open_file(file);
     Inspector(inspection, std::filesystem::file_size(file)).run();
   } catch (const h5::Error& error) {
     throw DamageError(file, error);
+  }
+  return inspection;
+}
+
+Inspection inspect_readable(const std::filesystem::path& file, bool look_through_texts) {
+  auto inspection = inspect(file, look_through_texts);
+  if (const auto* fatal = inspection.first_fatal()) {
+    const auto& [where, found, expected] = fatal->violation;
+    throw FormatError(file.string() + ": " + where + ": found " + found + ", expected " + expected +
+                      "; 'kerf validate' lists everything that is wrong");
   }
   return inspection;
 }

@@ -35,9 +35,14 @@ struct DamageError : FormatError {
   std::string reason;
 };
 
+/// Texts need no look where the same file was looked through before and has not changed.
 /// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file,
 ///         std::system_error if it cannot be opened.
-[[nodiscard]] Inspection inspect(const std::filesystem::path& file);
+[[nodiscard]] Inspection inspect(const std::filesystem::path& file, bool look_through_texts = true);
+
+/// As inspect(). @throws also FormatError that names the first finding for which the recording cannot be
+/// read.
+[[nodiscard]] Inspection inspect_readable(const std::filesystem::path& file, bool look_through_texts = true);
 
 /// Reads what was inspected; nothing in it may be fatal.
 [[nodiscard]] Recording read_inspected(const Inspection& inspection);

@@ -1,45 +1,60 @@
 #include "text_heaps.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <unordered_set>
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace kerf::schema {
 namespace {
 
-/// A file in memory while the object lives.
-class Mapping {
+/// A file that is read piece by piece: a process that renders forces has its memory locked, and with it
+/// whatever it maps.
+class Pieces {
  public:
-  explicit Mapping(const std::filesystem::path& file) {
-    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  explicit Pieces(const std::filesystem::path& file)
+      : name_(file.string()), descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
     struct stat status {};
-    if (descriptor >= 0 && ::fstat(descriptor, &status) == 0 && status.st_size > 0) {
-      size_ = static_cast<std::size_t>(status.st_size);
-      start_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    }
-    const int reason = errno;
-    if (descriptor >= 0) ::close(descriptor);
-    if (start_ == MAP_FAILED) {
-      throw std::system_error(reason, std::generic_category(), file.string() + ": cannot read");
-    }
+    if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0) fail();
+    size_ = static_cast<std::size_t>(status.st_size);
   }
-  Mapping(const Mapping&) = delete;
-  Mapping& operator=(const Mapping&) = delete;
-  ~Mapping() { ::munmap(start_, size_); }
+  Pieces(const Pieces&) = delete;
+  Pieces& operator=(const Pieces&) = delete;
+  ~Pieces() { ::close(descriptor_); }
 
-  [[nodiscard]] std::string_view bytes() const { return {static_cast<const char*>(start_), size_}; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Up to so many bytes, fewer at the end of the file; valid until the next call.
+  std::string_view read(std::size_t at, std::size_t length) {
+    buffer_.resize(std::min(length, size_ - std::min(at, size_)));
+    std::size_t have = 0;
+    while (have < buffer_.size()) {
+      const auto got =
+          ::pread(descriptor_, buffer_.data() + have, buffer_.size() - have, static_cast<off_t>(at + have));
+      if (got < 0 && errno != EINTR) fail();
+      if (got == 0) break;
+      if (got > 0) have += static_cast<std::size_t>(got);
+    }
+    return std::string_view(buffer_).substr(0, have);
+  }
 
  private:
-  void* start_ = MAP_FAILED;
+  [[noreturn]] void fail() const {
+    throw std::system_error(errno, std::generic_category(), name_ + ": cannot read");
+  }
+
+  std::string name_;
+  int descriptor_;
   std::size_t size_ = 0;
+  std::string buffer_;
 };
 
 template <typename T>
@@ -72,15 +87,21 @@ bool are_text_heaps_sound(const std::filesystem::path& file) {
   using namespace std::string_view_literals;
   constexpr std::string_view signature = "GCOL\1\0\0\0"sv;
   constexpr std::size_t head = 16;
-  const Mapping mapping(file);
-  const auto bytes = mapping.bytes();
-  for (auto at = bytes.find(signature); at != std::string_view::npos; at = bytes.find(signature, at)) {
-    const auto rest = bytes.substr(at);
-    if (rest.size() < head) return false;
-    const auto size = number_at<std::uint64_t>(rest, signature.size());
-    if (size < head || size > rest.size() || !is_sound(rest.substr(0, static_cast<std::size_t>(size)))) {
-      return false;
+  constexpr std::size_t piece = std::size_t{256} << 10U;
+  Pieces pieces(file);
+  for (std::size_t at = 0; at < pieces.size();) {
+    const auto found = pieces.read(at, piece).find(signature);
+    if (found == std::string_view::npos) {
+      at += piece - signature.size() + 1;  // a signature may lie across two pieces
+      continue;
     }
+    at += found;
+    const auto start = pieces.read(at, head);
+    if (start.size() < head) return false;
+    const auto size = number_at<std::uint64_t>(start, signature.size());
+    if (size < head || size > pieces.size() - at) return false;
+    const auto heap = pieces.read(at, static_cast<std::size_t>(size));
+    if (heap.size() < size || !is_sound(heap)) return false;
     at += static_cast<std::size_t>(size);
   }
   return true;

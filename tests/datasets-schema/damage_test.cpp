@@ -1,13 +1,16 @@
 #include <filesystem>
+#include <random>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/recording_file.h>
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/changed_file.h"
+#include "datasets-schema/read_by_column.h"
 
 namespace kerf::schema {
 namespace {
@@ -15,14 +18,38 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// The one line that a file which is no recording gives; empty if it was read.
-std::string refusal(const std::filesystem::path& file) {
+template <typename Action>
+std::string line_of(const Action& action) {
   try {
-    static_cast<void>(read_recording(file));
+    action();
     return "";
   } catch (const FormatError& error) {
     return error.what();
   }
+}
+
+/// Everything that can be asked of an open recording.
+void read_piecewise(const std::filesystem::path& path) {
+  const RecordingFile file(path);
+  const auto rows = static_cast<std::size_t>(file.rows());
+  for (const auto column : test::all_columns) {
+    std::vector<double> values(rows * file.width(column));
+    if (file.width(column) > 0) file.read(column, 0, rows, values);
+  }
+  std::vector<double> channel(rows);
+  for (std::size_t i = 0; i < file.about().channels.size(); ++i) file.read_channel(i, 0, channel);
+  std::vector<std::uint64_t> ticks(rows);
+  file.read_ticks(0, ticks);
+  std::vector<std::uint32_t> flags(rows);
+  if (file.has_flags()) file.read_flags(0, flags);
+}
+
+/// The one line that a file which is no recording gives, read as a whole or piece by piece; empty if it was
+/// read.
+std::string refusal(const std::filesystem::path& file) {
+  const std::string line = line_of([&] { static_cast<void>(read_recording(file)); });
+  EXPECT_EQ(line_of([&] { read_piecewise(file); }), line);
+  return line;
 }
 
 std::string refusal_after(const std::function<void(hid_t)>& change) {
@@ -46,6 +73,8 @@ TEST(ForeignFile, AMissingFileOrAFolderIsBadUsage) {
   const test::TemporaryFolder folder;
   EXPECT_THROW(static_cast<void>(read_recording(folder / "none.h5")), std::invalid_argument);
   EXPECT_THROW(static_cast<void>(read_recording(folder.path())), std::invalid_argument);
+  EXPECT_THROW(RecordingFile{folder / "none.h5"}, std::invalid_argument);
+  EXPECT_THROW(RecordingFile{folder.path()}, std::invalid_argument);
 }
 
 TEST(ForeignFile, OfAnotherSchemaIsNamed) {
@@ -112,6 +141,25 @@ TEST(DamagedFile, CutShortAnywhereIsRefusedInOneLine) {
     ASSERT_THAT(line, HasSubstr("cut.h5: ")) << length << " bytes";
     ASSERT_THAT(line, Not(HasSubstr("\n")));
   }
+}
+
+TEST(DamagedFile, OverwrittenAnywhereIsReadOrRefusedInOneLine) {
+  const test::TemporaryFolder folder;
+  write_recording(folder / "r.h5", test::sample_recording());
+  const std::string sound = test::read_text(folder / "r.h5");
+  std::mt19937 random(7);
+  std::size_t refused = 0;
+  for (int turn = 0; turn < 300; ++turn) {
+    std::string bytes = sound;
+    const std::size_t at = random() % (bytes.size() - 16);
+    for (std::size_t i = 0; i < 16; ++i) bytes[at + i] = static_cast<char>(random());
+    test::write_text(folder / "hurt.h5", bytes);
+    const std::string line = refusal(folder / "hurt.h5");
+    ASSERT_THAT(line, Not(HasSubstr("\n")));
+    refused += line.empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 20U);
+  EXPECT_LT(refused, 300U);
 }
 
 TEST(DamagedFile, CutShortIsAViolation) {

@@ -1,12 +1,15 @@
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +17,7 @@
 #include <kerf/schema/recording_writer.h>
 #include <kerf/schema/validate.h>
 
+#include "datasets-schema/live_rows.h"
 #include "datasets-schema/same_recording.h"
 #include "datasets-schema/sample_recording.h"
 #include "support/full_disk.h"
@@ -321,6 +325,21 @@ TEST(FullDisk, IsToldOfAgainByEveryLaterCall) {
   EXPECT_THROW(writer.append(rows_of(5000, 5001)), std::system_error);
   EXPECT_THROW(writer.flush(), std::system_error);
   EXPECT_THROW(writer.close("complete"), std::system_error);
+}
+
+TEST(RecordingWriter, ClosesThoughAReaderLocksTheFileForAMoment) {
+  const test::TemporaryFolder folder;
+  auto writer = test::live_writer(folder / "r.h5");
+  writer.append(test::live_rows(0, 10));
+  const int descriptor = ::open((folder / "r.h5.partial").c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(descriptor, LOCK_SH), 0);
+  std::thread reader([descriptor] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ::close(descriptor);
+  });
+  writer.close("complete");
+  reader.join();
+  EXPECT_EQ(read_recording(folder / "r.h5").rows(), 10U);
 }
 
 }  // namespace

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+
+#include <nlohmann/json.hpp>
+
+#include <kerf/schema/recording.h>
+
+#include "laws/law_file.h"
+
+namespace kerf::bench {
+
+/// What a law leaves of a recording: law less measured force, along the series that fits see (fit_series.h)
+/// from the law's own contact, without the rendering aids of laws with branches, as fits judge them.
+///
+///     time_s, smallest, largest       over time, in up to `columns` columns that keep the extremes
+///     rmse, worst, jnd_n              over all rows; the JND at the root mean square force
+///     penetration, mean, low, high    of the residual in 60 bins of penetration: mean and +- one standard
+///                                     deviation; null where there are fewer than five rows
+///     loop                            means of measured and law in the same bins, closing and opening apart
+///
+/// @throws std::invalid_argument for a law on several axes or in other units than the axis, and a recording
+/// without a finite row.
+[[nodiscard]] nlohmann::ordered_json residuals_of(const schema::Recording& recording, std::size_t axis,
+                                                  const LawFile& law, std::size_t columns);
+
+}  // namespace kerf::bench

@@ -1,0 +1,75 @@
+#include "studio/result_folder.h"
+
+#include <atomic>
+#include <cctype>
+#include <system_error>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include "web/routes.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int most_names = 1000;
+constexpr std::size_t longest_stem = 60;
+
+/// The first of the names that is free. @throws RequestError.
+fs::path free_name(const Workspace& workspace, const std::string& stem, std::string_view ending) {
+  for (int i = 1; i < most_names; ++i) {
+    const std::string name = i == 1 ? stem : fmt::format("{}-{}", stem, i);
+    try {
+      return workspace.new_file(name, ending);
+    } catch (const RequestError& taken) {
+      if (taken.status != 409) throw;
+    }
+  }
+  throw RequestError(
+      409, fmt::format("{}{} and {} more are there; remove some of them", stem, ending, most_names));
+}
+
+}  // namespace
+
+std::string result_stem(std::string_view name) {
+  std::string_view rest = name.substr(name.rfind('/') == std::string_view::npos ? 0 : name.rfind('/') + 1);
+  for (const std::string_view ending : {".h5", ".law.toml"}) {
+    if (rest.ends_with(ending)) rest.remove_suffix(ending.size());
+  }
+  std::string stem;
+  for (const char c : rest.substr(0, longest_stem)) {
+    const bool is_letter_or_digit = c > 0 && std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (is_letter_or_digit || (!stem.empty() && (c == '_' || c == '.'))) {
+      stem += c;
+    } else if (!stem.empty() && stem.back() != '-') {
+      stem += '-';
+    }
+  }
+  while (!stem.empty() && std::isalnum(static_cast<unsigned char>(stem.back())) == 0) stem.pop_back();
+  return stem.empty() ? "result" : stem;
+}
+
+ResultFolder::ResultFolder(const Workspace& workspace) {
+  static std::atomic<int> last{0};
+  path_ = workspace.folder() / fmt::format(".result-{}-{}", getpid(), ++last);
+  fs::remove_all(path_);  // of a process that had this number and died
+  fs::create_directory(path_);
+}
+
+ResultFolder::~ResultFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+std::string ResultFolder::publish(Workspace& workspace, const std::string& stem, std::string_view ending,
+                                  std::string_view file) {
+  const fs::path to = free_name(workspace, stem, ending);
+  fs::rename(path_, to);
+  path_.clear();
+  (void)workspace.scan();
+  return workspace.id_of(to / file);
+}
+
+}  // namespace kerf::bench

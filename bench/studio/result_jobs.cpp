@@ -1,0 +1,134 @@
+#include "studio/result_jobs.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "chart/chart_files.h"
+#include "choose/choice_files.h"
+#include "choose/choose_on_device.h"
+#include "fits/fit_files.h"
+#include "laws/render.h"
+#include "loop/realtime.h"
+#include "recordings/axes.h"
+#include "studio/result_folder.h"
+
+namespace kerf::bench {
+namespace {
+
+RecordingFit fitted(const schema::Recording& recording, const FitRequest& request,
+                    const FitRecordingOptions& options) {
+  const std::size_t axis = find_axis(recording, request.axis);
+  const FitSource source{.recording = &recording,
+                         .name = request.recording.path.stem().string(),
+                         .axis = axis,
+                         .contact = contact_of(recording, axis)};
+  return fit_recordings(std::span(&source, 1), options);
+}
+
+std::string run_fit(Workspace& workspace, const FitRequest& request, JobProgress& progress) {
+  FitRecordingOptions options{.models = request.models, .stop = &progress.stop, .done = &progress.done};
+  options.fit.folds = request.folds;
+  options.fit.threads = usable_processors();
+  progress.steps = models_of(options).size();
+  RecordingFit fit = fitted(schema::read_recording(request.recording.path), request, options);
+  if (fit.laws.empty()) {
+    const std::string reason = fit.refusal();
+    throw std::invalid_argument(reason.empty() ? "no law could be fitted" : reason);
+  }
+  ResultFolder folder(workspace);
+  write_fits(fit, request.recording.path, folder.path());
+  return folder.publish(workspace, result_stem(request.recording.name), ".fit", "fit.json");
+}
+
+std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProgress& progress) {
+  const schema::Recording recording = schema::read_recording(request.recording.path);
+  ChartOptions options{.models = request.models};
+  options.threads = usable_processors();
+  options.stop = &progress.stop;
+  options.done = &progress.done;
+  SpeedAccuracy chart =
+      chart_recording(charted(recording, request.recording.path.stem().string(), request.axis), options);
+  if (chart.stopped) throw std::runtime_error("stopped");
+  chart.notes.emplace_back(
+      "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they "
+      "are "
+      "in a loop of their own; 'kerf chart' measures them in peace");
+  ResultFolder folder(workspace);
+  write_chart(chart, folder.path());
+  return folder.publish(workspace, result_stem(request.recording.name), ".chart", "chart.json");
+}
+
+std::string run_choice(Workspace& workspace, const ChoiceRequest& request, JobProgress& progress) {
+  const schema::Recording recording = schema::read_recording(request.recording.path);
+  DeviceChoiceOptions options{
+      .loop = {.rate_hz = request.rate_hz}, .tried_by = TriedBy::virtual_time, .begins = {}};
+  options.choose.axis = find_cut_axis(recording, request.axis);
+  options.choose.candidates.most_segments = request.most_segments;
+  options.choose.threads = usable_processors();
+  options.choose.done = &progress.done;
+  options.choose.of = &progress.steps;
+  DeviceChoice made = choose_on_device(recording, request.recording.path, std::move(options), progress.stop);
+  made.json["recording"] = request.recording.name;  // as the workspace knows it
+  ResultFolder folder(workspace);
+  write_choice(made.choice, made.json, request.recording.path, folder.path());
+  return folder.publish(workspace, result_stem(request.recording.name), ".choice", "choose.json");
+}
+
+std::string run_stability(Workspace& workspace, StabilityRequest request, JobProgress& progress) {
+  StudyOptions& study = request.study;
+  study.map.threads = usable_processors();
+  study.map.stop = &progress.stop;
+  study.map.done = &progress.done;
+  progress.steps = study.cells;
+  Findings findings;
+  if (request.law) {
+    findings = study_law(read_law_file(request.law->path), request.law->name, study).findings;
+    findings.json["law_file"] = request.law->name;
+  } else {
+    findings = study_walls(study);
+  }
+  ResultFolder folder(workspace);
+  write_findings(findings, folder.path());
+  const std::string stem = result_stem(request.law ? request.law->name : study.on.device_uri);
+  return folder.publish(workspace, stem, ".stability", "stability.json");
+}
+
+}  // namespace
+
+JobOrder fit_job(Workspace& workspace, FitRequest request) {
+  return {.kind = "fit",
+          .title = fmt::format("Fit of {}", request.recording.name),
+          .work = [&workspace, request = std::move(request)](JobProgress& progress) {
+            return run_fit(workspace, request, progress);
+          }};
+}
+
+JobOrder chart_job(Workspace& workspace, ChartRequest request) {
+  return {.kind = "chart",
+          .title = fmt::format("Chart of {}", request.recording.name),
+          .steps = chart_steps,
+          .work = [&workspace, request = std::move(request)](JobProgress& progress) {
+            return run_chart(workspace, request, progress);
+          }};
+}
+
+JobOrder choice_job(Workspace& workspace, ChoiceRequest request) {
+  return {.kind = "choice",
+          .title = fmt::format("Choice for {}", request.recording.name),
+          .work = [&workspace, request = std::move(request)](JobProgress& progress) {
+            return run_choice(workspace, request, progress);
+          }};
+}
+
+JobOrder stability_job(Workspace& workspace, StabilityRequest request) {
+  return {
+      .kind = "stability",
+      .title = fmt::format("Stability of {}", request.law ? request.law->name : request.study.on.device_uri),
+      .work = [&workspace, request = std::move(request)](JobProgress& progress) {
+        return run_stability(workspace, request, progress);
+      }};
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,191 @@
+#include "studio/result_routes.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include <kerf/fitting/fit.h>
+
+#include "chart/fit_plan.h"
+#include "files/whole_file.h"
+#include "laws/law_file.h"
+#include "recordings/axes.h"
+#include "stability/in_hand.h"
+#include "studio/law_view.h"
+#include "studio/residuals.h"
+#include "studio/result_jobs.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::uintmax_t largest_result = 64U << 20U;
+constexpr std::size_t most_models = 40;
+constexpr std::size_t most_columns = 4000;
+
+std::string text_or(const nlohmann::json& object, const std::string& name, const std::string& otherwise) {
+  return object.contains(name) ? text_in(object, name) : otherwise;
+}
+
+double number_or(const nlohmann::json& object, const std::string& name, double otherwise, double lower,
+                 double upper) {
+  return object.contains(name) ? number_in(object, name, lower, upper) : otherwise;
+}
+
+std::size_t whole_number_in(const nlohmann::json& object, const std::string& name, double lower,
+                            double upper) {
+  const double value = number_in(object, name, lower, upper);
+  if (value != std::floor(value)) throw RequestError(400, fmt::format("'{}' is not a whole number", name));
+  return static_cast<std::size_t>(value);
+}
+
+std::vector<std::string> models_in(const nlohmann::json& object) {
+  std::vector<std::string> models;
+  if (!object.contains("models")) return models;
+  const nlohmann::json& list = object.at("models");
+  if (!list.is_array() || list.size() > most_models)
+    throw RequestError(400, fmt::format("'models' is not a list of at most {} laws", most_models));
+  for (const nlohmann::json& one : list) {
+    if (!one.is_string()) throw RequestError(400, "'models' is not a list of names");
+    models.push_back(one.get<std::string>());
+    fitting::check_model(models.back());
+  }
+  return models;
+}
+
+WorkspaceEntry recording_in(const nlohmann::json& object, Workspace& workspace) {
+  return workspace.find(text_in(object, "recording"), FileKind::recording);
+}
+
+HttpResponse order(Jobs& jobs, JobOrder job) { return json_response({{"job", jobs.add(std::move(job))}}); }
+
+HttpResponse order_fit(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
+  const nlohmann::json given = json_in(request);
+  FitRequest fit{.recording = recording_in(given, workspace),
+                 .axis = text_or(given, "axis", ""),
+                 .models = models_in(given),
+                 .folds = given.contains("folds") ? whole_number_in(given, "folds", 0.0, 100.0) : 5};
+  if (fit.folds == 1) throw RequestError(400, "'folds' is 0 for none, or 2 to 100");
+  return order(jobs, fit_job(workspace, std::move(fit)));
+}
+
+HttpResponse order_chart(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
+  const nlohmann::json given = json_in(request);
+  return order(jobs, chart_job(workspace, {.recording = recording_in(given, workspace),
+                                           .axis = text_or(given, "axis", ""),
+                                           .models = models_in(given)}));
+}
+
+HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
+  const nlohmann::json given = json_in(request);
+  ChoiceRequest choice{.recording = recording_in(given, workspace),
+                       .axis = text_or(given, "axis", ""),
+                       .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)};
+  if (given.contains("most_segments"))
+    choice.most_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
+  return order(jobs, choice_job(workspace, std::move(choice)));
+}
+
+HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, Jobs& jobs) {
+  const nlohmann::json given = json_in(request);
+  StabilityRequest stability;
+  StudyOptions& study = stability.study;
+  study.on.device_uri = text_in(given, "device");
+  if (!study.on.device_uri.starts_with("sim:")) {
+    throw RequestError(400, fmt::format("{}: a map asks for mass and friction, which only simulated devices "
+                                        "tell; name one, such as sim:scissors",
+                                        study.on.device_uri));
+  }
+  study.on.axis = text_or(given, "axis", "");
+  study.on.rate_hz = number_in(given, "rate_hz", 20.0, 20000.0);
+  study.on.grip = text_or(given, "grip", "none");
+  (void)grip_named(study.on.grip);
+  study.cells = whole_number_in(given, "cells", 2.0, static_cast<double>(most_law_cells));
+  study.range.depth_m = number_or(given, "depth_m", study.range.depth_m, 1e-5, 0.5);
+  study.range.speed_m_s = number_or(given, "speed_m_s", study.range.speed_m_s, 1e-4, 10.0);
+  const std::string law = text_or(given, "law", "");
+  if (!law.empty()) stability.law = workspace.find(law, FileKind::law);
+  return order(jobs, stability_job(workspace, std::move(stability)));
+}
+
+/// A result, whichever kind it is of. @throws RequestError 404.
+WorkspaceEntry find_result(Workspace& workspace, const std::string& id) {
+  for (const FileKind kind : {FileKind::fit, FileKind::chart, FileKind::choice}) {
+    try {
+      return workspace.find(id, kind);
+    } catch (const RequestError& other) {
+      if (other.status != 404) throw;
+    }
+  }
+  return workspace.find(id, FileKind::stability);
+}
+
+HttpResponse result(const HttpRequest& request, Workspace& workspace) {
+  const WorkspaceEntry entry = find_result(workspace, text_in_query(request, "id"));
+  if (std::filesystem::file_size(entry.path) > largest_result)
+    throw RequestError(413, fmt::format("{} is larger than {} MB", entry.name, largest_result >> 20U));
+  HttpResponse response = json_response({});
+  response.body = read_whole_file(entry.path);
+  return response;
+}
+
+HttpResponse fitted_laws_list() {
+  auto list = nlohmann::ordered_json::array();
+  for (const std::string_view model : fitting::fitted_laws()) {
+    const models::LawInfo info = models::law_info(model);
+    list.push_back({{"model", info.name},
+                    {"equation", info.equation},
+                    {"position_unit", info.position_unit},
+                    {"force_unit", info.force_unit}});
+  }
+  return json_response(list);
+}
+
+HttpResponse law(const HttpRequest& request, Workspace& workspace) {
+  const WorkspaceEntry entry = workspace.find(text_in_query(request, "id"), FileKind::law);
+  return json_response(law_as_json(read_law_file(entry.path), entry.name));
+}
+
+HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
+  const WorkspaceEntry file = workspace.find(text_in_query(request, "id"), FileKind::recording);
+  const WorkspaceEntry law_file = workspace.find(text_in_query(request, "law"), FileKind::law);
+  const std::size_t columns = count_in_query(request, "columns", most_columns);
+  const schema::Recording recording = schema::read_recording(file.path);
+  const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
+  return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));
+}
+
+HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
+  jobs.stop(whole_number_in(json_in(request), "job", 0.0, 1e15));
+  return json_response(nlohmann::ordered_json::object());
+}
+
+}  // namespace
+
+void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
+  using Pace = Routes::Pace;
+  using Order = HttpResponse (*)(const HttpRequest&, Workspace&, Jobs&);
+  using View = HttpResponse (*)(const HttpRequest&, Workspace&);
+  routes.get("/api/jobs", Pace::at_once, [&jobs](const HttpRequest&) { return json_response(jobs.list()); });
+  routes.post("/api/jobs/stop", Pace::at_once,
+              [&jobs](const HttpRequest& request) { return stop(request, jobs); });
+  for (const auto& [path, take] :
+       std::array<std::pair<const char*, Order>, 4>{{{"/api/fit", order_fit},
+                                                     {"/api/chart", order_chart},
+                                                     {"/api/choose", order_choice},
+                                                     {"/api/stability", order_stability}}}) {
+    routes.post(path, Pace::slow, [&workspace, &jobs, take = take](const HttpRequest& request) {
+      return take(request, workspace, jobs);
+    });
+  }
+  routes.get("/api/laws/fitted", Pace::at_once, [](const HttpRequest&) { return fitted_laws_list(); });
+  for (const auto& [path, view] : std::array<std::pair<const char*, View>, 3>{
+           {{"/api/result", result}, {"/api/law", law}, {"/api/residuals", residuals}}}) {
+    routes.get(path, Pace::slow,
+               [&workspace, view = view](const HttpRequest& request) { return view(request, workspace); });
+  }
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "studio/jobs.h"
+#include "studio/workspace.h"
+#include "web/routes.h"
+
+namespace kerf::bench {
+
+/// What the pages for fits, charts, choices and stability ask for: the jobs, orders for new ones, their
+/// results as they were written, laws, and what laws leave of recordings. All three must outlive the routes.
+///
+///     GET  /api/jobs         POST /api/jobs/stop {job}
+///     POST /api/fit          {recording, axis, models, folds}
+///     POST /api/chart        {recording, axis, models}
+///     POST /api/choose       {recording, axis, rate_hz?, most_segments?}
+///     POST /api/stability    {device, axis?, rate_hz, grip?, law?, depth_m?, speed_m_s?, cells}
+///     GET  /api/result?id=   fit.json, chart.json, choose.json or stability.json as it stands
+///     GET  /api/law?id=      law_as_json()
+///     GET  /api/laws/fitted  the laws of the registry that can be fitted, with their equations
+///     GET  /api/residuals?id=RECORDING&axis=&law=&columns=    residuals_of()
+///
+/// Files are named by their ids; devices are simulated ones, since a map asks for mass and friction, which no
+/// real device tells, and nothing is to move because a map was asked for.
+void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs);
+
+}  // namespace kerf::bench

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <kerf/schema/recording_file.h>
+
+#include "views/loops.h"
+#include "views/pyramid.h"
+#include "views/row_index.h"
+#include "views/trace_view.h"
+#include "views/view_cache.h"
+
+namespace kerf::bench {
+
+/// Columns of a recording that are read together: the axes of a dataset, a stage's times, a channel.
+struct RowSource {
+  std::string name;
+  std::size_t width = 1;
+  /// Rows from `first_row` on, so many as `values` has room for.
+  std::function<void(std::uint64_t first_row, std::span<double> values)> read;
+};
+
+/// What can be read of a recording, in the order of its traces.
+[[nodiscard]] std::vector<RowSource> row_sources(const schema::RecordingFile& file);
+
+/// A recording of any length, to be looked at. Seen from afar, its extremes come from pyramids, which are
+/// made the first time that a trace of their dataset is asked for; from near, from the rows themselves.
+///
+/// Two lengths of time bound the work: an hour of 6 axes at 1 kHz (3.6 million rows) is opened and seen as a
+/// whole in less than a second; any stretch of it in a few milliseconds. May be used by several threads,
+/// which wait for one another.
+class RecordingView {
+ public:
+  /// @throws as schema::RecordingFile.
+  RecordingView(const std::filesystem::path& file, const ViewCache& cache);
+
+  [[nodiscard]] const schema::RecordingFile& file() const noexcept { return file_; }
+  /// What the file was when it was opened.
+  [[nodiscard]] const FileFacts& facts() const noexcept { return facts_; }
+  [[nodiscard]] const RowIndex& rows() const noexcept { return *rows_; }
+
+  /// Of each axis position, velocity and forces ("position theta"), then the times of the stages of a tick
+  /// and their sum without the wait (cycle_time), then the channels by their names.
+  [[nodiscard]] const std::vector<Trace>& traces() const noexcept { return traces_; }
+
+  /// The rows from the last one at or before `from_s` to the first one at or after `to_s`, in at most so many
+  /// columns and never more than one a row. Wide columns begin and end with buckets, so that all their rows,
+  /// and those of no other column, are in their extremes.
+  /// @throws std::out_of_range for a trace that is not there; FormatError where the file is damaged.
+  [[nodiscard]] TraceView view(std::span<const std::size_t> traces, double from_s, double to_s,
+                               std::size_t columns);
+
+  /// The cycles along an axis; sought once if the recording was not segmented. @throws FormatError.
+  [[nodiscard]] const AxisCycles& cycles_along(std::size_t axis);
+
+  /// Memory that the pyramids take.
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+
+ private:
+  struct Place {
+    std::size_t source = 0;
+    std::size_t column = 0;
+  };
+
+  void list_traces();
+  void add_axis_traces(std::size_t axis);
+  void index_rows();
+  [[nodiscard]] std::optional<std::vector<MinMaxPyramid>> kept_pyramids(const RowSource& source) const;
+  const std::vector<MinMaxPyramid>& pyramids_of(std::size_t source);
+  TraceView view_from_afar(std::span<const std::size_t> traces, std::uint64_t first, std::uint64_t end,
+                           std::size_t columns);
+  [[nodiscard]] TraceView view_from_near(std::span<const std::size_t> traces, std::uint64_t first,
+                                         std::uint64_t end, std::size_t columns) const;
+
+  FileFacts facts_;
+  ViewCache cache_;
+  std::optional<ViewCache::Part> kept_rows_;  ///< tells that the file was sound when it was opened before
+  schema::RecordingFile file_;
+  std::vector<RowSource> sources_;
+  std::vector<Trace> traces_;
+  std::vector<Place> places_;  ///< of each trace
+  std::optional<RowIndex> rows_;
+  std::mutex mutex_;  ///< of all below
+  std::map<std::size_t, AxisCycles> cycles_;
+  std::vector<std::optional<std::vector<MinMaxPyramid>>> pyramids_;  ///< of each source
+  std::atomic<std::size_t> bytes_ = 0;
+};
+
+}  // namespace kerf::bench

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include <kerf/schema/recording.h>
+
+namespace kerf::schema {
+
+/// The numbers of `/samples` that are looked at one column at a time.
+enum class Column : std::uint8_t {
+  time,
+  position,
+  velocity,
+  force_commanded,
+  force_measured,
+  wake_latency,
+  read_time,
+  compute_time,
+  write_time
+};
+
+/// An open recording whose rows stay in the file until they are asked for; also the `NAME.partial` of a
+/// writer that is still at work or has died. What is in it when it is opened is what it holds: open it again
+/// for the rows that came since. A file that is written is never kept open, and may be renamed meanwhile.
+///
+/// May be read by several threads. HDF5 has one lock for the whole process, so that every read is cut into
+/// pieces of some milliseconds at most: a recorder in the same process never waits for longer.
+class RecordingFile {
+ public:
+  /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
+  /// long as reading the file once. Known to be sound are those of a file that was opened before and has not
+  /// changed since.
+  enum class Texts : std::uint8_t { looked_through, known_to_be_sound };
+
+  /// @throws FormatError, std::invalid_argument, std::system_error, all as read_recording().
+  explicit RecordingFile(const std::filesystem::path& file, Texts texts = Texts::looked_through);
+  RecordingFile(RecordingFile&&) noexcept;
+  RecordingFile& operator=(RecordingFile&&) noexcept;
+  ~RecordingFile();
+
+  /// Header, axes, names and units of the channels, events and cycles; without a row.
+  [[nodiscard]] const Recording& about() const noexcept;
+  [[nodiscard]] std::uint64_t rows() const noexcept;
+  /// Still written, or left by a writer that died.
+  [[nodiscard]] bool is_live() const noexcept;
+  [[nodiscard]] double first_time_s() const noexcept;  ///< NaN without a row
+  [[nodiscard]] double last_time_s() const noexcept;   ///< NaN without a row
+  /// Median step of the time at the begin, in the middle and at the end; 0 if it does not grow there.
+  [[nodiscard]] double period_s() const noexcept;
+
+  /// Values a row: the number of axes, or 1; 0 if the recording has none of it.
+  [[nodiscard]] std::size_t width(Column column) const noexcept;
+  [[nodiscard]] bool has_flags() const noexcept;
+
+  // Rows [first_row, first_row + rows); of several axes all of a row, one row after the other. Exact.
+  // @throws std::out_of_range if there are no such rows, std::invalid_argument if there is no such column or
+  //         `values` is of another size; FormatError if the file turns out to be damaged there.
+  void read(Column column, std::uint64_t first_row, std::uint64_t rows, std::span<double> values) const;
+  void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const;
+  void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const;
+  void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kerf::schema

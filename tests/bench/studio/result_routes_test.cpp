@@ -1,0 +1,157 @@
+#include "studio/result_routes.h"
+
+#include <memory>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/studio/finished_jobs.h"
+#include "laws/law_file.h"
+#include "support/program.h"
+#include "support/recordings.h"
+
+namespace kerf::bench {
+namespace {
+
+using nlohmann::json;
+using test::TemporaryFolder;
+using testing::HasSubstr;
+
+/// A workspace with a recording, a law and a result, and who answers for it.
+class ResultRoutes : public testing::Test {
+ protected:
+  ResultRoutes() {
+    schema::write_recording(folder_ / "punch.h5", test::punch({.seconds = 1.0}));
+    write_law_file(folder_ / "tissue.law.toml",
+                   {.law = models::Law::make("kelvin", std::vector{300.0, 500.0, 50.0}), .axis = "z"});
+    std::filesystem::create_directory(folder_ / "old.fit");
+    test::write_text(folder_ / "old.fit/fit.json", R"({"jnd": 0.1})");
+    add_result_routes(routes_, workspace_, jobs_);
+  }
+
+  HttpResponse answer(HttpRequest request) {
+    const auto asker = std::make_shared<int>();
+    request.number = ++number_;
+    request.asker = asker;
+    while (true) {
+      if (auto response = routes_.respond(request, false)) return *response;
+      std::this_thread::yield();
+    }
+  }
+  HttpResponse get(const std::string& path, const std::map<std::string, std::string>& query = {}) {
+    return answer({.method = "GET", .path = path, .query = query});
+  }
+  HttpResponse post(const std::string& path, const json& body) {
+    return answer({.method = "POST",
+                   .path = path,
+                   .headers = {{"content-type", "application/json"}},
+                   .body = body.dump()});
+  }
+  std::string id(const std::string& name) { return workspace_.id_of(folder_ / name); }
+
+  TemporaryFolder folder_;
+  Workspace workspace_{folder_.path()};
+  Jobs jobs_;
+  Routes routes_;
+  std::uint64_t number_ = 0;
+};
+
+TEST_F(ResultRoutes, TakeAnOrderAndShowItsResult) {
+  const HttpResponse taken =
+      post("/api/fit", {{"recording", id("punch.h5")}, {"axis", "z"}, {"models", {"kelvin"}}, {"folds", 2}});
+  ASSERT_EQ(taken.status, 200) << taken.body;
+  const json job = test::ended_job(jobs_, json::parse(taken.body)["job"]);
+  ASSERT_EQ(job["state"], "done") << job["error"];
+  EXPECT_EQ(json::parse(get("/api/jobs").body)[0], job);
+  const HttpResponse result = get("/api/result", {{"id", job["file"]}});
+  ASSERT_EQ(result.status, 200) << result.body;
+  EXPECT_EQ(result.body, test::read_text(folder_ / "punch.fit/fit.json"));
+  EXPECT_THAT(result.type, HasSubstr("application/json"));
+}
+
+TEST_F(ResultRoutes, ShowALawAndWhatItLeavesOfARecording) {
+  const HttpResponse law = get("/api/law", {{"id", id("tissue.law.toml")}});
+  ASSERT_EQ(law.status, 200) << law.body;
+  EXPECT_EQ(json::parse(law.body)["name"], "tissue.law.toml");
+  EXPECT_EQ(json::parse(law.body)["parameters"].size(), 3U);
+  const HttpResponse residuals =
+      get("/api/residuals",
+          {{"id", id("punch.h5")}, {"axis", "z"}, {"law", id("tissue.law.toml")}, {"columns", "50"}});
+  ASSERT_EQ(residuals.status, 200) << residuals.body;
+  EXPECT_EQ(json::parse(residuals.body)["time_s"].size(), 50U);
+  EXPECT_NEAR(json::parse(residuals.body)["rmse"], 0.005, 0.001) << "the noise of the sensor";
+  EXPECT_GE(json::parse(get("/api/laws/fitted").body).size(), 10U);
+}
+
+TEST_F(ResultRoutes, RefuseWhatIsNotAsItShouldBeInOneLine) {
+  const std::string recording = id("punch.h5");
+  const auto fit = [&](json more) {
+    json body{{"recording", recording}};
+    body.update(more);
+    return post("/api/fit", body);
+  };
+  const auto map = [&](json more) {
+    json body{{"device", "sim:scissors"}, {"rate_hz", 1000}, {"cells", 5}};
+    body.update(more);
+    return post("/api/stability", body);
+  };
+  const std::vector<std::pair<HttpResponse, std::string>> refused{
+      {fit({{"recording", "../../etc/passwd"}}), "no such recording"},
+      {fit({{"recording", id("tissue.law.toml")}}), "no such recording"},
+      {fit({{"recording", 7}}), "recording"},
+      {fit({{"models", {"magic"}}}), "magic"},
+      {fit({{"models", "kelvin"}}), "models"},
+      {fit({{"models", {1, 2}}}), "models"},
+      {fit({{"folds", 101}}), "folds"},
+      {fit({{"folds", 1}}), "folds"},
+      {fit({{"folds", 2.5}}), "folds"},
+      {post("/api/chart", {{"recording", recording}, {"models", {"blade"}}}), "blade"},
+      {post("/api/choose", {{"recording", recording}, {"rate_hz", 5}}), "rate_hz"},
+      {map({{"device", "falcon"}}), "sim:scissors"},
+      {map({{"device", "/dev/hidraw0"}}), "sim:scissors"},
+      {map({{"cells", 61}}), "cells"},
+      {map({{"rate_hz", 1e9}}), "rate_hz"},
+      {map({{"grip", "vice"}}), "vice"},
+      {map({{"law", recording}}), "no such law"},
+      {map({{"depth_m", -1.0}}), "depth_m"},
+      {get("/api/result", {{"id", recording}}), "no such"},
+      {get("/api/result"), "id"},
+      {get("/api/law", {{"id", id("old.fit/fit.json")}}), "no such law"},
+      {get("/api/residuals",
+           {{"id", recording}, {"axis", "w"}, {"law", id("tissue.law.toml")}, {"columns", "5"}}),
+       "no axis 'w'; it has z"},
+      {get("/api/residuals",
+           {{"id", recording}, {"axis", "z"}, {"law", id("tissue.law.toml")}, {"columns", "5000"}}),
+       "columns"},
+      {post("/api/jobs/stop", {{"job", -1}}), "job"},
+  };
+  for (const auto& [response, named] : refused) {
+    EXPECT_THAT(response.status, testing::AnyOf(400, 404)) << response.body;
+    const auto why = json::parse(response.body)["error"].get<std::string>();
+    EXPECT_THAT(why, HasSubstr(named));
+    EXPECT_EQ(std::count(why.begin(), why.end(), '\n'), 0) << why;
+  }
+  EXPECT_EQ(json::parse(get("/api/jobs").body).size(), 0U) << "a refused order is no job";
+}
+
+TEST_F(ResultRoutes, StopAJob) {
+  const json order{{"recording", id("punch.h5")}, {"models", json::array()}};
+  const std::size_t first = json::parse(post("/api/chart", order).body)["job"];
+  const std::size_t second = json::parse(post("/api/chart", order).body)["job"];
+  EXPECT_EQ(post("/api/jobs/stop", {{"job", second}}).status, 200);
+  EXPECT_EQ(post("/api/jobs/stop", {{"job", first}}).status, 200);
+  EXPECT_EQ(test::ended_job(jobs_, second)["state"], "stopped");
+  EXPECT_EQ(test::ended_job(jobs_, first)["state"], "stopped");
+}
+
+TEST_F(ResultRoutes, AreNotSharedWithFilesThatCannotBeRead) {
+  test::write_text(folder_ / "broken.law.toml", "model = ");
+  const HttpResponse response = get("/api/law", {{"id", id("broken.law.toml")}});
+  EXPECT_EQ(response.status, 400);
+  EXPECT_THAT(response.body, HasSubstr("broken.law.toml:1"));
+}
+
+}  // namespace
+}  // namespace kerf::bench
