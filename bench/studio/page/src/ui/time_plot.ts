@@ -152,7 +152,7 @@ export class TimePlot {
     return {
       width: 400,
       height: 100,
-      padding: [6, 10, this.bottom ? 0 : 6, 0],
+      padding: [6, 20, this.bottom ? 0 : 6, 0],
       legend: { show: false },
       cursor: { show: false },
       select: { show: false, left: 0, top: 0, width: 0, height: 0 },
