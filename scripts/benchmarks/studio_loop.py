@@ -15,7 +15,7 @@ def run(program, *arguments):
     return json.loads(subprocess.run([str(program), *map(str, arguments)], check=True, capture_output=True).stdout)
 
 
-def measure(program, turns, seconds):
+def by_turns(program, turns, seconds):
     rounds = {mode: [] for mode in MODES}
     for turn in range(turns):
         first = turn % len(MODES)
@@ -35,9 +35,9 @@ def median_ratio(rounds, mode, what, percentile):
     return statistics.median(ratios) if ratios else 1.0
 
 
-def loop_section(house, turns, seconds):
+def measure(house, turns=11, seconds=10.0):
     program = house / "build/release/bin/kerf_live_benchmark"
-    rounds = measure(program, turns, seconds)
+    rounds = by_turns(program, turns, seconds)
     cost = run(program, "cost")
     lines = ["`sim:scissors` and a Kelvin law at 1 kHz by the wall clock, %d turns of %g s each, in rotation; medians over "
              "the turns, ratios to the first row in the same turn, whose law can be changed too." % (turns, seconds), "",
@@ -54,4 +54,4 @@ def loop_section(house, turns, seconds):
               "columns of 10 ms, as who catches up gets, %.1f ms; 60 s in 1200 columns %.1f ms, of 4 traces %.1f ms." % (
                   cost["traces"], cost["frame_16_ms_us"], cost["frame_600_columns_us"] / 1e3,
                   cost["view_60_s_us"] / 1e3, cost["view_60_s_4_traces_us"] / 1e3)]
-    return "\n".join(lines)
+    return "A loop that is watched", "\n".join(lines)
