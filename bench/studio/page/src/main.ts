@@ -1,6 +1,7 @@
 import "./studio.css";
 
 import { Api } from "./api";
+import { help, pageKeys } from "./ui/help";
 import { loopState } from "./ui/loop_state";
 import { element } from "./ui/dom";
 import type { Place, View } from "./ui/view";
@@ -77,10 +78,19 @@ function focusHead(): void {
 }
 
 for (const view of views) {
-  const link = element("a", { href: `#/${view.name}` }, view.title);
+  const link = element("a", { href: `#/${view.name}`, title: `Ctrl + Alt + ${views.indexOf(view) + 1}` }, view.title);
   links.set(view.name, link);
   byId("places").append(link);
 }
+help(byId("help_opener") as HTMLButtonElement);
+pageKeys((page) => {
+  const view = views[page];
+  if (view) location.hash = `#/${view.name}`;
+});
+byId("skip").addEventListener("click", (event) => {
+  event.preventDefault(); // the address is the page's place
+  focusHead();
+});
 loopState(api, byId("loop_state"), byId("zero") as HTMLButtonElement, complain);
 addEventListener("hashchange", () => show());
 show(true);

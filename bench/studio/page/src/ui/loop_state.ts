@@ -8,6 +8,8 @@ export function inWords(status: LoopStatus): string {
   return status.law ? `Rendering ${status.law}` : "Running free";
 }
 
+const patience_ms = 2500;
+
 /**
  * Keeps the state of the loop in the bar, and the button for zero force at work: on a click, and by Escape from
  * anywhere. It needs nothing that this page knows, so that it works when the page is stale.
@@ -18,29 +20,59 @@ export function loopState(
   zero: HTMLButtonElement,
   complain: (error: unknown) => void,
 ): void {
+  let asking: AbortController | null = null;
+  let unheard = 0; // requests for zero force that nobody has answered yet
+
+  const say = (text: string, state: string): void => {
+    if (words.textContent !== text) words.textContent = text; // it is read out when it changes
+    words.dataset["state"] = state;
+  };
+
   const look = async (): Promise<void> => {
+    if (unheard > 0) return;
+    asking?.abort();
+    const asked = (asking = new AbortController());
+    const timer = setTimeout(() => asked.abort(), patience_ms);
     try {
-      const status = await api.get<LoopStatus>("/api/live/status");
-      words.textContent = inWords(status) + (status.recording ? `, recording ${status.recording.name}` : "");
-      words.dataset["state"] = status.released ? "released" : status.running ? "running" : "idle";
+      const status = await api.get<LoopStatus>("/api/live/status", {}, asked.signal);
+      if (unheard > 0) return;
+      const recording = status.recording ? `, recording ${status.recording.name}` : "";
+      say(inWords(status) + recording, status.released ? "released" : status.running ? "running" : "idle");
     } catch {
-      words.textContent = "No answer from the studio";
-      words.dataset["state"] = "lost";
+      if (unheard === 0 && asking === asked) say("No answer from the studio", "lost");
+    } finally {
+      clearTimeout(timer);
+      if (asking === asked) asking = null;
     }
   };
+
   const release = (): void => {
     zero.classList.add("pressed");
-    api.zeroForce().then(look, complain).finally(() => zero.classList.remove("pressed"));
+    ++unheard;
+    say("Zero force asked for", "unheard");
+    api
+      .zeroForce()
+      .catch((error: unknown) => {
+        say("Zero force was not heard: press again, or let go and switch the device off", "unheard");
+        complain(error);
+      })
+      .finally(() => {
+        if (--unheard > 0) return;
+        zero.classList.remove("pressed");
+        if (words.textContent === "Zero force asked for") void look();
+      });
   };
+
   // As soon as it is pressed, not when it is let go; a keyboard presses it by click.
   zero.addEventListener("pointerdown", release);
   zero.addEventListener("click", (event) => {
     if (event.detail === 0) release();
   });
   zero.title = "Escape, from anywhere";
-  addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && !document.querySelector("dialog[open]")) release();
-  });
+  // Before any page or dialog can keep the key for itself.
+  addEventListener("keydown", (event) => event.key === "Escape" && !event.repeat && release(), { capture: true });
   void look();
-  setInterval(() => void look(), 1000);
+  setInterval(() => {
+    if (!asking) void look();
+  }, 1000);
 }

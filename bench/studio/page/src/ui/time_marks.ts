@@ -29,6 +29,7 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
   clip(context, map);
   context.font = `${13 * map.pixels}px system-ui, sans-serif`;
   context.textBaseline = "top";
+  context.textAlign = "left";
   for (const span of marks.spans) {
     if (span.to_s < map.from || span.from_s > map.to) continue;
     if (((span.to_s - span.from_s) / (map.to - map.from)) * map.width < 2 * map.pixels) continue; // a blur

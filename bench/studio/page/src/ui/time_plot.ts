@@ -46,6 +46,7 @@ export class TimePlot {
     private readonly shared: Shared,
     private readonly bottom: boolean,
     public logarithmic: boolean,
+    private readonly titled: boolean,
   ) {
     this.unit = { factor: 1, text: lines[0]?.unit ?? "" };
     this.map = { from: 0, to: 1, left: 0, width: 1, lower: 0, upper: 1, top: 0, height: 1, logarithmic, pixels: 1 };
@@ -139,7 +140,8 @@ export class TimePlot {
       this.values.push(value);
       return element("li", {}, swatch(line.look), element("span", { class: "time_name" }, line.name), value);
     });
-    return element("ul", { class: "time_legend", "aria-label": this.title }, ...items);
+    const title = this.titled ? element("li", { class: "time_title" }, this.title) : null;
+    return element("ul", { class: "time_legend", "aria-label": this.title }, title, ...items);
   }
 
   private options(): uPlot.Options {
@@ -150,7 +152,7 @@ export class TimePlot {
     return {
       width: 400,
       height: 100,
-      padding: [6, 10, this.bottom ? 0 : 6, 0],
+      padding: [6, 20, this.bottom ? 0 : 6, 0],
       legend: { show: false },
       cursor: { show: false },
       select: { show: false, left: 0, top: 0, width: 0, height: 0 },

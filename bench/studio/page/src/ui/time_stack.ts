@@ -13,6 +13,7 @@ export interface PlotOrder {
   title: string; // "Force of theta"
   lines: TimeLine[]; // of one unit
   logarithmic?: boolean;
+  titled?: boolean; // where the lines' names do not say what it is
 }
 
 export interface StackOptions {
@@ -81,7 +82,7 @@ export class TimeStack {
   build(orders: readonly PlotOrder[]): void {
     for (const plot of this.plots) plot.end();
     this.plots = orders.map(
-      (it, k) => new TimePlot(it.title, it.lines, this.shared, k === orders.length - 1, it.logarithmic ?? false),
+      (it, k) => new TimePlot(it.title, it.lines, this.shared, k === orders.length - 1, it.logarithmic ?? false, it.titled ?? false),
     );
     this.area.replaceChildren(...this.plots.map((it) => it.root));
     for (const plot of this.plots) {

@@ -100,10 +100,17 @@ export class LiveStream {
 export class LastEvents {
   readonly events: KerfEvent[] = [];
 
+  /** A stream that is opened again may tell what is known. */
   add(events: readonly KerfEvent[]): boolean {
-    if (events.length === 0) return false;
-    this.events.push(...events);
+    const known = (it: KerfEvent): boolean => this.events.some((other) => other.time_s === it.time_s && other.text === it.text);
+    const fresh = events.filter((it) => !known(it));
+    if (fresh.length === 0) return false;
+    this.events.push(...fresh);
     if (this.events.length > 200) this.events.splice(0, this.events.length - 200);
     return true;
+  }
+
+  clear(): void {
+    this.events.length = 0;
   }
 }

@@ -112,7 +112,7 @@ export class RecordingLoops {
     answers.forEach((loops, k) => {
       if (!loops) return;
       if (kind !== "average" && (k === 0 || kind === "one")) {
-        for (const it of loops.loops) lines.push({ x: it.position, y: it.force, class: kind === "one" || several ? `look_${k}` : "many" });
+        for (const it of loops.loops) lines.push({ x: it.position, y: it.force, class: kind === "one" ? `look_${k}` : "many" });
       }
       if (kind === "average" || (k > 0 && kind === "all")) {
         lines.push({ x: loops.average.position, y: loops.average.closing, class: `look_${k}` });

@@ -85,11 +85,12 @@ export class RecordingTime {
   private plotsForEach(traces: readonly Trace[]): PlotOrder[] {
     return traces.map((trace, k) => ({
       title: inWords(trace.name),
+      titled: true,
       lines: this.sources
         .filter((it) => it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit))
-        .map((it, order) => {
+        .map((it) => {
           const line = it.lines[k] as TimeLine;
-          line.name = order === 0 ? `${inWords(trace.name)}, ${it.drawn.name}` : it.drawn.name;
+          line.name = shortName(it.drawn.name);
           return line;
         }),
     }));
@@ -142,3 +143,9 @@ function legend(): HTMLElement {
 
 /** How many recordings can be told apart. */
 export const atMostDrawn = Math.min(5, dashes.length);
+
+/** A file's name without its folder and ending, shortened in the middle. */
+function shortName(name: string): string {
+  const base = name.replace(/^.*\//, "").replace(/\.h5(\.partial)?$/, "");
+  return base.length <= 16 ? base : `${base.slice(0, 7)}…${base.slice(-8)}`;
+}

@@ -2,6 +2,7 @@ import "./scope.css";
 
 import type { LoopStatus, Trace, Workspace } from "../api";
 import { button, element, labelled, select } from "../ui/dom";
+import { singleKeysOn } from "../ui/help";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
 import { LastEvents, LiveStream } from "./live_stream";
@@ -27,7 +28,7 @@ class Scope {
   private readonly pauseButton = button("Pause", () => this.togglePause(), { title: "Space", "aria-keyshortcuts": "Space" });
   private readonly axis = select([{ value: "", text: "all axes" }], "", () => this.chooseTraces());
   private readonly scale = select(
-    [{ value: "linear", text: "linear" }, { value: "log", text: "logarithmic" }],
+    [{ value: "linear", text: "linear" }, { value: "log", text: "log" }],
     "linear",
     (value) => this.picture.stack.logarithmic("Timing", value === "log"),
   );
@@ -81,13 +82,13 @@ class Scope {
           "div",
           { class: "scope_head" },
           element("h1", {}, "Scope"),
-          this.stale,
           labelled("Window", this.window),
           labelled("Axis", this.axis),
           labelled("Timing", this.scale),
           this.pauseButton,
         ),
         this.picture.stack.root,
+        this.stale,
       ),
       element(
         "aside",
@@ -125,7 +126,11 @@ class Scope {
         element("option", { value: "" }, "all axes"),
         ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
       );
-      if (another) this.picture.restart();
+      if (another) {
+        this.events.clear();
+        this.showEvents();
+        this.picture.restart();
+      }
       this.chooseTraces();
     } catch (error) {
       this.context.complain(error);
@@ -160,6 +165,7 @@ class Scope {
 
   private onKey(event: KeyboardEvent): void {
     if (event.key !== " " || event.ctrlKey || event.altKey || event.metaKey || isTyping(event)) return;
+    if (!singleKeysOn()) return;
     event.preventDefault();
     if (!this.pauseButton.disabled) this.togglePause();
   }

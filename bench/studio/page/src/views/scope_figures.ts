@@ -2,7 +2,7 @@ import type { LoopStatus, Percentiles } from "../api";
 import { element } from "../ui/dom";
 import { plain } from "../ui/numbers";
 
-const shares: readonly [keyof Percentiles, string][] = [["p50", "median"], ["p99", "99 %"], ["p999", "99.9 %"], ["max", "largest"]];
+const shares: readonly [keyof Percentiles, string][] = [["p50", "median"], ["p99", "99 %"], ["p999", "99.9 %"], ["max", "max"]];
 
 /** How well the loop keeps time, in a table that never changes its size. */
 export class ScopeFigures {
