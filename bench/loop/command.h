@@ -17,6 +17,7 @@ namespace kerf::bench {
 struct Command {
   drivers::Axes force{};
   std::uint32_t flags = 0;
+  bool is_released = false;  ///< somebody wants zero force now: Safety gives it past the slew limit
 };
 
 /// Renders nothing: the device moves freely.

@@ -20,6 +20,14 @@ class Histogram {
     max_ = std::max(max_, value);
   }
 
+  /// Counts what another one has counted.
+  void add(const Histogram& other) noexcept {
+    for (std::size_t bucket = 0; bucket < bucket_count; ++bucket) counts_[bucket] += other.counts_[bucket];
+    count_ += other.count_;
+    sum_ += other.sum_;
+    max_ = std::max(max_, other.max_);
+  }
+
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] double mean_ns() const noexcept {
     return count_ > 0 ? static_cast<double>(sum_) / static_cast<double>(count_) : 0.0;
@@ -58,5 +66,20 @@ class Histogram {
   std::uint64_t sum_ = 0;
   std::uint64_t max_ = 0;
 };
+
+/// Percentiles of a duration [us].
+struct Percentiles {
+  double p50_us = 0.0;
+  double p99_us = 0.0;
+  double p999_us = 0.0;
+  double max_us = 0.0;
+};
+
+[[nodiscard]] inline Percentiles percentiles_of(const Histogram& histogram) noexcept {
+  return {.p50_us = 1e-3 * histogram.percentile_ns(0.5),
+          .p99_us = 1e-3 * histogram.percentile_ns(0.99),
+          .p999_us = 1e-3 * histogram.percentile_ns(0.999),
+          .max_us = 1e-3 * histogram.max_ns()};
+}
 
 }  // namespace kerf::bench

@@ -37,13 +37,6 @@ class NoDevice final : public drivers::Device {
   drivers::DeviceInfo info_;
 };
 
-Percentiles percentiles_of(const Histogram& histogram) {
-  return {.p50_us = 1e-3 * histogram.percentile_ns(0.5),
-          .p99_us = 1e-3 * histogram.percentile_ns(0.99),
-          .p999_us = 1e-3 * histogram.percentile_ns(0.999),
-          .max_us = 1e-3 * histogram.max_ns()};
-}
-
 /// How late a thread is that only sleeps, half a millisecond each time.
 Histogram sleep_lateness(int sleeps) {
   constexpr std::int64_t pause_ns = 500'000;

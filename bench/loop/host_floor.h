@@ -6,15 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-namespace kerf::bench {
+#include "loop/histogram.h"
 
-/// Percentiles of a duration [us].
-struct Percentiles {
-  double p50_us = 0.0;
-  double p99_us = 0.0;
-  double p999_us = 0.0;
-  double max_us = 0.0;
-};
+namespace kerf::bench {
 
 /// What the machine itself does to a loop that does nothing: the least that can be asked of one that works.
 struct HostFloor {

@@ -1,7 +1,10 @@
 #include "loop/recorder.h"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <span>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -18,7 +21,7 @@ constexpr auto pause = std::chrono::milliseconds(5);
 
 Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
     : writer_(std::move(writer)),
-      ring_(options.ring_rows),
+      tap_(options.ring_rows),
       lossless_(options.lossless),
       on_failure_(options.on_failure),
       chunk_(RowRing::most_popped) {
@@ -39,12 +42,28 @@ void Recorder::guarded(Action action) {
   }
 }
 
+void Recorder::mark(schema::Event event) {
+  const std::lock_guard lock(mutex_);
+  marks_.push_back(std::move(event));
+}
+
+std::vector<schema::Event> Recorder::marked(double until_s) {
+  const std::lock_guard lock(mutex_);
+  const auto later = std::ranges::stable_partition(
+      marks_, [until_s](const schema::Event& mark) { return mark.time_s <= until_s; });
+  std::vector<schema::Event> due(std::make_move_iterator(marks_.begin()),
+                                 std::make_move_iterator(later.begin()));
+  marks_.erase(marks_.begin(), later.begin());
+  return due;
+}
+
 std::size_t Recorder::write_chunk() {
-  const std::span<const schema::Row> rows(chunk_.data(), ring_.pop(chunk_.data()));
-  if (rows.empty()) return 0;
-  std::vector<schema::Event> found;
+  const std::span<const schema::Row> rows(chunk_.data(), tap_.pop(chunk_.data()));
+  if (!rows.empty()) last_time_s_ = rows.back().time_s;
+  std::vector<schema::Event> found = marked(last_time_s_);
+  if (rows.empty() && found.empty()) return 0;
   for (const schema::Row& row : rows) finder_.look_at(row, found);
-  last_time_s_ = rows.back().time_s;
+  std::ranges::stable_sort(found, {}, &schema::Event::time_s);
   guarded([&] {
     writer_.append(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
@@ -80,6 +99,7 @@ void Recorder::close(const std::string& status, const schema::Properties& device
          .kind = "gap",
          .text = fmt::format("{} rows lost in all, because the writer did not keep up", lost())});
   }
+  for (const schema::Event& event : marks_) writer_.append_event(event);
   for (const schema::Event& event : events_) writer_.append_event(event);
   writer_.close(status, device);
 }

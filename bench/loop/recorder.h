@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -12,7 +13,7 @@
 #include <kerf/schema/recording_writer.h>
 
 #include "loop/events.h"
-#include "loop/row_ring.h"
+#include "loop/row_tap.h"
 
 namespace kerf::bench {
 
@@ -23,8 +24,8 @@ struct NoRecorder {
 
 /// Takes rows from the tick without waiting and writes them from a thread of its own.
 ///
-/// push() hands a row to a ring of fixed size, all of it touched beforehand. A full ring loses the row:
-/// `tick` then jumps in the file, and the next row that finds room carries the flag rows_lost. With
+/// push() hands a row to a RowTap of fixed size, all of it touched beforehand. Where that is full the row is
+/// lost, and `tick` jumps in the file. With
 /// `lossless` (for virtual time, which has no deadlines) push() waits for room instead. The writer appends in
 /// chunks, adds an event where a row's flags say that something began, and flushes every 0.25 s or 10,000
 /// rows. When the disk is full it says so once and the loop goes on; close() says it again.
@@ -43,15 +44,17 @@ class Recorder {
   ~Recorder();
 
   void push(const schema::Row& row) noexcept {
-    if (lost_here_) return push_after_loss(row);
-    while (!ring_.push(row)) {
-      if (!lossless_ || failed_.load(std::memory_order_relaxed)) return lose();
+    while (lossless_ && !tap_.has_room() && !failed_.load(std::memory_order_relaxed)) {
       std::this_thread::yield();
     }
+    tap_.push(row);
   }
 
-  /// An event for the file; not to be called from the tick.
+  /// An event for the end of the file; not to be called from the tick.
   void note(schema::Event event) { events_.push_back(std::move(event)); }
+  /// An event that is written once the rows of its time are, so that a crash keeps it. From any thread but
+  /// the tick's.
+  void mark(schema::Event event);
 
   /// Writes what is left, ends the recording with a status and what the device counted, and puts the file in
   /// its place.
@@ -59,36 +62,28 @@ class Recorder {
   void close(const std::string& status, const schema::Properties& device = {});
 
   /// Rows that never reached the writer.
-  [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t lost() const noexcept { return tap_.lost(); }
 
  private:
-  void push_after_loss(schema::Row row) noexcept {
-    row.flags |= schema::flag_rows_lost;
-    lost_here_ = !ring_.push(row);
-    if (lost_here_) lose();
-  }
-  void lose() noexcept {
-    lost_here_ = true;
-    lost_.fetch_add(1, std::memory_order_relaxed);
-  }
   void write_until_stopped(const std::stop_token& stop);
+  [[nodiscard]] std::vector<schema::Event> marked(double until_s);
   /// Returns how many rows there were to write.
   std::size_t write_chunk();
   template <typename Action>
   void guarded(Action action);
 
   schema::RecordingWriter writer_;
-  RowRing ring_;
+  RowTap tap_;
   bool lossless_;
-  bool lost_here_ = false;  ///< of the tick's thread: rows were lost since the last one that found room
-  std::atomic<std::uint64_t> lost_{0};
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::function<void(std::string_view)> on_failure_;
   std::vector<schema::Row> chunk_;
   EventFinder finder_;
-  double last_time_s_ = 0.0;
+  double last_time_s_ = 0.0;  ///< of the last row that was written
   std::vector<schema::Event> events_;
+  std::mutex mutex_;  ///< of marks_
+  std::vector<schema::Event> marks_;
   std::jthread thread_;
 };
 

@@ -28,6 +28,9 @@ class RowRing {
     return true;
   }
 
+  /// Of the pushing thread.
+  [[nodiscard]] bool has_room() const noexcept { return queue_.write_available() > 0; }
+
   /// Takes up to `most_popped` rows out, in their order; returns how many. The slots of rows that are being
   /// copied are not given to push() again: there are so many more of them than the queue can hold.
   std::size_t pop(schema::Row* rows) noexcept {

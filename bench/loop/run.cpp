@@ -15,10 +15,9 @@
 #include "cli/progress.h"
 #include "laws/placement.h"
 #include "loop/clock.h"
+#include "loop/device_recording.h"
 #include "loop/law_switch.h"
 #include "loop/recorder.h"
-#include "recordings/axes.h"
-#include "recordings/provenance.h"
 
 namespace kerf::bench {
 namespace {
@@ -26,14 +25,6 @@ namespace {
 constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP};
 
 std::atomic<bool> stop_requested{false};
-
-std::vector<schema::Channel> channels_of(const drivers::DeviceInfo& device) {
-  std::vector<schema::Channel> channels;
-  for (const drivers::ChannelInfo& channel : device.channels) {
-    channels.push_back({.name = channel.name, .unit = channel.unit, .values = {}});
-  }
-  return channels;
-}
 
 /// Leaves a device with zero force, however its scope is left.
 class ZeroForceAtExit {
@@ -166,14 +157,8 @@ class Run {
 
   std::unique_ptr<Recorder> open_recorder() {
     if (!options_.record) return nullptr;
-    schema::Header header = schema::new_header(software());
-    header.device_uri = result_.device.uri;
-    header.device_toml = result_.device.configuration;
-    if (options_.scene) header.scene_toml = options_.scene->toml;
-    schema::RecordingWriter writer(*options_.record, header, axes_of(result_.device),
-                                   {.measures_force = result_.device.measures_force,
-                                    .channels = channels_of(result_.device),
-                                    .replace = options_.replace});
+    schema::RecordingWriter writer =
+        begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
     return std::make_unique<Recorder>(
         std::move(writer),
         Recorder::Options{.lossless = options_.virtual_time, .on_failure = [this](std::string_view why) {
@@ -231,23 +216,9 @@ class Run {
     result_.rows_lost = recorder.lost();
     const auto at = static_cast<double>(report.ticks()) * result_.period_s;
     if (report.missed() > 0) {
-      std::string text = fmt::format("{} deadlines missed in all, charged to", report.missed());
-      for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
-        if (report.missed_by[stage] > 0) {
-          text += fmt::format(" {} {}", stage_names[stage], report.missed_by[stage]);
-        }
-      }
-      recorder.note({.time_s = at, .kind = "gap", .text = std::move(text)});
+      recorder.note({.time_s = at, .kind = "gap", .text = missed_in_words(report)});
     }
-    schema::Properties figures;
-    for (const drivers::Figure& figure : result_.figures) {
-      const bool counts = figure.unit == "1";
-      figures[counts ? figure.name : figure.name + "_" + figure.unit] = figure.value;
-      recorder.note({.time_s = at,
-                     .kind = "device",
-                     .text = fmt::format("{} {:.6g}{}{}", figure.name, figure.value, counts ? "" : " ",
-                                         counts ? "" : figure.unit)});
-    }
+    const schema::Properties figures = note_figures(recorder, result_.figures, at);
     std::string status = "complete";
     if (report.end == LoopEnd::stopped) {
       recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
@@ -255,13 +226,7 @@ class Run {
       recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost"});
       status = "aborted: the device was lost";
     }
-    try {
-      recorder.close(status, figures);
-    } catch (const std::system_error& error) {
-      result_.recording_failure =
-          fmt::format("{}; what was recorded until then is in {}.partial, and 'kerf repair' closes it",
-                      error.what(), options_.record->string());
-    }
+    result_.recording_failure = close_device_recording(recorder, *options_.record, status, figures);
   }
 
   const RunOptions& options_;

@@ -20,7 +20,7 @@ inline constexpr std::uint32_t zero_force_flags =
 
 struct SafetyOptions {
   double period_s = 1e-3;
-  double soft_start_s = 0.25;      ///< ramp of the force at the start and after every zero_force_flags
+  double soft_start_s = 0.25;      ///< ramp of the force at the start and after every zero force
   bool passivity_control = false;  ///< add damping where the rendering has given energy
 };
 
@@ -29,10 +29,11 @@ struct SafetyOptions {
 ///
 /// A position or velocity that is not finite, or a position farther from the last one than hand and mechanism
 /// can move, makes the force zero, and so does a law that fails, a number that is not finite, or a loop that
-/// had stalled. Zero comes at once (the slew limit is there to spare the hand a jump, not to hold on to a bad
-/// force), and the force then comes back along the ramp of a soft start. Every other command is kept within
-/// each axis' force and slew limit. A measured force that is not finite is a gap in a measurement, not a
-/// fault: no law renders from it, and a sensor that pauses must not take the force from the hand.
+/// had stalled; and so does who asks for it. Zero comes at once (the slew limit is there to spare
+/// the hand a jump, not to hold on to a bad force), and the force then comes back along the ramp of a soft
+/// start. Every other command is kept within each axis' force and slew limit. A measured force that is not
+/// finite is a gap in a measurement, not a fault: no law renders from it, and a sensor that pauses must not
+/// take the force from the hand.
 class Safety {
  public:
   Safety(const std::vector<drivers::AxisInfo>& axes, const SafetyOptions& options) noexcept
@@ -71,7 +72,7 @@ class Safety {
     for (std::size_t axis = 0; axis < count_; ++axis) {
       if (!std::isfinite(command.force[axis])) command.flags |= schema::flag_law_fault;
     }
-    if ((command.flags & zero_force_flags) != 0) return release(time_s, command);
+    if ((command.flags & zero_force_flags) != 0 || command.is_released) return release(time_s, command);
     if (options_.passivity_control && observer_.control(travelled_, options_.period_s, command.force)) {
       command.flags |= schema::flag_passivity_control;
     }

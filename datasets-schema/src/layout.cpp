@@ -108,15 +108,17 @@ const std::array dataset_table{
             &Recording::write_time, &Row::write_time_s},
     Dataset{"/samples/flags", "uint32", "N", Units::one, optional, "What happened in the tick, bit by bit",
             &Recording::flags, &Row::flags},
-    Dataset{"/events",
-            "{time float64, kind text, text text}",
-            "E",
-            Units::event,
-            required,
-            "What happened during the recording: `stop`, `gap`, `fault`, `contact`, `release`, or the name "
-            "of a flag",
-            {},
-            {}},
+    Dataset{
+        "/events",
+        "{time float64, kind text, text text}",
+        "E",
+        Units::event,
+        required,
+        "What happened during the recording: `stop`, `gap`, `fault`, `contact`, `release`, `law` (what is "
+        "rendered from then on), `zero`, `resume` (force taken away and let in by hand), `device`, or the "
+        "name of a flag",
+        {},
+        {}},
     Dataset{"/cycles/phases",
             "{cycle uint32, phase uint8, begin uint64, end uint64}",
             "P",

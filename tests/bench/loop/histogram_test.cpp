@@ -45,5 +45,19 @@ TEST(Histogram, IsZeroWhenEmptyAndWhenTimeStandsStill) {
   EXPECT_EQ(histogram.percentile_ns(0.99), 0.0);
 }
 
+TEST(Histogram, CountsWhatAnotherHasCounted) {
+  Histogram all;
+  Histogram halves[2];
+  for (std::int64_t ns = 1; ns < 5000; ++ns) {
+    all.add(ns * ns);
+    halves[ns % 2].add(ns * ns);
+  }
+  halves[0].add(halves[1]);
+  EXPECT_EQ(halves[0].count(), all.count());
+  EXPECT_EQ(halves[0].mean_ns(), all.mean_ns());
+  EXPECT_EQ(halves[0].max_ns(), all.max_ns());
+  EXPECT_EQ(halves[0].percentile_ns(0.9), all.percentile_ns(0.9));
+}
+
 }  // namespace
 }  // namespace kerf::bench

@@ -78,6 +78,19 @@ TEST(Recorder, MakesAnEventOfWhatAFlagSays) {
   EXPECT_DOUBLE_EQ(recording.events[0].time_s, 2.5);
 }
 
+TEST(Recorder, KeepsAMarkedEventThroughACrash) {
+  const test::TemporaryFolder folder;
+  {
+    Recorder recorder(writer_to(folder / "r.h5"), {.lossless = true});
+    for (std::uint64_t tick = 0; tick < 100; ++tick) recorder.push(row_of(tick));
+    recorder.mark({.time_s = 0.05, .kind = "law", .text = "kelvin"});
+    recorder.note({.time_s = 0.1, .kind = "stop", .text = "known at the end alone"});
+  }
+  const schema::Recording recording = schema::read_recording(folder / "r.h5.partial");
+  ASSERT_EQ(recording.events.size(), 1U);
+  EXPECT_EQ(recording.events[0].text, "kelvin");
+}
+
 TEST(Recorder, LeavesThePartialFileWhenItIsNotClosed) {
   const test::TemporaryFolder folder;
   {

@@ -44,6 +44,17 @@ TEST(Safety, ChangesAForceNoFasterThanItsSlewLimit) {
   }
 }
 
+TEST(Safety, GivesZeroAtOnceWhereTheForceIsReleasedAndComesBackSoftly) {
+  Safety safety(scissors, {.soft_start_s = 0.1});
+  (void)applied(safety, {.force = {1.0, 3.0}}, 0.2);
+  const Command released = applied(safety, {.force = {1.0, 3.0}, .is_released = true}, 0.3);
+  EXPECT_EQ(released.force, drivers::Axes{});
+  EXPECT_EQ(released.flags, 0U);
+  const Command back = applied(safety, {.force = {1.0, 3.0}}, 0.35);
+  EXPECT_NEAR(back.force[0], 0.5, 1e-12);
+  EXPECT_EQ(back.flags, schema::flag_soft_start);
+}
+
 TEST(Safety, ZeroesEveryAxisOnOneBadNumber) {
   Safety safety(scissors, {.soft_start_s = 0.0});
   (void)applied(safety, {.force = {2.0, 3.0}});

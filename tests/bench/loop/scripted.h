@@ -58,6 +58,7 @@ class ScriptedDevice final : public drivers::Device {
   }
 
   void speed_limit(double per_second) { info_.axes[0].speed_limit = per_second; }
+  void slew_limit(double per_second) { info_.axes[0].slew_limit = per_second; }
 
   std::function<drivers::Status(std::uint64_t tick, drivers::Sample&)> answer;
   std::map<std::uint64_t, drivers::Status> write_answers;

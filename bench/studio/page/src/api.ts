@@ -192,6 +192,173 @@ export interface Job {
   file: string; // id of the result in the workspace; empty if there is none yet
 }
 
+/** A law that can be fitted; empty units: any axis. */
+export interface FittedLaw {
+  model: string;
+  equation: string;
+  position_unit: string;
+  force_unit: string;
+}
+
+// What the program's own verbs write; null: not finite.
+
+export interface Estimate {
+  value: number;
+  std_error: number | null;
+  unit: string;
+  [interval: string]: number | string | null | [number | null, number | null]; // "ci95"
+}
+export interface LawFit {
+  model: string;
+  options: Record<string, boolean | number | string>;
+  law_files: string[];
+  parameters: Record<string, Estimate>;
+  free_parameters: number;
+  rmse: number;
+  max_abs: number;
+  r2: number;
+  bic: number;
+  cv_rmse: number | null;
+  jnd_fraction: number;
+  correlation: { parameters: string[]; matrix: (number | null)[][] };
+  converged: boolean;
+  message: string;
+  warnings: string[];
+}
+export interface FitFile {
+  recordings: { name: string; axis: string; samples: number; left_out: number }[];
+  samples: number;
+  settings: { folds: number; confidence: number };
+  line_rmse: number;
+  jnd: number;
+  fits: LawFit[];
+  refused: { model: string; why: string }[];
+  choice: { model: string; why: string };
+  warnings: string[];
+}
+export interface ChartPoint {
+  law: string;
+  fidelity: string;
+  law_file: string; // within the chart's folder
+  parameters: number;
+  rate_hz: number;
+  p50_ns: number | null;
+  p999_ns: number | null;
+  cold_p50_ns: number | null;
+  cold_p999_ns: number | null;
+  error_n: number | null;
+  error_jnd: number | null;
+  worst_n: number | null;
+  axis: string;
+  stable: boolean;
+  why_not_stable: string;
+  on_front: boolean;
+}
+export interface ChartFile {
+  source: string;
+  reference: string;
+  rate_hz: number;
+  jnd_n: number | null;
+  compared_in: "N" | "JND";
+  points: ChartPoint[];
+  notes: string[];
+}
+export interface ChoiceCandidate {
+  law: string;
+  model: string;
+  parameters: number;
+  converged: boolean;
+  held_out: number | null;
+  held_out_jnd: number | null;
+  within_jnd: boolean;
+  tick_us: number;
+  stable: boolean | null;
+  passed_over: string; // empty: it was taken
+}
+export interface ChoiceFile {
+  name: string;
+  axis: string;
+  device: string | null;
+  jnd: number;
+  held_out_by: string;
+  choice: { law: string | null; serves: boolean; as_good: string | null; why: string };
+  effects: { effect: string; verdict: string; why: string }[];
+  candidates: ChoiceCandidate[];
+  warnings: string[];
+}
+interface StabilityOf {
+  on: {
+    device: string;
+    axis: string;
+    grip: string;
+    rate_hz: number;
+    damping_n_s_per_m: number;
+    passive_stiffness_n_per_m: number;
+    colgate_schenkel_n_per_m: number;
+  };
+  in_words: string[];
+}
+export interface WallBoundary {
+  B: number;
+  simulated: number;
+  simulated_linear: number;
+  eigenvalues: number;
+  passive: number;
+  colgate_schenkel: number;
+}
+export interface WallStability extends StabilityOf {
+  study: "wall";
+  abbott_okamura: number;
+  boundaries: WallBoundary[];
+  cells: { K: number; B: number; stable: boolean; theory: boolean }[];
+}
+export interface LawStability extends StabilityOf {
+  study: "law";
+  law: string;
+  law_file?: string;
+  range: { depth_m: number; speed_m_s: number };
+  passive: boolean;
+  cells: { depth_m: number; rate_hz: number; stable: boolean; theory: boolean }[];
+}
+export type StabilityFile = WallStability | LawStability;
+
+/** A law file, and what a tool feels that goes in and out at a constant speed. */
+export interface LawView {
+  name: string;
+  model: string;
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  equation: string;
+  options: Record<string, boolean | number | string>;
+  parameters: { name: string; value: number; unit: string; std_error: number | null; meaning: string }[];
+  toml: string;
+  curve: { penetration: number[]; closing: number[]; opening: number[]; speed: number; range: string };
+}
+/** Law less measured force. */
+export interface Residuals {
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  rows: number;
+  rmse: number;
+  worst: number;
+  jnd_n: number;
+  time_s: number[];
+  smallest: number[];
+  largest: number[];
+  penetration: number[];
+  mean: (number | null)[];
+  low: (number | null)[];
+  high: (number | null)[];
+  loop: {
+    measured_closing: (number | null)[];
+    measured_opening: (number | null)[];
+    law_closing: (number | null)[];
+    law_opening: (number | null)[];
+  };
+}
+
 // Sessions
 
 export interface SessionState {

@@ -61,8 +61,8 @@ export class Canvas {
     this.plot.show([...this.single, ...averages(this.drawing)], wanted);
   }
 
-  showCycles(loops: Loops | null, sign: number): void {
-    this.single = loops ? cycles(this.drawing, loops, sign) : [];
+  showCycles(loops: Loops | null): void {
+    this.single = loops ? cycles(this.drawing, loops) : [];
     this.plot.show([...this.single, ...averages(this.drawing)], this.plot.limits);
   }
 

@@ -19,12 +19,11 @@ export function averages(drawing: Drawing): PlotLine[] {
   ];
 }
 
-/** Single cycles; those of a recording of commands alone are turned as its averages are. */
-export function cycles(drawing: Drawing, loops: Loops, sign: number): PlotLine[] {
+export function cycles(drawing: Drawing, loops: Loops): PlotLine[] {
   const { curve, position, force } = drawing;
   return loops.loops.map((loop) => ({
     x: loop.position.map((it) => (it - curve.contact_position) * curve.closing_direction * position.perUnit),
-    y: drawn(loop.force, sign * force.perUnit),
+    y: drawn(loop.force, force.perUnit),
     class: "faint",
   }));
 }

@@ -42,7 +42,7 @@ export function savePanel(context: Context, drawing: Drawing, axis: number, name
         void save(false);
       },
     },
-    labelled("Name of the law", input),
+    labelled("Name", input),
     element("button", { type: "submit", class: "firm" }, "Save law"),
     said,
   );

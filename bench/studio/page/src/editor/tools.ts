@@ -62,26 +62,9 @@ export function toolbar(
 }
 
 async function showCycles(context: Context, drawing: Drawing, canvas: Canvas, axis: number, on: boolean): Promise<void> {
-  if (!on) return canvas.showCycles(null, 1);
-  const loops = await context.api.get<Loops>("/api/recording/loops", { id: drawing.curve.recording, axis });
-  canvas.showCycles(loops, signOf(drawing, loops));
-}
-
-/** Loops have forces as they were recorded; those of a command alone are turned round where the editor's resist. */
-function signOf(drawing: Drawing, loops: Loops): number {
-  const { curve } = drawing;
-  let product = 0;
-  loops.average.position.forEach((position, i) => {
-    const recorded = loops.average.closing[i];
-    if (recorded == null) return;
-    const penetration = (position - curve.contact_position) * curve.closing_direction;
-    let nearest = 0;
-    curve.penetration.forEach((it, k) => {
-      if (Math.abs(it - penetration) < Math.abs(curve.penetration[nearest]! - penetration)) nearest = k;
-    });
-    product += recorded * (curve.closing[nearest] ?? 0);
-  });
-  return product < 0 ? -1 : 1;
+  if (!on) return canvas.showCycles(null);
+  const loops = await context.api.get<Loops>("/api/recording/loops", { id: drawing.curve.recording, axis, first: 1, count: 30 });
+  canvas.showCycles(loops);
 }
 
 /** What the server works out: the best breakpoints for a number of segments, the best forces at those drawn. */

@@ -27,6 +27,8 @@ export class XyPlot {
   readonly svg: SVGSVGElement;
   /** For marks of a page's own, above the lines; cleared by nobody but the page. */
   readonly layer: SVGGElement;
+  /** The same, below grid and lines: areas. */
+  readonly ground: SVGGElement;
   limits: Limits = { x: [0, 1], y: [0, 1] };
   private width = 640;
   private height = 400;
@@ -42,7 +44,8 @@ export class XyPlot {
     private readonly redrawn: () => void = () => {},
   ) {
     this.layer = drawn("g", { class: "layer" });
-    this.svg = drawn("svg", { class: "xy_plot", role: "group", "aria-label": name }, this.frame, this.curves, this.layer);
+    this.ground = drawn("g", { class: "ground" });
+    this.svg = drawn("svg", { class: "xy_plot", role: "group", "aria-label": name }, this.ground, this.frame, this.curves, this.layer);
     this.observer = new ResizeObserver((entries) => {
       const box = entries[entries.length - 1]?.contentRect;
       if (!box || box.width < 100 || box.height < 100) return;

@@ -1,11 +1,69 @@
+import "./results.css";
+
+import type { StabilityFile, Workspace, WorkspaceFile } from "../api";
+import { JobList } from "../results/jobs";
+import { mapModel } from "../results/map_model";
+import { byName, resultName } from "../results/names";
+import { stabilityForm } from "../results/stability_form";
+import { StabilityMap } from "../results/stability_map";
 import { element } from "../ui/dom";
+import { withUnit } from "../ui/numbers";
 import type { View } from "../ui/view";
+
+function listOf(files: readonly WorkspaceFile[]): HTMLElement {
+  const links = files.map((it) => element("li", {}, element("a", { href: `#/stability/${it.id}` }, resultName(it))));
+  return element(
+    "section",
+    { class: "card", "aria-label": "Maps in this folder" },
+    element("h2", {}, "Maps in this folder"),
+    links.length > 0 ? element("ul", { class: "links" }, ...links) : element("p", { class: "quiet" }, "There is none yet."),
+  );
+}
+
+/** What was mapped, in a line. */
+function about(file: StabilityFile): string {
+  const { on } = file;
+  const of = file.study === "wall" ? "Virtual walls" : `${file.law}, to ${withUnit(file.range.depth_m, "m")} at up to ${withUnit(file.range.speed_m_s, "m/s")}`;
+  return `${of}, on ${on.device}, axis ${on.axis}, at ${withUnit(on.rate_hz, "Hz")}, hand: ${on.grip}.`;
+}
 
 export const stability: View = {
   name: "stability",
   title: "Stability",
-  mount(root) {
-    root.append(element("h1", {}, "Stability"));
-    return () => {};
+  mount(root, context) {
+    const title = element("h1", {}, "Stability");
+    root.append(title);
+    const jobs = new JobList(context, ["stability"]);
+    let map: StabilityMap | null = null;
+    let ended = false;
+    const show = async (): Promise<void> => {
+      const { id } = context.place;
+      const workspace = await context.api.get<Workspace>("/api/workspace");
+      const files = workspace.files.filter((it) => it.kind === "stability").sort(byName);
+      const file = files.find((it) => it.id === id);
+      const of = file ? await context.api.get<StabilityFile>("/api/result", { id }) : null;
+      if (ended) return;
+      if (file && of) {
+        title.textContent = `Stability: ${resultName(file)}`;
+        const words = element("ul", { class: "words" }, ...of.in_words.map((it) => element("li", {}, it)));
+        root.append(element("p", { class: "quiet" }, about(of)));
+        if (of.cells.length > 0) {
+          map = new StabilityMap(mapModel(of), about(of));
+          root.append(map.root);
+        }
+        root.append(words);
+      } else if (id && !workspace.laws.some((it) => it.id === id)) {
+        context.say("That map is not in this folder any more.");
+      }
+      root.append(
+        element("div", { class: "two" }, stabilityForm(context, workspace, id, jobs), element("div", { class: "stack" }, jobs.root, listOf(files))),
+      );
+    };
+    show().catch(context.complain);
+    return () => {
+      ended = true;
+      jobs.end();
+      map?.end();
+    };
   },
 };

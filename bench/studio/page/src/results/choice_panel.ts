@@ -1,0 +1,66 @@
+import type { ChoiceCandidate, ChoiceFile, Workspace, WorkspaceFile } from "../api";
+import { button, element, table } from "../ui/dom";
+import { plain, withUnit } from "../ui/numbers";
+import type { Context } from "../ui/view";
+import { feelButton } from "./law_panel";
+import { lawBeside } from "./names";
+
+function walk(of: readonly ChoiceCandidate[]): HTMLElement {
+  const rows = of.map((it) => [
+    it.law,
+    String(it.parameters),
+    withUnit(it.held_out, "N"),
+    plain(it.held_out_jnd, 2),
+    `${plain(it.tick_us, 2)} µs`,
+    it.passed_over || "taken",
+  ]);
+  const all = table("The walk, simplest first", ["law", "free", "held out", "JND", "tick", "why passed over"], rows);
+  return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "The walk" }, all);
+}
+
+/** A choice in words: what was taken, why, and what was passed over. */
+export class ChoicePanel {
+  readonly root = element("section", { class: "card choice", "aria-label": "Choice of a law" });
+
+  constructor(
+    private readonly context: Context,
+    private readonly workspace: Workspace,
+    private readonly choose: (() => void) | null,
+    private readonly openLaw: (id: string, title: string) => void,
+  ) {
+    this.root.append(
+      element("div", { class: "head" }, element("h2", {}, "The simplest law that serves"), ...this.again("Choose")),
+      element("p", { class: "quiet" }, "Nothing has been chosen yet for this recording. The walk goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable."),
+    );
+  }
+
+  private again(text: string): HTMLElement[] {
+    return this.choose ? [button(text, this.choose)] : [];
+  }
+
+  async open(file: WorkspaceFile): Promise<void> {
+    try {
+      this.show(file, await this.context.api.get<ChoiceFile>("/api/result", { id: file.id }));
+    } catch (error) {
+      this.context.complain(error);
+    }
+  }
+
+  private show(file: WorkspaceFile, of: ChoiceFile): void {
+    const law = of.choice.law ? lawBeside(this.workspace, file, `${of.choice.law}.law.toml`) : undefined;
+    const head = element("div", { class: "head" }, element("h2", {}, of.choice.law ? `Chosen: ${of.choice.law}` : "Nothing was chosen"));
+    if (law) {
+      const title = of.choice.law ?? law.name;
+      head.append(button("Open", () => this.openLaw(law.id, title), { "aria-label": `Open ${title}` }), feelButton(this.context, law.id, title));
+    }
+    head.append(...this.again("Choose again"));
+    this.root.replaceChildren(
+      head,
+      element("p", { class: of.choice.serves ? "" : "wrong" }, of.choice.why),
+      element("p", { class: "quiet" }, `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, "N")}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`),
+      element("ul", { class: "effects" }, ...of.effects.map((it) => element("li", {}, element("strong", {}, `${it.effect} ${it.verdict}`), `: ${it.why}`))),
+      walk(of.candidates),
+      ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
+    );
+  }
+}

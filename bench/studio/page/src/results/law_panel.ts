@@ -1,0 +1,97 @@
+import type { LawView } from "../api";
+import { button, element, table } from "../ui/dom";
+import { plain, withUnit } from "../ui/numbers";
+import type { Context } from "../ui/view";
+import { XyPlot } from "../ui/xy_plot";
+
+const most_shown = 24;
+
+/** Lets the running loop render a law; what came of it stands in the notice. */
+export async function feel(context: Context, id: string, name: string): Promise<void> {
+  try {
+    await context.api.post("/api/live/feel", { law: id });
+    context.say(`${name} is rendered now. Escape makes the force zero.`);
+  } catch (error) {
+    context.complain(error);
+  }
+}
+
+export function feelButton(context: Context, id: string, name: string): HTMLButtonElement {
+  return button("Feel it now", () => void feel(context, id, name), { class: "feel" });
+}
+
+function optionsInWords(law: LawView): string {
+  const parts = Object.entries(law.options).map(
+    ([name, value]) => `${name} ${typeof value === "number" ? plain(value) : String(value)}`,
+  );
+  return parts.join(", ");
+}
+
+function parameterTable(law: LawView): HTMLElement {
+  const rows = law.parameters.slice(0, most_shown).map((it) => [
+    it.name,
+    it.value.toPrecision(5),
+    it.std_error === null ? "–" : it.std_error.toPrecision(2),
+    it.unit,
+    it.meaning,
+  ]);
+  const more = law.parameters.length - most_shown;
+  const of = table("Parameters", ["name", "value", "std. error", "unit", "meaning"], rows);
+  return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "Parameters of the law" }, of,
+    more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the file`) : null);
+}
+
+/** One law: what it is, its curve, its parameters, and a way to feel it. */
+export class LawPanel {
+  readonly root = element("section", { class: "card law", "aria-label": "Law" });
+  private plot: XyPlot | null = null;
+  private shown = "";
+
+  constructor(private readonly context: Context) {
+    this.root.append(element("p", { class: "quiet" }, "No law is open."));
+  }
+
+  end(): void {
+    this.plot?.end();
+    this.plot = null;
+  }
+
+  /** `title` in the words of the page that opens it. */
+  async open(id: string, title: string): Promise<void> {
+    this.shown = id;
+    try {
+      const law = await this.context.api.get<LawView>("/api/law", { id });
+      if (this.shown === id) this.show(id, law, title);
+    } catch (error) {
+      this.context.complain(error);
+    }
+  }
+
+  private show(id: string, law: LawView, title: string): void {
+    this.end();
+    const unit = law.position_unit;
+    const text = element("details", {}, element("summary", {}, "The law file"), element("pre", { tabindex: 0 }, law.toml));
+    this.root.replaceChildren(
+      element("div", { class: "head" }, element("h2", {}, title), feelButton(this.context, id, title)),
+      element("p", { class: "equation" }, law.equation),
+      element("p", { class: "quiet" }, `${law.name} · axis ${law.axis || "–"}${law.parameters.length > 0 ? ` · ${law.parameters.length} parameters` : ""}`),
+    );
+    const options = optionsInWords(law);
+    if (options) this.root.append(element("p", { class: "quiet" }, options));
+    if (law.curve.penetration.length > 0) {
+      this.plot = new XyPlot({ label: `penetration [${unit}]` }, { label: `force [${law.force_unit}]` }, `Force of ${title} over penetration`);
+      const lines = [
+        { x: law.curve.penetration, y: law.curve.closing, class: "closing" },
+        { x: law.curve.penetration, y: law.curve.opening, class: "opening" },
+      ];
+      this.root.append(
+        element("div", { class: "plot small" }, this.plot.svg),
+        element("p", { class: "quiet" }, `In (solid) and out (dashed) at ${withUnit(law.curve.speed, `${unit}/s`)}, to ${law.curve.range}.`),
+      );
+      this.plot.show(lines, XyPlot.around(lines));
+    } else {
+      this.root.append(element("p", { class: "quiet" }, law.curve.range));
+    }
+    this.root.append(parameterTable(law), text);
+  }
+}

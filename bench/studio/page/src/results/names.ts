@@ -1,0 +1,31 @@
+import type { Workspace, WorkspaceFile, WorkspaceLaw, WorkspaceRecording } from "../api";
+
+/** "day/cut.fit" of "day/cut.fit/fit.json". */
+export function folderOf(name: string): string {
+  const end = name.lastIndexOf("/");
+  return end < 0 ? "" : name.slice(0, end);
+}
+
+/** What a result is called on a page: its folder, or its file where it stands in the workspace itself. */
+export function resultName(file: WorkspaceFile): string {
+  return folderOf(file.name) || file.name;
+}
+
+/** The law file of that name in the folder of a result. */
+export function lawBeside(workspace: Workspace, result: WorkspaceFile, name: string): WorkspaceLaw | undefined {
+  const folder = folderOf(result.name);
+  const path = folder ? `${folder}/${name}` : name;
+  return workspace.laws.find((it) => it.name === path);
+}
+
+/** The recordings that a result of that name may be of, likeliest first: results know their recording's stem. */
+export function recordingsFor(workspace: Workspace, stem: string): WorkspaceRecording[] {
+  const whole = workspace.recordings.filter((it) => !it.partial);
+  const is = (it: WorkspaceRecording): boolean => it.name === `${stem}.h5` || it.name.endsWith(`/${stem}.h5`);
+  return [...whole.filter(is), ...whole.filter((it) => !is(it))];
+}
+
+/** Times of a file's name as the server gave them, newest last: "cut", "cut-2", "cut-10". */
+export function byName(one: { name: string }, other: { name: string }): number {
+  return one.name.localeCompare(other.name, "en", { numeric: true });
+}
