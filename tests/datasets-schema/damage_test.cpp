@@ -156,6 +156,27 @@ TEST(DamagedFile, CutShortWhileItWasRecordedIsReadOrRefusedInOneLine) {
   }
 }
 
+TEST(DamagedFile, WithTextsOverwrittenIsRefusedHoweverItWasWritten) {
+  const test::TemporaryFolder folder;
+  write_recording(folder / "written.h5", test::sample_recording());
+  auto writer = test::live_writer(folder / "recorded.h5");
+  writer.append(test::live_rows(0, 3000));
+  writer.close("complete");
+  for (const char* name : {"written.h5", "recorded.h5"}) {
+    const std::string sound = test::read_text(folder / name);
+    const std::string signature("GCOL\1\0\0\0", 8);
+    std::size_t heaps = 0;
+    for (auto at = sound.find(signature); at != std::string::npos; at = sound.find(signature, at + 1)) {
+      std::string bytes = sound;
+      bytes.replace(at + 24, 8, 8, '\xff');  // the length of its first text
+      test::write_text(folder / "hurt.h5", bytes);
+      EXPECT_THAT(refusal(folder / "hurt.h5"), HasSubstr("its texts are overwritten")) << name;
+      ++heaps;
+    }
+    EXPECT_GT(heaps, 0U);
+  }
+}
+
 TEST(DamagedFile, CutShortIsAViolation) {
   const test::TemporaryFolder folder;
   write_recording(folder / "r.h5", test::sample_recording());
