@@ -53,6 +53,22 @@ async function testFits(page, studio) {
   return written;
 }
 
+/** The law that was fitted goes into the running loop by one press. */
+async function testFeeling(page) {
+  const ask = (path) =>
+    page.evaluate(async (where) => {
+      const token = document.querySelector("meta[name=kerf-token]").content;
+      const headers = { "X-Kerf-Token": token, "Content-Type": "application/json" };
+      return (await fetch(where, where.endsWith("status") ? { headers } : { method: "POST", headers, body: "{}" })).json();
+    }, path);
+  await page.getByRole("button", { name: "kelvin", exact: true }).click();
+  await ask("/api/live/start");
+  await page.getByRole("button", { name: "Feel it now" }).click();
+  await until("the loop renders it", async () => (await ask("/api/live/status")).law.includes("kelvin"));
+  expect((await page.textContent("#notice")).startsWith("kelvin is rendered now"), "the page says so");
+  await ask("/api/live/stop");
+}
+
 async function testChart(page, studio) {
   await go(page, studio, "chart");
   await pickRecording(page, "short.h5");
@@ -106,6 +122,7 @@ export async function testResults(page, studio) {
   studio.kerf(["record", "--device", "sim:scissors", "--seconds", "6", "--virtual", "-o", "short.h5"]);
   studio.kerf(["segment", "short.h5"]);
   await testFits(page, studio);
+  await testFeeling(page);
   await testChart(page, studio);
   await testChoice(page, studio);
   await testStability(page, studio);
