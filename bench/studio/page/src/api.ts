@@ -73,6 +73,8 @@ export interface Percentiles {
 }
 export interface LoopStatus {
   running: boolean;
+  starting?: boolean; // its device is being opened
+  run?: number; // how many loops there were, this one included
   device: string;
   axes: Axis[];
   rate_hz: number;
@@ -90,6 +92,7 @@ export interface LoopStatus {
   session: boolean; // a session is running: nothing of the loop is shown
 }
 export interface LiveFrame {
+  run?: number; // of which loop
   from: number; // tick of the first column
   ticks: number; // in a column
   period_s: number;

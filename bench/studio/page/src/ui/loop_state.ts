@@ -3,6 +3,7 @@ import type { Api, LoopStatus } from "../api";
 /** What the loop does, in three words, on every page. */
 export function inWords(status: LoopStatus): string {
   if (status.session) return "Session running";
+  if (status.starting) return "Opening the device";
   if (!status.running) return status.ended ? "Loop ended" : "Loop not running";
   if (status.released) return "Zero force";
   return status.law ? `Rendering ${status.law}` : "Running free";

@@ -1,6 +1,8 @@
 import type { TraceView } from "../api";
 import type { TimeRange } from "./time_range";
 
+const mostColumns = 4000; // that the server gives at once
+
 type Fetch = (from: number, to: number, columns: number, signal: AbortSignal) => Promise<TraceView>;
 
 /**
@@ -47,10 +49,11 @@ export class StretchLoader {
   private async load(range: TimeRange, columns: number, screens: number): Promise<void> {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
-    const { span } = range;
-    const from = Math.max(range.first, range.from - screens * span);
-    const to = Math.min(range.last, range.to + screens * span);
-    const wanted = Math.max(1, Math.round((columns * (to - from)) / span));
+    const span = range.span;
+    const beside = screens * span * Math.min(1, Math.max(0, (mostColumns / columns - 1) / 2));
+    const from = Math.max(range.first, range.from - beside);
+    const to = Math.min(range.last, range.to + beside);
+    const wanted = Math.min(mostColumns, Math.max(1, Math.round((columns * (to - from)) / span)));
     try {
       const view = await this.fetch(from, to, wanted, asked.signal);
       if (asked.signal.aborted) return;
@@ -65,9 +68,9 @@ export class StretchLoader {
   private prefetchWhenIdle(range: TimeRange, columns: number): void {
     const { have } = this;
     if (!have) return;
-    const left = range.from <= range.first || have.from <= range.from - 0.5 * range.span;
-    const right = range.to >= range.last || have.to >= range.to + 0.5 * range.span;
-    if (left && right) return;
+    const left = range.from <= range.first || have.from <= range.from - 0.2 * range.span;
+    const right = range.to >= range.last || have.to >= range.to + 0.2 * range.span;
+    if ((left && right) || columns * 1.5 > mostColumns) return;
     this.idle = window.setTimeout(() => void this.load(range, columns, 1), 300);
   }
 }

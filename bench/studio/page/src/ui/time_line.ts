@@ -11,15 +11,13 @@ export interface TimeLine {
   middle_s: number; // from a column's first row to its middle
 }
 
-/** How times and values become pixels of the canvas. */
+/** How times and values become pixels of a canvas that is as large as the plot without its axes. */
 export interface Mapping {
   from: number;
   to: number;
-  left: number;
   width: number;
   lower: number; // of the values, or of their logarithms
   upper: number;
-  top: number;
   height: number;
   logarithmic: boolean;
   pixels: number; // of the canvas in one of the page

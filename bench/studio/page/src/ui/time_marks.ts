@@ -26,7 +26,6 @@ const strip = 5; // pixels of the page, along the top: tells a span where its sh
 export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, map: Mapping, texts: boolean): void {
   const colours = palette();
   context.save();
-  clip(context, map);
   context.font = `${13 * map.pixels}px system-ui, sans-serif`;
   context.textBaseline = "top";
   context.textAlign = "left";
@@ -37,23 +36,23 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
     context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0] as string;
     if (span.shade !== "plain") {
       context.globalAlpha = 0.1;
-      context.fillRect(left, map.top, width, map.height);
+      context.fillRect(left, 0, width, map.height);
       context.globalAlpha = 1;
-      if (span.shade === "blue") context.fillRect(left, map.top, width, strip * map.pixels);
-      else stripes(context, left, map.top, width, strip * map.pixels, 4 * map.pixels);
+      if (span.shade === "blue") context.fillRect(left, 0, width, strip * map.pixels);
+      else stripes(context, left, 0, width, strip * map.pixels, 4 * map.pixels);
     }
     if (texts && span.text && width > context.measureText(span.text).width + 8 * map.pixels) {
       context.fillStyle = colours.ink;
-      context.fillText(span.text, left + 4 * map.pixels, map.top + (strip + 3) * map.pixels);
+      context.fillText(span.text, left + 4 * map.pixels, (strip + 3) * map.pixels);
     }
   }
   for (const [from, to] of marks.gaps) {
     if (to < map.from || from > map.to) continue;
     const [left, width] = within(map, from, to);
     context.fillStyle = colours.grid;
-    context.fillRect(left, map.top, width, map.height);
+    context.fillRect(left, 0, width, map.height);
     context.strokeStyle = colours.line;
-    hatch(context, left, map.top, width, map.height, 10 * map.pixels);
+    hatch(context, left, 0, width, map.height, 10 * map.pixels);
   }
   context.restore();
 }
@@ -61,41 +60,34 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
 /** Events: a line through the plot with a small flag. */
 export function drawEvents(context: CanvasRenderingContext2D, marks: TimeMarks, map: Mapping): void {
   context.save();
-  clip(context, map);
   context.strokeStyle = context.fillStyle = palette().ink;
   context.lineWidth = map.pixels;
   context.setLineDash([2 * map.pixels, 2 * map.pixels]);
   let last = -Infinity;
   for (const event of marks.events) {
     if (event.time_s < map.from || event.time_s > map.to) continue;
-    const x = Math.round(map.left + ((event.time_s - map.from) / (map.to - map.from)) * map.width);
+    const x = Math.round(((event.time_s - map.from) / (map.to - map.from)) * map.width);
     if (x - last < map.pixels) continue;
     last = x;
     context.beginPath();
-    context.moveTo(x, map.top);
-    context.lineTo(x, map.top + map.height);
+    context.moveTo(x, 0);
+    context.lineTo(x, map.height);
     context.stroke();
     const size = 7 * map.pixels;
     context.beginPath();
-    context.moveTo(x, map.top);
-    context.lineTo(x + size, map.top + size / 2);
-    context.lineTo(x, map.top + size);
+    context.moveTo(x, 0);
+    context.lineTo(x + size, size / 2);
+    context.lineTo(x, size);
     context.fill();
   }
   context.restore();
 }
 
-function clip(context: CanvasRenderingContext2D, map: Mapping): void {
-  context.beginPath();
-  context.rect(map.left, map.top, map.width, map.height);
-  context.clip();
-}
-
 /** Left end and width within the plot; at least a pixel. */
 function within(map: Mapping, from: number, to: number): [number, number] {
   const perSecond = map.width / (map.to - map.from);
-  const left = map.left + Math.max(0, (from - map.from) * perSecond);
-  const right = map.left + Math.min(map.width, (to - map.from) * perSecond);
+  const left = Math.max(0, (from - map.from) * perSecond);
+  const right = Math.min(map.width, (to - map.from) * perSecond);
   return [left, Math.max(map.pixels, right - left)];
 }
 

@@ -5,7 +5,7 @@ import { linearTicks, plain, unitFor } from "./numbers";
 import { dashes, palette } from "./palette";
 import { calmLimits } from "./time_limits";
 import { columnAt, widen, type Mapping, type TimeLine } from "./time_line";
-import { drawEvents, drawGround, type TimeMarks } from "./time_marks";
+import { drawEvents, drawGround, noMarks, type TimeMarks } from "./time_marks";
 import { TimeRaster } from "./time_raster";
 import type { TimeRange } from "./time_range";
 
@@ -20,6 +20,7 @@ export interface Shared {
   marks: TimeMarks;
   origin_s: number; // the time that is written as 0
   timeLabel: string;
+  redraw: () => void; // soon
 }
 
 /**
@@ -35,10 +36,13 @@ export class TimePlot {
   private readonly values: HTMLElement[] = [];
   private limits: [number, number] | null = null;
   private seen = false; // any value yet
+  private marked = false; // there are marks on the ground
   private unit: { factor: number; text: string };
   private readonly found = { lower: 0, upper: 0 };
   private readonly map: Mapping;
+  private readonly ground = element("canvas", { class: "time_layer" });
   private readonly raster = new TimeRaster();
+  private axes = ""; // what they show: they are drawn again only when that changes
 
   constructor(
     readonly title: string,
@@ -49,13 +53,14 @@ export class TimePlot {
     private readonly titled: boolean,
   ) {
     this.unit = { factor: 1, text: lines[0]?.unit ?? "" };
-    this.map = { from: 0, to: 1, left: 0, width: 1, lower: 0, upper: 1, top: 0, height: 1, logarithmic, pixels: 1 };
+    this.map = { from: 0, to: 1, width: 1, lower: 0, upper: 1, height: 1, logarithmic, pixels: 1 };
     this.box = element("div", { class: "time_box" });
     this.root = element("div", { class: bottom ? "time_plot bottom" : "time_plot" }, this.legend(), this.box);
     this.plot = new uPlot(this.options(), [[0, 1], [null, null]], this.box);
     this.over = this.plot.over;
-    this.over.append(this.line);
-    this.plot.root.querySelector("canvas")?.setAttribute("aria-hidden", "true");
+    this.raster.canvas.className = "time_layer";
+    this.over.append(this.ground, this.raster.canvas, this.line);
+    this.plot.root.querySelector(".u-wrap")?.setAttribute("aria-hidden", "true");
   }
 
   end(): void {
@@ -87,8 +92,18 @@ export class TimePlot {
       : calmLimits(lower, upper, before, false);
     const limits = this.limits;
     this.unit = unitFor(this.logarithmic ? 1 : Math.max(-limits[0], limits[1]), this.lines[0]?.unit ?? "");
-    this.plot.redraw(true, true);
+    const relative = [range.from, range.to].map((it) => ((it - this.shared.origin_s) / range.span).toFixed(6));
+    const axes = [...relative, range.span, ...limits, this.logarithmic, this.shared.timeLabel].join(" ");
+    if (axes !== this.axes) this.plot.redraw(true, true);
+    this.axes = axes;
+    this.layers();
     this.point();
+  }
+
+  /** Draws all again: the colours are others. */
+  repaint(): void {
+    this.axes = "";
+    this.draw();
   }
 
   useLogarithms(on: boolean): void {
@@ -190,7 +205,7 @@ export class TimePlot {
           values: (_, splits) => this.valueTexts(splits),
         },
       ],
-      hooks: { drawClear: [(plot) => this.ground(plot)], draw: [(plot) => this.top(plot)] },
+      hooks: { setSize: [() => this.shared.redraw()] },
     };
   }
 
@@ -225,25 +240,28 @@ export class TimePlot {
     });
   }
 
-  private ground(plot: uPlot): void {
+  /** Marks, and the lines above them, in canvases as large as the plot without its axes. */
+  private layers(): void {
     const { range, marks } = this.shared;
-    const { map } = this;
-    [map.left, map.top, map.width, map.height] = [plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height];
+    const { map, plot } = this;
+    [map.width, map.height, map.pixels] = [Math.round(plot.bbox.width), Math.round(plot.bbox.height), uPlot.pxRatio];
     [map.from, map.to] = [range.from, range.to];
     [map.lower, map.upper] = this.limits ?? [0, 1];
     map.logarithmic = this.logarithmic;
-    map.pixels = uPlot.pxRatio;
-    drawGround(plot.ctx, marks, map, true);
-  }
-
-  private top(plot: uPlot): void {
-    const { ctx: context } = plot;
-    const { map } = this;
+    if (map.width < 2 || map.height < 2) return;
+    const { ground } = this;
+    if (ground.width !== map.width || ground.height !== map.height) [ground.width, ground.height] = [map.width, map.height];
+    const context = ground.getContext("2d");
+    if (context && (this.marked || marks !== noMarks)) {
+      context.clearRect(0, 0, map.width, map.height);
+      drawGround(context, marks, map, true);
+      drawEvents(context, marks, map);
+      this.marked = marks !== noMarks;
+    }
     const colours = palette();
     this.raster.begin(map);
     for (const line of this.lines) this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
-    this.raster.paint(context);
-    drawEvents(context, this.shared.marks, map);
+    this.raster.paint();
   }
 }
 

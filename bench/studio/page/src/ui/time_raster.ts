@@ -4,12 +4,12 @@ const thickness = 1.6; // of a line, in pixels of the page
 const bandAlpha = 0.42; // between the two edges of a band
 
 /**
- * Draws lines into pixels of its own, which are laid over the plot: for each pixel across, the stretch from the
+ * Draws lines into a canvas of its own, which is laid over the plot: for each pixel across, the stretch from the
  * smallest to the largest value there, joined to its neighbours, with soft ends. So every spike is seen, and a
  * ragged line costs what a smooth one does, which a canvas' own lines do not where no graphics processor helps.
  */
 export class TimeRaster {
-  private readonly canvas = document.createElement("canvas");
+  readonly canvas = document.createElement("canvas");
   private readonly context = this.canvas.getContext("2d", { willReadFrequently: true });
   private image = new ImageData(1, 1);
   private top = new Float32Array(1); // of the line at work, for each pixel across
@@ -42,10 +42,8 @@ export class TimeRaster {
     this.ink(this.rgb(colour), dash, map, (map.from - line.shift_s) * perSecond);
   }
 
-  paint(context: CanvasRenderingContext2D): void {
-    if (!this.map || !this.context) return;
-    this.context.putImageData(this.image, 0, 0);
-    context.drawImage(this.canvas, Math.round(this.map.left), Math.round(this.map.top));
+  paint(): void {
+    this.context?.putImageData(this.image, 0, 0);
   }
 
   /** Finds what each pixel across holds. */

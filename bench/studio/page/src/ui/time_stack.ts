@@ -47,7 +47,7 @@ export class TimeStack {
       () => this.point(),
       options.zoomedWhileFollowing,
     );
-    this.shared = { range: this.range, marks: noMarks, origin_s: 0, timeLabel: options.timeLabel };
+    this.shared = { range: this.range, marks: noMarks, origin_s: 0, timeLabel: options.timeLabel, redraw: () => this.draw() };
     const plots = element(
       "div",
       {
@@ -66,7 +66,7 @@ export class TimeStack {
       this.draw();
     });
     this.observer.observe(this.area);
-    this.endColours = onColours(() => this.draw());
+    this.endColours = onColours(() => this.plots.forEach((it) => it.repaint()));
   }
 
   end(): void {

@@ -1,4 +1,4 @@
-import type { LiveFrame, TraceView } from "../api";
+import type { LiveFrame } from "../api";
 
 /**
  * The newest columns of the running loop, oldest first, in arrays that stay: column k holds the smallest and the
@@ -10,7 +10,7 @@ export class LiveColumns {
   readonly largest: readonly Float64Array[];
   period_s = 1e-3;
   private newest = -1; // the column at the end of the arrays; -1: none yet
-  private firstLive = Infinity; // the first column that came by the stream
+  private run: number | undefined; // of which loop they are
 
   constructor(
     readonly traces: number,
@@ -33,16 +33,22 @@ export class LiveColumns {
     return (this.newest + 1) * this.column_s;
   }
 
+  /** Room up to where the loop is: what a stream tells of the past is put where it belongs, or left out. */
+  beginAt(tick: number): void {
+    this.newest = Math.floor(tick / this.ticks) - 1;
+    this.setTimes();
+  }
+
   /** False if the frame is of another loop or another grid: a new one of these is needed. */
   push(frame: LiveFrame): boolean {
     if (frame.ticks !== this.ticks || frame.smallest.length !== this.traces) return false;
     const columns = frame.smallest[0]?.length ?? 0;
     if (columns === 0) return true;
+    this.run ??= frame.run;
+    if (this.run !== frame.run) return false;
     const first = Math.round(frame.from / this.ticks);
-    if (this.newest >= 0 && first + columns < this.newest - 64) return false;
     this.period_s = frame.period_s;
     if (this.newest < 0) this.newest = first - 1;
-    this.firstLive = Math.min(this.firstLive, first);
     this.advance(first + columns - 1);
     const at = this.capacity - 1 - this.newest + first;
     for (let trace = 0; trace < this.traces; ++trace) {
@@ -60,6 +66,7 @@ export class LiveColumns {
   takeFrom(other: LiveColumns): void {
     if (other.newest < 0 || other.traces !== this.traces) return;
     this.period_s = other.period_s;
+    this.run = other.run;
     this.newest = Math.ceil(((other.newest + 1) * other.ticks) / this.ticks) - 1;
     this.setTimes();
     for (let k = 0; k < other.capacity; ++k) {
@@ -68,32 +75,12 @@ export class LiveColumns {
     }
   }
 
-  /** Fills in what was before the stream began. */
-  fill(view: TraceView): void {
-    if (this.newest < 0) return;
-    const rows = view.rowsPerColumn;
-    const [smallest, largest] = [view.traces.map((it) => it.smallest), view.traces.map((it) => it.largest)];
-    if (smallest.length !== this.traces) return;
-    const oldest = this.newest - this.capacity + 1;
-    const until = Math.min(this.firstLive, this.newest + 1);
-    const cleared = Math.round((view.time[0] ?? Infinity) / this.period_s / this.ticks);
-    for (let trace = 0; trace < this.traces; ++trace) {
-      this.smallest[trace]?.fill(NaN, Math.max(0, cleared - oldest), Math.max(0, until - oldest));
-      this.largest[trace]?.fill(NaN, Math.max(0, cleared - oldest), Math.max(0, until - oldest));
-    }
-    const last = until * this.ticks;
-    for (let k = 0; k < view.time.length; ++k) {
-      const tick = Math.round((view.time[k] as number) / this.period_s);
-      if (tick < last) this.merge(tick, Math.min(last, tick + rows), smallest, largest, k);
-    }
-  }
-
   /** Widens the columns of ticks [from, to) by column k of others. */
   private merge(
     from: number,
     to: number,
-    smallest: readonly (Float64Array | Float32Array)[],
-    largest: readonly (Float64Array | Float32Array)[],
+    smallest: readonly Float64Array[],
+    largest: readonly Float64Array[],
     k: number,
   ): void {
     const oldest = this.newest - this.capacity + 1;
@@ -103,9 +90,9 @@ export class LiveColumns {
       const low = smallest[trace]?.[k] ?? NaN;
       const high = largest[trace]?.[k] ?? NaN;
       if (Number.isNaN(low)) continue;
-      const [to_, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
+      const [down, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
       for (let i = first; i < end; ++i) {
-        if (!((to_[i] as number) <= low)) to_[i] = low;
+        if (!((down[i] as number) <= low)) down[i] = low;
         if (!((up[i] as number) >= high)) up[i] = high;
       }
     }

@@ -11,6 +11,7 @@ import { ScopeFigures } from "./scope_figures";
 import { ScopePicture } from "./scope_picture";
 import { axisOf } from "./trace_groups";
 
+const channels = "(channels)"; // in place of an axis
 const windows_s = [1, 2, 5, 10, 30, 60];
 
 /** The scope: what the loop does now. */
@@ -110,8 +111,9 @@ class Scope {
     this.controls.show(status);
     this.figures.show(status);
     this.pauseButton.disabled = this.traces.length === 0;
-    const restarted = !before || (status.running && (!before.running || status.ticks < before.ticks));
-    if (status.running && (restarted || this.traces.length === 0)) void this.askTraces(before !== null);
+    const another = before !== null && status.run !== before.run;
+    const hasRun = status.running || (status.run ?? 0) > 0;
+    if (hasRun && !status.starting && (another || this.traces.length === 0)) void this.askTraces(another);
   }
 
   /** Which traces a loop has is known once it runs. */
@@ -125,6 +127,9 @@ class Scope {
       this.axis.replaceChildren(
         element("option", { value: "" }, "all axes"),
         ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
+        this.traces.some((it) => it.group === "channel")
+          ? element("option", { value: channels, selected: channels === chosen }, "channels")
+          : "",
       );
       if (another) {
         this.events.clear();
@@ -143,9 +148,16 @@ class Scope {
     const axes = this.status?.axes ?? [];
     const chosen = this.traces
       .map((trace, k) => ({ trace, k, axis: axisOf(trace, axes) }))
-      .filter((it) => it.axis === "" || this.axis.value === "" || it.axis === this.axis.value)
+      .filter((it) => this.isShown(it.trace, it.axis))
       .map((it) => it.k);
-    this.picture.setTraces(this.traces, chosen, this.status?.rate_hz ?? 1000, this.scale.value === "log");
+    const { rate_hz = 1000, ticks = 0 } = this.status ?? {};
+    this.picture.setTraces(this.traces, chosen, rate_hz || 1000, ticks, this.scale.value === "log");
+  }
+
+  private isShown(trace: Trace, axis: string): boolean {
+    if (trace.group === "timing") return trace.name === "wake_latency" || trace.name === "cycle_time";
+    if (this.axis.value === channels) return trace.group === "channel";
+    return trace.group !== "channel" && (this.axis.value === "" || axis === this.axis.value);
   }
 
   private otherWindow(factor: number): void {

@@ -56,19 +56,19 @@ export class ScopeControls {
   show(status: LoopStatus): void {
     const before = this.status;
     this.status = status;
-    const { running } = status;
+    const running = status.running || status.starting === true;
     this.start.textContent = running ? "Stop" : "Start";
     this.start.classList.toggle("firm", !running);
     for (const it of [this.device, this.sensor, this.scene]) it.disabled = running;
     if (running && status.device && this.device.value !== status.device) this.device.value = status.device;
-    this.resume.disabled = !(running && status.released);
-    this.law.disabled = !running;
-    this.record.disabled = !running;
+    this.resume.disabled = !status.released;
+    this.law.disabled = !status.running;
+    this.record.disabled = !status.running;
     this.showLaw(status, before);
     this.record.textContent = status.recording ? "Stop" : "Record";
     this.record.setAttribute("aria-label", status.recording ? "Stop recording" : "Record");
     this.record.classList.toggle("firm", status.recording !== null);
-    this.name.disabled = !running || status.recording !== null;
+    this.name.disabled = !status.running || status.recording !== null;
     if (before?.recording && !status.recording) this.name.value = nameOfNow();
     put(this.recorded, recordedText(status));
     this.recorded.classList.toggle("alarming", status.recording_failure !== "");
@@ -78,15 +78,20 @@ export class ScopeControls {
   /** What the loop renders, unless somebody is choosing right now. */
   private showLaw(status: LoopStatus, before: LoopStatus | null): void {
     if (before && before.law === status.law && this.law.value !== "" && document.activeElement === this.law) return;
-    const id = this.laws.find((it) => it.name === status.law || it.name === `${status.law}.law.toml`)?.id ?? "";
+    const id = this.idOf(status.law);
     if (document.activeElement !== this.law || before?.law !== status.law) this.law.value = id;
   }
 
+  /** A law is told by its file's name, with or without its ending. */
+  private idOf(law: string): string {
+    return this.laws.find((it) => it.name === law || it.name === `${law}.law.toml`)?.id ?? "";
+  }
+
   private startOrStop(): void {
-    if (this.status?.running) return this.order("/api/live/stop");
+    if (this.status?.running || this.status?.starting) return this.order("/api/live/stop");
     const body: Record<string, string> = { device: this.device.value.trim() };
     if (this.sensor.value.trim()) body["sensor"] = this.sensor.value.trim();
-    if (this.scene.value) body["scene"] = this.scene.value;
+    if (this.scene.value) body["scene_id"] = this.scene.value;
     this.order("/api/live/start", body);
   }
 
@@ -101,9 +106,12 @@ export class ScopeControls {
 
   private order(path: string, body: unknown = {}): void {
     this.context.say("");
-    this.context.api.post(path, body).catch((error: unknown) => {
+    const told = (status: Partial<LoopStatus>): void => {
+      if (status.ticks !== undefined) this.show(status as LoopStatus);
+    };
+    this.context.api.post<Partial<LoopStatus>>(path, body).then(told, (error: unknown) => {
       this.context.complain(error);
-      if (this.status) this.law.value = this.laws.find((it) => it.name === this.status?.law)?.id ?? "";
+      this.law.value = this.idOf(this.status?.law ?? "");
     });
   }
 }
@@ -120,6 +128,8 @@ function recordedText(status: LoopStatus): string {
 }
 
 function stateText(status: LoopStatus): string {
+  if (status.starting) return "The device is being opened.";
+  if (!status.running && status.released) return "The loop is not running; zero force is held until it is let back.";
   if (!status.running) return status.ended ? `Ended: ${status.ended}` : "The loop is not running.";
   if (status.released) return "Zero force: nothing is rendered until force is let back.";
   if (status.blending) return "Force comes back gently.";

@@ -15,14 +15,14 @@ export class ScopePicture {
   private chosen: number[] = []; // traces that are shown
   private lines: TimeLine[] = [];
   private columns: LiveColumns | null = null;
-  private filling = false; // asked for what was before the stream
   private window_s = 5;
   private rate_hz = 1000;
+  private ticks = 0; // that the loop had done when its traces were asked for
   private lastZoom = 0;
   private readonly loader: StretchLoader;
 
   constructor(
-    private readonly api: Api,
+    api: Api,
     /** The stream should come with as many ticks in a column. */
     private readonly restream: (ticks: number) => void,
     zoomed: (factor: number) => void,
@@ -57,11 +57,12 @@ export class ScopePicture {
     this.stack.end();
   }
 
-  /** Which traces the loop has, and which of them are shown. */
-  setTraces(traces: readonly Trace[], chosen: number[], rate_hz: number, logarithmic: boolean): void {
+  /** Which traces the loop has, which of them are shown, and where the loop is. */
+  setTraces(traces: readonly Trace[], chosen: number[], rate_hz: number, ticks: number, logarithmic: boolean): void {
     const same = traces.length === this.traces.length && rate_hz === this.rate_hz;
     this.traces = traces;
     this.rate_hz = rate_hz;
+    this.ticks = ticks;
     this.chosen = chosen;
     const shown = chosen.map((it) => traces[it] as Trace);
     this.lines = shown.map((it) => emptyLine(it, 0));
@@ -90,12 +91,12 @@ export class ScopePicture {
     if (!columns || frame.ticks !== columns.ticks) return; // of a stream that is closed
     if (frame.smallest.length !== this.traces.length) return; // of a loop whose traces are not known yet
     if (!columns.push(frame)) return this.restart();
-    if (!this.filling && columns.end_s > 0) this.fillIn(columns);
     if (!this.paused) this.follow();
   }
 
   /** Another loop has begun: nothing of the last one is shown. */
   restart(): void {
+    this.ticks = 0;
     this.resume();
     this.renew(null);
   }
@@ -142,14 +143,14 @@ export class ScopePicture {
     return ticksInColumn(this.window_s, this.rate_hz, this.stack.columns);
   }
 
-  /** New columns for another window or width, with what the old ones hold; then what they lack from the server. */
+  /** New columns for another window or width, with what the old ones hold; the stream tells the past again. */
   private renew(old: LiveColumns | null): void {
     const ticks = this.ticksWanted();
     const capacity = Math.ceil((this.window_s * this.rate_hz) / ticks) + 3;
     this.columns = new LiveColumns(this.traces.length, ticks, capacity);
     this.columns.period_s = 1 / this.rate_hz;
     if (old) this.columns.takeFrom(old);
-    this.filling = false;
+    else this.columns.beginAt(this.ticks);
     if (!this.paused) this.attach();
     this.restream(ticks);
   }
@@ -166,16 +167,5 @@ export class ScopePicture {
       line.middle_s = 0.5 * (columns.ticks - 1) * columns.period_s;
     });
     this.stack.draw();
-  }
-
-  private fillIn(columns: LiveColumns): void {
-    this.filling = true;
-    const traces = this.traces.map((_, k) => k).join(",");
-    const [from, to] = [Math.max(0, columns.end_s - this.window_s), columns.end_s];
-    if (!(to > from)) return;
-    this.api.view("/api/live/view", { traces, from, to, columns: columns.capacity }).then(
-      (view) => this.columns === columns && view.time.length > 0 && columns.fill(view),
-      () => {}, // the past is a courtesy: what comes next is drawn in any case
-    );
   }
 }
