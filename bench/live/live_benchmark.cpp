@@ -18,8 +18,8 @@
 
 // What watching costs a loop, and what it costs itself. Prints JSON.
 //
-//     kerf_live_benchmark plain|tap|viewer SECONDS    wake latency and cycle of one loop by the wall clock
-//     kerf_live_benchmark cost                        a frame of 16 ms and a view of 60 s, of 24 traces
+//     kerf_live_benchmark law|alone|tap|viewer SECONDS    wake latency and cycle of one loop by the wall
+//     clock kerf_live_benchmark cost                        a frame of 16 ms and a view of 60 s, of 24 traces
 
 namespace {
 
@@ -48,10 +48,22 @@ void print(const bench::Percentiles& wake, const bench::Percentiles& cycle, std:
   fmt::print("{{\"wake_us\": {}, \"cycle_us\": {}, \"missed\": {}}}\n", json(wake), json(cycle), missed);
 }
 
-/// The loop by itself.
-void run_plain(double seconds) {
-  bench::RunOptions options{
-      .seconds = seconds, .law = kelvin(), .scene = bench::default_scene(), .progress = false};
+/// The loop by itself, with the law compiled into it, or with a rendering that may be changed.
+void run_alone(double seconds, bool is_steered) {
+  bench::RunOptions options{.seconds = seconds, .scene = bench::default_scene(), .progress = false};
+  bench::LiveRendering rendering(options.ramp_s);
+  if (is_steered) {
+    const bench::LawFile law = kelvin();
+    (void)rendering.offer(
+        std::make_unique<bench::LawRendering>(law.law, law.contact, std::vector<std::size_t>{0}));
+    options.rendering = [&](const drivers::DeviceInfo&) {
+      return bench::OtherRendering{.step = [&](const drivers::Sample& sample,
+                                               double elapsed_s) { return rendering(sample, elapsed_s); },
+                                   .finished = {}};
+    };
+  } else {
+    options.law = kelvin();
+  }
   const std::atomic<bool> stop{false};
   const bench::RunResult result = bench::run_on_device(options, stop);
   print(bench::percentiles_of(result.report.stages[0]), bench::percentiles_of(result.report.cycle),
@@ -144,14 +156,14 @@ int main(int count, char** arguments) {
   const std::string mode = count > 1 ? arguments[1] : "";
   double seconds = 10.0;
   if (count > 2) std::from_chars(arguments[2], arguments[2] + std::strlen(arguments[2]), seconds);
-  if (mode == "plain") {
-    run_plain(seconds);
+  if (mode == "law" || mode == "alone") {
+    run_alone(seconds, mode == "alone");
   } else if (mode == "tap" || mode == "viewer") {
     run_live(seconds, mode == "viewer");
   } else if (mode == "cost") {
     print_cost();
   } else {
-    fmt::print(stderr, "usage: kerf_live_benchmark plain|tap|viewer [SECONDS], or cost\n");
+    fmt::print(stderr, "usage: kerf_live_benchmark law|alone|tap|viewer [SECONDS], or cost\n");
     return 2;
   }
   return 0;

@@ -30,9 +30,8 @@ class KeptCurves {
   const KeptCurve& of(const std::string& id, std::size_t axis) {
     WorkspaceEntry file = workspace_.find(id, FileKind::recording);
     file.modified = std::filesystem::last_write_time(file.path);  // not that of the last scan
-    const auto kept = std::find_if(curves_.begin(), curves_.end(), [&](const KeptCurve& it) {
-      return it.file.id == id && it.axis == axis;
-    });
+    const auto kept = std::find_if(curves_.begin(), curves_.end(),
+                                   [&](const KeptCurve& it) { return it.file.id == id && it.axis == axis; });
     if (kept != curves_.end() && kept->file.modified == file.modified) {
       curves_.splice(curves_.begin(), curves_, kept);
       return curves_.front();

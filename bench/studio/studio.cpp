@@ -3,6 +3,11 @@
 #include <optional>
 #include <string_view>
 
+#include "laws/law_file.h"
+#include "live/live_loop.h"
+#include "live/live_routes.h"
+#include "scene/scene.h"
+#include "studio/editor_routes.h"
 #include "studio/jobs.h"
 #include "studio/result_routes.h"
 #include "studio/session_host.h"
@@ -10,6 +15,8 @@
 #include "studio/studio_page.h"
 #include "studio/workspace.h"
 #include "studio/workspace_routes.h"
+#include "views/recording_routes.h"
+#include "views/recording_views.h"
 #include "web/gate.h"
 #include "web/http_server.h"
 #include "web/routes.h"
@@ -30,9 +37,14 @@ class Studio::State {
         gate_(server_.hosts()),
         sessions_(server_.hosts(), [this] { server_.wake(); }) {
     routes_.on_ready([this] { server_.wake(); });
+    loop_.on_rows([this] { server_.wake(); });
     add_workspace_routes(routes_, workspace_, options.device_uri);
+    add_live_routes(routes_, loop_, live_hooks());
+    add_recording_routes(routes_, views_,
+                         [this](const std::string& id) { return path_of(id, FileKind::recording); });
+    add_editor_routes(routes_, workspace_, [this](const LawFile& law) { feel(law); });
     add_result_routes(routes_, workspace_, jobs_);
-    add_session_routes(routes_, workspace_, sessions_, options.key_file, [] {});
+    add_session_routes(routes_, workspace_, sessions_, options.key_file, [this] { loop_.stop(); });
     server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
   }
   State(const State&) = delete;
@@ -43,6 +55,25 @@ class Studio::State {
   [[nodiscard]] bool is_loopback() const noexcept { return server_.is_loopback(); }
 
  private:
+  [[nodiscard]] std::filesystem::path path_of(const std::string& id, FileKind kind) {
+    return workspace_.find(id, kind).path;
+  }
+
+  [[nodiscard]] LiveHooks live_hooks() {
+    return {.law_of = [this](const std::string& id) { return read_law_file(path_of(id, FileKind::law)); },
+            .law_name_of = [this](const std::string& id) { return workspace_.find(id, FileKind::law).name; },
+            .scene_of = [this](const std::string& id) { return read_scene(path_of(id, FileKind::scene)); },
+            .new_recording = [this](const std::string& name) { return workspace_.new_file(name, ".h5"); },
+            .is_closed = [this] { return sessions_.is_running(); }};
+  }
+
+  /// A drawn law, which has no name yet.
+  void feel(const LawFile& law) {
+    if (sessions_.is_running()) throw RequestError(409, "A session is running.");
+    if (!loop_.status().is_running) throw RequestError(409, "No loop is running: start it on the scope.");
+    loop_.feel(law, "a drawn law");
+  }
+
   std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue) {
     if (request.path.starts_with(subject_folder) && request.path.substr(subject_folder.size(), 1) == "/") {
       HttpRequest below = request;
@@ -53,6 +84,9 @@ class Studio::State {
       return HttpResponse{.status = 403,
                           .body = "This address is not valid. Open the one that kerf studio shows.\n"};
     }
+    // Whoever asks for zero force has a reason: it ends a session too, which can be gone on with.
+    if (request.path == "/api/live/zero" && request.method == "POST" && sessions_.is_running())
+      sessions_.stop();
     if (request.path.starts_with("/api/")) return routes_.respond(request, overdue);
     if (request.method != "GET") return refusal(405);
     return page_file(studio_page(), request.path, gate_.token());
@@ -60,10 +94,12 @@ class Studio::State {
 
   // In the order in which they may go, the last one first, once the server has stopped.
   Workspace workspace_;
-  Jobs jobs_;
   HttpServer server_;
   Gate gate_;
+  RecordingViews views_;
+  LiveLoop loop_;
   SessionHost sessions_;
+  Jobs jobs_;
   Routes routes_;
 };
 

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -77,6 +78,7 @@ void print_times(std::vector<double> times_ms) {
 }
 
 void look(const std::filesystem::path& file, const std::filesystem::path& cache, std::size_t moves) {
+  const std::clock_t cpu = std::clock();
   const auto begin = Clock::now();
   bench::RecordingView recording(file, bench::ViewCache(cache));
   const double open_ms = ms_since(begin);
@@ -84,8 +86,9 @@ void look(const std::filesystem::path& file, const std::filesystem::path& cache,
   const auto shown = first_shown(recording);
   const auto whole = recording.view(shown, 0.0, end_s, columns);
   const double first_view_ms = ms_since(begin);
-  fmt::print(R"({{"open_ms": {:.3f}, "first_view_ms": {:.3f}, "columns": {})", open_ms, first_view_ms,
-             whole.time_s.size());
+  const double cpu_ms = 1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  fmt::print(R"({{"open_ms": {:.3f}, "first_view_ms": {:.3f}, "first_view_cpu_ms": {:.3f}, "columns": {})",
+             open_ms, first_view_ms, cpu_ms, whole.time_s.size());
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> share;
   std::vector<double> times_ms;

@@ -29,6 +29,7 @@ using boost::system::error_code;
 using namespace std::chrono_literals;
 
 constexpr std::size_t most_connections = 256;
+constexpr int most_waiting_to_be_accepted = 4096;  // a refused one tries again a second later
 constexpr std::uint32_t most_head = 8192;
 constexpr auto time_to_send = 5s;           // of a browser, for a request or for taking an answer
 constexpr auto time_to_wait = 20s;          // of a request that was put off
@@ -50,7 +51,7 @@ class HttpServer::State {
     if (!error) acceptor_.open(address.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor_.bind(address, error);
-    if (!error) acceptor_.listen(64, error);
+    if (!error) acceptor_.listen(most_waiting_to_be_accepted, error);
     if (error) {
       throw std::invalid_argument(
           fmt::format("port {} of {}: {}; give another one, or 0 for any that is free", options.port,

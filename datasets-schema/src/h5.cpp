@@ -188,6 +188,18 @@ Handle open_file(const std::filesystem::path& file) {
   }
 }
 
+std::size_t block_alignment(hid_t file) {
+  const Handle creation(call(H5Fget_create_plist, file));
+  H5F_fspace_strategy_t strategy = H5F_FSPACE_STRATEGY_AGGR;
+  hbool_t persists = false;
+  hsize_t threshold = 0;
+  hsize_t page = 0;
+  call(H5Pget_file_space_strategy, creation.id(), &strategy, &persists, &threshold);
+  call(H5Pget_file_space_page_size, creation.id(), &page);
+  // Texts come in blocks of 4096 bytes at least; smaller than a page, they may lie anywhere in it.
+  return strategy == H5F_FSPACE_STRATEGY_PAGE && page <= 4096 ? static_cast<std::size_t>(page) : 1;
+}
+
 namespace {
 
 bool exists(hid_t parent, const std::string& path) {

@@ -101,6 +101,10 @@ class WritableFile {
 /// Opens for reading, also while it is written or after its writer died.
 [[nodiscard]] Handle open_file(const std::filesystem::path& file);
 
+/// What large blocks of a file, its texts' among them, begin at a multiple of: 4096 in what is written live,
+/// else 1.
+[[nodiscard]] std::size_t block_alignment(hid_t file);
+
 // The tree.
 [[nodiscard]] bool is_group(hid_t parent, const std::string& path);
 [[nodiscard]] bool is_dataset(hid_t parent, const std::string& path);

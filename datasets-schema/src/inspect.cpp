@@ -322,9 +322,10 @@ Inspection inspect(const std::filesystem::path& file, bool look_through_texts) {
   }
   Inspection inspection;
   try {
-    if (look_through_texts && !are_text_heaps_sound(file))
-      throw h5::Error("its texts are overwritten or cut off", 0);
     inspection.file = h5::open_file(file);
+    if (look_through_texts && !are_text_heaps_sound(file, h5::block_alignment(inspection.file.id()))) {
+      throw h5::Error("its texts are overwritten or cut off", 0);
+    }
     Inspector(inspection, std::filesystem::file_size(file)).run();
   } catch (const h5::Error& error) {
     throw DamageError(file, error);

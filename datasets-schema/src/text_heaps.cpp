@@ -10,6 +10,7 @@
 #include <unordered_set>
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,6 +32,29 @@ class Pieces {
   ~Pieces() { ::close(descriptor_); }
 
   [[nodiscard]] std::size_t size() const { return size_; }
+
+  /// Where a text stands at a multiple of `alignment` from `at` on; the file's size if nowhere. A stretch at
+  /// a time is mapped, of which but one line a page is touched.
+  [[nodiscard]] std::size_t find_at_multiples(std::string_view text, std::size_t at,
+                                              std::size_t alignment) const {
+    constexpr std::size_t stretch = std::size_t{16} << 20U;
+    at = (at + alignment - 1) / alignment * alignment;
+    while (at < size_) {
+      const std::size_t begin = at / stretch * stretch;
+      const std::size_t length = std::min(stretch, size_ - begin);
+      void* const start = ::mmap(nullptr, length, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor_,
+                                 static_cast<off_t>(begin));
+      if (start == MAP_FAILED) fail();
+      const std::string_view bytes(static_cast<const char*>(start), length);
+      bool is_found = false;
+      for (; !is_found && at < begin + length; at += is_found ? 0 : alignment) {
+        is_found = bytes.substr(at - begin, text.size()) == text;
+      }
+      ::munmap(start, length);
+      if (is_found) return at;
+    }
+    return size_;
+  }
 
   /// Up to so many bytes, fewer at the end of the file; valid until the next call.
   std::string_view read(std::size_t at, std::size_t length) {
@@ -83,19 +107,24 @@ bool is_sound(std::string_view heap) {
 
 }  // namespace
 
-bool are_text_heaps_sound(const std::filesystem::path& file) {
+bool are_text_heaps_sound(const std::filesystem::path& file, std::size_t alignment) {
   using namespace std::string_view_literals;
   constexpr std::string_view signature = "GCOL\1\0\0\0"sv;
   constexpr std::size_t head = 16;
   constexpr std::size_t piece = std::size_t{256} << 10U;
   Pieces pieces(file);
   for (std::size_t at = 0; at < pieces.size();) {
-    const auto found = pieces.read(at, piece).find(signature);
-    if (found == std::string_view::npos) {
-      at += piece - signature.size() + 1;  // a signature may lie across two pieces
-      continue;
+    if (alignment > 1) {
+      at = pieces.find_at_multiples(signature, at, alignment);
+      if (at >= pieces.size()) return true;
+    } else {
+      const auto found = pieces.read(at, piece).find(signature);
+      if (found == std::string_view::npos) {
+        at += piece - signature.size() + 1;  // a signature may lie across two pieces
+        continue;
+      }
+      at += found;
     }
-    at += found;
     const auto start = pieces.read(at, head);
     if (start.size() < head) return false;
     const auto size = number_at<std::uint64_t>(start, signature.size());

@@ -1,21 +1,24 @@
-# peers:
-# targets: kerf_live_benchmark
-"""What `kerf studio` costs: scripts/benchmark studio [TURNS [SECONDS]]"""
+# peers: python3-h5py python3-numpy
+# targets: kerf kerf_recording_benchmark kerf_live_benchmark
+"""What stands behind `kerf studio`: each studio_*.py beside this one measures one thing and writes its section.
 
+All of them, or one: scripts/benchmark studio [loop]
+"""
+
+import importlib
 import pathlib
 import sys
 
 from sections import replace_section
-from studio_loop import loop_section
 
 
 def main():
     house = pathlib.Path(sys.argv[1])
-    turns = max(9, int(sys.argv[2])) if len(sys.argv) > 2 else 11
-    seconds = float(sys.argv[3]) if len(sys.argv) > 3 else 10.0
-    body = loop_section(house, turns, seconds)
-    print(body)
-    replace_section(house / "docs/benchmarks.md", "studio", "A loop that is watched", body)
+    parts = sys.argv[2:] or sorted(path.stem[len("studio_"):] for path in pathlib.Path(__file__).parent.glob("studio_*.py"))
+    for part in parts:
+        title, body = importlib.import_module("studio_" + part).measure(house)
+        print(body)
+        replace_section(house / "docs/benchmarks.md", "studio-" + part, title, body)
 
 
 main()

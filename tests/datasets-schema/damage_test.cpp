@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <random>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -10,6 +9,7 @@
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/changed_file.h"
+#include "datasets-schema/live_rows.h"
 #include "datasets-schema/read_by_column.h"
 
 namespace kerf::schema {
@@ -143,23 +143,38 @@ TEST(DamagedFile, CutShortAnywhereIsRefusedInOneLine) {
   }
 }
 
-TEST(DamagedFile, OverwrittenAnywhereIsReadOrRefusedInOneLine) {
+TEST(DamagedFile, CutShortWhileItWasRecordedIsReadOrRefusedInOneLine) {
   const test::TemporaryFolder folder;
-  write_recording(folder / "r.h5", test::sample_recording());
-  const std::string sound = test::read_text(folder / "r.h5");
-  std::mt19937 random(7);
-  std::size_t refused = 0;
-  for (int turn = 0; turn < 300; ++turn) {
-    std::string bytes = sound;
-    const std::size_t at = random() % (bytes.size() - 16);
-    for (std::size_t i = 0; i < 16; ++i) bytes[at + i] = static_cast<char>(random());
-    test::write_text(folder / "hurt.h5", bytes);
-    const std::string line = refusal(folder / "hurt.h5");
-    ASSERT_THAT(line, Not(HasSubstr("\n")));
-    refused += line.empty() ? 0 : 1;
+  auto writer = test::live_writer(folder / "r.h5");
+  writer.append(test::live_rows(0, 3000));
+  writer.flush();
+  const std::string bytes = test::read_text(folder / "r.h5.partial");
+  for (std::size_t length = 0; length < bytes.size(); length += 1777) {
+    test::write_text(folder / "cut.h5", bytes.substr(0, length));
+    const std::string line = refusal(folder / "cut.h5");
+    ASSERT_THAT(line, Not(HasSubstr("\n"))) << length << " bytes";
   }
-  EXPECT_GT(refused, 20U);
-  EXPECT_LT(refused, 300U);
+}
+
+TEST(DamagedFile, WithTextsOverwrittenIsRefusedHoweverItWasWritten) {
+  const test::TemporaryFolder folder;
+  write_recording(folder / "written.h5", test::sample_recording());
+  auto writer = test::live_writer(folder / "recorded.h5");
+  writer.append(test::live_rows(0, 3000));
+  writer.close("complete");
+  for (const char* name : {"written.h5", "recorded.h5"}) {
+    const std::string sound = test::read_text(folder / name);
+    const std::string signature("GCOL\1\0\0\0", 8);
+    std::size_t heaps = 0;
+    for (auto at = sound.find(signature); at != std::string::npos; at = sound.find(signature, at + 1)) {
+      std::string bytes = sound;
+      bytes.replace(at + 24, 8, 8, '\xff');  // the length of its first text
+      test::write_text(folder / "hurt.h5", bytes);
+      EXPECT_THAT(refusal(folder / "hurt.h5"), HasSubstr("its texts are overwritten")) << name;
+      ++heaps;
+    }
+    EXPECT_GT(heaps, 0U);
+  }
 }
 
 TEST(DamagedFile, CutShortIsAViolation) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
 #include "studio/studio.h"
@@ -40,6 +41,23 @@ class StudioUnderAttack : public testing::Test {
     return answer_to(port(), fmt::format("POST {} HTTP/1.1\r\n{}{}Content-Type: application/json\r\n"
                                          "Content-Length: {}\r\n\r\n{}",
                                          target, ours(), more, body.size(), body));
+  }
+
+  /// The loop of a simulated device, which has to go on whatever is asked.
+  void start_the_loop() const {
+    ASSERT_EQ(status_of(post("/api/live/start", R"({"device": "sim:scissors"})")), "200");
+  }
+  [[nodiscard]] nlohmann::json status() const {
+    return nlohmann::json::parse(body_of(get("/api/live/status", ours())));
+  }
+  /// Until the loop has made so many more ticks.
+  void expect_the_loop_goes_on() const {
+    const auto ticks = status().at("ticks").get<std::uint64_t>();
+    nlohmann::json now = status();
+    while (now.at("running").get<bool>() && now.at("ticks").get<std::uint64_t>() < ticks + 100)
+      now = status();
+    EXPECT_TRUE(now.at("running").get<bool>()) << now.at("ended");
+    EXPECT_EQ(now.at("rows_lost"), 0);
   }
 
   test::TemporaryFolder folder_;
@@ -135,6 +153,7 @@ TEST_F(StudioUnderAttack, LeadsNowhereByThePath) {
 }
 
 TEST_F(StudioUnderAttack, LeadsNowhereByAnyParameterOfAnAddress) {
+  start_the_loop();
   const std::vector<std::string> targets{"/api/recording?id={}",
                                          "/api/recording/view?id={}&traces=0&from=0&to=1&columns=10",
                                          "/api/recording/loops?id={}&axis=0&first=1&count=1",
@@ -156,9 +175,10 @@ TEST_F(StudioUnderAttack, LeadsNowhereByAnyParameterOfAnAddress) {
 }
 
 TEST_F(StudioUnderAttack, LeadsNowhereByAnyTextOfABody) {
+  start_the_loop();
   const std::vector<std::pair<std::string, std::string>> bodies{
       {"/api/live/feel", R"({{"law": "{}"}})"},
-      {"/api/live/start", R"({{"device": "sim:scissors", "scene_id": "{}"}})"},
+      {"/api/live/record", R"({{"name": "{}"}})"},
       {"/api/editor/error", R"({{"recording": "{}", "axis": 0, "knots": {{}}}})"},
       {"/api/editor/best", R"({{"recording": "{}", "axis": 0, "segments": 3, "loop": false}})"},
       {"/api/editor/save",
@@ -187,9 +207,14 @@ TEST_F(StudioUnderAttack, TakesNoDeviceThatIsAFileOrACommand) {
     EXPECT_THAT(status_of(answer), testing::AnyOf("400", "500")) << device;
     EXPECT_THAT(answer, Not(HasSubstr("root:"))) << device;
   }
+  for (const char* scene : {"/etc/passwd", "../x.scene.toml", "0000000000000000"}) {
+    const std::string body = fmt::format(R"({{"device": "sim:scissors", "scene_id": "{}"}})", scene);
+    EXPECT_EQ(status_of(post("/api/live/start", body)), "404") << scene;
+  }
 }
 
 TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {
+  start_the_loop();
   const std::string head =
       fmt::format("POST /api/live/feel HTTP/1.1\r\n{}Content-Type: application/json\r\n", ours());
   EXPECT_EQ(status_of(answer_to(port(), head + "Content-Length: 1073741824\r\n\r\n")), "413");
@@ -206,9 +231,11 @@ TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {
   for (int megabyte = 0; megabyte < 1024 && client.is_open(); ++megabyte) client.send_text(piece);
   EXPECT_THAT(status_of(client.answer()), testing::AnyOf("413", ""));
   EXPECT_LT(memory() - before_kb, 50'000);
+  expect_the_loop_goes_on();
 }
 
 TEST_F(StudioUnderAttack, AnswersWithAThousandSocketsOpen) {
+  start_the_loop();
   rlimit files{};
   getrlimit(RLIMIT_NOFILE, &files);
   const rlimit before = files;
@@ -222,17 +249,20 @@ TEST_F(StudioUnderAttack, AnswersWithAThousandSocketsOpen) {
     }
     EXPECT_EQ(status_of(post("/api/live/zero", "")), "200");
     EXPECT_EQ(status_of(get("/", ours())), "200");
+    expect_the_loop_goes_on();
   }
   setrlimit(RLIMIT_NOFILE, &before);
 }
 
 TEST_F(StudioUnderAttack, IsNotHeldUpByOneThatReadsNothing) {
+  start_the_loop();
   std::list<PlainClient> slow;
   for (int i = 0; i < 50; ++i) {
     slow.emplace_back(port());
     slow.back().send_text(fmt::format("GET /api/live/stream?ticks=1 HTTP/1.1\r\n{}\r\n", ours()));
   }
   for (int i = 0; i < 20; ++i) EXPECT_EQ(status_of(post("/api/live/zero", "")), "200");
+  expect_the_loop_goes_on();
 }
 
 TEST(StudioOnANetwork, TakesNoAddressThatStandsForAll) {

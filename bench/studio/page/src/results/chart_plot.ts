@@ -82,13 +82,13 @@ export class ChartPlot {
     const { plot, chart } = this;
     const [left, right] = plot.limits.x;
     const [bottom, top] = plot.limits.y;
-    const horizontal = (us: number, text: string): SVGElement[] => [
+    const horizontal = (us: number, text: string, below: number): SVGElement[] => [
       drawn("line", { class: "tick_line", x1: plot.x(left), x2: plot.x(right), y1: plot.y(us), y2: plot.y(us) }),
-      drawn("text", { class: "line_label", x: plot.x(right) - 6, y: plot.y(us) + 17, "text-anchor": "end" }, text),
+      drawn("text", { class: "line_label", x: plot.x(right) - 6, y: plot.y(us) + below, "text-anchor": "end" }, text),
     ];
     plot.ground.replaceChildren(
-      ...horizontal(chart.tick_us, `a tick at ${Math.round(chart.file.rate_hz)} Hz`),
-      ...horizontal(chart.tick_us / 2, "half of it"),
+      ...horizontal(chart.tick_us, `a tick at ${Math.round(chart.file.rate_hz)} Hz`, -6),
+      ...horizontal(chart.tick_us / 2, "half of it", 18),
       drawn("line", { class: "jnd_line", x1: plot.x(chart.jnd), x2: plot.x(chart.jnd), y1: plot.y(bottom), y2: plot.y(top) }),
       drawn("text", { class: "line_label", x: plot.x(chart.jnd) + 6, y: plot.y(bottom) - 8 }, "JND"),
       drawn("path", { class: "stairs", d: this.stairs() }),

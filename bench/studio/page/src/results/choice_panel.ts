@@ -15,7 +15,7 @@ function walk(of: readonly ChoiceCandidate[]): HTMLElement {
     it.passed_over || "taken",
   ]);
   const all = table("The walk, simplest first", ["law", "free", "held out", "JND", "tick", "why passed over"], rows);
-  return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "The walk" }, all);
+  return element("div", { class: "scrolled walk", tabindex: 0, role: "region", "aria-label": "The walk" }, all);
 }
 
 /** A choice in words: what was taken, why, and what was passed over. */

@@ -29,14 +29,12 @@ function optionsInWords(law: LawView): string {
 
 function parameterTable(law: LawView): HTMLElement {
   const rows = law.parameters.slice(0, most_shown).map((it) => [
-    it.name,
-    it.value.toPrecision(5),
-    it.std_error === null ? "–" : it.std_error.toPrecision(2),
-    it.unit,
-    it.meaning,
+    element("div", {}, it.name, element("p", { class: "quiet" }, it.meaning)),
+    it.value.toPrecision(5) + (it.std_error === null ? "" : ` ± ${it.std_error.toPrecision(2)}`),
+    it.unit === "1" ? "" : it.unit,
   ]);
   const more = law.parameters.length - most_shown;
-  const of = table("Parameters", ["name", "value", "std. error", "unit", "meaning"], rows);
+  const of = table("Parameters", ["name", "value ± standard error", "unit"], rows);
   return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "Parameters of the law" }, of,
     more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the file`) : null);
 }

@@ -48,12 +48,12 @@ export function mapModel(file: StabilityFile): MapModel {
     const ys = numbersOf(file.cells.map((it) => it.K));
     const range: [number, number] = [ys[0] ?? 1, ys[ys.length - 1] ?? 2];
     const damping = file.boundaries.map((it) => it.B);
-    const line = (label: string, kind: string, values: number[]): PlotLine & { label: string } => ({
-      label,
-      class: kind,
-      x: damping,
-      y: within(values, range),
-    });
+    const line = (label: string, kind: string, values: number[]): PlotLine & { label: string } => {
+      const y = within(values, range);
+      const drawn = y.filter((it) => it !== null).length;
+      const where = drawn === 0 ? " (nowhere on this map)" : drawn === 1 ? " (at one damping alone)" : "";
+      return { label: label + where, class: kind, x: damping, y };
+    };
     const of = file.boundaries;
     return {
       x: { axis: { label: "damping of the wall B [N·s/m]" }, values: xs, name: "B", unit: "N·s/m" },

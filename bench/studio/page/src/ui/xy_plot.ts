@@ -134,17 +134,21 @@ export class XyPlot {
   path(line: { x: readonly (number | null)[]; y: readonly (number | null)[] }): string {
     let path = "";
     let broken = true;
+    let length = 0; // of the stretch so far; one point by itself is a dot
     for (let i = 0; i < line.x.length; ++i) {
       const x = line.x[i];
       const y = line.y[i];
       if (x == null || y == null || !Number.isFinite(x) || !Number.isFinite(y)) {
+        if (length === 1) path += "h0";
+        length = 0;
         broken = true;
         continue;
       }
       path += `${broken ? "M" : "L"}${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}`;
       broken = false;
+      ++length;
     }
-    return path;
+    return length === 1 ? `${path}h0` : path;
   }
 }
 

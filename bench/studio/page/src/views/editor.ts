@@ -79,6 +79,10 @@ function edit(root: HTMLElement, context: Context, { recording, workspace, axis,
   addEventListener("keydown", steps);
 
   const axes = recording.axes.map((it, i) => ({ value: String(i), text: it.name }));
+  const choice = select(axes, String(axis), (value) => {
+    choice.value = String(axis); // until there is a curve of the other one
+    change(Number(value));
+  });
   const cycles = `${curve.cycles} ${curve.cycles === 1 ? "cycle" : "cycles"}${curve.segmented_here ? ", found here: the recording is not segmented" : ""}`;
   canvas.plot.svg.setAttribute("aria-describedby", "editor_keys");
   root.append(
@@ -87,7 +91,7 @@ function edit(root: HTMLElement, context: Context, { recording, workspace, axis,
       { class: "heading" },
       element("h1", {}, name),
       element("p", { class: "quiet" }, cycles),
-      labelled("Axis", select(axes, String(axis), (value) => change(Number(value)))),
+      labelled("Axis", choice),
       element("a", { href: "#/editor" }, "Other recording"),
     ),
     tools.root,
