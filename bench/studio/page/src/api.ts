@@ -135,6 +135,7 @@ export interface Loops {
   force_unit: string;
   cycles_in_all: number;
   segmented_here: boolean;
+  reason?: string; // why there are no cycles
   loops: { cycle: number; position: number[]; force: (number | null)[] }[];
   average: { position: number[]; closing: (number | null)[]; opening: (number | null)[] };
 }

@@ -6,7 +6,7 @@ export function inWords(status: LoopStatus): string {
   if (status.starting) return "Opening the device";
   if (!status.running) return status.ended ? "Loop ended" : "Loop not running";
   if (status.released) return "Zero force";
-  return status.law ? `Rendering ${status.law}` : "Running free";
+  return status.law ? `Rendering ${status.law.replace(/\.law\.toml$/, "")}` : "Running free";
 }
 
 const patience_ms = 2500;
@@ -37,7 +37,7 @@ export function loopState(
     try {
       const status = await api.get<LoopStatus>("/api/live/status", {}, asked.signal);
       if (unheard > 0) return;
-      const recording = status.recording ? `, recording ${status.recording.name}` : "";
+      const recording = status.recording ? ", recording" : "";
       say(inWords(status) + recording, status.released ? "released" : status.running ? "running" : "idle");
     } catch {
       if (unheard === 0 && asking === asked) say("No answer from the studio", "lost");

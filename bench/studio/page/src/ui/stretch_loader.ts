@@ -67,6 +67,7 @@ export class StretchLoader {
 
   private prefetchWhenIdle(range: TimeRange, columns: number): void {
     const { have } = this;
+    clearTimeout(this.idle);
     if (!have) return;
     const left = range.from <= range.first || have.from <= range.from - 0.2 * range.span;
     const right = range.to >= range.last || have.to >= range.to + 0.2 * range.span;

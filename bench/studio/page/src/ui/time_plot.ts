@@ -139,7 +139,9 @@ export class TimePlot {
     const column = columnAt(line, at);
     if (column < 0) return "";
     const { factor, text } = this.readingUnit();
-    const written = (value: number): string => plain(value / factor, 4);
+    const [lower, upper] = this.limits ?? [0, 0];
+    const nothing = this.logarithmic ? 0 : 1e-6 * (upper - lower); // rounding of the arithmetic, not of the device
+    const written = (value: number): string => plain(Math.abs(value) < nothing ? 0 : value / factor, 4);
     const smallest = written(line.smallest[column] as number);
     const largest = written(line.largest[column] as number);
     return `${smallest === largest ? smallest : `${smallest} to ${largest}`} ${text}`;

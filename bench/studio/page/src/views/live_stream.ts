@@ -19,6 +19,7 @@ export class LiveStream {
   private heard = performance.now();
   private opened = 0;
   private asking = false;
+  private closed = false;
   private readonly timer = window.setInterval(() => this.watch(), 500);
   private readonly seen = (): void => this.onVisible();
 
@@ -30,6 +31,7 @@ export class LiveStream {
   }
 
   close(): void {
+    this.closed = true;
     clearInterval(this.timer);
     document.removeEventListener("visibilitychange", this.seen);
     this.source?.close();
@@ -69,15 +71,13 @@ export class LiveStream {
     if (document.hidden) return;
     const now = performance.now();
     const silent = (now - this.heard) / 1000;
-    if (silent < 1.5) return;
-    this.listener.stale(Math.floor(silent));
-    if (now - this.opened > 3000) {
-      void this.ask();
-      this.open(this.ticks);
-    }
+    if (silent < 1) return;
+    if (silent >= 2) this.listener.stale(Math.floor(silent));
+    void this.ask();
+    if (silent >= 2 && now - this.opened > 3000) this.open(this.ticks);
   }
 
-  /** Why the stream is silent: a session forbids it, or the server is away. */
+  /** Why the stream is silent: no loop runs, a session forbids it, or the server is away. */
   private async ask(): Promise<void> {
     if (this.asking) return;
     this.asking = true;
@@ -85,8 +85,10 @@ export class LiveStream {
     const timer = setTimeout(() => patience.abort(), 2000);
     try {
       const status = await this.api.get<LoopStatus>("/api/live/status", {}, patience.signal);
+      if (this.closed) return;
       if (status.session) this.listener.session(sessionLine);
-      if (status.session) this.heard = performance.now();
+      else this.listener.status(status);
+      if (!status.running) this.alive(); // nothing is missed
     } catch (error) {
       if (error instanceof ApiError && error.status === 409) this.listener.session(error.message);
     } finally {

@@ -99,7 +99,8 @@ export class RecordingLoops {
     const name = own?.axes[Number(this.axis.value)]?.name;
     const axis = recording.axes.findIndex((it) => it.name === name);
     if (axis < 0) return Promise.resolve(null);
-    const answer = this.api.get<Loops>("/api/recording/loops", { id: recording.id, axis, first, count }, signal);
+    const wanted = { id: recording.id, axis, first: first + 1, count }; // cycles are counted from 1
+    const answer = this.api.get<Loops>("/api/recording/loops", wanted, signal);
     return recording === own ? answer : answer.catch(() => null); // one laid over that has no cycles is left out
   }
 
@@ -146,7 +147,7 @@ export class RecordingLoops {
 function inWords(loops: Loops, kind: Kind, first: number): string {
   const all = loops.cycles_in_all;
   const found = loops.segmented_here ? ", found for this view" : "";
-  if (all === 0) return "No cycles found.";
+  if (all === 0) return loops.reason || "No cycles found.";
   if (kind === "average") return `Average of ${all} cycles${found}`;
   if (kind === "one") return `Cycle ${loops.loops[0]?.cycle ?? first + 1} of ${all}${found}`;
   return `Cycles ${first + 1} to ${first + loops.loops.length} of ${all}${found}`;

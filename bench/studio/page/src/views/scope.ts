@@ -123,7 +123,8 @@ class Scope {
     try {
       this.traces = await this.context.api.get<Trace[]>("/api/live/traces");
       const axes = this.status?.axes ?? [];
-      const chosen = this.axis.value;
+      const known = this.axis.options.length > 1;
+      const chosen = known ? this.axis.value : axes.length > 1 ? axes[0]?.name : "";
       this.axis.replaceChildren(
         element("option", { value: "" }, "all axes"),
         ...axes.map((it) => element("option", { value: it.name, selected: it.name === chosen }, it.name)),
