@@ -90,9 +90,9 @@ void stay_off_loop_processor() noexcept {
 }
 
 void give_way() noexcept {
-  constexpr int least_urgent = 19;
+  constexpr int patient = 10;  // a tenth of a busy processor, still: a fit must end some day
   // Of a thread, not of the process: Linux keeps it for each.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), least_urgent);
+  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), patient);
 }
 
 std::size_t usable_processors() noexcept {
