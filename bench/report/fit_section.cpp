@@ -126,7 +126,7 @@ std::string residual_part(const FitView& view) {
       "penetration "
       "and velocity: samples in grey, their mean in bins with one deviation to each side.</p>\n";
   for (std::size_t i = 0; i < view.shown; ++i) {
-    const Trace& trace = view.traces[i];
+    const LawTrace& trace = view.traces[i];
     html += "<h3>" + escaped(trace.model) + "</h3>\n" + figure(residual_over_time(view, trace, largest));
     html += figures_in_pairs({residual_over_penetration(view, trace, largest),
                               residual_over_velocity(view, trace, largest),
@@ -137,7 +137,7 @@ std::string residual_part(const FitView& view) {
       fmt::format("<details><summary>Residuals of the other {} laws, each on a scale of its own</summary>\n",
                   view.traces.size() - view.shown);
   for (std::size_t i = view.shown; i < view.traces.size(); ++i) {
-    const Trace& trace = view.traces[i];
+    const LawTrace& trace = view.traces[i];
     html += "<h3>" + escaped(trace.model) + "</h3>\n";
     html += figures_in_pairs(
         {residual_over_penetration(view, trace, 0.0), residual_autocorrelation(view, trace)});

@@ -58,7 +58,7 @@ FitView view_of_fits(const schema::Recording& recording, std::size_t axis, const
                            .residual = {}});
   }
   const std::string chosen = fits.at("choice").at("model").get<std::string>();
-  std::stable_sort(view.traces.begin(), view.traces.end(), [&](const Trace& a, const Trace& b) {
+  std::stable_sort(view.traces.begin(), view.traces.end(), [&](const LawTrace& a, const LawTrace& b) {
     if ((a.model == chosen) != (b.model == chosen)) return a.model == chosen;
     return compared_error(a.fit) < compared_error(b.fit);
   });
@@ -66,7 +66,7 @@ FitView view_of_fits(const schema::Recording& recording, std::size_t axis, const
   if (view.traces.empty()) return view;
   view.series = fit_series(recording, axis, view.traces.front().law.contact).axis;
   for (std::size_t i = 0; i < view.traces.size(); ++i) {
-    Trace& trace = view.traces[i];
+    LawTrace& trace = view.traces[i];
     trace.colour = i < law_colours.size() ? law_colours[i] : Colour::black;
     trace.force = render(without_rendering_aids(trace.law.law), view.series);
     for (std::size_t row = 0; row < trace.force.size(); ++row)

@@ -16,7 +16,7 @@
 namespace kerf::bench {
 
 /// A law drawn along the recording.
-struct Trace {
+struct LawTrace {
   std::string model;
   nlohmann::ordered_json fit;  ///< its part of fit.json
   LawFile law;
@@ -29,7 +29,7 @@ struct Trace {
 /// the others by their error on held-out data.
 struct FitView {
   AxisSeries series;
-  std::vector<Trace> traces;
+  std::vector<LawTrace> traces;
   std::size_t shown = 0;  ///< how many of them are drawn in full, from the front
   DrawnUnit position;
   std::string force_unit;

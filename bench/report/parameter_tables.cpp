@@ -99,7 +99,7 @@ struct Centre {
   }
 };
 
-Centre centre_of(const Trace& trace, const std::string& name, const std::string& interval) {
+Centre centre_of(const LawTrace& trace, const std::string& name, const std::string& interval) {
   Centre centre;
   const json& parameters = trace.fit.at("parameters");
   if (!parameters.contains(name)) return centre;
@@ -116,7 +116,7 @@ Centre centre_of(const Trace& trace, const std::string& name, const std::string&
   return centre;
 }
 
-Chart profile_chart(const Trace& trace, const json& profile, double confidence) {
+Chart profile_chart(const LawTrace& trace, const json& profile, double confidence) {
   const std::string name = profile.at("parameter").get<std::string>();
   const Centre centre = centre_of(trace, name, interval_name(confidence));
   Chart chart{.title = fmt::format("Profile of {}", name),
@@ -156,7 +156,7 @@ Chart profile_chart(const Trace& trace, const json& profile, double confidence) 
   return chart;
 }
 
-std::string profile_part(const Trace& trace, double confidence) {
+std::string profile_part(const LawTrace& trace, double confidence) {
   if (!trace.fit.contains("profiles") || trace.fit.at("profiles").size() > most_searched) return {};
   std::vector<Chart> charts;
   for (const json& profile : trace.fit.at("profiles")) {
@@ -171,7 +171,7 @@ std::string profile_part(const Trace& trace, double confidence) {
 
 }  // namespace
 
-std::string parameter_part(const Trace& trace, double confidence) {
+std::string parameter_part(const LawTrace& trace, double confidence) {
   std::string html = "<h3>" + escaped(trace.model) + "</h3>\n" + table_of_parameters(trace.fit, confidence);
   for (const json& warning : trace.fit.at("warnings"))
     html += "<p class=\"soft\">" + escaped(warning.get<std::string>()) + "</p>\n";

@@ -8,6 +8,6 @@ namespace kerf::bench {
 
 /// Parameters of a law with their intervals, the correlations between those that were searched, profiles
 /// where there are any, and warnings. `confidence` of the intervals.
-[[nodiscard]] std::string parameter_part(const Trace& trace, double confidence);
+[[nodiscard]] std::string parameter_part(const LawTrace& trace, double confidence);
 
 }  // namespace kerf::bench

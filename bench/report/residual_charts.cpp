@@ -67,7 +67,8 @@ Binned binned(std::span<const double> x, std::span<const double> y, Colour colou
   return result;
 }
 
-Chart scattered(const FitView& view, const Trace& trace, const std::vector<double>& values, double largest) {
+Chart scattered(const FitView& view, const LawTrace& trace, const std::vector<double>& values,
+                double largest) {
   Chart chart{.title = {}, .x_label = {}, .y_label = "residual [" + view.force_unit + "]"};
   chart.width_px = half_width_px;
   chart.height_px = half_height_px;
@@ -94,7 +95,7 @@ double period_of(const AxisSeries& series) {
 
 }  // namespace
 
-Chart residual_over_time(const FitView& view, const Trace& trace, double largest) {
+Chart residual_over_time(const FitView& view, const LawTrace& trace, double largest) {
   Chart chart{.title = "Residual over time (recorded less law)",
               .x_label = "time [s]",
               .y_label = "residual [" + view.force_unit + "]",
@@ -105,14 +106,14 @@ Chart residual_over_time(const FitView& view, const Trace& trace, double largest
   return chart;
 }
 
-Chart residual_over_penetration(const FitView& view, const Trace& trace, double largest) {
+Chart residual_over_penetration(const FitView& view, const LawTrace& trace, double largest) {
   Chart chart = scattered(view, trace, view.series.penetration, largest);
   chart.title = "Residual against penetration";
   chart.x_label = fmt::format("penetration from contact [{}]", view.position.unit);
   return chart;
 }
 
-Chart residual_over_velocity(const FitView& view, const Trace& trace, double largest) {
+Chart residual_over_velocity(const FitView& view, const LawTrace& trace, double largest) {
   Chart chart = scattered(view, trace, view.series.velocity, largest);
   chart.title = "Residual against velocity";
   chart.x_label = fmt::format("velocity into the tissue [{}/s]", view.position.unit);
@@ -132,7 +133,7 @@ std::vector<double> autocorrelation(std::span<const double> values, std::size_t 
   return correlation;
 }
 
-Chart residual_autocorrelation(const FitView& view, const Trace& trace) {
+Chart residual_autocorrelation(const FitView& view, const LawTrace& trace) {
   Chart chart{.title = "Autocorrelation (dotted: white noise, 95 %)",
               .x_label = "lag [s]",
               .y_label = "autocorrelation",
@@ -152,7 +153,7 @@ Chart residual_autocorrelation(const FitView& view, const Trace& trace) {
   return chart;
 }
 
-Chart residual_histogram(const FitView& view, const Trace& trace) {
+Chart residual_histogram(const FitView& view, const LawTrace& trace) {
   Chart chart{.title = "Distribution (line: normal, same deviation)",
               .x_label = "residual [" + view.force_unit + "]",
               .y_label = "samples in a bin",

@@ -10,17 +10,17 @@
 namespace kerf::bench {
 
 /// What a law leaves over time, on a scale that several laws share.
-[[nodiscard]] Chart residual_over_time(const FitView& view, const Trace& trace, double largest);
+[[nodiscard]] Chart residual_over_time(const FitView& view, const LawTrace& trace, double largest);
 
 /// Against penetration and velocity: samples, and the mean with its spread in bins.
-[[nodiscard]] Chart residual_over_penetration(const FitView& view, const Trace& trace, double largest);
-[[nodiscard]] Chart residual_over_velocity(const FitView& view, const Trace& trace, double largest);
+[[nodiscard]] Chart residual_over_penetration(const FitView& view, const LawTrace& trace, double largest);
+[[nodiscard]] Chart residual_over_velocity(const FitView& view, const LawTrace& trace, double largest);
 
 /// Its autocorrelation, with the band in which 95 % of that of white noise would lie.
-[[nodiscard]] Chart residual_autocorrelation(const FitView& view, const Trace& trace);
+[[nodiscard]] Chart residual_autocorrelation(const FitView& view, const LawTrace& trace);
 
 /// Its histogram beside the normal distribution of the same mean and deviation.
-[[nodiscard]] Chart residual_histogram(const FitView& view, const Trace& trace);
+[[nodiscard]] Chart residual_histogram(const FitView& view, const LawTrace& trace);
 
 /// Autocorrelation at lags of 0, step, 2 step, ... up to `most` samples.
 [[nodiscard]] std::vector<double> autocorrelation(std::span<const double> values, std::size_t step,

@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 
-#include "files/whole_file.h"
 #include "report/html.h"
 
 namespace kerf::bench {
@@ -224,21 +223,6 @@ std::string page_body(const Findings& findings) {
     }
   }
   return html + rest;
-}
-
-void refuse_to_replace_findings(const std::filesystem::path& folder, bool replace) {
-  for (const auto* name : {"stability.json", "stability.csv", "stability.html"})
-    refuse_to_replace(folder / name, replace);
-}
-
-void write_findings(const Findings& findings, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  for (const Figure& figure : findings.figures)
-    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart) + "\n");
-  write_whole_file(folder / "stability.csv", findings.csv);
-  write_whole_file(folder / "stability.html",
-                   html_page("Stability", "<h1>Where it breaks</h1>\n" + page_body(findings)));
-  write_whole_file(folder / "stability.json", findings.json.dump(2) + "\n");
 }
 
 Findings findings_of(const WallMap& map, const StudiedAxis& on) {

@@ -32,6 +32,15 @@ TEST(AxisSeries, IsSeenInTheDirectionOfEngagement) {
   EXPECT_TRUE(series.cycle.empty());
 }
 
+TEST(AxisSeries, RefusesPhasesOfRowsThatAreNotThere) {
+  schema::Recording recording = closing_scissors();
+  recording.cycles.emplace();
+  recording.cycles->phases = {{.cycle = 1, .phase = schema::Phase::closing, .begin = 1, .end = 4}};
+  EXPECT_THROW((void)axis_series(recording, 1, half_open), schema::FormatError);
+  recording.cycles->phases[0] = {.cycle = 1, .phase = schema::Phase::closing, .begin = 3, .end = 1};
+  EXPECT_THROW((void)axis_series(recording, 1, half_open), schema::FormatError);
+}
+
 TEST(AxisSeries, TurnsACommandIntoTheResistanceThatItRenders) {
   schema::Recording recording = closing_scissors();
   recording.force_commanded = recording.force_measured;

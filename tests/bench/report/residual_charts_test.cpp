@@ -29,7 +29,7 @@ FitView view_of(const std::vector<double>& residual) {
   return view;
 }
 
-Trace trace_of(const std::vector<double>& residual, LawFile law, double correlation_time = 1.0) {
+LawTrace trace_of(const std::vector<double>& residual, LawFile law, double correlation_time = 1.0) {
   return {.model = "kelvin",
           .fit = {{"correlation_time_samples", correlation_time}},
           .law = std::move(law),

@@ -195,6 +195,33 @@ export async function leaveTheLoopAlone(page, studio) {
   expect(!existsSync(join(studio.folder, "cut_drawn.law.toml")), "nothing is saved unasked");
 }
 
+/** On a running loop: the law once, then along with every change, and not past a zero force. */
+async function feelWhileDrawing(page, studio) {
+  await openEditor(page, studio);
+  const started = await studio.api("/api/live/start", { device: "sim:scissors", rate_hz: 500 });
+  expectEqual(started.status, 200, `the loop starts: ${JSON.stringify(started.json)}`);
+  const law = async () => (await studio.api("/api/live/status")).json.law;
+  await page.getByRole("button", { name: "Feel it now" }).click();
+  await page.locator("#notice", { hasText: "renders the drawn law" }).waitFor();
+  await until("the loop renders it", async () => (await law()) === "a drawn law");
+  await studio.api("/api/live/feel", {});
+  await until("the loop renders nothing", async () => (await law()) === "");
+  let sent = 0;
+  page.on("request", (request) => (sent += request.url().includes("/api/editor/feel") ? 1 : 0));
+  await page.getByRole("button", { name: "Feel while drawing" }).click();
+  await until("the loop renders what is drawn", async () => (await law()) === "a drawn law");
+  await page.locator("g.knot.closing").nth(1).focus();
+  const begin = Date.now();
+  for (let nudge = 0; nudge < 60; ++nudge) await page.keyboard.press("ArrowUp");
+  const seconds = (Date.now() - begin) / 1000;
+  expect(sent <= 2 + 4 * seconds, `${sent} laws in ${seconds} s are at most 4 a second`);
+  await page.keyboard.press("Escape");
+  await until("the force is released", async () => (await studio.api("/api/live/status")).json.released);
+  await page.getByRole("button", { name: "Feel it now" }).click();
+  await page.locator("#notice", { hasText: "Zero force stays on" }).waitFor();
+  expect((await studio.api("/api/live/status")).json.released, "a law that is felt leaves it released");
+}
+
 /** All of it on one page; the studio serves a folder with cut.h5 and its cycles. */
 export async function testEditor(page, studio) {
   await drawByMouse(page, studio);
@@ -224,5 +251,6 @@ export const tests = {
   "a law is drawn by mouse, taken back, saved and runs": alone(drawByMouse),
   "a law is drawn, changed and saved by keys alone": alone(drawByKeys),
   "a law is made by numbers and optima, replaced and gone on with": alone(workOnALaw, refused),
+  "a law is felt while it is drawn": alone(feelWhileDrawing),
   "the loop is left alone": alone(leaveTheLoopAlone, refused),
 };

@@ -183,9 +183,9 @@ TEST_F(StudioUnderAttack, LeadsNowhereByAnyTextOfABody) {
       {"/api/editor/best", R"({{"recording": "{}", "axis": 0, "segments": 3, "loop": false}})"},
       {"/api/editor/save",
        R"({{"name": "x", "recording": "{}", "axis": 0, "knots": {{}}, "replace": false}})"},
-      {"/api/fit", R"({{"recording": "{}", "axis": 0, "models": []}})"},
-      {"/api/chart", R"({{"recording": "{}", "axis": 0, "models": []}})"},
-      {"/api/choose", R"({{"recording": "{}", "axis": 0}})"},
+      {"/api/fit", R"({{"recording": "{}", "axis": "theta", "models": []}})"},
+      {"/api/chart", R"({{"recording": "{}", "axis": "theta", "models": []}})"},
+      {"/api/choose", R"({{"recording": "{}", "axis": "theta"}})"},
       {"/api/stability", R"({{"device": "sim:scissors", "rate_hz": 1000, "law": "{}", "cells": 10}})"},
       {"/api/session/start", R"({{"session": "{}"}})"}};
   for (const auto& [path, body] : bodies) {

@@ -1,3 +1,4 @@
+import type { LoopStatus } from "../api";
 import { button, element } from "../ui/dom";
 import type { Context } from "../ui/view";
 import type { Drawing } from "./drawing";
@@ -41,7 +42,15 @@ export class FeelPanel {
   }
   private set(on: boolean): void {
     this.follow.setAttribute("aria-pressed", String(on));
+    this.felt = null; // another law may have been rendered meanwhile
     if (on) this.changed();
+  }
+
+  private async tell(): Promise<void> {
+    const { released } = await this.context.api.get<LoopStatus>("/api/live/status");
+    this.context.say(
+      released ? "Zero force stays on: resume on the scope to feel the drawn law." : "The device renders the drawn law now.",
+    );
   }
 
   private async feel(says: boolean): Promise<void> {
@@ -50,7 +59,7 @@ export class FeelPanel {
     this.felt = knots;
     try {
       await this.context.api.post("/api/editor/feel", { recording: this.drawing.curve.recording, axis: this.axis, knots });
-      if (says) this.context.say("The device renders the drawn law now.");
+      if (says) await this.tell();
     } catch (error) {
       this.felt = null;
       this.set(false);

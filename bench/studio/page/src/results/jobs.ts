@@ -4,6 +4,9 @@ import type { Context } from "../ui/view";
 
 const every_ms = 500;
 
+/** Which page shows the result of a job. */
+const views: Record<Job["kind"], string> = { fit: "fits", chart: "chart", choice: "chart", stability: "stability" };
+
 function inWords(job: Job): string {
   switch (job.state) {
     case "waiting":
@@ -36,7 +39,11 @@ class JobLine {
     const ended = job.state !== "waiting" && job.state !== "running";
     if (job.state === "running" && job.share < 0) this.bar.removeAttribute("value");
     else this.bar.value = job.state === "done" ? 1 : Math.max(0, job.share);
-    this.words.textContent = inWords(job);
+    if (job.state === "done" && job.file) {
+      if (!this.words.querySelector("a")) this.words.replaceChildren(element("a", { href: `#/${views[job.kind]}/${job.file}` }, "Open the result"));
+    } else {
+      this.words.textContent = inWords(job);
+    }
     this.words.classList.toggle("wrong", job.state === "failed");
     this.stop.disabled = ended;
   }

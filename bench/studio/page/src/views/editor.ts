@@ -157,12 +157,17 @@ export const editor: View = {
     const load = async (axis: number | null): Promise<void> => {
       const mine = ++asked;
       try {
-        if (id === "") return await chooser(root, context);
+        if (id === "") {
+          await chooser(root, context);
+          return context.focusHead();
+        }
         const opened = await open(context, id, axis);
         if (mine !== asked) return;
         end();
         root.replaceChildren();
         end = edit(root, context, opened, (other) => void load(other));
+        if (axis === null) context.focusHead();
+        else root.querySelector<HTMLSelectElement>(".heading select")?.focus();
       } catch (error) {
         if (mine !== asked) return;
         context.complain(error);

@@ -1,0 +1,89 @@
+// Every page in light and dark: what WCAG 2.1 AA asks, no complaint of the browser, a picture of each, and the size
+// of it all.
+
+import { join } from "node:path";
+import { gzipSync } from "node:zlib";
+
+import { audit } from "./accessibility.mjs";
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+
+/** A workspace in which every page has something to show. */
+async function furnish(studio) {
+  studio.record("cut.h5", 20);
+  studio.record("another_cut.h5", 10);
+  studio.kerfOrThrow("session", "key", "keeper.key");
+  const protocol = new URL("../../../examples/sessions/abx.protocol.toml", import.meta.url).pathname;
+  studio.kerfOrThrow("session", "new", protocol, "--subject", "S01", "--key-file", "keeper.key", "-o", "S01.h5", "--no-check");
+  await studio.serve("--key-file", join(studio.folder, "keeper.key"));
+  const recording = await studio.id("recordings", "cut.h5");
+  const work = async (path, body) => {
+    const answer = (await studio.api(path, body)).json;
+    if (answer.error) throw new Error(`${path}: ${answer.error}`);
+    const { job } = answer;
+    return until(`${path} is done`, async () => {
+      const it = (await studio.api("/api/jobs")).json.find((each) => each.job === job);
+      if (it.state === "failed") throw new Error(`${path}: ${it.error}`);
+      return it.state === "done" ? it.file : null;
+    }, 120000);
+  };
+  return {
+    recording,
+    fit: await work("/api/fit", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise", "maxwell"], folds: 3 }),
+    chart: await work("/api/chart", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise"] }),
+    stability: await work("/api/stability", { device: "sim:scissors", rate_hz: 1000, grip: "light", cells: 40 }),
+  };
+}
+
+async function settled(page) {
+  await page.waitForLoadState("networkidle").catch(() => {});
+  await page.waitForTimeout(600);
+}
+
+export const tests = {
+  async "every page is fit to be seen, in light and dark"({ browser, studio, screenshots }) {
+    const ids = await furnish(studio);
+    const law = await until("the fit's laws are there", async () =>
+      (await studio.api("/api/workspace")).json.laws.find((it) => it.model === "kelvin"));
+    await studio.api("/api/live/start", { device: "sim:scissors" });
+    expectEqual((await studio.api("/api/live/feel", { law: law.id })).status, 200, "a law is felt");
+    const places = {
+      scope: "scope",
+      recordings: "recordings",
+      recording: `recordings/${ids.recording}`,
+      editor: `editor/${ids.recording}`,
+      fits: `fits/${ids.fit}`,
+      chart: `chart/${ids.chart}`,
+      stability: `stability/${ids.stability}`,
+      sessions: "sessions",
+    };
+    const complaints = [];
+    for (const colorScheme of ["light", "dark"]) {
+      for (const [name, place] of Object.entries(places)) {
+        const page = await openPage(browser, { colorScheme, reducedMotion: "reduce" });
+        await page.goto(studio.page(place));
+        if (name === "editor") {
+          await page.locator("g.knot").first().waitFor();
+          await page.getByRole("button", { name: "Fill in the best" }).click();
+        }
+        // The scope's stream never rests; its window has to fill.
+        if (name === "scope") await page.waitForTimeout(5500);
+        else await settled(page);
+        await page.screenshot({ path: join(screenshots, `${name}-${colorScheme}.png`) });
+        for (const it of await audit(page, { focus: colorScheme === "light" })) complaints.push(`${name} ${colorScheme}: ${it}`);
+        expectNoComplaints(page);
+        await page.context().close();
+      }
+    }
+    expectEqual(complaints, [], "what is not accessible");
+  },
+
+  async "the page is less than 250 kB"({ studio }) {
+    await studio.serve();
+    let bytes = 0;
+    for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
+      const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
+      bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
+    }
+    expect(bytes > 10000 && bytes < 250000, `${bytes} bytes compressed`);
+  },
+};

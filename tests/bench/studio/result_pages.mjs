@@ -1,0 +1,140 @@
+// Fits, the speed-accuracy chart, the choice of a law and stability maps, as a person works through them: each is
+// ordered on the page, and what is shown is held to what the program's own verb says.
+
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+
+import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+
+const limit_ms = 60000; // jobs give way to everything else on the machine
+
+async function jsonIn(studio, name) {
+  return JSON.parse(await readFile(join(studio.folder, name), "utf8"));
+}
+
+/** The heading of the page once it says so: a job's result opens by itself. */
+async function heading(page, pattern) {
+  await until(`the heading is ${pattern}`, async () => pattern.test((await page.textContent("h1")) ?? ""), limit_ms);
+}
+
+async function go(page, studio, place) {
+  await page.goto(`${studio.url}#/${place}`);
+  await page.waitForSelector("main form, main table");
+}
+
+/** Ticks these laws and no others. */
+async function tick(page, ...laws) {
+  await page.getByRole("button", { name: "None", exact: true }).click();
+  for (const law of laws) await page.getByLabel(law, { exact: true }).check();
+}
+
+async function pickRecording(page, name) {
+  await page.getByRole("combobox", { name: "Recording" }).selectOption({ label: name });
+  await until("its axes are known", async () => (await page.getByRole("combobox", { name: "Axis" }).textContent()).includes("theta"));
+}
+
+async function testFits(page, studio) {
+  await go(page, studio, "fits");
+  await pickRecording(page, "cut.h5");
+  await tick(page, "kelvin", "exponential");
+  await page.getByRole("button", { name: "Fit", exact: true }).click();
+  await heading(page, /^Fit cut\.fit$/);
+  const written = await jsonIn(studio, "cut.fit/fit.json");
+  expectEqual(await page.locator("table.fits tbody th").allTextContents(), ["kelvin", "exponential"], "laws, the least error first");
+  expect((await page.textContent("main p.choice")).includes(written.choice.why), "the choice says why");
+  await page.getByRole("button", { name: "exponential", exact: true }).click();
+  await until("the parameters are those of the exponential law", async () =>
+    (await page.locator(".detail tbody th").allTextContents()).includes("exponent"));
+  const rmse = written.fits.find((it) => it.model === "exponential").rmse;
+  const shown = await until("residuals are shown", async () => /Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""));
+  expect(Math.abs(Number(shown[1]) / (1000 * rmse) - 1) < 0.01, `residuals of ${shown[1]} mN are the fit's ${1000 * rmse} mN`);
+  expect((await page.locator(".residuals .extremes").getAttribute("d")).length > 1000, "residuals are drawn over time");
+  expectEqual(await page.locator(".detail svg.interval").count(), Object.keys(written.fits[0].parameters).length, "bars of intervals");
+  return written;
+}
+
+/** The law that was fitted goes into the running loop by one press. */
+async function testFeeling(page) {
+  const ask = (path) =>
+    page.evaluate(async (where) => {
+      const token = document.querySelector("meta[name=kerf-token]").content;
+      const headers = { "X-Kerf-Token": token, "Content-Type": "application/json" };
+      return (await fetch(where, where.endsWith("status") ? { headers } : { method: "POST", headers, body: "{}" })).json();
+    }, path);
+  await page.getByRole("button", { name: "kelvin", exact: true }).click();
+  await ask("/api/live/start");
+  await page.getByRole("button", { name: "Feel it now" }).click();
+  await until("the loop renders it", async () => (await ask("/api/live/status")).law.includes("kelvin"));
+  expect((await page.textContent("#notice")).startsWith("kelvin is rendered now"), "the page says so");
+  await ask("/api/live/stop");
+}
+
+async function testChart(page, studio) {
+  await go(page, studio, "chart");
+  await pickRecording(page, "short.h5");
+  await tick(page, "kelvin");
+  await page.getByRole("button", { name: "Chart", exact: true }).click();
+  await heading(page, /short\.chart$/);
+  const { points } = await jsonIn(studio, "short.chart/chart.json");
+  expectEqual(await page.locator("g.point").count(), points.length, "points");
+  await page.locator('g.point[tabindex="0"]').focus();
+  await page.keyboard.press("ArrowRight");
+  const label = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+  expectEqual(await page.textContent(".chart_plot .readout"), label, "the read-out of the point that the arrow led to");
+  await page.keyboard.press("Enter");
+  await until("its law is open", async () => label.startsWith((await page.textContent(".law h2").catch(() => "")) || "?"));
+  expect((await page.textContent(".law .equation")).startsWith("F ="), "the law's equation");
+  expectEqual(await page.locator(".law tbody tr").count(), 3, "parameters of Kelvin's law");
+  await page.locator("th button", { hasText: "p50" }).click();
+  const costs = (await page.locator("table tr td:nth-child(3)").allTextContents()).map(Number).slice(-points.length);
+  expectEqual(costs, [...costs].sort((a, b) => a - b), "the table, sorted by cost");
+}
+
+async function testChoice(page, studio) {
+  await page.getByRole("button", { name: "Choose", exact: true }).click();
+  await page.waitForSelector("section.choice h2:has-text('Chosen')", { timeout: limit_ms });
+  const written = await jsonIn(studio, "short.choice/choose.json");
+  expect((await page.textContent("section.choice h2")).endsWith(written.choice.law), "the law that was taken");
+  expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
+  expectEqual(await page.locator(".walk tbody tr").count(), written.candidates.length, "the walk");
+  await page.getByRole("button", { name: `Open ${written.choice.law}` }).click();
+  await until("the chosen law is open", async () => (await page.textContent(".law h2").catch(() => "")) === written.choice.law);
+}
+
+async function testStability(page, studio) {
+  await go(page, studio, "stability");
+  await page.getByLabel("Cells a side").fill("12");
+  await page.getByRole("button", { name: "Map", exact: true }).click();
+  await heading(page, /sim-scissors\.stability$/);
+  const run = studio.kerf(["stability", "--device", "sim:scissors", "--grip", "light", "--cells", "12", "--json"]);
+  const { cells, in_words: words } = JSON.parse(run.stdout);
+  expectEqual(await page.locator(".words li").allTextContents(), words, "what the verb says");
+  await page.locator(".map svg.xy_plot").focus();
+  for (const key of ["ArrowUp", "ArrowLeft", "ArrowLeft"]) await page.keyboard.press(key);
+  // The first press leads to the middle.
+  const { stable, theory } = cells[4 * 12 + 6];
+  const expected = `${stable ? ": comes to rest" : ": does not come to rest"}; theory (the eigenvalues) ${stable === theory ? "agrees" : "says otherwise"}`;
+  expect((await page.textContent(".map .readout")).endsWith(expected), `the cell at the cursor${expected}`);
+}
+
+/** All of it on a page of a studio whose folder has cut.h5, segmented. */
+export async function testResults(page, studio) {
+  studio.kerf(["record", "--device", "sim:scissors", "--seconds", "6", "--virtual", "-o", "short.h5"]);
+  studio.kerf(["segment", "short.h5"]);
+  await testFits(page, studio);
+  await testFeeling(page);
+  await testChart(page, studio);
+  await testChoice(page, studio);
+  await testStability(page, studio);
+}
+
+export const tests = {
+  async "fits, chart, choice and stability maps are ordered and looked at"({ browser, studio, screenshots }) {
+    studio.record();
+    await studio.serve();
+    const page = await openPage(browser);
+    await testResults(page, studio);
+    await page.screenshot({ path: join(screenshots, "stability.png") });
+    expectNoComplaints(page);
+  },
+};
