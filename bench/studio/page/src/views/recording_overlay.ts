@@ -3,7 +3,7 @@ import { button, element, labelled, select } from "../ui/dom";
 import { swatch } from "../ui/time_plot";
 import { atMostDrawn, type Drawn } from "./recording_time";
 
-/** Further recordings laid over the page's own, aligned at their start or at their first cycle. */
+/** Further recordings laid over the page's own, aligned at their start or at their first closing. */
 export class RecordingOverlay {
   readonly root: HTMLElement;
   private readonly over: { recording: Recording; name: string }[] = [];
@@ -26,7 +26,7 @@ export class RecordingOverlay {
       (id) => void this.choose(id, others.find((it) => it.id === id)?.name ?? id),
     );
     this.alignment = select(
-      [{ value: "start", text: "their start" }, { value: "cycle", text: "their first cycle" }],
+      [{ value: "start", text: "their start" }, { value: "cycle", text: "their first closing" }],
       "start",
       () => this.changed(),
     );
@@ -50,8 +50,8 @@ export class RecordingOverlay {
   }
 
   private origin(recording: Recording): number {
-    const cycle = recording.cycles?.spans[0];
-    return this.alignment.value === "cycle" && cycle ? cycle.from_s : recording.from_s;
+    const closing = recording.cycles?.spans.find((it) => it.phase === "closing");
+    return this.alignment.value === "cycle" && closing ? closing.from_s : recording.from_s;
   }
 
   private async choose(id: string, name: string): Promise<void> {

@@ -7,11 +7,11 @@ export class ScopeControls {
   readonly root: HTMLElement;
   private status: LoopStatus | null = null;
   private laws: Workspace["laws"] = [];
-  private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false", required: true });
+  private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
   private readonly sensor = element("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: "none" });
   private readonly scene = select([{ value: "", text: "none" }], "", () => {});
   private readonly law = select([{ value: "", text: "nothing" }], "", () => this.feel());
-  private readonly start = element("button", { type: "submit", class: "firm" }, "Start");
+  private readonly start = element("button", { type: "submit", class: "firm", disabled: true }, "Start"); // until fill()
   private readonly resume = button("Let force back", () => this.order("/api/live/resume"), { disabled: true });
   private readonly name = element("input", { type: "text", autocomplete: "off", spellcheck: "false", maxlength: 80, value: nameOfNow() });
   private readonly record = button("Record", () => this.toggleRecording(), { disabled: true });
@@ -43,6 +43,7 @@ export class ScopeControls {
 
   fill(workspace: Workspace): void {
     if (this.device.value === "") this.device.value = workspace.device;
+    this.start.disabled = false;
     this.laws = workspace.laws.filter((it) => it.error === "");
     const options = (first: string, items: readonly { id: string; name: string }[]): HTMLOptionElement[] => [
       element("option", { value: "" }, first),
