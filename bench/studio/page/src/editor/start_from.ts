@@ -3,6 +3,7 @@ import { element, labelled } from "../ui/dom";
 import type { Context } from "../ui/view";
 import type { Drawing } from "./drawing";
 import { shifted } from "./knots";
+import { lawsToPick } from "../laws";
 
 /** Breakpoints of a law file, and from where its penetration counts. */
 interface LawKnots extends Knots {
@@ -13,9 +14,9 @@ interface LawKnots extends Knots {
 /** A choice among the piecewise laws of the workspace that fit the axis; takes over the breakpoints of one. */
 export function startFrom(context: Context, drawing: Drawing, workspace: Workspace, taken: () => void): HTMLElement {
   const { curve } = drawing;
-  const laws = workspace.laws.filter(
+  const laws = lawsToPick(workspace).filter(
     (it) =>
-      it.model === "piecewise" && it.error === "" && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
+      it.model === "piecewise" && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
   );
   const take = async (id: string, name: string): Promise<void> => {
     try {

@@ -1,7 +1,8 @@
-import type { Workspace, WorkspaceLaw } from "../api";
+import type { Workspace } from "../api";
 import { element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
 import type { JobList } from "./jobs";
+import { lawsToPick } from "../laws";
 
 const grips = [
   { value: "none", text: "none" },
@@ -22,7 +23,7 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
   const cells = number(40, 2, 60, 1);
   const depth = number(10, 0.01, 500, "any");
   const speed = number(0.2, 0.0001, 10, "any");
-  const laws: WorkspaceLaw[] = workspace.laws.filter((it) => !it.error);
+  const laws = lawsToPick(workspace);
   let law = laws.some((it) => it.id === chosen) ? chosen : "";
   let grip = "light";
   const of_law = element("div", { class: "row", hidden: !law }, labelled("Depth of the tool [mm]", depth), labelled("Speed of the tool [m/s]", speed));

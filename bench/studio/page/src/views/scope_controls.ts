@@ -1,6 +1,7 @@
 import type { LoopStatus, Workspace } from "../api";
 import { button, element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
+import { lawsToPick } from "../laws";
 
 /** The panel beside the scope: device, law, force and recording. Its parts keep their places, whatever the loop does. */
 export class ScopeControls {
@@ -44,7 +45,7 @@ export class ScopeControls {
   fill(workspace: Workspace): void {
     if (this.device.value === "") this.device.value = workspace.device;
     this.start.disabled = false;
-    this.laws = workspace.laws.filter((it) => it.error === "");
+    this.laws = lawsToPick(workspace);
     const options = (first: string, items: readonly { id: string; name: string }[]): HTMLOptionElement[] => [
       element("option", { value: "" }, first),
       ...items.map((it) => element("option", { value: it.id }, it.name)),
