@@ -1,0 +1,27 @@
+"""What the studio's page costs the browser: first paint, long tasks, memory over ten minutes of scope."""
+
+import json
+import subprocess
+
+
+def measure(house, seconds=600):
+    build = house / "build/release"
+    run = subprocess.run(["node", str(house / "tests/bench/studio/budget.mjs"), str(build / "bin/kerf"),
+                          str(build / "bench/studio/page/node_modules"), str(seconds)], check=True, capture_output=True, text=True)
+    found = json.loads(run.stdout)
+    watched = found["watched"]
+    rows = [
+        ("Page, compressed [kB]", "%.0f" % (found["bytes"] / 1e3), "250"),
+        ("First contentful paint, median of 9 [ms]", "%.0f" % found["first_paint_ms"], "500"),
+        ("The slowest of them [ms]", "%.0f" % found["slowest_paint_ms"], "500"),
+        ("Tasks over 50 ms in %.0f s of scope" % watched["seconds"], "%d" % watched["long_tasks"], "0"),
+        ("The longest of them [ms]", "%.0f" % watched["longest_task_ms"], "50"),
+        ("Layout shift", "%.3g" % watched["layout_shift"], "0"),
+        ("Memory in use, first and last [MB]", "%.2f, %.2f" % (watched["heap_mb"][0], watched["heap_mb"][-1]), "no growth"),
+    ]
+    lines = ["Headless Chromium on the machine that runs the loop, drawing in software; the scope of `sim:scissors` at 1 kHz, "
+             "%.0f frames a second, memory after a collection every minute." % watched["frames_per_second"], "",
+             "| what | measured | budget |", "|---|---|---|"]
+    lines += ["| %s | %s | %s |" % row for row in rows]
+    lines += ["", "- Memory over time: " + ", ".join("%.2f" % it for it in watched["heap_mb"]) + " MB."]
+    return "The studio's page in a browser", "\n".join(lines)

@@ -1,0 +1,97 @@
+// node budget.mjs KERF NODE_MODULES SECONDS: what the page costs the browser, as JSON. For scripts/benchmark studio page:
+// these are durations, which a test has no business with.
+
+import { resolve } from "node:path";
+import { gzipSync } from "node:zlib";
+
+import { openBrowser, openPage, Studio, until } from "./harness.mjs";
+
+const [program, modules] = process.argv.slice(2, 4).map((it) => resolve(it));
+const seconds = Number(process.argv[4] ?? 60);
+const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+async function compressed(studio) {
+  let bytes = 0;
+  for (const path of ["/", "/studio.js", "/studio.css", "/icon.svg"]) {
+    const answer = await fetch(studio.origin + path, { headers: { "X-Kerf-Token": studio.token } });
+    bytes += gzipSync(Buffer.from(await answer.arrayBuffer())).length;
+  }
+  return bytes;
+}
+
+/** First contentful paint and when the heading of the page was there [ms], each time in a browser profile of its own. */
+async function paints(browser, studio, times) {
+  const first = [];
+  for (let i = 0; i < times; ++i) {
+    const page = await openPage(browser);
+    await page.goto(studio.page("scope"));
+    await page.getByRole("heading", { name: "Scope" }).waitFor();
+    first.push(await until("it is painted", () =>
+      page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime)));
+    await page.context().close();
+  }
+  return first;
+}
+
+/** What a page does while the scope runs: long tasks, frames, shifts of the layout, memory after a collection. */
+async function watch(browser, studio) {
+  const page = await openPage(browser);
+  await page.addInitScript(() => {
+    window.kerfTasks = [];
+    window.kerfShift = 0;
+    window.kerfFrames = 0;
+    new PerformanceObserver((list) => window.kerfTasks.push(...list.getEntries().map((it) => it.duration))).observe({ type: "longtask" });
+    new PerformanceObserver((list) => list.getEntries().forEach((it) => (window.kerfShift += it.value))).observe({ type: "layout-shift" });
+    const count = () => {
+      ++window.kerfFrames;
+      requestAnimationFrame(count);
+    };
+    requestAnimationFrame(count);
+  });
+  await page.goto(studio.page("scope"));
+  await studio.api("/api/live/start", { device: "sim:scissors" });
+  await page.waitForTimeout(70000); // until the longest window is full, and everything is compiled
+  const tools = await page.context().newCDPSession(page);
+  const memory = async () => {
+    await tools.send("HeapProfiler.collectGarbage");
+    const { usedSize } = await tools.send("Runtime.getHeapUsage");
+    return usedSize / 1e6;
+  };
+  await page.evaluate(() => {
+    window.kerfTasks = [];
+    window.kerfFrames = 0;
+  });
+  const heap = [await memory()];
+  const begin = Date.now();
+  while (Date.now() - begin < 1000 * seconds) {
+    await page.waitForTimeout(Math.min(60000, 1000 * seconds));
+    heap.push(await memory());
+  }
+  const found = await page.evaluate(() => ({ tasks: window.kerfTasks, shift: window.kerfShift, frames: window.kerfFrames }));
+  const watched = (Date.now() - begin) / 1000;
+  return {
+    seconds: watched,
+    frames_per_second: found.frames / watched,
+    long_tasks: found.tasks.length,
+    longest_task_ms: Math.max(0, ...found.tasks),
+    layout_shift: found.shift,
+    heap_mb: heap,
+  };
+}
+
+const studio = await Studio.make(program);
+const browser = await openBrowser(modules);
+try {
+  await studio.serve();
+  const paint = await paints(browser, studio, 9);
+  const watched = await watch(browser, studio);
+  console.log(JSON.stringify({
+    bytes: await compressed(studio),
+    first_paint_ms: median(paint),
+    slowest_paint_ms: Math.max(...paint),
+    watched,
+  }));
+} finally {
+  await browser.close();
+  await studio.remove();
+}
