@@ -24,20 +24,6 @@ struct Arguments {
   SegmentOptions options;
 };
 
-const char* name_of(schema::Phase phase) {
-  switch (phase) {
-    case schema::Phase::opening:
-      return "opening";
-    case schema::Phase::open_to_close:
-      return "open_to_close";
-    case schema::Phase::closing:
-      return "closing";
-    case schema::Phase::close_to_open:
-      return "close_to_open";
-  }
-  return "";
-}
-
 nlohmann::ordered_json to_json(const schema::Recording& recording) {
   const schema::Cycles& cycles = *recording.cycles;
   const schema::Axis& axis = recording.axes[cycles.axis];

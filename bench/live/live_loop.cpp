@@ -1,36 +1,19 @@
 #include "live/live_loop.h"
 
 #include <chrono>
-#include <csignal>
 #include <exception>
 #include <stdexcept>
 #include <utility>
 
 #include "laws/placement.h"
 #include "loop/realtime.h"
+#include "loop/without_signals.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr double longest_s = 1e6;  ///< of a loop
 constexpr std::chrono::microseconds drain_period(16'667);
-
-/// Threads that are started while it lives get no signals: those are for the thread that knows what to do at
-/// the end of the program.
-class WithoutSignals {
- public:
-  WithoutSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  WithoutSignals(const WithoutSignals&) = delete;
-  WithoutSignals& operator=(const WithoutSignals&) = delete;
-  ~WithoutSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_{};
-};
 
 RunOptions run_options(const LiveOptions& options) {
   RunOptions run;

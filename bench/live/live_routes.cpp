@@ -35,11 +35,6 @@ class LiveViewer {
   LiveCursor cursor_;
 };
 
-/// The body of a request where it may be left out.
-std::string optional_text(const nlohmann::json& body, const std::string& name) {
-  return body.contains(name) ? text_in(body, name) : std::string();
-}
-
 /// The answers, without who may ask for them.
 class LiveAnswers {
  public:
@@ -75,10 +70,9 @@ class LiveAnswers {
   [[nodiscard]] HttpResponse start(const HttpRequest& request) const {
     const nlohmann::json body = json_in(request);
     if (loop_.status().is_running) throw RequestError(409, "The loop is running: stop it first.");
-    LiveOptions options{.device_uri = optional_text(body, "device"),
-                        .sensor_uri = optional_text(body, "sensor"),
-                        .scene = {}};
-    const std::string scene = optional_text(body, "scene_id");
+    LiveOptions options{
+        .device_uri = text_or(body, "device", ""), .sensor_uri = text_or(body, "sensor", ""), .scene = {}};
+    const std::string scene = text_or(body, "scene_id", "");
     if (!scene.empty()) options.scene = hooks_.scene_of(scene);
     loop_.start(options);
     if (hooks_.is_closed()) loop_.stop();  // the session began while the device was opened

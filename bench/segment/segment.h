@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include <kerf/schema/recording.h>
 
@@ -29,5 +31,12 @@ struct SegmentOptions {
 /// closing,
 ///         saying which.
 [[nodiscard]] schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options);
+
+/// "open_to_close", as the schema has it.
+[[nodiscard]] constexpr std::string_view name_of(schema::Phase phase) noexcept {
+  constexpr std::array<std::string_view, 5> names{"", "opening", "open_to_close", "closing", "close_to_open"};
+  const auto at = static_cast<std::size_t>(phase);
+  return at < names.size() ? names[at] : names[0];
+}
 
 }  // namespace kerf::bench

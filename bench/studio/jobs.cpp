@@ -1,34 +1,18 @@
 #include "studio/jobs.h"
 
 #include <algorithm>
-#include <csignal>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "loop/realtime.h"
+#include "loop/without_signals.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::ptrdiff_t most_waiting = 20;
 constexpr std::ptrdiff_t most_remembered = 50;
-
-/// Signals are for the threads that know what to do at the end of a run.
-class NoSignals {
- public:
-  NoSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  NoSignals(const NoSignals&) = delete;
-  NoSignals& operator=(const NoSignals&) = delete;
-  ~NoSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_{};
-};
 
 }  // namespace
 
@@ -69,7 +53,7 @@ struct Jobs::Entry {
 };
 
 Jobs::Jobs() {
-  const NoSignals masked;
+  const WithoutSignals none;
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 

@@ -25,15 +25,6 @@ constexpr std::uintmax_t largest_result = 64U << 20U;
 constexpr std::size_t most_models = 40;
 constexpr std::size_t most_columns = 4000;
 
-std::string text_or(const nlohmann::json& object, const std::string& name, const std::string& otherwise) {
-  return object.contains(name) ? text_in(object, name) : otherwise;
-}
-
-double number_or(const nlohmann::json& object, const std::string& name, double otherwise, double lower,
-                 double upper) {
-  return object.contains(name) ? number_in(object, name, lower, upper) : otherwise;
-}
-
 std::size_t whole_number_in(const nlohmann::json& object, const std::string& name, double lower,
                             double upper) {
   const double value = number_in(object, name, lower, upper);

@@ -1,10 +1,10 @@
 #include "studio/session_host.h"
 
-#include <csignal>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "loop/without_signals.h"
 #include "protocol/protocol.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
@@ -85,13 +85,8 @@ void SessionHost::start(const Order& order) {
                .stage = "checking",
                .ended = {},
                .warnings = running->store_.warnings()};
-  // Signals are for the threads that know what to do at the end of the program.
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const WithoutSignals none;
   thread_ = std::jthread([this, running] { run(*running); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 void SessionHost::run(Running& running) {

@@ -5,10 +5,6 @@
 namespace kerf::bench {
 namespace {
 
-std::string text_or_empty(const nlohmann::json& json, const std::string& name) {
-  return json.contains(name) ? text_in(json, name) : std::string();
-}
-
 nlohmann::ordered_json as_json(const SessionProgress& progress) {
   return {
       {"running", progress.running},   {"name", progress.name},       {"subject_url", progress.subject_url},
@@ -32,10 +28,10 @@ void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
                 clear();
                 host.start({.file = entry.path,
                             .name = entry.name,
-                            .device_uri = text_or_empty(json, "device"),
-                            .sensor_uri = text_or_empty(json, "sensor"),
+                            .device_uri = text_or(json, "device", ""),
+                            .sensor_uri = text_or(json, "sensor", ""),
                             .key_file = key_file,
-                            .passphrase = text_or_empty(json, "passphrase"),
+                            .passphrase = text_or(json, "passphrase", ""),
                             .check = flag_in(json, "check", true)});
                 return json_response(as_json(host.progress()));
               });

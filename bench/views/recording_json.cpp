@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "segment/segment.h"
 #include "views/loops.h"
 
 namespace kerf::bench {
@@ -43,20 +44,6 @@ void append_list(std::string& text, std::span<const double> values) {
 void append_member(std::string& text, const char* name, std::span<const double> values) {
   text += fmt::format(",\"{}\":", name);
   append_list(text, values);
-}
-
-const char* name_of(schema::Phase phase) {
-  switch (phase) {
-    case schema::Phase::opening:
-      return "opening";
-    case schema::Phase::open_to_close:
-      return "open_to_close";
-    case schema::Phase::closing:
-      return "closing";
-    case schema::Phase::close_to_open:
-      return "close_to_open";
-  }
-  return "";
 }
 
 ordered_json axes_of(const schema::Recording& about) {

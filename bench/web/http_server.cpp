@@ -2,7 +2,6 @@
 
 #include <array>
 #include <chrono>
-#include <csignal>
 #include <list>
 #include <stdexcept>
 #include <thread>
@@ -16,6 +15,7 @@
 #include <boost/beast/http.hpp>
 #include <fmt/format.h>
 
+#include "loop/without_signals.h"
 #include "web/http_messages.h"
 
 namespace kerf::bench {

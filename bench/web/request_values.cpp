@@ -94,6 +94,15 @@ double number_in(const nlohmann::json& object, const std::string& name, double l
   return number;
 }
 
+std::string text_or(const nlohmann::json& object, const std::string& name, const std::string& otherwise) {
+  return object.contains(name) ? text_in(object, name) : otherwise;
+}
+
+double number_or(const nlohmann::json& object, const std::string& name, double otherwise, double lower,
+                 double upper) {
+  return object.contains(name) ? number_in(object, name, lower, upper) : otherwise;
+}
+
 bool flag_in(const nlohmann::json& object, const std::string& name, bool otherwise) {
   const auto found = object.find(name);
   if (found == object.end()) return otherwise;

@@ -1,13 +1,13 @@
 #include "web/routes.h"
 
 #include <algorithm>
-#include <csignal>
 #include <system_error>
 
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
 #include "loop/realtime.h"
+#include "loop/without_signals.h"
 
 namespace kerf::bench {
 namespace {
@@ -47,13 +47,8 @@ HttpResponse bytes_response(std::string bytes) {
 }
 
 Routes::Routes() {
-  // Signals are for the threads that know what to do at the end of the program.
-  sigset_t all;
-  sigset_t before;
-  sigfillset(&all);
-  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const WithoutSignals none;
   thread_ = std::jthread([this](const std::stop_token& stop) { answer_slowly(stop); });
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 Routes::~Routes() = default;

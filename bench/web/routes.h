@@ -39,6 +39,11 @@ struct RequestError : std::runtime_error {
 [[nodiscard]] std::string text_in(const nlohmann::json& object, const std::string& name);
 [[nodiscard]] double number_in(const nlohmann::json& object, const std::string& name, double lower,
                                double upper);
+// What may be left out.
+[[nodiscard]] std::string text_or(const nlohmann::json& object, const std::string& name,
+                                  const std::string& otherwise);
+[[nodiscard]] double number_or(const nlohmann::json& object, const std::string& name, double otherwise,
+                               double lower, double upper);
 [[nodiscard]] bool flag_in(const nlohmann::json& object, const std::string& name, bool otherwise);
 [[nodiscard]] std::vector<double> numbers_in(const nlohmann::json& object, const std::string& name,
                                              std::size_t at_most);
