@@ -92,7 +92,8 @@ void stay_off_loop_processor() noexcept {
 void give_way() noexcept {
   constexpr int patient = 10;  // a tenth of a busy processor, still: a fit must end some day
   // Of a thread, not of the process: Linux keeps it for each.
-  (void)setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), patient);
+  const auto self = static_cast<id_t>(gettid());
+  (void)setpriority(PRIO_PROCESS, self, std::max(patient, getpriority(PRIO_PROCESS, self)));
 }
 
 std::size_t usable_processors() noexcept {

@@ -24,8 +24,8 @@ struct RealtimeMeasure {
 /// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel
 /// cannot always be interrupted.
 void stay_off_loop_processor() noexcept;
-/// Makes the calling thread, and those that it starts, give way to everything else: the least urgent of the
-/// ordinary threads. Not SCHED_IDLE, under which a busy machine would never come to it.
+/// Makes the calling thread, and those that it starts, give way to everything else: nice 10, at which a busy
+/// machine still comes to it.
 void give_way() noexcept;
 /// How many processors the calling thread may use, at least 1.
 [[nodiscard]] std::size_t usable_processors() noexcept;

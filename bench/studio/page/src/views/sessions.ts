@@ -89,7 +89,7 @@ function mount(root: HTMLElement, context: Context): () => void {
     element("div", { class: "columns" }, element("div", {}, intro, list, form), card.root),
   );
   let device = "";
-  let running = false;
+  let running = ""; // the name of the session that runs
 
   const choose = (session: WorkspaceSession): void => {
     form.replaceChildren(
@@ -99,6 +99,7 @@ function mount(root: HTMLElement, context: Context): () => void {
           card.show(state);
           form.replaceChildren();
           context.say("");
+          look().catch(context.complain);
         }, context.complain);
       }),
     );
@@ -115,9 +116,9 @@ function mount(root: HTMLElement, context: Context): () => void {
           {},
           element("span", { class: "name" }, it.name),
           element("span", {}, it.subject ? `subject ${it.subject}` : ""),
-          element("span", { class: "quiet" }, whereItStands(it)),
+          element("span", { class: "quiet" }, running === it.name ? "running" : whereItStands(it)),
           button(it.answered > 0 ? "Go on" : "Begin", () => choose(it), {
-            disabled: it.finished || it.error !== "",
+            disabled: running !== "" || it.finished || it.error !== "",
             "aria-label": `${it.answered > 0 ? "Go on with" : "Begin"} ${it.name}`,
           }),
         ),
@@ -130,8 +131,10 @@ function mount(root: HTMLElement, context: Context): () => void {
   const look = async (): Promise<void> => {
     const state = await context.api.get<SessionState>("/api/session");
     card.show(state);
-    if (running && !state.running) await refresh();
-    running = state.running;
+    const now = state.running ? state.name : "";
+    if (running === now) return;
+    running = now;
+    await refresh();
   };
   card.stop.addEventListener("click", () => context.api.post("/api/session/stop").then(look).catch(context.complain));
   refresh().catch(context.complain);
