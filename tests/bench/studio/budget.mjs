@@ -79,17 +79,37 @@ async function watch(browser, studio) {
   };
 }
 
+/** Wake latency of the loop [us] with the scope open in a browser of this machine and without, by turns of 12 s. */
+async function wakes(browser, studio, turns) {
+  const found = { without: [], with: [] };
+  const page = await openPage(browser);
+  for (let turn = 0; turn < turns; ++turn) {
+    for (const how of turn % 2 ? ["with", "without"] : ["without", "with"]) {
+      await page.goto(how === "with" ? studio.page("scope") : "about:blank");
+      await page.waitForTimeout(2000);
+      await page.waitForTimeout(10000);
+      const { wake_s, missed } = (await studio.api("/api/live/status")).json; // of the last ten seconds
+      found[how].push({ p50: 1e6 * wake_s.p50, p999: 1e6 * wake_s.p999, missed });
+    }
+  }
+  await page.context().close();
+  return found;
+}
+
 const studio = await Studio.make(program);
 const browser = await openBrowser(modules);
 try {
   await studio.serve();
   const paint = await paints(browser, studio, 9);
   const watched = await watch(browser, studio);
+  for (const context of browser.contexts()) await context.close();
+  const wake = await wakes(browser, studio, 9);
   console.log(JSON.stringify({
     bytes: await compressed(studio),
     first_paint_ms: median(paint),
     slowest_paint_ms: Math.max(...paint),
     watched,
+    wake,
   }));
 } finally {
   await browser.close();
