@@ -167,9 +167,14 @@ TEST(HttpServer, StreamsWhatComesAfterTheBodyUntilTheBrowserLeaves) {
   const PlainClient client(server.port());
   client.send_text(question);
   std::string text;
-  while (text.find("more;more;more;") == std::string::npos) {
-    server.wake();
-    text += client.some();
+  {
+    const std::jthread waking([&server](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        server.wake();
+        std::this_thread::yield();
+      }
+    });
+    while (text.find("more;more;more;") == std::string::npos) text += client.some();
   }
   EXPECT_EQ(test::body_of(text), "first;more;more;more;");
   EXPECT_THAT(text, Not(HasSubstr("Content-Length")));
