@@ -103,7 +103,7 @@ try {
   const paint = await paints(browser, studio, 9);
   const watched = await watch(browser, studio);
   for (const context of browser.contexts()) await context.close();
-  const wake = await wakes(browser, studio, 9);
+  const wake = await wakes(browser, studio, 7);
   console.log(JSON.stringify({
     bytes: await compressed(studio),
     first_paint_ms: median(paint),
