@@ -46,6 +46,7 @@ void LiveLoop::start(const LiveOptions& options) {
     stop_ = is_run_over_ = false;
     ended_.clear();
   }
+  if (closed_) stop_ = true;  // close() may have come before the line above
   try {
     open(options);
   } catch (...) {
@@ -111,7 +112,11 @@ void LiveLoop::watch(LiveHub& hub) {
   stay_off_loop_processor();
   for (auto next = std::chrono::steady_clock::now();; std::this_thread::sleep_until(next)) {
     const bool is_last = is_run_over_;  // nothing comes after what is drained now
-    hub.drain();
+    try {
+      hub.drain();
+    } catch (const std::exception&) {  // no memory: nobody is to hold a device that nobody can watch
+      close();
+    }
     if (is_last) break;
     if (on_rows_) on_rows_();
     next = std::max(next + drain_period, std::chrono::steady_clock::now());

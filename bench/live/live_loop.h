@@ -60,6 +60,13 @@ class LiveLoop {
   void stop();
   /// The same without waiting; never blocks.
   void request_stop() noexcept { stop_.store(true); }
+  /// For the end of the program: zero force now, no loop is started any more, the one that runs ends. Never
+  /// blocks.
+  void close() noexcept {
+    rendering_.release();
+    closed_.store(true);
+    stop_.store(true);
+  }
 
   /// Goes softly over to a law. @throws std::invalid_argument: no loop runs, or the device has no such axis.
   void feel(const LawFile& law, const std::string& name);
@@ -96,6 +103,7 @@ class LiveLoop {
   LiveRendering rendering_{0.25};
   std::function<void()> on_rows_;
   std::atomic<bool> stop_{false};
+  std::atomic<bool> closed_{false};
   std::atomic<bool> is_run_over_{false};
   // Of run(), and read by watch() once it is over.
   std::string fault_;

@@ -157,14 +157,14 @@ void add_live_routes(Routes& routes, LiveLoop& loop, const LiveHooks& hooks) {
   routes.get("/api/live/status", Pace::at_once, [answers](Request) { return answers->status(); });
   get("/api/live/traces", Pace::at_once, [answers](Request) { return answers->traces(); });
   get("/api/live/stream", Pace::at_once, [answers](Request it) { return answers->stream(it); });
-  get("/api/live/view", Pace::at_once, [answers](Request it) { return answers->view(it); });
+  get("/api/live/view", Pace::slow, [answers](Request it) { return answers->view(it); });
   // A device may wait for a person (homing) while it is opened: stopping must not stand in line behind that.
-  post("/api/live/start", Pace::slow, [answers](Request it) { return answers->start(it); });
+  post("/api/live/start", Pace::action, [answers](Request it) { return answers->start(it); });
   post("/api/live/stop", Pace::at_once, [answers](Request) { return answers->stop(); });
-  post("/api/live/feel", Pace::at_once, [answers](Request it) { return answers->feel(it); });
+  post("/api/live/feel", Pace::action, [answers](Request it) { return answers->feel(it); });
   post("/api/live/resume", Pace::at_once, [answers](Request) { return answers->resume(); });
-  post("/api/live/record", Pace::slow, [answers](Request it) { return answers->record(it); });
-  post("/api/live/record/stop", Pace::slow, [answers](Request) { return answers->stop_recording(); });
+  post("/api/live/record", Pace::action, [answers](Request it) { return answers->record(it); });
+  post("/api/live/record/stop", Pace::action, [answers](Request) { return answers->stop_recording(); });
 }
 
 }  // namespace kerf::bench

@@ -17,12 +17,17 @@ namespace {
 
 constexpr int priority = 80;
 
+/// Those of the calling thread.
 cpu_set_t allowed_processors() noexcept {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   (void)sched_getaffinity(0, sizeof allowed, &allowed);
   return allowed;
 }
+
+/// Those of the process, before any thread kept itself off one: a thread inherits what its parent did, and
+/// all have to mean the same one by the loop's.
+const cpu_set_t process_processors = allowed_processors();
 
 /// The last one: the first is where most systems handle their interrupts.
 int loop_processor(const cpu_set_t& allowed) noexcept {
@@ -71,8 +76,7 @@ RealtimeMeasure lock_memory() {
 }
 
 RealtimeMeasure pin_to_processor() {
-  const cpu_set_t allowed = allowed_processors();
-  const int processor = loop_processor(allowed);
+  const int processor = loop_processor(process_processors);
   cpu_set_t one;
   CPU_ZERO(&one);
   if (processor >= 0) CPU_SET(processor, &one);
@@ -83,7 +87,7 @@ RealtimeMeasure pin_to_processor() {
 }
 
 void stay_off_loop_processor() noexcept {
-  cpu_set_t others = allowed_processors();
+  cpu_set_t others = process_processors;
   if (CPU_COUNT(&others) < 2) return;
   CPU_CLR(loop_processor(others), &others);
   (void)sched_setaffinity(0, sizeof others, &others);

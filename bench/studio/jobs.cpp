@@ -57,7 +57,9 @@ Jobs::Jobs() {
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }
 
-Jobs::~Jobs() {
+Jobs::~Jobs() { close(); }
+
+void Jobs::close() {
   const std::scoped_lock lock(mutex_);
   thread_.request_stop();
   for (const auto& entry : entries_) entry->progress.stop = true;

@@ -44,6 +44,8 @@ class Jobs {
 
   /// @throws RequestError 503 where 20 are waiting.
   std::size_t add(JobOrder order);
+  /// For the end of the program: asks the one at work to stop, and begins none any more.
+  void close();
   /// Asks one to stop; nothing if there is none such or it has ended.
   void stop(std::size_t job);
   /// As the page's Job, newest first.

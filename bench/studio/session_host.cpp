@@ -61,18 +61,24 @@ class SessionHost::Running {
 SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake)
     : hosts_(std::move(hosts)), wake_(std::move(wake)) {}
 
-SessionHost::~SessionHost() { stop(); }
+SessionHost::~SessionHost() { close(); }
 
-void SessionHost::start(const Order& order) {
-  if (running_.exchange(true)) throw RequestError(409, "a session is running");
+void SessionHost::start(const Order& order, const std::function<void()>& prepare) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (running_) throw RequestError(409, "a session is running");
+    stop_ = false;  // before anybody can mean this session by stop()
+    running_ = true;
+  }
   std::shared_ptr<Running> running;
   try {
+    prepare();
     running = std::make_shared<Running>(order);
+    if (stop_ || closed_) throw RequestError(409, "the session was stopped before it had begun");
   } catch (...) {
     running_ = false;
     throw;
   }
-  stop_ = false;
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
   page_ = std::make_shared<PageSubject>(Gate(hosts_), wake_);

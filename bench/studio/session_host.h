@@ -51,10 +51,17 @@ class SessionHost {
   SessionHost& operator=(const SessionHost&) = delete;
   ~SessionHost();  ///< ends a session as stop() does
 
-  /// Opens the session and begins it. @throws RequestError 409 while one runs; as SessionStore and SealKey.
-  void start(const Order& order);
+  /// Opens the session and begins it. Once no other can begin, `prepare` has to free the device, and may
+  /// throw to refuse. @throws RequestError 409 while one runs, or if it was stopped meanwhile; as
+  /// SessionStore and SealKey.
+  void start(const Order& order, const std::function<void()>& prepare);
   /// Asks the session to end for now; it can be gone on with.
   void stop() noexcept { stop_ = true; }
+  /// For the end of the program: stop(), and none is begun any more.
+  void close() noexcept {
+    closed_ = true;
+    stop_ = true;
+  }
   [[nodiscard]] bool is_running() const noexcept { return running_; }
   [[nodiscard]] SessionProgress progress() const;
 
@@ -69,6 +76,7 @@ class SessionHost {
   std::vector<std::string> hosts_;
   std::function<void()> wake_;
   std::atomic<bool> stop_{false};
+  std::atomic<bool> closed_{false};
   std::atomic<bool> running_{false};
   mutable std::mutex mutex_;  ///< of what follows
   SessionProgress progress_;

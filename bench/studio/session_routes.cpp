@@ -15,24 +15,23 @@ nlohmann::ordered_json as_json(const SessionProgress& progress) {
 }  // namespace
 
 void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
-                        std::filesystem::path key_file, std::function<void()> clear_the_device) {
+                        std::filesystem::path key_file, std::function<void()> prepare) {
   using Pace = Routes::Pace;
   routes.get("/api/session", Pace::at_once,
              [&host](const HttpRequest&) { return json_response(as_json(host.progress())); });
-  routes.post("/api/session/start", Pace::slow,
+  routes.post("/api/session/start", Pace::action,
               [&host, &workspace, key_file = std::move(key_file),
-               clear = std::move(clear_the_device)](const HttpRequest& request) {
+               prepare = std::move(prepare)](const HttpRequest& request) {
                 const nlohmann::json json = json_in(request);
                 const WorkspaceEntry entry = workspace.find(text_in(json, "session"), FileKind::session);
-                if (host.is_running()) throw RequestError(409, "a session is running");
-                clear();
                 host.start({.file = entry.path,
                             .name = entry.name,
                             .device_uri = text_or(json, "device", ""),
                             .sensor_uri = text_or(json, "sensor", ""),
                             .key_file = key_file,
                             .passphrase = text_or(json, "passphrase", ""),
-                            .check = flag_in(json, "check", true)});
+                            .check = flag_in(json, "check", true)},
+                           prepare);
                 return json_response(as_json(host.progress()));
               });
   routes.post("/api/session/stop", Pace::at_once, [&host](const HttpRequest&) {

@@ -14,9 +14,9 @@ namespace kerf::bench {
 ///     POST /api/session/start   {"session": ID, "device", "sensor", "passphrase", "check"}
 ///     POST /api/session/stop
 ///
-/// `clear_the_device` is called before a session begins: whatever else moves the device has to end, and its
-/// forces are shown to nobody.
+/// `prepare` is SessionHost::start()'s: whatever else moves the device has to end, and its forces are shown
+/// to nobody.
 void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
-                        std::filesystem::path key_file, std::function<void()> clear_the_device);
+                        std::filesystem::path key_file, std::function<void()> prepare);
 
 }  // namespace kerf::bench

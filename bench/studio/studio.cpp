@@ -44,12 +44,19 @@ class Studio::State {
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { feel(law); });
     add_result_routes(routes_, workspace_, jobs_);
-    add_session_routes(routes_, workspace_, sessions_, options.key_file, [this] { loop_.stop(); });
+    add_session_routes(routes_, workspace_, sessions_, options.key_file, [this] { leave_the_device(); });
     server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
-  ~State() { server_.stop(); }
+  /// The hand is let go first: nobody can ask for it once the server has stopped, and a job may take its
+  /// time.
+  ~State() {
+    loop_.close();
+    sessions_.close();
+    jobs_.close();
+    server_.stop();
+  }
 
   [[nodiscard]] std::string url() const { return gate_.url("/"); }
   [[nodiscard]] bool is_loopback() const noexcept { return server_.is_loopback(); }
@@ -65,6 +72,13 @@ class Studio::State {
             .scene_of = [this](const std::string& id) { return read_scene(path_of(id, FileKind::scene)); },
             .new_recording = [this](const std::string& name) { return workspace_.new_file(name, ".h5"); },
             .is_closed = [this] { return sessions_.is_running(); }};
+  }
+
+  /// To a session, which knows nothing of a force that was released here.
+  void leave_the_device() {
+    if (loop_.status().is_released)
+      throw RequestError(409, "Zero force is held: let the force back first, on the scope.");
+    loop_.stop();
   }
 
   /// A drawn law, which has no name yet.
@@ -85,8 +99,10 @@ class Studio::State {
                           .body = "This address is not valid. Open the one that kerf studio shows.\n"};
     }
     // Whoever asks for zero force has a reason: it ends a session too, which can be gone on with.
-    if (request.path == "/api/live/zero" && request.method == "POST" && sessions_.is_running())
+    if (request.path == "/api/live/zero" && request.method == "POST") {
+      loop_.release_force();  // first, so that a session which is just being begun finds it
       sessions_.stop();
+    }
     if (request.path.starts_with("/api/")) return routes_.respond(request, overdue);
     if (request.method != "GET") return refusal(405);
     return page_file(studio_page(), request.path, gate_.token());

@@ -131,7 +131,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
 
   /// Asks the handler, at first or once more.
   void ask(bool overdue) {
-    if (const auto response = server_.handler_(request_, overdue)) {
+    if (const auto response = asked(overdue)) {
       write(*response);
     } else if (step_ == Step::reading) {
       wait();
@@ -150,7 +150,17 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
                         self->is_sending_ = false;
                         if (error) return self->done();
                         self->stream_.expires_never();
+                        self->go_on();
                       });
+  }
+
+  /// A handler that throws all the same (no memory) must not end the program that renders forces.
+  std::optional<HttpResponse> asked(bool overdue) {
+    try {
+      return server_.handler_(request_, overdue);
+    } catch (const std::exception&) {
+      return refusal(500);
+    }
   }
 
   void close() {
@@ -197,9 +207,17 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
                         error_code ignored;
                         self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
                         self->step_ = Step::hanging_up;
-                        self->stream_.expires_after(time_to_hang_up);
+                        self->hang_up_soon();
                         if (!is_listening) self->drop();
                       });
+  }
+
+  /// By a timer of our own: that of the stream does not reach a read that is under way.
+  void hang_up_soon() {
+    overdue_.expires_after(time_to_hang_up);
+    overdue_.async_wait([self = shared_from_this()](error_code error) {
+      if (!error) self->done();
+    });
   }
 
   void stream(bool is_listening) {

@@ -48,7 +48,8 @@ HttpResponse bytes_response(std::string bytes) {
 
 Routes::Routes() {
   const WithoutSignals none;
-  thread_ = std::jthread([this](const std::stop_token& stop) { answer_slowly(stop); });
+  threads_[0] = std::jthread([this](const std::stop_token& stop) { answer_slowly(Pace::slow, stop); });
+  threads_[1] = std::jthread([this](const std::stop_token& stop) { answer_slowly(Pace::action, stop); });
 }
 
 Routes::~Routes() = default;
@@ -75,8 +76,9 @@ std::optional<HttpResponse> Routes::respond(const HttpRequest& request, bool ove
   const std::lock_guard lock(mutex_);
   forget_the_abandoned();
   if (waiting_.size() >= most_waiting) return json_error(503, "too much to do; try again");
-  waiting_.emplace(request.number, Waiting{.request = request, .answer = &route->answer});
-  changed_.notify_one();
+  waiting_.emplace(request.number,
+                   Waiting{.request = request, .answer = &route->answer, .pace = route->pace});
+  changed_.notify_all();
   return std::nullopt;
 }
 
@@ -86,7 +88,9 @@ std::optional<std::optional<HttpResponse>> Routes::answer_of(const HttpRequest& 
   if (asked == waiting_.end()) return std::nullopt;
   if (!asked->second.response) {
     if (!overdue) return std::optional<HttpResponse>();
-    return json_error(503, "that takes too long");
+    if (asked->second.is_begun) return json_error(504, "that takes longer, and goes on");
+    waiting_.erase(asked);
+    return json_error(503, "too much to do; nothing was done, try again");
   }
   HttpResponse response = *std::move(asked->second.response);
   waiting_.erase(asked);
@@ -100,18 +104,15 @@ void Routes::forget_the_abandoned() {
   });
 }
 
-void Routes::answer_slowly(const std::stop_token& stop) {
+void Routes::answer_slowly(Pace pace, const std::stop_token& stop) {
   stay_off_loop_processor();
+  const auto is_next = [pace](const auto& it) { return it.second.pace == pace && !it.second.is_begun; };
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     forget_the_abandoned();
-    const auto next =
-        std::find_if(waiting_.begin(), waiting_.end(), [](const auto& it) { return !it.second.is_begun; });
+    const auto next = std::find_if(waiting_.begin(), waiting_.end(), is_next);
     if (next == waiting_.end()) {
-      changed_.wait(lock, stop, [this] {
-        return std::any_of(waiting_.begin(), waiting_.end(),
-                           [](const auto& it) { return !it.second.is_begun; });
-      });
+      changed_.wait(lock, stop, [&] { return std::any_of(waiting_.begin(), waiting_.end(), is_next); });
       continue;
     }
     Waiting& waiting = next->second;  // stays where it is: what is begun is nobody else's to erase

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -53,19 +54,20 @@ struct RequestError : std::runtime_error {
 [[nodiscard]] HttpResponse bytes_response(std::string bytes);
 
 /// Which function answers which request. What is at_once is answered by the server's thread and must be done
-/// in a millisecond; what is slow (files, fits) by one thread of its own, in order, off the loop's processor.
+/// in a millisecond; what is slow (files, fits) by a thread of its own, in order, off the loop's processor;
+/// what acts on the device or a recording by another one, so that it waits for no file.
 ///
 /// An exception becomes an answer with {"error": TEXT}: RequestError its status, std::invalid_argument and
 /// schema::FormatError 400, drivers::DeviceError and std::system_error 500, anything else 500.
 class Routes {
  public:
-  enum class Pace : std::uint8_t { at_once, slow };
+  enum class Pace : std::uint8_t { at_once, slow, action };
   using Answer = std::function<HttpResponse(const HttpRequest&)>;
 
   Routes();
   Routes(const Routes&) = delete;
   Routes& operator=(const Routes&) = delete;
-  ~Routes();  ///< waits for the slow answer at work
+  ~Routes();  ///< waits for the slow answers at work
 
   void get(const std::string& path, Pace pace, Answer answer);
   void post(const std::string& path, Pace pace, Answer answer);
@@ -85,11 +87,12 @@ class Routes {
   struct Waiting {
     HttpRequest request;
     const Answer* answer = nullptr;
+    Pace pace = Pace::slow;
     std::optional<HttpResponse> response;
     bool is_begun = false;
   };
 
-  void answer_slowly(const std::stop_token& stop);
+  void answer_slowly(Pace pace, const std::stop_token& stop);
   /// Nothing: the request is new. Nothing within: its answer is not there yet.
   std::optional<std::optional<HttpResponse>> answer_of(const HttpRequest& request, bool overdue);
   void forget_the_abandoned();
@@ -99,7 +102,7 @@ class Routes {
   std::mutex mutex_;  ///< of waiting_
   std::condition_variable_any changed_;
   std::map<std::uint64_t, Waiting> waiting_;  ///< by the request's number: oldest first
-  std::jthread thread_;                       ///< last: uses the rest
+  std::array<std::jthread, 2> threads_;       ///< last: use the rest
 };
 
 }  // namespace kerf::bench

@@ -106,6 +106,20 @@ export const tests = {
     await until("the page says so", async () => /stale|answer/i.test(await page.textContent("body")));
   },
 
+  async "Ctrl-C lets go of the hand though a job is at work"({ browser, studio }) {
+    studio.record();
+    await studio.serve();
+    const page = await openScope(browser, studio);
+    await startLoop(page);
+    await record(page, studio, "ended");
+    const recording = await studio.id("recordings", "cut.h5");
+    await studio.api("/api/chart", { recording, axis: "theta", models: [] });
+    await until("the chart is under way", async () => (await studio.api("/api/jobs")).json[0]?.state === "running");
+    expectEqual((await studio.stop("SIGINT")).status, 0, "exit status");
+    expect(existsSync(join(studio.folder, "ended.h5")), "the recording is closed");
+    expect(!existsSync(join(studio.folder, "cut.chart")), "nothing half-made is left");
+  },
+
   async "Ctrl-C closes the recording that is under way"({ browser, studio }) {
     await studio.serve();
     const page = await openScope(browser, studio);

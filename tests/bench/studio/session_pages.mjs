@@ -88,6 +88,9 @@ export const tests = {
   async "who has the subject's address gets at nothing else, and sees nothing of the loop"({ browser, studio }) {
     await prepare(studio);
     const id = await studio.id("sessions", "S01.h5");
+    await studio.api("/api/live/zero", {});
+    expectEqual((await studio.api("/api/session/start", { session: id, check: false })).status, 409, "while zero force is held");
+    await studio.api("/api/live/resume", {});
     await studio.api("/api/session/start", { session: id, check: false });
     const state = await until("the session runs", async () => {
       const { json } = await studio.api("/api/session");

@@ -201,6 +201,17 @@ TEST(HttpServer, AsksNothingMoreForABrowserThatTakesNothing) {
   EXPECT_LT(asked, 50);
 }
 
+TEST(HttpServer, GoesOnWhereAHandlerThrows) {
+  HttpServer server(0);
+  std::atomic<int> asked = 0;
+  server.start([&](const HttpRequest&, bool) -> HttpResponse {
+    if (++asked == 1) throw std::runtime_error("no memory");
+    return {.body = "hello"};
+  });
+  EXPECT_EQ(status_of(answer_to(server.port(), question)), "500");
+  EXPECT_EQ(test::body_of(answer_to(server.port(), question)), "hello");
+}
+
 TEST(HttpServer, TakesBodiesUpToItsLimit) {
   HttpServer server({.most_body = 10});
   server.start([](const HttpRequest& request, bool) { return HttpResponse{.body = request.body}; });

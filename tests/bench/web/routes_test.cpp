@@ -60,6 +60,40 @@ TEST(Routes, AnswerSlowlyFromAnotherThreadAndAtOnceMeanwhile) {
   EXPECT_EQ(wakes, 1);
 }
 
+TEST(Routes, ActWhileSomethingSlowIsBeingAnswered) {
+  Routes routes;
+  std::atomic<bool> go{false};
+  routes.get("/slow", Routes::Pace::slow, [&](const HttpRequest&) {
+    while (!go) std::this_thread::yield();
+    return HttpResponse{.body = "done"};
+  });
+  routes.post("/act", Routes::Pace::action, [](const HttpRequest&) { return HttpResponse{.body = "acted"}; });
+  const auto asker = std::make_shared<int>();
+  EXPECT_FALSE(routes.respond(asking("GET", "/slow", asker, 1), false));
+  EXPECT_EQ(waited_for(routes, asking("POST", "/act", asker, 2)).body, "acted");
+  go = true;
+  EXPECT_EQ(waited_for(routes, asking("GET", "/slow", asker, 1)).body, "done");
+}
+
+TEST(Routes, DoNotDoLaterWhatWasRefusedAsOverdue) {
+  Routes routes;
+  std::atomic<bool> go{false};
+  std::atomic<int> done{0};
+  routes.post("/act", Routes::Pace::action, [&](const HttpRequest&) {
+    while (!go) std::this_thread::yield();
+    ++done;
+    return HttpResponse{};
+  });
+  const auto asker = std::make_shared<int>();
+  EXPECT_FALSE(routes.respond(asking("POST", "/act", asker, 1), false));
+  EXPECT_FALSE(routes.respond(asking("POST", "/act", asker, 2), false));
+  EXPECT_FALSE(routes.respond(asking("POST", "/act", asker, 3), false));
+  EXPECT_EQ(routes.respond(asking("POST", "/act", asker, 2), true)->status, 503);
+  go = true;
+  EXPECT_EQ(waited_for(routes, asking("POST", "/act", asker, 3)).status, 200);
+  EXPECT_EQ(done, 2);
+}
+
 TEST(Routes, DoNotBeginWhatNobodyWaitsFor) {
   Routes routes;
   std::atomic<bool> go{false};
