@@ -49,11 +49,10 @@ void Recorder::mark(schema::Event event) {
 
 std::vector<schema::Event> Recorder::marked(double until_s) {
   const std::lock_guard lock(mutex_);
-  const auto later = std::ranges::stable_partition(
-      marks_, [until_s](const schema::Event& mark) { return mark.time_s <= until_s; });
-  std::vector<schema::Event> due(std::make_move_iterator(marks_.begin()),
-                                 std::make_move_iterator(later.begin()));
-  marks_.erase(marks_.begin(), later.begin());
+  const auto later = std::stable_partition(
+      marks_.begin(), marks_.end(), [until_s](const schema::Event& mark) { return mark.time_s <= until_s; });
+  std::vector<schema::Event> due(std::make_move_iterator(marks_.begin()), std::make_move_iterator(later));
+  marks_.erase(marks_.begin(), later);
   return due;
 }
 
@@ -63,7 +62,9 @@ std::size_t Recorder::write_chunk() {
   std::vector<schema::Event> found = marked(last_time_s_);
   if (rows.empty() && found.empty()) return 0;
   for (const schema::Row& row : rows) finder_.look_at(row, found);
-  std::ranges::stable_sort(found, {}, &schema::Event::time_s);
+  std::stable_sort(found.begin(), found.end(), [](const schema::Event& first, const schema::Event& second) {
+    return first.time_s < second.time_s;
+  });
   guarded([&] {
     writer_.append(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
