@@ -37,9 +37,9 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
     series.cycle.assign(recording.rows(), 0);
     for (const schema::PhaseSpan& phase : recording.cycles->phases) {
       if (phase.begin > phase.end || phase.end > recording.rows())
-        throw schema::FormatError(fmt::format(
-            "/cycles: a phase of cycle {} has rows {} to {} of {}; run 'kerf segment' again", phase.cycle,
-            phase.begin, phase.end, recording.rows()));
+        throw schema::FormatError(
+            fmt::format("/cycles: a phase of cycle {} has rows {} to {} of {}; run 'kerf segment' again",
+                        phase.cycle, phase.begin, phase.end, recording.rows()));
       std::fill(series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.begin),
                 series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.end), phase.cycle);
     }

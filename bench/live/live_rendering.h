@@ -27,14 +27,11 @@ struct LiveChange {
 
 /// What a loop renders while a person changes the law at will, or takes the force away.
 ///
-/// From law to law it goes as LawSwitch does, for `ramp_s` by
-///
-///     F = (1 - r) F_old + r F_new,   r from 0 to 1 linearly
-///
-/// with the flag soft_switch; no law at all is a rendering too. What is offered during a blend waits for its
-/// end, and gives way to what is offered after it. release() makes the force zero from the next tick on and
-/// holds it there, past slew limit and ramp (Safety does that); after resume() it comes back along Safety's
-/// soft start. The laws are computed meanwhile as if they were felt, so that they know the way of the tool.
+/// From law to law it goes as LawSwitch does, for `ramp_s`; no law at all is a rendering too. What is offered
+/// during a blend waits for its end, and gives way to what is offered after it. release() makes the force
+/// zero from the next tick on and holds it there, past slew limit and ramp (Safety does that); after resume()
+/// it comes back along Safety's soft start. The laws are computed meanwhile as if they were felt, so that
+/// they know the way of the tool.
 ///
 /// operator() and record() are the tick's: they allocate, lock and free nothing. Renderings that are no
 /// longer used wait in a list, to be freed by collect(). offer(), collect() and take_change() are for one
@@ -131,10 +128,7 @@ class LiveRendering {
   void blend(const drivers::Sample& sample, double period_s, Command& command) noexcept {
     const Command coming = forces_of(coming_, sample, period_s);
     const double share = ramp_s_ > 0.0 ? std::min(1.0, (now_s_ - begun_s_) / ramp_s_) : 1.0;
-    for (std::size_t axis = 0; axis < command.force.size(); ++axis) {
-      command.force[axis] += share * (coming.force[axis] - command.force[axis]);
-    }
-    command.flags |= coming.flags | schema::flag_soft_switch;
+    blend_into(command, coming, share);
     if (share < 1.0) return;
     retire(current_);
     current_ = coming_;

@@ -20,6 +20,18 @@ struct Command {
   bool is_released = false;  ///< somebody wants zero force now: Safety gives it past the slew limit
 };
 
+/// From one command towards another, softly:
+///
+///     F = (1 - r) F_old + r F_new,   r from 0 to 1
+///
+/// with the flags of both and soft_switch.
+inline void blend_into(Command& command, const Command& coming, double share) noexcept {
+  for (std::size_t axis = 0; axis < command.force.size(); ++axis) {
+    command.force[axis] += share * (coming.force[axis] - command.force[axis]);
+  }
+  command.flags |= coming.flags | schema::flag_soft_switch;
+}
+
 /// Renders nothing: the device moves freely.
 struct NoForce {
   [[nodiscard]] Command operator()(const drivers::Sample&, double) const noexcept { return {}; }

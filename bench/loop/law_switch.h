@@ -20,10 +20,8 @@ struct SwitchedLaw {
 };
 
 /// Renders one of several laws, and goes from one to the next softly: for `blend_s` both are computed and
-///
-///     F = (1 - r) F_old + r F_new,   r from 0 to 1 linearly
-///
-/// so that the hand meets no step. A switch that is asked for during another waits for its end.
+/// blended (blend_into()), r rising linearly, so that the hand meets no step. A switch that is asked for
+/// during another waits for its end.
 class LawSwitch {
  public:
   /// The first law is rendered from the start. There must be one.
@@ -46,10 +44,7 @@ class LawSwitch {
     if (next_ == current_) return command;
     const Command coming = laws_[next_].rendering(sample, period_s);
     const double share = blend_s_ > 0.0 ? std::min(1.0, (now_s_ - begun_s_) / blend_s_) : 1.0;
-    for (std::size_t axis = 0; axis < command.force.size(); ++axis) {
-      command.force[axis] += share * (coming.force[axis] - command.force[axis]);
-    }
-    command.flags |= coming.flags | schema::flag_soft_switch;
+    blend_into(command, coming, share);
     if (share == 1.0) current_ = next_;
     return command;
   }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "live/live_event.h"
+#include "support/kelvin_law.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -19,17 +20,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const char* const law_text = R"(model = "kelvin"
-axis = "theta"
-position_unit = "rad"
-[contact]
-position = { value = 30, unit = "deg" }
-direction = "decreasing"
-[parameters]
-parallel_stiffness = { value = 5.0, unit = "N/rad" }
-series_stiffness = { value = 8.0, unit = "N/rad" }
-damping = { value = 1.6, unit = "N·s/rad" }
-)";
+const char* const law_text = test::kelvin_law;
 
 TEST(LiveFrame, IsJsonWithSixDigitsAndNullWhereNothingIs) {
   const LiveFrame frame{.from = 120,

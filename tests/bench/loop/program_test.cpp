@@ -10,6 +10,8 @@
 
 #include <kerf/schema/recording.h>
 
+#include "support/kelvin_law.h"
+
 // devices, record and check as a user runs them.
 
 namespace kerf {
@@ -21,17 +23,7 @@ using test::run_kerf;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr auto kelvin = R"(model = "kelvin"
-axis = "theta"
-position_unit = "rad"
-[contact]
-position = { value = 30, unit = "deg" }
-direction = "decreasing"
-[parameters]
-parallel_stiffness = { value = 5.0, unit = "N/rad" }
-series_stiffness = { value = 8.0, unit = "N/rad" }
-damping = { value = 1.6, unit = "N·s/rad" }
-)";
+constexpr auto kelvin = test::kelvin_law;
 
 class LoopProgram : public testing::Test {
  protected:

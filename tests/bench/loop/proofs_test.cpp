@@ -14,6 +14,7 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/validate.h>
 
+#include "support/kelvin_law.h"
 #include "support/program.h"
 
 // What the bench promises of its loop and of its recordings, proved on the program itself.
@@ -218,17 +219,7 @@ TEST(FullDisk, LetsTheLoopGoOnAndKeepsWhatFitted) {
   }
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "disk");
-  test::write_text(folder / "k.law.toml", R"(model = "kelvin"
-axis = "theta"
-position_unit = "rad"
-[contact]
-position = { value = 30, unit = "deg" }
-direction = "decreasing"
-[parameters]
-parallel_stiffness = { value = 5.0, unit = "N/rad" }
-series_stiffness = { value = 8.0, unit = "N/rad" }
-damping = { value = 1.6, unit = "N·s/rad" }
-)");
+  test::write_text(folder / "k.law.toml", test::kelvin_law);
   // The disk lives as long as the shell's name space: what is left on it is looked at there.
   const Outcome outcome = test::run({"unshare", "-rm", "sh", "-c",
                                      R"(mount -t tmpfs -o size=3M none "$2/disk" || exit 77

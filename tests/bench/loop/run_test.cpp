@@ -12,23 +12,13 @@
 #include "loop/law_switch.h"
 #include "loop/recorder.h"
 #include "support/allocation_counter.h"
+#include "support/kelvin_law.h"
 #include "support/program.h"
 
 namespace kerf::bench {
 namespace {
 
-const LawFile kelvin = parse_law_file(R"(model = "kelvin"
-axis = "theta"
-position_unit = "rad"
-[contact]
-position = { value = 30, unit = "deg" }
-direction = "decreasing"
-[parameters]
-parallel_stiffness = { value = 5.0, unit = "N/rad" }
-series_stiffness = { value = 8.0, unit = "N/rad" }
-damping = { value = 1.6, unit = "N·s/rad" }
-)",
-                                      "kelvin.law.toml");
+const LawFile kelvin = parse_law_file(test::kelvin_law, "kelvin.law.toml");
 
 RunOptions virtual_seconds(double seconds) {
   return {.device_uri = "sim:scissors?seed=3", .seconds = seconds, .virtual_time = true};

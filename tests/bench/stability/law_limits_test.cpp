@@ -121,8 +121,8 @@ TEST(LawLimits, ARelaxingLawIsLocallyAsStiffAsItsSpringsTogether) {
 }
 
 TEST(LawMap, OfTheExponentialAgreesWithItsLocalStiffness) {
-  const LawMap map =
-      law_map(handle, intestine(), 0.5, {linear(0.05, 0.2, 24), logarithmic(100.0, 4000.0, 8)}, {.threads = 2});
+  const LawMap map = law_map(handle, intestine(), 0.5, {linear(0.05, 0.2, 24), logarithmic(100.0, 4000.0, 8)},
+                             {.threads = 2});
   EXPECT_GT(map.agreement(), 0.98);
   EXPECT_TRUE(map.cells.front().stable);
   EXPECT_FALSE(map.cells[23].stable);
