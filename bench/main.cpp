@@ -1,6 +1,6 @@
 #include <malloc.h>
 
-#include "cli/app.h"
+#include "program/app.h"
 
 int main(int argc, char** argv) {
   // A fit takes and gives back whole columns of samples; memory that returns to the kernel each time is

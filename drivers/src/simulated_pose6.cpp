@@ -5,10 +5,11 @@
 #include <numbers>
 #include <sstream>
 
+#include "kerf/mechanisms/angle.h"
+
 namespace kerf::drivers {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr Mechanics translating{.mass_kg = 0.15, .viscous_n_s_per_m = 0.2, .coulomb_n = 0.05};
 constexpr Mechanics turning{.mass_kg = 2.5e-4, .viscous_n_s_per_m = 1e-3, .coulomb_n = 1e-3};
 

@@ -1,12 +1,12 @@
 #include "kerf/drivers/simulated_scissors.h"
 
-#include <numbers>
 #include <sstream>
+
+#include "kerf/mechanisms/angle.h"
 
 namespace kerf::drivers {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double handle_inertia_kg_m2 = 2e-5;
 constexpr double carriage_kg = 0.4;
 constexpr double viscous_n_s_per_m = 0.2;

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
+
+#include "kerf/mechanisms/angle.h"
 
 namespace kerf::drivers {
 namespace {
 
 constexpr double full_deflection = 350.0;
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr int wait_ms = 50;
 
 struct Model {

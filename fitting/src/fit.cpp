@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <thread>
 
-#include "estimates.h"
 #include "least_squares.h"
 #include "samples.h"
-#include "search.h"
+#include "starts/search.h"
+#include "uncertainty/estimates.h"
 
 namespace kerf::fitting {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "segmented_law.h"
+#include "segmented/segmented_law.h"
 
 namespace kerf::fitting {
 namespace {

@@ -6,6 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <kerf/mechanisms/angle.h>
 #include <kerf/models/lattice.h>
 #include <kerf/models/law.h>
 
@@ -19,7 +20,6 @@ namespace {
 
 constexpr double period_s = 1e-3;
 constexpr std::size_t stroke_ticks = 4096;
-constexpr double degree = std::numbers::pi / 180.0;
 
 std::vector<Motion> stroke(double reach) {
   std::vector<Motion> path;

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "fits/fit_recording.h"
-#include "loop/run.h"
+#include "run/run.h"
 #include "scene/scene.h"
 #include "segment/segment.h"
 #include "support/program.h"

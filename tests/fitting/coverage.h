@@ -16,7 +16,7 @@
 #include <kerf/models/exponential.h>
 #include <kerf/models/kelvin.h>
 
-#include "uncertainty.h"
+#include "uncertainty/uncertainty.h"
 
 // Simulated recordings at 1 kHz with coloured noise, their least-squares fits, and whether the intervals
 // cover the truth. For the test of the intervals and for the study in fitting/benchmarks.

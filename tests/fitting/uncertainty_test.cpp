@@ -1,4 +1,4 @@
-#include "uncertainty.h"
+#include "uncertainty/uncertainty.h"
 
 #include <cmath>
 #include <limits>

@@ -10,7 +10,8 @@
 #include <fmt/format.h>
 
 #include "files/whole_file.h"
-#include "report/html.h"
+#include "html/html.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -131,8 +132,6 @@ const std::vector<std::string> head{
     "law",       "fidelity",    "parameters", "p50 [us]", "p99.9 [us]", "cold p50 [us]", "cold p99.9 [us]",
     "error [N]", "error [JND]", "worst [N]",  "axis",     "stable"};
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 std::string csv_text(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -145,7 +144,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
   json result{{"source", chart.source},
               {"reference", chart.reference},
               {"rate_hz", chart.rate_hz},
-              {"jnd_n", number(chart.jnd_n)},
+              {"jnd_n", json_number(chart.jnd_n)},
               {"compared_in", chart.one_axis ? "N" : "JND"},
               {"points", json::array()},
               {"front", json::array()},
@@ -158,13 +157,13 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"law_file", *file++},
                                 {"parameters", point.parameters},
                                 {"rate_hz", point.rate_hz},
-                                {"p50_ns", number(point.cost.p50_ns)},
-                                {"p999_ns", number(point.cost.p999_ns)},
-                                {"cold_p50_ns", number(point.cost.cold_p50_ns)},
-                                {"cold_p999_ns", number(point.cost.cold_p999_ns)},
-                                {"error_n", number(point.error_n)},
-                                {"error_jnd", number(point.error_jnd)},
-                                {"worst_n", number(point.worst_n)},
+                                {"p50_ns", json_number(point.cost.p50_ns)},
+                                {"p999_ns", json_number(point.cost.p999_ns)},
+                                {"cold_p50_ns", json_number(point.cost.cold_p50_ns)},
+                                {"cold_p999_ns", json_number(point.cost.cold_p999_ns)},
+                                {"error_n", json_number(point.error_n)},
+                                {"error_jnd", json_number(point.error_jnd)},
+                                {"worst_n", json_number(point.worst_n)},
                                 {"axis", point.axis},
                                 {"stable", point.stable},
                                 {"why_not_stable", point.why},
@@ -254,7 +253,7 @@ std::string chart_page(const SpeedAccuracy& chart) {
   std::string body = fmt::format("<h1>Speed against accuracy: {}</h1>\n", escaped(chart.source));
   body += fmt::format("<p class=\"soft\">Errors towards {}. A tick is {:.4g} us; the JND is {:.3g} N.</p>\n",
                       escaped(chart.reference), 1e6 / chart.rate_hz, chart.jnd_n);
-  body += "<figure>" + draw(chart_picture(chart)) + "</figure>\n<h2>The front</h2>\n";
+  body += html_figure(draw(chart_picture(chart))) + "<h2>The front</h2>\n";
   std::vector<std::vector<std::string>> rows{head};
   const auto front = front_of(chart);
   for (const ChartPoint* point : front) rows.push_back(row_of(*point));

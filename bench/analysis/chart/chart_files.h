@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "chart/speed_accuracy.h"
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

@@ -10,7 +10,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double runaway = 10.0;  // times the largest force of the reference
+constexpr double scene_runaway = 10.0;  // times the largest force of the reference
 
 }  // namespace
 
@@ -117,7 +117,7 @@ void Judge::judge(const ForcePath& forces, ChartPoint& point) const {
   if (forces.fault) {
     point.stable = false;
     point.why = "its force is not finite";
-  } else if (largest_n > runaway * peak_n_) {
+  } else if (largest_n > scene_runaway * peak_n_) {
     point.stable = false;
     point.why = fmt::format("its force reaches {:.3g} N, the reference {:.3g} N", largest_n, peak_n_);
   }

@@ -7,13 +7,13 @@
 #include "choose/choice_page.h"
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 std::string text_of(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 json names_of(const Effects& effects) {
@@ -39,9 +39,9 @@ json candidate_as_json(const Candidate& candidate) {
               {"parameters", candidate.law.parameters},
               {"effects", names_of(candidate.law.effects)},
               {"converged", candidate.converged},
-              {"rmse", candidate.fit ? number(candidate.fit->result.rmse) : json(nullptr)},
-              {"held_out", number(candidate.error_n)},
-              {"held_out_jnd", number(candidate.error_jnd)},
+              {"rmse", candidate.fit ? json_number(candidate.fit->result.rmse) : json(nullptr)},
+              {"held_out", json_number(candidate.error_n)},
+              {"held_out_jnd", json_number(candidate.error_jnd)},
               {"within_jnd", candidate.within_jnd},
               {"tick_us", candidate.tick_us},
               {"deadline", deadline_as_json(candidate.deadline)},
@@ -54,9 +54,9 @@ json candidate_as_json(const Candidate& candidate) {
 json effect_as_json(const EffectVerdict& verdict) {
   return {{"effect", name_of(verdict.effect)},
           {"verdict", name_of(verdict.matter)},
-          {"without", number(verdict.without_n)},
+          {"without", json_number(verdict.without_n)},
           {"without_law", verdict.without_law},
-          {"with", number(verdict.with_n)},
+          {"with", json_number(verdict.with_n)},
           {"with_law", verdict.with_law},
           {"why", verdict.why}};
 }
@@ -67,9 +67,9 @@ json parameters_of(const Candidate& candidate) {
   for (const fitting::Estimate& estimate : candidate.fit->result.parameters) {
     parameters[estimate.info.name] = {
         {"value", estimate.value},
-        {"std_error", number(estimate.std_error)},
-        {"lower", number(estimate.lower)},
-        {"upper", number(estimate.upper)},
+        {"std_error", json_number(estimate.std_error)},
+        {"lower", json_number(estimate.lower)},
+        {"upper", json_number(estimate.upper)},
         {"unit", models::unit_of(estimate.info.quantity, candidate.fit->file.force_unit,
                                  candidate.fit->file.position_unit)}};
   }

@@ -8,9 +8,9 @@
 #include <fmt/core.h>
 
 #include "fits/fit_series.h"
+#include "html/html.h"
 #include "recordings/axes.h"
 #include "report/charts.h"
-#include "report/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr double least_drawn_jnd = 1e-4;  ///< less is drawn there
-
-std::string figure(const Chart& chart) { return "<figure>" + draw(chart) + "</figure>\n"; }
 
 std::string number(const json& value, const char* format = "{:.3g}") {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
@@ -137,12 +135,12 @@ std::string choice_page(const json& all, const std::filesystem::path& file, cons
   if (choice.taken && !file.empty()) {
     const schema::Recording recording = schema::read_recording(file);
     const std::size_t axis = find_axis(recording, all.at("axis").get<std::string>());
-    body += figure(law_chart(recording, axis, choice));
+    body += html_figure(draw(law_chart(recording, axis, choice)));
     body += "<details><summary>Its parameters</summary>\n" + parameter_table(made.at("parameters")) +
             "</details>\n";
   }
   if (!choice.effects.empty()) body += "<h2>Which effects matter</h2>\n" + effect_table(all);
-  body += "<h2>All candidates</h2>\n" + figure(choice_chart(all)) + candidate_table(all);
+  body += "<h2>All candidates</h2>\n" + html_figure(draw(choice_chart(all))) + candidate_table(all);
   return html_page(name, body);
 }
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "choose/walk.h"
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

@@ -8,9 +8,9 @@
 #include <fmt/core.h>
 
 #include "laws/placement.h"
-#include "loop/check.h"
-#include "loop/run.h"
 #include "report/charts.h"
+#include "run/check.h"
+#include "run/run.h"
 #include "stability/in_hand.h"
 
 namespace kerf::bench {

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "laws/placement.h"
-#include "loop/run.h"
+#include "run/run.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {

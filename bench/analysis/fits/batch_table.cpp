@@ -7,6 +7,7 @@
 
 #include "fits/batch.h"
 #include "fits/fit_files.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -27,14 +28,14 @@ std::string csv_text(const std::string& text) {
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
-struct Figure {
+struct TableColumn {
   const char* name;
   std::function<double(const fitting::FitResult&)> value;
 };
 
-const std::vector<Figure>& figures() {
+const std::vector<TableColumn>& table_columns() {
   using fitting::FitResult;
-  static const std::vector<Figure> all{
+  static const std::vector<TableColumn> all{
       {"free_parameters", [](const FitResult& fit) { return static_cast<double>(fit.free_parameters); }},
       {"rmse", [](const FitResult& fit) { return fit.rmse; }},
       {"max_abs", [](const FitResult& fit) { return fit.max_abs; }},
@@ -85,7 +86,7 @@ std::string parameter_cells(const FittedLaw& law, const std::vector<std::string>
 /// A row of a law that was not fitted, or of a recording without one.
 std::string bare_row(const std::string& recording, const Refusal& refusal, const char* status,
                      std::size_t columns) {
-  const std::string empty(4 + figures().size() + 3 * columns, ',');
+  const std::string empty(4 + table_columns().size() + 3 * columns, ',');
   return fmt::format("{},{},{}{},{}\n", csv_text(recording), refusal.model, status, empty,
                      csv_text(refusal.why));
 }
@@ -97,27 +98,26 @@ std::string law_row(const BatchEntry& entry, const FittedLaw& law, const std::ve
   std::string row = fmt::format("{},{},{},{},{},{},{}", csv_text(entry.recording), fit.model, status_of(law),
                                 entry.fit.choice.model == fit.model ? "yes" : "no", fit.samples,
                                 csv_text(law.file.position_unit), csv_text(law.file.force_unit));
-  for (const Figure& figure : figures()) row += fmt::format(",{}", number(figure.value(fit)));
+  for (const TableColumn& column : table_columns()) row += fmt::format(",{}", number(column.value(fit)));
   return fmt::format("{}{},{}\n", row, parameter_cells(law, columns), csv_text(reason));
 }
 
 json law_as_json(const FittedLaw& law, const std::string& interval) {
   const fitting::FitResult& fit = law.result;
   json row{{"law", fit.model}, {"status", status_of(law)}, {"samples", fit.samples}};
-  for (const Figure& figure : figures()) {
-    const double value = figure.value(fit);
-    row[figure.name] = std::isfinite(value) ? json(value) : json(nullptr);
+  for (const TableColumn& column : table_columns()) {
+    const double value = column.value(fit);
+    row[column.name] = json_number(value);
   }
   row["seconds"] = fit.seconds;
   row["warnings"] = fit.warnings;
   row["parameters"] = json::object();
-  const auto finite = [](double value) { return std::isfinite(value) ? json(value) : json(nullptr); };
   for (const fitting::Estimate& estimate : fit.parameters) {
     if (!is_listed(law)) break;
     row["parameters"][estimate.info.name] = {
         {"value", estimate.value},
-        {"std_error", finite(estimate.std_error)},
-        {interval, {finite(estimate.lower), finite(estimate.upper)}},
+        {"std_error", json_number(estimate.std_error)},
+        {interval, {json_number(estimate.lower), json_number(estimate.upper)}},
         {"unit", models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit)}};
   }
   return row;
@@ -129,7 +129,7 @@ std::string batch_csv(const std::vector<BatchEntry>& entries, double confidence)
   const auto columns = columns_of(entries);
   const std::string interval = interval_name(confidence);
   std::string text = "recording,law,status,chosen,samples,position_unit,force_unit";
-  for (const Figure& figure : figures()) text += fmt::format(",{}", figure.name);
+  for (const TableColumn& column : table_columns()) text += fmt::format(",{}", column.name);
   for (const std::string& name : columns)
     text += fmt::format(",{0},{0}_{1}_lower,{0}_{1}_upper", name, interval);
   text += ",reason\n";

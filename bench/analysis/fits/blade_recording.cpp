@@ -13,6 +13,7 @@
 
 #include "recordings/provenance.h"
 #include "signal/signal.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -124,18 +125,16 @@ LawFile law_file_of(const fitting::BladeFit& fit, const schema::Recording& recor
   return file;
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json by_axis(const BladeRecordingFit& fit, const std::array<double, 6>& values) {
   nlohmann::ordered_json object = nlohmann::ordered_json::object();
-  for (std::size_t axis = 0; axis < 6; ++axis) object[fit.axes[axis]] = number(values[axis]);
+  for (std::size_t axis = 0; axis < 6; ++axis) object[fit.axes[axis]] = json_number(values[axis]);
   return object;
 }
 
 nlohmann::ordered_json as_json(const fitting::ThresholdEvents& events) {
-  return {{"events", events.force_n.size()}, {"spread", number(events.spread_n)}, {"forces", events.force_n}};
+  return {{"events", events.force_n.size()},
+          {"spread", json_number(events.spread_n)},
+          {"forces", events.force_n}};
 }
 
 }  // namespace
@@ -201,12 +200,14 @@ nlohmann::ordered_json blade_fit_as_json(const BladeRecordingFit& all) {
   nlohmann::ordered_json correlation = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
     const fitting::Estimate& estimate = fit.parameters[i];
-    parameters[estimate.info.name] = {{"value", estimate.value},
-                                      {"std_error", number(estimate.std_error)},
-                                      {"interval", {number(estimate.lower), number(estimate.upper)}},
-                                      {"unit", models::unit_of(estimate.info.quantity, "N", "m")}};
+    parameters[estimate.info.name] = {
+        {"value", estimate.value},
+        {"std_error", json_number(estimate.std_error)},
+        {"interval", {json_number(estimate.lower), json_number(estimate.upper)}},
+        {"unit", models::unit_of(estimate.info.quantity, "N", "m")}};
     nlohmann::ordered_json row = nlohmann::ordered_json::array();
-    for (const double value : fit.correlation.row(static_cast<Eigen::Index>(i))) row.push_back(number(value));
+    for (const double value : fit.correlation.row(static_cast<Eigen::Index>(i)))
+      row.push_back(json_number(value));
     correlation.push_back(std::move(row));
   }
   nlohmann::ordered_json json{{"model", "blade"},

@@ -2,6 +2,7 @@
 #include <variant>
 
 #include "fits/fit_files.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -9,11 +10,9 @@ namespace {
 using json = nlohmann::ordered_json;
 
 /// JSON knows no infinity: what the data do not determine is null.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json numbers(const std::vector<double>& values) {
   json list = json::array();
-  for (const double value : values) list.push_back(number(value));
+  for (const double value : values) list.push_back(json_number(value));
   return list;
 }
 
@@ -33,8 +32,8 @@ const char* name_of(fitting::Loss loss) {
 
 json estimate_as_json(const fitting::Estimate& estimate, const LawFile& file, const std::string& interval) {
   return {{"value", estimate.value},
-          {"std_error", number(estimate.std_error)},
-          {interval, {number(estimate.lower), number(estimate.upper)}},
+          {"std_error", json_number(estimate.std_error)},
+          {interval, {json_number(estimate.lower), json_number(estimate.upper)}},
           {"unit", models::unit_of(estimate.info.quantity, file.force_unit, file.position_unit)}};
 }
 
@@ -62,8 +61,8 @@ json profiles_as_json(const fitting::FitResult& fit) {
     list.push_back({{"parameter", profile.parameter},
                     {"value", numbers(profile.value)},
                     {"deviation", numbers(profile.deviation)},
-                    {"lower", number(profile.lower)},
-                    {"upper", number(profile.upper)}});
+                    {"lower", json_number(profile.lower)},
+                    {"upper", json_number(profile.upper)}});
   }
   return list;
 }
@@ -100,8 +99,8 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"r2", fit.r2},
               {"aic", fit.aic},
               {"bic", fit.bic},
-              {"cv_rmse", number(fit.cv_rmse)},
-              {"test_rmse", number(fit.test_rmse)},
+              {"cv_rmse", json_number(fit.cv_rmse)},
+              {"test_rmse", json_number(fit.test_rmse)},
               {"jnd_fraction", fit.jnd_fraction},
               {"correlation_time_samples", fit.correlation_time},
               {"correlation", correlation_as_json(fit)},

@@ -5,13 +5,12 @@
 
 #include <fmt/core.h>
 
+#include "tables/json_number.h"
+
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-json number(const std::optional<double>& value) { return value ? number(*value) : json(nullptr); }
 
 json difference_as_json(const RegressionOutcome& outcome, const ForceDifference& worst) {
   const schema::ForceChannel& channel = outcome.stored.channels[worst.channel];
@@ -19,18 +18,18 @@ json difference_as_json(const RegressionOutcome& outcome, const ForceDifference&
               {"time_s", outcome.path.time_s[worst.tick]},
               {"channel", channel.name},
               {"unit", channel.unit},
-              {"expected", number(worst.expected)},
-              {"got", number(worst.got)},
-              {"allowed", number(worst.allowed)},
-              {"jnds", number(worst.jnds)},
+              {"expected", json_number(worst.expected)},
+              {"got", json_number(worst.got)},
+              {"allowed", json_number(worst.allowed)},
+              {"jnds", json_number(worst.jnds)},
               {"context", json::array()}};
   for (const ContextRow& row : context_of(outcome)) {
     result["context"].push_back({{"tick", row.tick},
-                                 {"time_s", number(row.time_s)},
-                                 {"position", number(row.position)},
-                                 {"velocity", number(row.velocity)},
-                                 {"expected", number(row.expected)},
-                                 {"got", number(row.got)}});
+                                 {"time_s", json_number(row.time_s)},
+                                 {"position", json_number(row.position)},
+                                 {"velocity", json_number(row.velocity)},
+                                 {"expected", json_number(row.expected)},
+                                 {"got", json_number(row.got)}});
   }
   return result;
 }
@@ -41,9 +40,9 @@ json case_as_json(const RegressionOutcome& outcome) {
     channels.push_back({{"name", one.channel.name},
                         {"unit", one.channel.unit},
                         {"outside", one.outside},
-                        {"largest_difference", number(one.largest_difference)},
-                        {"largest_jnds", number(one.largest_jnds)},
-                        {"largest_expected", number(one.largest_expected)}});
+                        {"largest_difference", json_number(one.largest_difference)},
+                        {"largest_jnds", json_number(one.largest_jnds)},
+                        {"largest_expected", json_number(one.largest_expected)}});
   }
   return {{"name", outcome.about.name},
           {"model", outcome.about.law.law.model()},
@@ -58,8 +57,8 @@ json case_as_json(const RegressionOutcome& outcome) {
           {"channels", channels},
           {"worst",
            outcome.comparison.worst ? difference_as_json(outcome, *outcome.comparison.worst) : json(nullptr)},
-          {"tick_cost", number(outcome.tick_cost)},
-          {"stored_tick_cost", number(outcome.stored.tick_cost)},
+          {"tick_cost", json_number(outcome.tick_cost)},
+          {"stored_tick_cost", json_number(outcome.stored.tick_cost)},
           {"seconds", outcome.seconds}};
 }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include "html/html.h"
 #include "regress/context.h"
-#include "report/html.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,8 +6,8 @@
 #include <fmt/core.h>
 
 #include "files/whole_file.h"
+#include "html/html.h"
 #include "regress/context.h"
-#include "report/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -87,7 +87,7 @@ std::string case_section(const RegressionOutcome& outcome, const std::vector<std
   for (const std::string& message : outcome.messages)
     body += fmt::format("<p class=\"answer bad\">{}.</p>\n", escaped(message));
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));
-  for (const std::string& picture : pictures) body += "<figure>" + picture + "</figure>\n";
+  for (const std::string& picture : pictures) body += html_figure(picture);
   return body + context_section(outcome);
 }
 

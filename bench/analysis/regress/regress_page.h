@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "plot/plot.h"
 #include "regress/run.h"
-#include "report/plot.h"
 
 namespace kerf::bench {
 

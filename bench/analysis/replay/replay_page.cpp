@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "report/html.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -126,7 +126,7 @@ std::string replay_page(const json& all, const std::vector<std::string>& charts)
       all.at("rows").get<std::size_t>(), all.at("from_s").get<double>(), all.at("to_s").get<double>());
   for (const json& note : all.at("notes"))
     body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(note.get<std::string>()));
-  for (const std::string& chart : charts) body += "<figure>" + chart + "</figure>\n";
+  for (const std::string& chart : charts) body += html_figure(chart);
   body += "<h2>Forces</h2>\n" + force_table(all) + "<h2>Events</h2>\n" + event_table(all);
   return html_page(name, body);
 }

@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "plot/plot.h"
 #include "replay/open_loop.h"
-#include "report/plot.h"
 
 namespace kerf::bench {
 

@@ -5,7 +5,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

@@ -6,15 +6,15 @@
 
 #include <fmt/core.h>
 
+#include "html/html.h"
 #include "report/fit_view.h"
-#include "report/html.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr double log_from = 30.0;  ///< ratio of the largest to the smallest error
+constexpr double log_errors_from = 30.0;  ///< ratio of the largest to the smallest error
 constexpr std::size_t letters_of_a_name = 17;
 
 std::vector<json> by_error(const json& fits) {
@@ -42,7 +42,7 @@ void scale(Chart& chart) {
   }
   for (const Marker& marker : chart.vertical) widen(marker.at);
   if (!(largest > 0.0)) return;
-  chart.log_x = largest > log_from * smallest;
+  chart.log_x = largest > log_errors_from * smallest;
   chart.x_range = chart.log_x ? Range{smallest / 1.5, 1.5 * largest} : Range{0.0, 1.08 * largest};
   for (Marker& marker : chart.vertical) marker.label_after = !chart.log_x && marker.at < 0.4 * largest;
 }

@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
+#include "html/html.h"
 #include "report/comparison.h"
 #include "report/fit_view.h"
-#include "report/html.h"
 #include "report/parameter_tables.h"
 #include "report/residual_charts.h"
 
@@ -52,8 +52,6 @@ std::vector<double> part(const std::vector<double>& values, const Window& window
   return {values.begin() + static_cast<std::ptrdiff_t>(window.begin),
           values.begin() + static_cast<std::ptrdiff_t>(window.end)};
 }
-
-std::string figure(const Chart& chart) { return "<figure>" + draw(chart) + "</figure>\n"; }
 
 Chart over_time(const FitView& view, const Window& window) {
   Chart chart{.title = "The laws over the recorded force",
@@ -127,7 +125,8 @@ std::string residual_part(const FitView& view) {
       "and velocity: samples in grey, their mean in bins with one deviation to each side.</p>\n";
   for (std::size_t i = 0; i < view.shown; ++i) {
     const FittedTrace& trace = view.traces[i];
-    html += "<h3>" + escaped(trace.model) + "</h3>\n" + figure(residual_over_time(view, trace, largest));
+    html += "<h3>" + escaped(trace.model) + "</h3>\n" +
+            html_figure(draw(residual_over_time(view, trace, largest)));
     html += figures_in_pairs({residual_over_penetration(view, trace, largest),
                               residual_over_velocity(view, trace, largest),
                               residual_autocorrelation(view, trace), residual_histogram(view, trace)});
@@ -185,12 +184,12 @@ std::string fit_section(const schema::Recording& recording, std::size_t axis, co
         "the rendering aids of laws that have branches. Outside JND: share of samples whose error a person "
         "could "
         "feel. The straight line's error is over all samples.</p>\n";
-    html += figure(comparison_chart(fits, view.force_unit));
+    html += html_figure(draw(comparison_chart(fits, view.force_unit)));
     if (view.shown < view.traces.size())
       html +=
           fmt::format("<p class=\"soft\">Drawn below: the chosen law and the next {} by that error.</p>\n",
                       view.shown - 1);
-    html += figure(over_time(view, window)) + figure(over_penetration(view, window));
+    html += html_figure(draw(over_time(view, window))) + html_figure(draw(over_penetration(view, window)));
     return html + residual_part(view) + parameters_part(view, confidence);
   } catch (const json::exception& error) {
     throw std::invalid_argument(

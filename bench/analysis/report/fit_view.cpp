@@ -82,7 +82,7 @@ std::string number_text(const json& value, const char* format) {
 std::string figures_in_pairs(const std::vector<Chart>& charts) {
   if (charts.empty()) return {};
   std::string html = "<div class=\"pair\">\n";
-  for (const std::string& drawing : draw_all(charts)) html += "<figure>" + drawing + "</figure>\n";
+  for (const std::string& drawing : draw_all(charts)) html += html_figure(drawing);
   return html + "</div>\n";
 }
 

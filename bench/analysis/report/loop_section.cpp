@@ -8,8 +8,8 @@
 
 #include <kerf/schema/recording.h>
 
-#include "report/html.h"
-#include "report/plot.h"
+#include "html/html.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 namespace {
@@ -58,7 +58,7 @@ std::string histogram_figure(const json& check) {
       1e-2,
       std::max(2.0 * period_us, 1.2 * std::max(chart.curves[0].x.empty() ? 0.0 : chart.curves[0].x.back(),
                                                chart.curves[1].x.empty() ? 0.0 : chart.curves[1].x.back()))};
-  return "<figure>" + draw(chart) + "</figure>\n";
+  return html_figure(draw(chart));
 }
 
 std::string stage_table(const json& check) {

@@ -9,19 +9,17 @@
 #include <kerf/schema/recording.h>
 
 #include "files/whole_file.h"
+#include "html/html.h"
 #include "recordings/axes.h"
 #include "recordings/summary.h"
 #include "report/charts.h"
 #include "report/fit_section.h"
-#include "report/html.h"
 #include "report/loop_section.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-std::string figure(const Chart& chart) { return "<figure>" + draw(chart) + "</figure>\n"; }
 
 json read_json(const std::filesystem::path& file) {
   try {
@@ -69,9 +67,9 @@ std::string recording_section(const schema::Recording& recording, const std::fil
     html += "<details><summary>The scene, with its known parameters</summary><pre>" +
             escaped(recording.header.scene_toml) + "</pre></details>\n";
   }
-  html += figure(position_chart(recording, axis));
+  html += html_figure(draw(position_chart(recording, axis)));
   if (!recording.force_measured.empty() || !recording.force_commanded.empty()) {
-    html += figure(force_chart(recording, axis)) + figure(loop_chart(recording, axis));
+    html += html_figure(draw(force_chart(recording, axis))) + html_figure(draw(loop_chart(recording, axis)));
   }
   return html;
 }

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "fits/fit_files.h"
-#include "report/html.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -17,7 +17,8 @@ using json = nlohmann::ordered_json;
 constexpr std::size_t parameters_listed = 40;  ///< of a law; a longer list is a table to be seen as a curve
 constexpr std::size_t most_searched = 12;      ///< for correlations and profiles
 
-constexpr double log_from = 8.0;   ///< ratio of a profile's ends from which it is drawn over a logarithm
+constexpr double log_profile_from =
+    8.0;                           ///< ratio of a profile's ends from which it is drawn over a logarithm
 constexpr double widest = 1000.0;  ///< and how far from the best it is then followed
 
 std::vector<std::string> parameter_row(const std::string& name, const json& parameter,
@@ -131,7 +132,7 @@ Chart profile_chart(const FittedTrace& trace, const json& profile, double confid
   if (curve.x.size() < 2) return chart;
   double highest = *std::max_element(curve.y.begin(), curve.y.end());
   Range range{curve.x.front(), curve.x.back()};
-  chart.log_x = centre.logarithmic && range.begin > 0.0 && range.end > log_from * range.begin;
+  chart.log_x = centre.logarithmic && range.begin > 0.0 && range.end > log_profile_from * range.begin;
   if (chart.log_x) {
     range = {std::max(range.begin, centre.value / widest), std::min(range.end, centre.value * widest)};
     chart.x_range = range;

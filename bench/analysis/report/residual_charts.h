@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "plot/plot.h"
 #include "report/fit_view.h"
-#include "report/plot.h"
 
 namespace kerf::bench {
 

@@ -1,5 +1,5 @@
 #include "files/whole_file.h"
-#include "report/html.h"
+#include "html/html.h"
 #include "stability/findings.h"
 
 namespace kerf::bench {

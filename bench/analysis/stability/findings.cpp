@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "report/html.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -214,7 +214,7 @@ std::string page_body(const Findings& findings) {
   const std::vector<std::string> drawings = draw_all(charts);
   for (std::size_t i = 0; i < drawings.size(); ++i) {
     const std::string place = "<!--" + findings.figures[i].name + "-->";
-    const std::string picture = "<figure>" + drawings[i] + "</figure>\n";
+    const std::string picture = html_figure(drawings[i]);
     const std::size_t at = rest.find(place);
     if (at == std::string::npos) {
       html += picture;

@@ -7,9 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/plot.h"
-#include "stability/cases/cases.h"
-#include "stability/cases/control_cost.h"
+#include "plot/plot.h"
 #include "stability/maps.h"
 
 namespace kerf::bench {
@@ -49,16 +47,11 @@ struct LawStudy {
 [[nodiscard]] std::string page_body(const Findings& findings);
 [[nodiscard]] Findings findings_of(const WallMap& map, const StudiedAxis& on = {});
 [[nodiscard]] Findings findings_of(const LawStudy& study, const StudiedAxis& on = {});
-[[nodiscard]] Findings findings_of(const std::vector<NamedCase>& cases,
-                                   const std::optional<ControlCosts>& costs);
 
 /// @throws std::invalid_argument if a file that write_findings() always writes stands in the folder.
 void refuse_to_replace_findings(const std::filesystem::path& folder, bool replace);
 /// Writes stability.json, stability.csv, stability.html and the pictures into a folder.
 /// @throws std::system_error.
 void write_findings(const Findings& findings, const std::filesystem::path& folder);
-
-/// Whether every case fails without its remedy and holds with it.
-[[nodiscard]] bool behave(const std::vector<NamedCase>& cases);
 
 }  // namespace kerf::bench

@@ -13,7 +13,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double share = 5e-3;
+constexpr double search_share = 5e-3;
 constexpr double fastest_m_s = 10.0;
 constexpr double slowest_hz = 20.0;
 constexpr double highest_hz = 1e5;
@@ -148,19 +148,20 @@ LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolR
     if (at <= search.lower || at >= search.upper) return std::nullopt;
     return at;
   };
-  const Search depths{.lower = 1e-3 * deepest_m, .upper = deepest_m, .share = share, .scan = 24};
+  const Search depths{.lower = 1e-3 * deepest_m, .upper = deepest_m, .share = search_share, .scan = 24};
   limits.depth_m = found(first_change(depths,
                                       [&](double depth_m) {
                                         return is_passive_at(device, law, {depth_m, range.speed_m_s});
                                       }),
                          depths);
-  const Search speeds{.lower = 1e-4, .upper = fastest_m_s, .share = share, .scan = 16};
+  const Search speeds{.lower = 1e-4, .upper = fastest_m_s, .share = search_share, .scan = 16};
   limits.speed_m_s = found(first_change(speeds,
                                         [&](double speed_m_s) {
                                           return is_passive(device, law, {range.depth_m, speed_m_s});
                                         }),
                            speeds);
-  const Search periods{.lower = 1.0 / highest_hz, .upper = 1.0 / slowest_hz, .share = share, .scan = 16};
+  const Search periods{
+      .lower = 1.0 / highest_hz, .upper = 1.0 / slowest_hz, .share = search_share, .scan = 16};
   const double longest_s = first_change(
       periods, [&](double period_s) { return is_passive(at_rate(device, 1.0 / period_s), law, range); });
   if (const auto period_s = found(longest_s, periods)) limits.rate_hz = 1.0 / *period_s;

@@ -1,4 +1,4 @@
-#include "cli/key_arguments.h"
+#include "experiment/key_arguments.h"
 
 #include <cerrno>
 #include <optional>

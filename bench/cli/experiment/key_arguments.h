@@ -5,7 +5,7 @@
 
 #include <kerf/schema/session.h>
 
-#include "cli/verb.h"
+#include "program/verb.h"
 #include "sealed/seal.h"
 
 namespace kerf::bench {

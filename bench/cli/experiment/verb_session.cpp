@@ -1,6 +1,6 @@
-#include "cli/verb_session.h"
+#include "experiment/verb_session.h"
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 

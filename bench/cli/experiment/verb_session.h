@@ -1,7 +1,7 @@
 #pragma once
 
-#include "cli/app.h"
-#include "cli/verb.h"
+#include "program/app.h"
+#include "program/verb.h"
 
 namespace kerf::bench {
 

@@ -5,18 +5,18 @@
 
 #include <fmt/core.h>
 
-#include "answers/analysis_json.h"
-#include "answers/analysis_page.h"
+#include "answer_pages/analysis_json.h"
+#include "answer_pages/analysis_page.h"
 #include "answers/answers_table.h"
-#include "cli/key_arguments.h"
-#include "cli/verb_session.h"
+#include "experiment/key_arguments.h"
+#include "experiment/verb_session.h"
 #include "sealed/opening.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct SessionAnalyzeVerbArguments {
   std::vector<std::string> files;
   std::string output;
   std::string reason;
@@ -33,14 +33,14 @@ bool is_table(const std::string& file) {
   return file.ends_with(".csv") || file.ends_with(".tsv") || file.ends_with(".txt");
 }
 
-Study read_table(const Arguments& arguments) {
+Study read_table(const SessionAnalyzeVerbArguments& arguments) {
   if (arguments.files.size() != 1)
     throw std::invalid_argument("a table of answers is analysed alone; put all answers into one table");
   if (arguments.design.empty()) return read_answers(arguments.files.front());
   return read_answers(arguments.files.front(), design_named(arguments.design));
 }
 
-Study read_sessions(Arguments& arguments, Context& context) {
+Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
   if (!arguments.design.empty())
     throw std::invalid_argument("--design is for tables: a session knows its design");
   std::vector<std::unique_ptr<SessionStore>> stores;
@@ -65,7 +65,7 @@ Study read_sessions(Arguments& arguments, Context& context) {
   return study_of(sessions);
 }
 
-void analyze(Arguments& arguments, Context& context) {
+void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {
   AnalysisOptions& options = arguments.options;
   options.bootstrap = static_cast<int>(arguments.bootstrap);
   options.seed = context.seed;
@@ -87,7 +87,7 @@ void analyze(Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_session_analyze(CLI::App& session, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SessionAnalyzeVerbArguments>();
   AnalysisOptions& options = arguments->options;
   Verb verb = add_verb(
       session, context, "analyze", "What the answers of sessions show, and what they do not",

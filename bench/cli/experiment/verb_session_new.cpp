@@ -6,11 +6,11 @@
 
 #include <fmt/core.h>
 
-#include "cli/key_arguments.h"
-#include "cli/verb_session.h"
+#include "experiment/key_arguments.h"
+#include "experiment/verb_session.h"
 #include "files/whole_file.h"
-#include "loop/run.h"
 #include "protocol/samples.h"
+#include "run/run.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct SessionNewVerbArguments {
   std::string protocol;
   std::string subject;
   std::size_t subjects = 0;  ///< 0: one session, for `subject`
@@ -30,13 +30,13 @@ struct Arguments {
   bool replace = false;
 };
 
-void check_arguments(const Arguments& arguments) {
+void check_arguments(const SessionNewVerbArguments& arguments) {
   if (arguments.subject.empty() == (arguments.subjects == 0))
     throw std::invalid_argument(
         "give the subject's code with --subject, or how many subjects the study has with --subjects");
 }
 
-void check_on_device(const Arguments& arguments, const Protocol& protocol) {
+void check_on_device(const SessionNewVerbArguments& arguments, const Protocol& protocol) {
   const std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
   if (arguments.no_check) return;
   if (!uri.starts_with("sim:")) {
@@ -54,7 +54,7 @@ std::string code_of(std::size_t number, std::size_t subjects) {
   return fmt::format("S{:0{}}", number, digits);
 }
 
-void make_sessions(Arguments& arguments, Context& context) {
+void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
   check_arguments(arguments);
   Protocol protocol = read_protocol(arguments.protocol);
   match_loudness(protocol);
@@ -114,7 +114,7 @@ void add_session_key(CLI::App& session, Context& context) {
 }
 
 void add_session_new(CLI::App& session, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SessionNewVerbArguments>();
   Verb verb = add_verb(
       session, context, "new", "Make the sealed session of a subject, or of all subjects of a study",
       "kerf session new abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5\n"

@@ -4,15 +4,15 @@
 
 #include <fmt/core.h>
 
-#include "cli/key_arguments.h"
-#include "cli/verb_session.h"
+#include "experiment/key_arguments.h"
+#include "experiment/verb_session.h"
 #include "sealed/opening.h"
 #include "sealed/session_export.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct SessionOpenVerbArguments {
   std::string file;
   std::string output;
   std::string reason;
@@ -20,7 +20,7 @@ struct Arguments {
   bool replace = false;
 };
 
-void open(Arguments& arguments, Context& context) {
+void open(SessionOpenVerbArguments& arguments, Context& context) {
   const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
   record_opening(arguments.file, key, arguments.reason);
   const SessionStore store(arguments.file, key, SessionStore::Purpose::read);
@@ -39,7 +39,7 @@ void open(Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_session_open(CLI::App& session, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SessionOpenVerbArguments>();
   Verb verb = add_verb(
       session, context, "open", "Lift the blinding: answers as a table, each trial as a recording",
       "kerf session open S01.h5 --key-file keeper.key -o S01\n\n"

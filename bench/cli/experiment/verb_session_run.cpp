@@ -5,9 +5,9 @@
 
 #include <fmt/core.h>
 
-#include "cli/key_arguments.h"
-#include "cli/verb_session.h"
-#include "loop/check.h"
+#include "experiment/key_arguments.h"
+#include "experiment/verb_session.h"
+#include "run/check.h"
 #include "session/device_check.h"
 #include "session/rehearsal.h"
 #include "session/run_session.h"
@@ -19,7 +19,7 @@
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct SessionRunVerbArguments {
   std::string file;
   std::string device;
   KeyArguments key;
@@ -38,7 +38,7 @@ struct Answering {
   ButtonSubject* buttons = nullptr;
 };
 
-Answering answering_of(const Arguments& arguments, std::uint64_t seed) {
+Answering answering_of(const SessionRunVerbArguments& arguments, std::uint64_t seed) {
   Answering answering;
   if (arguments.rehearse) {
     answering.parts.push_back(std::make_unique<RehearsalSubject>(seed));
@@ -60,7 +60,7 @@ Answering answering_of(const Arguments& arguments, std::uint64_t seed) {
   return answering;
 }
 
-std::string uri_of(const Arguments& arguments, const Protocol& protocol) {
+std::string uri_of(const SessionRunVerbArguments& arguments, const Protocol& protocol) {
   const std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
   if (uri.empty()) throw std::invalid_argument("the protocol names no device; give one with --device");
   if (arguments.rehearse && !uri.starts_with("sim:"))
@@ -69,7 +69,7 @@ std::string uri_of(const Arguments& arguments, const Protocol& protocol) {
   return uri;
 }
 
-SessionRunOptions run_options_of(const Arguments& arguments, const Protocol& protocol,
+SessionRunOptions run_options_of(const SessionRunVerbArguments& arguments, const Protocol& protocol,
                                  ButtonSubject* buttons) {
   SessionRunOptions options{.loop = arguments.loop};
   options.loop.device_uri = uri_of(arguments, protocol);
@@ -92,7 +92,7 @@ SessionRunOptions run_options_of(const Arguments& arguments, const Protocol& pro
   return options;
 }
 
-void report(const Arguments& arguments, Context& context, const SessionRunResult& result) {
+void report(const SessionRunVerbArguments& arguments, Context& context, const SessionRunResult& result) {
   context.result = {{"file", arguments.file},
                     {"finished", result.end == SessionEnd::finished},
                     {"answered", result.answered},
@@ -115,7 +115,7 @@ void report(const Arguments& arguments, Context& context, const SessionRunResult
     say(fmt::format("{} ticks, {} deadlines missed", result.run.report.ticks(), result.run.report.missed()));
 }
 
-void run(Arguments& arguments, Context& context) {
+void run(SessionRunVerbArguments& arguments, Context& context) {
   if (arguments.rehearse && (arguments.page || arguments.buttons))
     throw std::invalid_argument("--rehearse needs nobody to answer: leave out --page and --buttons");
   const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
@@ -144,7 +144,7 @@ void run(Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_session_run(CLI::App& session, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SessionRunVerbArguments>();
   Verb verb = add_verb(
       session, context, "run", "Run a session with its subject, or go on with it",
       "kerf session run S01.h5 --key-file keeper.key --device falcon:0 --page\n\n"

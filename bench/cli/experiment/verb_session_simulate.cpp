@@ -7,18 +7,18 @@
 
 #include <fmt/core.h>
 
-#include "cli/progress.h"
-#include "cli/verb_session.h"
+#include "experiment/verb_session.h"
 #include "files/whole_file.h"
 #include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
+#include "program/progress.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct SessionSimulateVerbArguments {
   std::string protocol;
   std::string output;
   SimulationOptions simulation;
@@ -33,7 +33,7 @@ struct Arguments {
   bool replace = false;
 };
 
-SimulationOptions options_of(const Arguments& arguments, const Context& context) {
+SimulationOptions options_of(const SessionSimulateVerbArguments& arguments, const Context& context) {
   SimulationOptions options = arguments.simulation;
   options.observer.jnd = 0.01 * arguments.jnd_percent;
   options.observer.criterion = 0.01 * arguments.jnd_criterion_percent;
@@ -61,7 +61,7 @@ void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptio
                      name_of(protocol.design)));
 }
 
-void write_files(const Arguments& arguments, const Simulation& simulation) {
+void write_files(const SessionSimulateVerbArguments& arguments, const Simulation& simulation) {
   const fs::path folder = arguments.output;
   write_whole_file(folder / "simulate.html", simulation_page(simulation));
   write_whole_file(folder / "simulate.json", simulation_json(simulation).dump(2) + "\n");
@@ -71,7 +71,7 @@ void write_files(const Arguments& arguments, const Simulation& simulation) {
   say(fmt::format("{}: the charts, and all numbers as JSON and CSV", (folder / "simulate.html").string()));
 }
 
-void run(const Arguments& arguments, Context& context) {
+void run(const SessionSimulateVerbArguments& arguments, Context& context) {
   Protocol protocol = read_protocol(arguments.protocol);
   if (arguments.trials > 0) protocol = with_trials(std::move(protocol), arguments.trials);
   match_loudness(protocol);
@@ -95,7 +95,7 @@ void run(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_session_simulate(CLI::App& session, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SessionSimulateVerbArguments>();
   Verb verb = add_verb(
       session, context, "simulate", "Let simulated observers feel the laws: the power of a design",
       "kerf session simulate abx.protocol.toml --jnd 7 --subjects 12 -o power\n\n"

@@ -1,4 +1,4 @@
-#include "cli/fit_arguments.h"
+#include "fit/fit_arguments.h"
 
 #include <algorithm>
 #include <charconv>

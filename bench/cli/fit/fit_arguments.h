@@ -6,8 +6,8 @@
 
 #include <kerf/schema/recording.h>
 
-#include "cli/verbs.h"
 #include "fits/fit_recording.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 

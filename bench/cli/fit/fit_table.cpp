@@ -1,10 +1,10 @@
-#include "cli/fit_table.h"
+#include "fit/fit_table.h"
 
 #include <cmath>
 
 #include <fmt/core.h>
 
-#include "cli/app.h"
+#include "program/app.h"
 
 namespace kerf::bench {
 namespace {

@@ -5,15 +5,15 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "fits/blade_recording.h"
+#include "program/verbs.h"
 #include "recordings/provenance.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct BladeVerbArguments {
   std::string recording;
   std::string shape;
   std::string output;
@@ -42,7 +42,7 @@ void print_errors(const BladeRecordingFit& all) {
   }
 }
 
-void run_blade(const Arguments& arguments, Context& context) {
+void run_blade(const BladeVerbArguments& arguments, Context& context) {
   if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.force);
   fitting::BladeFitOptions options = arguments.options;
   options.law_options = blade_shape_of(read_law_file(arguments.shape), arguments.shape);
@@ -73,7 +73,7 @@ void run_blade(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_blade(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BladeVerbArguments>();
   fitting::BladeFitOptions& options = arguments->options;
   Verb verb = add_verb(
       app, context, "blade", "Fit the friction of a blade, and its thresholds, to a recording of six axes",

@@ -5,14 +5,14 @@
 
 #include <fmt/core.h>
 
-#include "cli/fit_arguments.h"
-#include "cli/fit_table.h"
-#include "cli/progress.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "fit/fit_arguments.h"
+#include "fit/fit_table.h"
 #include "fits/batch.h"
 #include "fits/fit_files.h"
-#include "loop/run.h"
+#include "program/progress.h"
+#include "program/verbs.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {

@@ -7,12 +7,12 @@
 #include <kerf/fitting/fit.h>
 #include <kerf/models/law.h>
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct LawsVerbArguments {
   std::string law;
 };
 
@@ -76,7 +76,7 @@ void describe_law(const std::string& name, Context& context) {
 }  // namespace
 
 void add_laws(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LawsVerbArguments>();
   Verb verb = add_verb(app, context, "laws", "List the force laws, or the parameters and options of one",
                        "kerf laws blade", [arguments, &context] {
                          if (arguments->law.empty()) {

@@ -6,15 +6,15 @@
 
 #include <kerf/fitting/rupture.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "fits/rupture_table.h"
 #include "laws/law_file.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct TrainVerbArguments {
   std::string table;
   std::string output;
   std::string learning = "projection";
@@ -26,7 +26,7 @@ struct Arguments {
 };
 
 /// The threshold alone, or with a Kelvin element before it.
-models::Law law_of(const Arguments& arguments, const models::Law& threshold) {
+models::Law law_of(const TrainVerbArguments& arguments, const models::Law& threshold) {
   if (arguments.element.empty()) return threshold;
   std::vector<double> values = arguments.element;
   values.insert(values.end(), threshold.values().begin(), threshold.values().end());
@@ -35,7 +35,7 @@ models::Law law_of(const Arguments& arguments, const models::Law& threshold) {
   return models::Law::make("fuzzy_kelvin", values, options);
 }
 
-void run_train(const Arguments& arguments, Context& context) {
+void run_train(const TrainVerbArguments& arguments, Context& context) {
   refuse_to_replace(arguments.output, arguments.force);
   if (arguments.example) {
     write_whole_file(arguments.output, as_csv(liver_ruptures()));
@@ -74,7 +74,7 @@ void run_train(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_train(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TrainVerbArguments>();
   Verb verb = add_verb(
       app, context, "train", "Train the rupture threshold of a fuzzy law from a table of ruptures",
       "kerf train --example -o ruptures.csv\n"

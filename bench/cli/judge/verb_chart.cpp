@@ -13,18 +13,18 @@
 #include "chart/chart_files.h"
 #include "chart/held_loop.h"
 #include "chart/speed_accuracy.h"
-#include "cli/progress.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "laws/placement.h"
-#include "loop/run.h"
+#include "program/progress.h"
+#include "program/verbs.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ChartVerbArguments {
   std::string recording;
   std::string scene;
   std::string output;
@@ -39,7 +39,7 @@ struct Arguments {
 
 constexpr std::array names{"chart.svg", "chart.csv", "chart.json", "chart.html"};
 
-void check(const Arguments& arguments) {
+void check(const ChartVerbArguments& arguments) {
   if (arguments.recording.empty() == arguments.scene.empty()) {
     throw std::invalid_argument("give a recording, or a scene with --scene, and not both");
   }
@@ -54,7 +54,7 @@ void check(const Arguments& arguments) {
   }
 }
 
-SpeedAccuracy chart_of_recording(const Arguments& arguments, const ChartOptions& options) {
+SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, const ChartOptions& options) {
   const schema::Recording recording = schema::read_recording(arguments.recording);
   const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
   try {
@@ -74,7 +74,7 @@ double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) 
   return deepest;
 }
 
-SpeedAccuracy chart_of_scene(const Arguments& arguments, ChartOptions options) {
+SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions options) {
   const Scene scene = read_scene(arguments.scene);
   try {
     const ScriptedPath path = scripted_path(scene);
@@ -111,7 +111,7 @@ void print(const SpeedAccuracy& chart) {
   say("  * on the front, x not stable");
 }
 
-void run_chart(const Arguments& arguments, Context& context) {
+void run_chart(const ChartVerbArguments& arguments, Context& context) {
   check(arguments);
   const StopOnSignal signals;
   SpeedAccuracy chart;
@@ -145,7 +145,7 @@ void run_chart(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_chart(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ChartVerbArguments>();
   Verb verb = add_verb(
       app, context, "chart", "Chart what a tick of each law costs against how wrong its force is",
       "kerf chart cut.h5 -o chart\n"

@@ -5,15 +5,15 @@
 
 #include <fmt/core.h>
 
-#include "cli/loop_arguments.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
-#include "loop/check.h"
+#include "program/loop_arguments.h"
+#include "program/verbs.h"
+#include "run/check.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct CheckVerbArguments {
   LoopArguments loop;
   std::string law;
   std::string record;
@@ -50,7 +50,7 @@ void choose_law(const std::string& file, RunOptions& options) {
   options.scene.reset();
 }
 
-void run_check(const Arguments& arguments, Context& context) {
+void run_check(const CheckVerbArguments& arguments, Context& context) {
   if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.loop.options.replace);
   RunOptions options = run_options(arguments.loop);
   options.floor_s = arguments.floor.value_or(3.0);
@@ -99,7 +99,7 @@ void run_check(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_check(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckVerbArguments>();
   Verb verb =
       add_verb(app, context, "check", "Run a law in closed loop with a device and judge its timing",
                "kerf check fits/kelvin.law.toml --device sim:scissors --seconds 10\n\n"

@@ -14,17 +14,17 @@
 #include "choose/fidelity.h"
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
-#include "loop/run.h"
+#include "program/verbs.h"
 #include "recordings/axes.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ChooseVerbArguments {
   std::string recording;
   std::string scene;
   std::string output;
@@ -38,7 +38,7 @@ struct Arguments {
   ChooseOptions choose;
 };
 
-models::Contact contact_for(const Arguments& arguments, const schema::Recording& recording,
+models::Contact contact_for(const ChooseVerbArguments& arguments, const schema::Recording& recording,
                             std::size_t axis) {
   models::Contact contact = contact_of(recording, axis);
   if (arguments.contact) contact.position = *arguments.contact;
@@ -69,7 +69,7 @@ void say_choice(const LawChoice& choice) {
 }
 
 /// Says, keeps and prints what was chosen.
-void finish(const Arguments& arguments, Context& context, LawChoice& choice,
+void finish(const ChooseVerbArguments& arguments, Context& context, LawChoice& choice,
             const nlohmann::ordered_json& json, const fs::path& recording) {
   context.result = json;
   for (const std::string& warning : choice.warnings) warn(warning);
@@ -87,8 +87,9 @@ void say_begins(const std::string& law, const std::string& device_uri) {
   say(fmt::format("{} in closed loop with {} ...", law, device_uri));
 }
 
-void choose_for_recording(const Arguments& arguments, Context& context, const schema::Recording& recording,
-                          const fs::path& file, const std::atomic<bool>& stop) {
+void choose_for_recording(const ChooseVerbArguments& arguments, Context& context,
+                          const schema::Recording& recording, const fs::path& file,
+                          const std::atomic<bool>& stop) {
   DeviceChoiceOptions options{.choose = arguments.choose,
                               .loop = arguments.loop,
                               .tried_by = arguments.no_loop ? TriedBy::data : TriedBy::wall_clock,
@@ -100,7 +101,7 @@ void choose_for_recording(const Arguments& arguments, Context& context, const sc
   finish(arguments, context, made.choice, made.json, file);
 }
 
-void choose_for_blade(const Arguments& arguments, Context& context, const Scene& scene,
+void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, const Scene& scene,
                       const std::atomic<bool>& stop) {
   FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
   LoopCheckOptions loop = arguments.loop;
@@ -120,7 +121,7 @@ void choose_for_blade(const Arguments& arguments, Context& context, const Scene&
   finish(arguments, context, choice, json, {});
 }
 
-void choose_for_scene(const Arguments& arguments, Context& context, const std::atomic<bool>& stop) {
+void choose_for_scene(const ChooseVerbArguments& arguments, Context& context, const std::atomic<bool>& stop) {
   const Scene scene = read_scene(arguments.scene);
   if (scene.tissue.law.is_spatial()) return choose_for_blade(arguments, context, scene, stop);
   if (arguments.output.empty())
@@ -137,7 +138,7 @@ void choose_for_scene(const Arguments& arguments, Context& context, const std::a
   choose_for_recording(arguments, context, recording, file, stop);
 }
 
-void run_choose(const Arguments& arguments, Context& context) {
+void run_choose(const ChooseVerbArguments& arguments, Context& context) {
   if (arguments.recording.empty() == arguments.scene.empty())
     throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
   if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
@@ -156,7 +157,7 @@ void run_choose(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_choose(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ChooseVerbArguments>();
   Verb verb = add_verb(
       app, context, "choose", "Choose the simplest law that serves: within the JND, in time and stable",
       "kerf choose cut.h5 -o choice\n"

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "program/verbs.h"
 #include "reproduce/reproduce.h"
 
 namespace kerf::bench {
@@ -14,13 +14,13 @@ namespace {
 
 constexpr std::size_t most_points = 1600;  // of a curve: more than a page shows
 
-struct Arguments {
+struct ReproduceVerbArguments {
   std::string paper;
   std::string output;
   bool force = false;
 };
 
-void run_reproduce(const Arguments& arguments, Context& context) {
+void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   const std::filesystem::path folder = arguments.output;
   for (const auto* name : {"claims.json", "claims.md"}) refuse_to_replace(folder / name, arguments.force);
   const Reproduction result = reproduce(arguments.paper, context.seed);
@@ -44,7 +44,7 @@ void run_reproduce(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_reproduce(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReproduceVerbArguments>();
   Verb verb = add_verb(
       app, context, "reproduce", "Run the experiments of a paper, draw its figures and judge its claims",
       "kerf reproduce 004 -o scissors\n\n"

@@ -8,15 +8,16 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
+#include "cases/case_findings.h"
 #include "laws/law_file.h"
+#include "program/verbs.h"
 #include "stability/findings.h"
 #include "stability/study.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct StabilityVerbArguments {
   std::string law;
   bool all_cases = false;
   std::vector<std::string> cases;
@@ -27,13 +28,13 @@ struct Arguments {
   bool force = false;
 };
 
-Findings study_cases(const Arguments& given, Context& context) {
+Findings study_cases(const StabilityVerbArguments& given, Context& context) {
   const auto cases = run_cases(given.all_cases ? std::vector<std::string>{} : given.cases, context.seed);
   if (!behave(cases)) context.exit = Exit::check_failed;
   return findings_of(cases, given.all_cases ? std::optional(control_costs()) : std::nullopt);
 }
 
-Findings study(const Arguments& given, Context& context) {
+Findings study(const StabilityVerbArguments& given, Context& context) {
   const bool cases = given.all_cases || !given.cases.empty();
   if (cases && !given.law.empty()) {
     throw std::invalid_argument("a law and the named cases are studies of their own; give LAW or --cases");
@@ -48,7 +49,7 @@ Findings study(const Arguments& given, Context& context) {
   return std::move(of_law.findings);
 }
 
-void run_stability(const Arguments& given, Context& context) {
+void run_stability(const StabilityVerbArguments& given, Context& context) {
   if (!given.output.empty()) refuse_to_replace_findings(given.output, given.force);
   const Findings findings = study(given, context);
   context.result = findings.json;
@@ -62,7 +63,7 @@ void run_stability(const Arguments& given, Context& context) {
 }  // namespace
 
 void add_stability(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StabilityVerbArguments>();
   Verb verb = add_verb(
       app, context, "stability", "Map where virtual walls and laws go unstable, against theory",
       "kerf stability --device sim:scissors --grip light -o wall\n"

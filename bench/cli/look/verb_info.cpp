@@ -14,10 +14,10 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
-#include "cli/verbs.h"
-#include "loop/run.h"
+#include "program/verbs.h"
 #include "recordings/summary.h"
 #include "regress/stored_facts.h"
+#include "run/run.h"
 #include "sealed/session_facts.h"
 
 namespace kerf::bench {
@@ -25,7 +25,7 @@ namespace {
 
 constexpr auto refresh = std::chrono::milliseconds(200);
 
-struct Arguments {
+struct InfoVerbArguments {
   std::string recording;
   bool follow = false;
   bool schema = false;
@@ -91,7 +91,7 @@ void follow(const std::string& name) {
   if (terminal) say("");
 }
 
-void run_info(const Arguments& arguments, Context& context) {
+void run_info(const InfoVerbArguments& arguments, Context& context) {
   if (arguments.schema) return print_schema(context);
   if (arguments.recording.empty()) {
     throw std::invalid_argument("a recording is needed, for example 'kerf info cut.h5'; or --schema");
@@ -116,7 +116,7 @@ void run_info(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_info(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InfoVerbArguments>();
   Verb verb =
       add_verb(app, context, "info",
                "Say what is in a recording, also in one that is still written, a session or stored forces",

@@ -10,18 +10,20 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "prepare/prepare.h"
 #include "prepare/rows.h"
+#include "program/verbs.h"
 #include "recordings/provenance.h"
+#include "report/filter_charts.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
 
 using nlohmann::ordered_json;
 
-struct Arguments {
+struct PrepareVerbArguments {
   std::string recording;
   std::string output;
   std::string free;
@@ -35,10 +37,6 @@ struct Arguments {
   bool force = false;
   PrepareOptions options;
 };
-
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
 
 ordered_json to_json(const Weight& weight) {
   return {{"mass_kg", weight.mass_kg},
@@ -73,9 +71,9 @@ ordered_json to_json(const ContactsFound& found, const std::string& signal) {
   ordered_json contacts = ordered_json::array();
   for (const ContactFound& contact : found.contacts) {
     contacts.push_back({{"onset_s", contact.onset_s},
-                        {"onset_error_s", number(contact.onset_error_s)},
-                        {"onset_position", number(contact.onset_position)},
-                        {"onset_position_error", number(contact.onset_position_error)},
+                        {"onset_error_s", json_number(contact.onset_error_s)},
+                        {"onset_position", json_number(contact.onset_position)},
+                        {"onset_position_error", json_number(contact.onset_position_error)},
                         {"travel", contact.travel},
                         {"first_row", contact.rows.begin},
                         {"rows", contact.rows.end - contact.rows.begin},
@@ -185,7 +183,7 @@ Labels parse_labels(const std::string& text) {
       fmt::format("--score-labels: '{}' is not CHANNEL=VALUE, for example label=3", text));
 }
 
-PrepareOptions options_of(const Arguments& arguments) {
+PrepareOptions options_of(const PrepareVerbArguments& arguments) {
   PrepareOptions options = arguments.options;
   WeightOptions& weight = options.weight_options;
   if (!arguments.free.empty()) options.contact.free = parse_spans(arguments.free);
@@ -207,7 +205,7 @@ PrepareOptions options_of(const Arguments& arguments) {
   return options;
 }
 
-void run_prepare(const Arguments& arguments, Context& context) {
+void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
   const PrepareOptions options = options_of(arguments);
   std::error_code absent;
   if (std::filesystem::equivalent(arguments.recording, arguments.output, absent)) {
@@ -247,7 +245,7 @@ void run_prepare(const Arguments& arguments, Context& context) {
   say(fmt::format("{}: {} of {} rows", arguments.output, prepared.recording.rows(), prepared.rows_before));
 }
 
-void add_contact_options(Verb& verb, Arguments& arguments) {
+void add_contact_options(Verb& verb, PrepareVerbArguments& arguments) {
   PrepareOptions& options = arguments.options;
   verb.add_flag("--onset", options.onset, "Find contacts; events, and the contact position of the axis");
   verb.add_option("--axis", options.axis,
@@ -272,7 +270,7 @@ void add_contact_options(Verb& verb, Arguments& arguments) {
   verb.add_option("--score-labels", arguments.labels, "CHANNEL=VALUE: score the contacts against labels");
 }
 
-void add_filter_options(Verb& verb, Arguments& arguments) {
+void add_filter_options(Verb& verb, PrepareVerbArguments& arguments) {
   verb.add_option(
       "--filter", arguments.filter,
       "butterworth2:HZ, butterworth4:HZ, critically-damped:HZ, first-order:10rad/s, moving-mean:S, "
@@ -286,7 +284,7 @@ void add_filter_options(Verb& verb, Arguments& arguments) {
 }  // namespace
 
 void add_prepare(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<PrepareVerbArguments>();
   PrepareOptions& options = arguments->options;
   Verb verb = add_verb(
       app, context, "prepare",

@@ -3,14 +3,14 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "program/verbs.h"
 #include "report/page.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct ReportVerbArguments {
   std::string recording;
   std::string fits;
   std::string check;
@@ -19,7 +19,7 @@ struct Arguments {
   bool force = false;
 };
 
-void run_report(const Arguments& arguments, Context& context) {
+void run_report(const ReportVerbArguments& arguments, Context& context) {
   refuse_to_replace(arguments.output, arguments.force);
   ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
   if (!arguments.fits.empty()) input.fits = arguments.fits;
@@ -32,7 +32,7 @@ void run_report(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_report(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportVerbArguments>();
   Verb verb = add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
                        "kerf report punch.h5 --fits fits --check check.json -o punch.html",
                        [arguments, &context] { run_report(*arguments, context); });

@@ -6,8 +6,8 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "program/verbs.h"
 #include "recordings/axes.h"
 #include "recordings/provenance.h"
 #include "report/charts.h"
@@ -16,7 +16,7 @@
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct SegmentVerbArguments {
   std::string recording;
   std::string axis;
   std::string closing;
@@ -46,7 +46,7 @@ nlohmann::ordered_json to_json(const schema::Recording& recording) {
           {"phases", phases}};
 }
 
-void run_segment(const Arguments& arguments, Context& context) {
+void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   schema::Recording recording = schema::read_recording(arguments.recording);
   SegmentOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);
@@ -77,7 +77,7 @@ void run_segment(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_segment(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SegmentVerbArguments>();
   Verb verb = add_verb(
       app, context, "segment", "Find the cycles of opening and closing in a recording and store them in it",
       "kerf segment punch.h5 -o charts", [arguments, &context] { run_segment(*arguments, context); });

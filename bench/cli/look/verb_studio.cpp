@@ -7,15 +7,15 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
-#include "loop/run.h"
-#include "studio/studio.h"
-#include "web/browser_link.h"
+#include "pages/browser_link.h"
+#include "program/verbs.h"
+#include "run/run.h"
+#include "server/studio.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct StudioVerbArguments {
   std::string folder = ".";
   std::string device;
   std::string key_file;
@@ -33,7 +33,7 @@ void open_link(const std::string& url, std::optional<BrowserLink>& link) {
   }
 }
 
-void run_studio(const Arguments& arguments, Context& context) {
+void run_studio(const StudioVerbArguments& arguments, Context& context) {
   StudioOptions options{.folder = arguments.folder,
                         .port = static_cast<std::uint16_t>(arguments.port),
                         .key_file = arguments.key_file};
@@ -58,7 +58,7 @@ void run_studio(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_studio(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<StudioVerbArguments>();
   Verb verb = add_verb(
       app, context, "studio", "See, draw and judge in a browser",
       "kerf studio lab --open\n\n"

@@ -5,7 +5,7 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/app.h"
+#include "program/app.h"
 
 #include <iostream>
 #include <stdexcept>
@@ -10,7 +10,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/loop_arguments.h"
+#include "program/loop_arguments.h"
 
 #include <charconv>
 #include <stdexcept>
@@ -6,7 +6,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "cli/app.h"
+#include "program/app.h"
+#include "program/progress.h"
 
 namespace kerf::bench {
 namespace {
@@ -73,6 +74,7 @@ RunOptions run_options(const LoopArguments& arguments) {
   if (arguments.seconds) options.seconds = *arguments.seconds;
   for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
   options.warn = warn;
+  options.progress = show_bar;
   return options;
 }
 

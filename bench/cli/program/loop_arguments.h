@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/verb.h"
-#include "loop/run.h"
+#include "program/verb.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "cli/progress.h"
+#include "program/progress.h"
 
 #include <algorithm>
 #include <condition_variable>
@@ -39,6 +39,11 @@ void Progress::draw(const std::stop_token& stop) {
     pause = std::chrono::milliseconds(100);
   }
   if (drawn) fmt::print(stderr, "\r{:{}}\r", "", label_.size() + bar_width + 10);
+}
+
+void show_bar(const std::string& label, std::size_t total, const CountedWork& work) {
+  Progress progress(label, total);
+  work(progress.done);
 }
 
 }  // namespace kerf::bench

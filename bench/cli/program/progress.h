@@ -6,6 +6,8 @@
 #include <string>
 #include <thread>
 
+#include "files/progress.h"
+
 namespace kerf::bench {
 
 /// A bar on standard error while something takes longer than a second and standard error is a terminal.
@@ -27,5 +29,8 @@ class Progress {
   std::size_t total_;
   std::jthread thread_;
 };
+
+/// A ShowProgress by such a bar.
+void show_bar(const std::string& label, std::size_t total, const CountedWork& work);
 
 }  // namespace kerf::bench

@@ -1,4 +1,4 @@
-#include "cli/verb.h"
+#include "program/verb.h"
 
 #include <cstddef>
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "cli/app.h"
+#include "program/app.h"
 
 namespace kerf::bench {
 

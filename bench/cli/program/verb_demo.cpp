@@ -11,13 +11,13 @@
 #include "choose/choose.h"
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "fits/fit_files.h"
 #include "fits/fit_recording.h"
-#include "loop/check.h"
+#include "program/verbs.h"
 #include "report/charts.h"
 #include "report/page.h"
+#include "run/check.h"
 
 namespace kerf::bench {
 namespace {
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double recorded_s = 20.0;
 
-struct Arguments {
+struct DemoVerbArguments {
   std::string folder = "kerf-demo";
   double check_s = 5.0;
   bool force = false;
@@ -73,7 +73,7 @@ LawChoice choose_for(const schema::Recording& recording, const LoopChecks& check
   return choose_law(recording, options, stop);
 }
 
-void run_demo(const Arguments& arguments, Context& context) {
+void run_demo(const DemoVerbArguments& arguments, Context& context) {
   const fs::path folder = arguments.folder;
   refuse_to_replace(folder / "report.html", arguments.force);
   fs::create_directories(folder);
@@ -122,7 +122,7 @@ void run_demo(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DemoVerbArguments>();
   Verb verb = add_verb(app, context, "demo", "From a simulated cut to a report, in some ten seconds",
                        "kerf demo -o kerf-demo", [arguments, &context] { run_demo(*arguments, context); });
   verb.add_option("-o,--output", arguments->folder, "Folder for its files").with_default();

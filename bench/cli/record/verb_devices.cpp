@@ -2,7 +2,7 @@
 
 #include <kerf/drivers/device.h>
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {

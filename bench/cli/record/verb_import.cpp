@@ -7,15 +7,16 @@
 
 #include <fmt/core.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "import/import.h"
+#include "program/progress.h"
+#include "program/verbs.h"
 #include "recordings/summary.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct ImportVerbArguments {
   std::string data;
   std::string output;
   std::vector<std::string> maps;
@@ -56,7 +57,7 @@ nlohmann::ordered_json to_json(const Imported& imported) {
   return result;
 }
 
-void run_import(const Arguments& arguments, Context& context) {
+void run_import(const ImportVerbArguments& arguments, Context& context) {
   if (arguments.maps.empty()) {
     throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}",
                                             arguments.data, explain_columns(arguments.data)));
@@ -72,6 +73,7 @@ void run_import(const Arguments& arguments, Context& context) {
   std::string map;
   for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
   options.map = parse_map(map);
+  options.progress = show_bar;
 
   const Imported imported = import_text(arguments.data, options);
   schema::write_recording(arguments.output, imported.recording);
@@ -88,7 +90,7 @@ void run_import(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_import(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ImportVerbArguments>();
   Verb verb = add_verb(
       app, context, "import", "Turn CSV, TSV or an instrument's text file into a recording, in SI",
       "kerf import punch.txt --map 'time=5[ms],position=4[deg],force=2[gf]' -o punch.h5\n\n"

@@ -4,22 +4,22 @@
 
 #include <fmt/core.h>
 
-#include "cli/loop_arguments.h"
-#include "cli/verbs.h"
-#include "loop/check.h"
-#include "loop/run.h"
+#include "program/loop_arguments.h"
+#include "program/verbs.h"
 #include "recordings/summary.h"
+#include "run/check.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct RecordVerbArguments {
   LoopArguments loop;
   std::string law;
   std::string output;
 };
 
-void run_record(const Arguments& arguments, Context& context) {
+void run_record(const RecordVerbArguments& arguments, Context& context) {
   RunOptions options = run_options(arguments.loop);
   options.record = arguments.output;
   if (!arguments.law.empty()) options.law = read_law_file(arguments.law);
@@ -50,7 +50,7 @@ void run_record(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_record(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecordVerbArguments>();
   Verb verb =
       add_verb(app, context, "record", "Record a device's trajectory and forces",
                "kerf record --device sim:scissors --seconds 20 --virtual -o cut.h5\n\n"

@@ -5,18 +5,18 @@
 
 #include <kerf/schema/repair.h>
 
-#include "cli/verbs.h"
+#include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct RepairVerbArguments {
   std::string recording;
   std::string output;
   bool force = false;
 };
 
-void run_repair(const Arguments& arguments, Context& context) {
+void run_repair(const RepairVerbArguments& arguments, Context& context) {
   const schema::Repaired repaired =
       schema::repair(arguments.recording, {.output = arguments.output, .replace = arguments.force});
   context.result = {
@@ -28,7 +28,7 @@ void run_repair(const Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_repair(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RepairVerbArguments>();
   Verb verb =
       add_verb(app, context, "repair", "Close a recording that a crash left open",
                "kerf repair cut.h5\n\n"

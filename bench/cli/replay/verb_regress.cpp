@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "cli/verbs.h"
 #include "files/whole_file.h"
+#include "program/verbs.h"
 #include "regress/context.h"
 #include "regress/junit.h"
 #include "regress/regress_page.h"
@@ -18,7 +18,7 @@
 namespace kerf::bench {
 namespace {
 
-struct Arguments {
+struct RegressVerbArguments {
   std::string action;
   std::string suite;
   SuiteOptions options;
@@ -50,7 +50,7 @@ void refuse(bool given, std::string_view option, std::string_view action) {
   if (given) throw std::invalid_argument(fmt::format("{} is for 'kerf regress {}'", option, action));
 }
 
-void run_cases(const Arguments& arguments, const Suite& suite, Context& context) {
+void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   refuse(!arguments.reason.empty(), "--reason", "update");
   refuse(arguments.yes, "--yes", "update");
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
@@ -95,7 +95,7 @@ bool confirmed(bool yes) {
   return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
 }
 
-void update_forces(const Arguments& arguments, const Suite& suite, Context& context) {
+void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   refuse(!arguments.junit.empty(), "--junit", "run");
   refuse(!arguments.output.empty(), "-o", "run");
   if (arguments.reason.find_first_not_of(" \t\r\n") == std::string::npos)
@@ -123,7 +123,7 @@ void update_forces(const Arguments& arguments, const Suite& suite, Context& cont
                   1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
 }
 
-void run_regress(Arguments& arguments, Context& context) {
+void run_regress(RegressVerbArguments& arguments, Context& context) {
   arguments.options.tick_costs = !arguments.no_cost;
   const Suite suite = read_suite(arguments.suite);
   if (arguments.action == "run") {
@@ -136,7 +136,7 @@ void run_regress(Arguments& arguments, Context& context) {
 }  // namespace
 
 void add_regress(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RegressVerbArguments>();
   Verb verb =
       add_verb(app, context, "regress", "Compare rendered forces with stored ones, tick by tick",
                "kerf regress update suite.toml --reason 'first forces' --yes\n"

@@ -8,25 +8,25 @@
 
 #include <fmt/core.h>
 
-#include "cli/loop_arguments.h"
-#include "cli/verbs.h"
 #include "files/whole_file.h"
 #include "laws/render.h"
-#include "loop/check.h"
 #include "prepare/rows.h"
+#include "program/loop_arguments.h"
+#include "program/verbs.h"
 #include "recordings/axes.h"
 #include "replay/open_loop.h"
 #include "replay/path_rendering.h"
 #include "replay/replay_files.h"
 #include "replay/source.h"
 #include "replay/table.h"
+#include "run/check.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct ReplayVerbArguments {
   LoopArguments loop;
   std::string recording;
   std::string as;
@@ -52,7 +52,7 @@ void refuse_where(bool given, const char* option, const char* mode) {
   if (given) throw std::invalid_argument(fmt::format("{} says nothing to {}", option, mode));
 }
 
-void check_mode(const Arguments& arguments) {
+void check_mode(const ReplayVerbArguments& arguments) {
   const bool through = !arguments.through.empty();
   if (through != arguments.as.empty())
     throw std::invalid_argument("give one of --as table, --as path and --through LAW");
@@ -72,19 +72,19 @@ void check_mode(const Arguments& arguments) {
   refuse_where(through && !arguments.axis.empty(), "--axis", mode);
 }
 
-Source source_of(const Arguments& arguments) {
+Source source_of(const ReplayVerbArguments& arguments) {
   SelectOptions select{.from_s = arguments.from_s, .to_s = arguments.to_s, .cycles = {}};
   if (!arguments.cycles.empty()) select.cycles = parse_cycles(arguments.cycles);
   return select_rows(schema::read_recording(arguments.recording), select, arguments.recording);
 }
 
 /// A law under another contact than its file says.
-void place(const Arguments& arguments, LawFile& law) {
+void place(const ReplayVerbArguments& arguments, LawFile& law) {
   if (arguments.contact) law.contact.position = *arguments.contact;
   if (!arguments.direction.empty()) law.contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
 }
 
-std::vector<NamedLaw> laws_of(const Arguments& arguments) {
+std::vector<NamedLaw> laws_of(const ReplayVerbArguments& arguments) {
   std::vector<NamedLaw> laws;
   for (const std::string& file : arguments.through) {
     std::string stem = fs::path(file).filename().string();
@@ -124,7 +124,7 @@ void say_open_loop(const nlohmann::ordered_json& json) {
   }
 }
 
-void replay_through(const Arguments& arguments, Context& context, Source source) {
+void replay_through(const ReplayVerbArguments& arguments, Context& context, Source source) {
   const std::vector<NamedLaw> laws = laws_of(arguments);
   if (!arguments.output.empty())
     refuse_to_replace(fs::path(arguments.output) / "replay.json", arguments.loop.options.replace);
@@ -163,7 +163,7 @@ void replay_through(const Arguments& arguments, Context& context, Source source)
 }
 
 /// What both closed loops tell of the run.
-void finish_run(const Arguments& arguments, Context& context, const RunResult& result) {
+void finish_run(const ReplayVerbArguments& arguments, Context& context, const RunResult& result) {
   const Verdict verdict = judge(result);
   context.result["check"] = check_as_json(result, verdict);
   context.result["recording"] = arguments.recording;
@@ -179,7 +179,7 @@ void finish_run(const Arguments& arguments, Context& context, const RunResult& r
                   result.report.ticks(), result.device.uri, result.report.missed()));
 }
 
-RunOptions run_options_of(const Arguments& arguments) {
+RunOptions run_options_of(const ReplayVerbArguments& arguments) {
   RunOptions options = run_options(arguments.loop);
   if (!arguments.record.empty()) options.record = arguments.record;
   if (!arguments.output.empty())
@@ -187,7 +187,7 @@ RunOptions run_options_of(const Arguments& arguments) {
   return options;
 }
 
-void replay_as_table(const Arguments& arguments, Context& context, const Source& source) {
+void replay_as_table(const ReplayVerbArguments& arguments, Context& context, const Source& source) {
   RunOptions options = run_options_of(arguments);
   options.scene.reset();  // the table is felt in place of its tissue
   const schema::Recording& recording = source.recording;
@@ -237,7 +237,7 @@ schema::Recording one_axis(schema::Recording recording, std::size_t axis) {
   return recording;
 }
 
-void replay_as_path(const Arguments& arguments, Context& context, Source source) {
+void replay_as_path(const ReplayVerbArguments& arguments, Context& context, Source source) {
   RunOptions options = run_options_of(arguments);
   if (!arguments.loop.seconds) {
     if (arguments.path.loop && options.virtual_time)
@@ -278,7 +278,7 @@ void replay_as_path(const Arguments& arguments, Context& context, Source source)
   finish_run(arguments, context, result);
 }
 
-void run_replay(const Arguments& arguments, Context& context) {
+void run_replay(const ReplayVerbArguments& arguments, Context& context) {
   check_mode(arguments);
   Source source = source_of(arguments);
   if (!arguments.through.empty()) return replay_through(arguments, context, std::move(source));
@@ -286,7 +286,7 @@ void run_replay(const Arguments& arguments, Context& context) {
   replay_as_path(arguments, context, std::move(source));
 }
 
-void add_path_options(Verb& verb, Arguments& arguments) {
+void add_path_options(Verb& verb, ReplayVerbArguments& arguments) {
   verb.add_option("--speed", arguments.path.speed, "So many times as fast, 0.1 to 10")
       .within(0.1, 10.0)
       .with_default();
@@ -310,7 +310,7 @@ void add_path_options(Verb& verb, Arguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, Context& context) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayVerbArguments>();
   Verb verb = add_verb(
       app, context, "replay", "Play a recording: as a table of forces, as a path, or through laws",
       "kerf replay cut.h5 --through fits/kelvin.law.toml --through fits/maxwell.law.toml -o replay\n"

@@ -10,6 +10,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "files/trimmed.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -39,12 +41,6 @@ std::vector<std::string_view> split_entries(std::string_view text) {
     }
   }
   return entries;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (text.starts_with(' ')) text.remove_prefix(1);
-  while (text.ends_with(' ')) text.remove_suffix(1);
-  return text;
 }
 
 bool is_channel_name(std::string_view name) {

@@ -11,7 +11,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "cli/progress.h"
 #include "files/mapped_file.h"
 #include "import/resample.h"
 #include "import/text_table.h"
@@ -195,9 +194,12 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
 
   std::vector<std::size_t> indices;
   for (const MappedColumn& column : imported.columns) indices.push_back(column.index);
-  Progress progress("importing", mapped.text().size());
   const auto begin = std::chrono::steady_clock::now();
-  Rows rows(parse_table(mapped.text(), imported.layout, indices, progress.done), imported.columns);
+  TextTable table;
+  options.progress("importing", mapped.text().size(), [&](std::atomic<std::size_t>& done) {
+    table = parse_table(mapped.text(), imported.layout, indices, done);
+  });
+  Rows rows(std::move(table), imported.columns);
   imported.parse_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.text()); });
   imported.bad_lines = rows.bad_lines();

@@ -7,6 +7,7 @@
 
 #include <kerf/schema/recording.h>
 
+#include "files/progress.h"
 #include "import/column_map.h"
 #include "import/text_layout.h"
 
@@ -18,6 +19,7 @@ struct ImportOptions {
   double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
   double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, within 5 to 401 samples
   bool strict = false;             ///< refuse a file that has lines which are not data
+  ShowProgress progress = show_no_progress;
 };
 
 /// A text file turned into a recording, and everything that was not as it should be.

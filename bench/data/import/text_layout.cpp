@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 #include <iconv.h>
 
+#include "files/trimmed.h"
 #include "import/decimal.h"
 #include "units/units.h"
 
@@ -21,12 +22,6 @@ constexpr std::size_t most_preamble_lines = 1000;
 constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view trimmed(std::string_view text) noexcept {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 bool is_number(std::string_view field, char point) noexcept {
   double value = 0.0;

@@ -5,7 +5,6 @@
 
 #include <kerf/schema/recording.h>
 
-#include "report/plot.h"
 #include "signal/filters.h"
 
 namespace kerf::bench {
@@ -23,9 +22,5 @@ struct FilterReport {
 /// are filtered apart. Axes without a finite value stay.
 /// @throws std::invalid_argument for a value that is not finite, or a filter that does not fit the rate.
 FilterReport apply_filter(schema::Recording& recording, const FilterSpec& filter, bool position);
-
-/// Gain over frequency, and phase beneath it: two charts.
-[[nodiscard]] Chart gain_chart(const FilterReport& report);
-[[nodiscard]] Chart phase_chart(const FilterReport& report);
 
 }  // namespace kerf::bench

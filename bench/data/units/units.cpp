@@ -13,6 +13,8 @@
 
 #include <fmt/core.h>
 
+#include "files/trimmed.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -62,12 +64,6 @@ constexpr std::array symbols{
     Symbol{"g", 1e-3, "kg"},
     Symbol{"%", 1e-2, "1"},
 };
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 const Symbol& find_symbol(std::string_view text, std::string_view whole) {
   const auto* const place =

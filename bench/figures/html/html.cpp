@@ -1,4 +1,4 @@
-#include "report/html.h"
+#include "html/html.h"
 
 #include <fmt/core.h>
 
@@ -73,6 +73,8 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows) {
   }
   return html + "</table></div>\n";
 }
+
+std::string html_figure(std::string_view svg) { return fmt::format("<figure>{}</figure>\n", svg); }
 
 std::string html_page(std::string_view title, std::string_view body) {
   return fmt::format(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@ namespace kerf::bench {
 enum class Colour { black, blue, vermillion, green, purple, orange, sky, yellow, grey };
 
 enum class Mark { line, points, circles, crosses, steps, boxes };
+
+/// A value that breaks the line of a curve.
+inline constexpr double line_break = std::numeric_limits<double>::quiet_NaN();
 
 /// One set of data in a chart. NaN breaks a line.
 struct Curve {

@@ -1,7 +1,8 @@
+#include "cases/case_findings.h"
+
 #include <fmt/core.h>
 
-#include "report/html.h"
-#include "stability/findings.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "stability/cases/cases.h"
+#include "cases/cases.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "stability/cases/each_case.h"
+#include "cases/each_case.h"
 
 namespace kerf::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "stability/cases/control_cost.h"
+#include "cases/control_cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <kerf/drivers/hand.h>
 #include <kerf/fitting/fit.h>
 
-#include "stability/cases/controlled_wall.h"
+#include "cases/controlled_wall.h"
 
 namespace kerf::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

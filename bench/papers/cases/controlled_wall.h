@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "stability/cases/devices.h"
-#include "stability/cases/trace.h"
+#include "cases/devices.h"
+#include "cases/trace.h"
 #include "stability/passivity_controlled.h"
 #include "stability/wall_force.h"
 

@@ -1,4 +1,4 @@
-#include "stability/cases/devices.h"
+#include "cases/devices.h"
 
 #include <kerf/drivers/uri.h>
 

@@ -1,4 +1,4 @@
-#include "stability/cases/document.h"
+#include "cases/document.h"
 
 #include <stdexcept>
 #include <string_view>

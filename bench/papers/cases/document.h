@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "stability/cases/cases.h"
-#include "stability/cases/control_cost.h"
+#include "cases/cases.h"
+#include "cases/control_cost.h"
 
 namespace kerf::bench {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "stability/cases/cases.h"
+#include "cases/cases.h"
 
 namespace kerf::bench::cases {
 

@@ -6,8 +6,8 @@
 #include <kerf/drivers/gaussian.h>
 #include <kerf/models/two_thresholds.h>
 
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 
 namespace kerf::bench::cases {
 namespace {

@@ -8,8 +8,8 @@
 #include <kerf/models/lattice.h>
 #include <kerf/models/law.h>
 
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 
 namespace kerf::bench::cases {
 namespace {

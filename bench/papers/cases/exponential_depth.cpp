@@ -4,9 +4,9 @@
 
 #include <kerf/models/exponential.h>
 
-#include "stability/cases/devices.h"
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
+#include "cases/devices.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 #include "stability/law_limits.h"
 
 namespace kerf::bench::cases {

@@ -7,9 +7,9 @@
 
 #include <kerf/models/precontact.h>
 
-#include "stability/cases/devices.h"
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
+#include "cases/devices.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 #include "stability/wall_force.h"
 
 namespace kerf::bench::cases {

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
-#include "stability/cases/controlled_wall.h"
-#include "stability/cases/each_case.h"
+#include "cases/controlled_wall.h"
+#include "cases/each_case.h"
 
 namespace kerf::bench::cases {
 namespace {

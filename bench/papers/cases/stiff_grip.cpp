@@ -4,10 +4,10 @@
 
 #include <kerf/drivers/hand.h>
 
+#include "cases/devices.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 #include "stability/bisection.h"
-#include "stability/cases/devices.h"
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
 #include "stability/in_hand.h"
 #include "stability/wall_force.h"
 

@@ -1,4 +1,4 @@
-#include "stability/cases/trace.h"
+#include "cases/trace.h"
 
 #include <fmt/core.h>
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/plot.h"
+#include "plot/plot.h"
 #include "stability/sampled_loop.h"
 
 namespace kerf::bench {

@@ -5,10 +5,10 @@
 #include <kerf/drivers/hand.h>
 #include <kerf/drivers/simulated_scissors.h>
 
+#include "cases/devices.h"
+#include "cases/each_case.h"
+#include "cases/trace.h"
 #include "stability/bisection.h"
-#include "stability/cases/devices.h"
-#include "stability/cases/each_case.h"
-#include "stability/cases/trace.h"
 #include "stability/law_force.h"
 #include "stability/wall_theory.h"
 

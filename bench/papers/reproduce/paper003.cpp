@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/core.h>
 
+#include <kerf/mechanisms/angle.h>
 #include <kerf/models/scissors_mesh.h>
 
 #include "reproduce/reproduce.h"
@@ -12,7 +12,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double period_s = 1e-3;
 
 /// A slab of n by n nodes, 1 mm apart, soft enough for four sub-steps of its 1 ms tick.

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/mechanisms/angle.h>
 #include <kerf/models/branch.h>
 #include <kerf/models/piecewise.h>
 
@@ -17,7 +18,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double period_s = 1e-3;
 constexpr double contact_rad = 40.0 * degree;  // where the blades meet whatever is cut
 constexpr double force_jnd = 0.07;             // Weber fraction, Pang, Tan and Durlach 1991

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

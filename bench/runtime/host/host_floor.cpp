@@ -1,4 +1,4 @@
-#include "loop/host_floor.h"
+#include "host/host_floor.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,10 +13,10 @@
 #include <kerf/schema/recording.h>
 
 #include "files/whole_file.h"
+#include "host/realtime.h"
 #include "loop/clock.h"
 #include "loop/loop.h"
-#include "loop/realtime.h"
-#include "loop/recorder.h"
+#include "record/recorder.h"
 
 namespace kerf::bench {
 namespace {

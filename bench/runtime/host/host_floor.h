@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "loop/histogram.h"
+#include "host/histogram.h"
 
 namespace kerf::bench {
 

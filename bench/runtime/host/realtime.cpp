@@ -1,4 +1,4 @@
-#include "loop/realtime.h"
+#include "host/realtime.h"
 
 #include <algorithm>
 #include <array>

@@ -13,8 +13,8 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
+#include "host/histogram.h"
 #include "loop/command.h"
-#include "loop/histogram.h"
 #include "loop/safety.h"
 #include "loop/watchdog.h"
 

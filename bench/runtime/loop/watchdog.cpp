@@ -1,7 +1,7 @@
 #include "loop/watchdog.h"
 
+#include "host/realtime.h"
 #include "loop/clock.h"
-#include "loop/realtime.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "loop/device_recording.h"
+#include "record/device_recording.h"
 
 #include <system_error>
 #include <utility>

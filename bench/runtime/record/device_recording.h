@@ -9,7 +9,7 @@
 #include <kerf/schema/recording_writer.h>
 
 #include "loop/loop.h"
-#include "loop/recorder.h"
+#include "record/recorder.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {

@@ -3,9 +3,9 @@
 
 #include <fmt/core.h>
 
+#include "host/histogram.h"
 #include "loop/clock.h"
-#include "loop/histogram.h"
-#include "loop/row_ring.h"
+#include "record/row_ring.h"
 
 // What a push to the recorder's ring costs while another thread empties it, row after row at 100 kHz. Prints
 // JSON.

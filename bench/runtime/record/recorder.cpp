@@ -1,4 +1,4 @@
-#include "loop/recorder.h"
+#include "record/recorder.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "loop/realtime.h"
+#include "host/realtime.h"
 
 namespace kerf::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <kerf/schema/recording_writer.h>
 
 #include "loop/events.h"
-#include "loop/row_tap.h"
+#include "record/row_tap.h"
 
 namespace kerf::bench {
 

@@ -6,7 +6,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "loop/row_ring.h"
+#include "record/row_ring.h"
 
 namespace kerf::bench {
 

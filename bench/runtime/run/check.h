@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "loop/run.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 

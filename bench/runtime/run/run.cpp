@@ -1,4 +1,4 @@
-#include "loop/run.h"
+#include "run/run.h"
 
 #include <algorithm>
 #include <array>
@@ -12,12 +12,11 @@
 
 #include <kerf/drivers/sensed_device.h>
 
-#include "cli/progress.h"
 #include "laws/placement.h"
 #include "loop/clock.h"
-#include "loop/device_recording.h"
 #include "loop/law_switch.h"
-#include "loop/recorder.h"
+#include "record/device_recording.h"
+#include "record/recorder.h"
 
 namespace kerf::bench {
 namespace {
@@ -86,21 +85,10 @@ class Run {
   RunResult run() {
     const auto recorder = open_recorder();
     if (!options_.virtual_time) know_the_machine();
-    {
-      const std::string label =
-          recorder ? "recording " + options_.record->string() : "running " + options_.device_uri;
-      Progress progress(options_.progress ? label : "", static_cast<std::size_t>(loop_.ticks));
-      const LoopControl control{.stop = stop_, .done = progress.done, .heartbeat = heartbeat_};
-      NoRecorder none;
-      if (options_.each_row) {
-        ShownLog log(options_.each_row, recorder.get());
-        run_by_clock(log, control);
-      } else if (recorder) {
-        run_by_clock(*recorder, control);
-      } else {
-        run_by_clock(none, control);
-      }
-    }
+    options_.progress(recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
+                      static_cast<std::size_t>(loop_.ticks), [&](std::atomic<std::size_t>& done) {
+                        run_counted({.stop = stop_, .done = done, .heartbeat = heartbeat_}, recorder.get());
+                      });
     result_.figures = device_->figures();
     if (recorder) close(*recorder);
     if (result_.report.end == LoopEnd::device_lost) {
@@ -112,6 +100,18 @@ class Run {
   }
 
  private:
+  void run_counted(const LoopControl& control, Recorder* recorder) {
+    NoRecorder none;
+    if (options_.each_row) {
+      ShownLog log(options_.each_row, recorder);
+      run_by_clock(log, control);
+    } else if (recorder != nullptr) {
+      run_by_clock(*recorder, control);
+    } else {
+      run_by_clock(none, control);
+    }
+  }
+
   std::unique_ptr<drivers::Device> open() {
     drivers::Surroundings surroundings;
     if (options_.scene) {

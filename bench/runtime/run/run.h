@@ -11,10 +11,11 @@
 
 #include <kerf/drivers/device.h>
 
+#include "files/progress.h"
+#include "host/host_floor.h"
+#include "host/realtime.h"
 #include "laws/law_file.h"
-#include "loop/host_floor.h"
 #include "loop/loop.h"
-#include "loop/realtime.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {
@@ -55,7 +56,7 @@ struct RunOptions {
   /// and need not be known anew; 0: only how early to wake up is measured. By the wall clock only.
   double floor_s = 0.0;
   bool floor_anew = false;
-  bool progress = true;                        ///< a bar on a terminal
+  ShowProgress progress = show_no_progress;
   std::function<void(std::string_view)> warn;  ///< told at once what is wrong with the recording
 };
 

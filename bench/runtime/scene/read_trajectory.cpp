@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/core.h>
+
+#include <kerf/mechanisms/angle.h>
 
 #include "laws/placement.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double longest_s = 3600.0;
 constexpr double cycles_at_most = 100.0;
 constexpr std::size_t keyframes_at_most = 1000;

@@ -1,18 +1,17 @@
 #include "scene/scene.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include <kerf/mechanisms/angle.h>
+
 #include "laws/placement.h"
 
 namespace kerf::bench {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// The layers of a tissue on one axis, each with what it remembers.
 class LayeredTissue {

@@ -1,4 +1,4 @@
-#include "answers/analysis_charts.h"
+#include "answer_pages/analysis_charts.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "answers/analysis_words.h"
+#include "answer_pages/analysis_words.h"
 
 namespace kerf::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "answers/analysis.h"
-#include "report/plot.h"
+#include "plot/plot.h"
 
 namespace kerf::bench {
 

@@ -1,20 +1,19 @@
-#include "answers/analysis_json.h"
+#include "answer_pages/analysis_json.h"
 
 #include <cmath>
 
 #include <fmt/core.h>
 
-#include "answers/analysis_words.h"
+#include "answer_pages/analysis_words.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json pair_of(psychophysics::Interval interval) {
-  return json::array({number(interval.lower), number(interval.upper)});
+  return json::array({json_number(interval.lower), json_number(interval.upper)});
 }
 
 json note_of(const std::string& note) { return note.empty() ? json(nullptr) : json(note); }
@@ -28,13 +27,13 @@ json equivalence_as_json(const AnswerGroup& group, const AnalysisOptions& option
   json result{{"of", group.d_prime ? "dprime" : "preference"}};
   if (group.d_prime) {
     result["bound"] = options.d_prime_bound;
-    result["excluded_above"] = number(group.excluded_d_prime);
+    result["excluded_above"] = json_number(group.excluded_d_prime);
   } else {
     result["margin"] = options.margin;
-    result["excluded_margin"] = number(group.excluded_margin);
+    result["excluded_margin"] = json_number(group.excluded_margin);
   }
   result["level"] = options.level;
-  result["p_value"] = number(group.equivalence->p);
+  result["p_value"] = json_number(group.equivalence->p);
   result["interval"] = pair_of(group.equivalence->interval);
   result["shown"] = group.equivalence->is_shown;
   return result;
@@ -45,7 +44,7 @@ json power_as_json(const AnswerGroup& group) {
   for (const TestPower& power : group.power) {
     result.push_back(
         {{"truth", power.truth},
-         {"power", number(power.power)},
+         {"power", json_number(power.power)},
          {"trials_for_0.8", power.trials_needed > 0 ? json(power.trials_needed) : json(nullptr)}});
   }
   return result;
@@ -59,15 +58,15 @@ void add_group(json& result, const AnswerGroup& group, const AnalysisOptions& op
   result["count"] = group.count.successes;
   result["proportion"] = static_cast<double>(group.count.successes) / group.count.trials;
   result["chance"] = group.chance;
-  result["p_value"] = number(group.p_value);
+  result["p_value"] = json_number(group.p_value);
   result["main_test"] = std::isnan(group.p_value) ? "none" : group.one_sided ? "one-sided" : "two-sided";
-  result["p_greater"] = number(group.p_greater);
-  result["p_two_sided"] = number(group.p_two_sided);
+  result["p_greater"] = json_number(group.p_greater);
+  result["p_two_sided"] = json_number(group.p_two_sided);
   result["ci95"] = pair_of(group.interval);
   result["wilson95"] = pair_of(group.wilson);
-  result["dprime"] = group.d_prime ? number(group.d_prime->value) : json(nullptr);
+  result["dprime"] = group.d_prime ? json_number(group.d_prime->value) : json(nullptr);
   result["dprime_ci95"] = group.d_prime ? pair_of(group.d_prime->interval) : json(nullptr);
-  result["dprime_std_error"] = group.d_prime ? number(group.d_prime->standard_error) : json(nullptr);
+  result["dprime_std_error"] = group.d_prime ? json_number(group.d_prime->standard_error) : json(nullptr);
   result["power"] = power_as_json(group);
   result["equivalence"] = equivalence_as_json(group, options);
   result["note"] = note_of(group.note);
@@ -78,7 +77,7 @@ json groups_as_json(const std::vector<AnswerGroup>& groups, const char* key, con
   for (const AnswerGroup& group : groups) {
     json& one = result.emplace_back(json{{key, group.name}});
     add_group(one, group, options);
-    one["p_adjusted"] = number(group.p_adjusted);
+    one["p_adjusted"] = json_number(group.p_adjusted);
   }
   return result;
 }
@@ -87,9 +86,9 @@ json spread_as_json(const SubjectSpread& spread) {
   json result{{"subjects", spread.subjects},
               {"equal",
                {{"test", "Fisher-Freeman-Halton"},
-                {"chi_squared", number(spread.equal.statistic)},
+                {"chi_squared", json_number(spread.equal.statistic)},
                 {"freedom", spread.equal.freedom},
-                {"p_value", number(spread.equal.p)},
+                {"p_value", json_number(spread.equal.p)},
                 {"exact", spread.equal.is_exact}}},
               {"mean", nullptr},
               {"ci95", nullptr},
@@ -99,28 +98,29 @@ json spread_as_json(const SubjectSpread& spread) {
               {"note", note_of(spread.note)}};
   if (!spread.population) return result;
   const auto& population = *spread.population;
-  result["mean"] = number(population.mean);
+  result["mean"] = json_number(population.mean);
   result["ci95"] = pair_of(population.interval);
-  result["p_value"] = number(population.p_value);
+  result["p_value"] = json_number(population.p_value);
   if (population.d_prime) {
-    result["dprime"] = number(population.d_prime_of_mean);
+    result["dprime"] = json_number(population.d_prime_of_mean);
     result["dprime_ci95"] = pair_of(*population.d_prime);
   }
   return result;
 }
 
 json bias_as_json(const SlotBias& bias, Design design) {
-  json result{{"slots", json::array()}, {"p_value", bias.note.empty() ? number(bias.test.p) : json(nullptr)}};
+  json result{{"slots", json::array()},
+              {"p_value", bias.note.empty() ? json_number(bias.test.p) : json(nullptr)}};
   for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
     result["slots"].push_back({{"slot", label_of(design, slot)},
                                {"answers", bias.answers[slot]},
                                {"right", count_as_json(bias.right_in[slot])}});
   }
   if (bias.detection) {
-    result["dprime"] = number(bias.detection->d_prime);
+    result["dprime"] = json_number(bias.detection->d_prime);
     result["dprime_ci95"] = pair_of(bias.detection->interval);
-    result["criterion"] = number(bias.detection->criterion);
-    result["criterion_std_error"] = number(bias.detection->criterion_standard_error);
+    result["criterion"] = json_number(bias.detection->criterion);
+    result["criterion_std_error"] = json_number(bias.detection->criterion_standard_error);
   }
   result["note"] = note_of(bias.note);
   return result;
@@ -129,18 +129,18 @@ json bias_as_json(const SlotBias& bias, Design design) {
 json scale_as_json(const psychophysics::Ranking& ranking) {
   json worth = json::array();
   json error = json::array();
-  for (const double value : ranking.worth) worth.push_back(number(value));
-  for (const double value : ranking.standard_error) error.push_back(number(value));
+  for (const double value : ranking.worth) worth.push_back(json_number(value));
+  for (const double value : ranking.standard_error) error.push_back(json_number(value));
   return {{"worth", std::move(worth)},
           {"std_error", std::move(error)},
           {"all_equal",
-           {{"ratio", number(ranking.ratio)},
+           {{"ratio", json_number(ranking.ratio)},
             {"freedom", ranking.ratio_freedom},
-            {"p_value", number(ranking.ratio_p)}}},
+            {"p_value", json_number(ranking.ratio_p)}}},
           {"one_scale",
-           {{"deviance", number(ranking.deviance)},
+           {{"deviance", json_number(ranking.deviance)},
             {"freedom", ranking.deviance_freedom},
-            {"p_value", number(ranking.deviance_p)}}}};
+            {"p_value", json_number(ranking.deviance_p)}}}};
 }
 
 json rankings_as_json(const Analysis& analysis) {
@@ -154,10 +154,10 @@ json rankings_as_json(const Analysis& analysis) {
     for (const RankedPair& pair : ranking.pairs) {
       pairs.push_back({{"first", names[pair.first]},
                        {"second", names[pair.second]},
-                       {"difference", number(pair.difference.value)},
-                       {"std_error", number(pair.difference.standard_error)},
-                       {"p_value", number(pair.difference.p)},
-                       {"p_adjusted", number(pair.p_adjusted)}});
+                       {"difference", json_number(pair.difference.value)},
+                       {"std_error", json_number(pair.difference.standard_error)},
+                       {"p_value", json_number(pair.difference.p)},
+                       {"p_adjusted", json_number(pair.p_adjusted)}});
     }
     result.push_back(
         {{"tissue", ranking.tissue},
@@ -173,7 +173,7 @@ json rankings_as_json(const Analysis& analysis) {
 
 json threshold_as_json(const std::optional<psychophysics::Threshold>& threshold, const char* definition) {
   if (!threshold) return nullptr;
-  return {{"value", number(threshold->value)},
+  return {{"value", json_number(threshold->value)},
           {"ci95", pair_of(threshold->interval)},
           {"criterion", threshold->criterion},
           {"definition", definition},
@@ -183,16 +183,16 @@ json threshold_as_json(const std::optional<psychophysics::Threshold>& threshold,
 json curve_as_json(const psychophysics::PsychometricFit& fit) {
   return {{"shape", name_of(fit.curve.shape)},
           {"axis", fit.curve.axis == psychophysics::Axis::linear ? "linear" : "logarithmic"},
-          {"threshold", number(fit.curve.threshold)},
-          {"slope", number(fit.slope)},
+          {"threshold", json_number(fit.curve.threshold)},
+          {"slope", json_number(fit.slope)},
           {"slope_ci95", pair_of(fit.slope_interval)},
           {"guess", fit.curve.guess},
-          {"lapse", number(fit.curve.lapse)},
-          {"log_likelihood", number(fit.log_likelihood)},
-          {"deviance", number(fit.deviance)},
+          {"lapse", json_number(fit.curve.lapse)},
+          {"log_likelihood", json_number(fit.log_likelihood)},
+          {"deviance", json_number(fit.deviance)},
           {"freedom", fit.degrees_of_freedom},
-          {"overdispersion", number(fit.overdispersion)},
-          {"overdispersion_p", number(fit.overdispersion_p)}};
+          {"overdispersion", json_number(fit.overdispersion)},
+          {"overdispersion_p", json_number(fit.overdispersion_p)}};
 }
 
 json level_fit_as_json(const LevelFit& fit, bool two_sided) {
@@ -216,16 +216,16 @@ json level_fit_as_json(const LevelFit& fit, bool two_sided) {
     result["bootstrap"] = {{"samples", fit.bootstrap->samples},
                            {"threshold_ci95", pair_of(fit.bootstrap->threshold)},
                            {"slope_ci95", pair_of(fit.bootstrap->slope)},
-                           {"deviance_p", number(fit.bootstrap->deviance_p)}};
+                           {"deviance_p", json_number(fit.bootstrap->deviance_p)}};
   }
   return result;
 }
 
 json across_as_json(const std::optional<psychophysics::AcrossSubjects>& across) {
   if (!across) return nullptr;
-  return {{"mean", number(across->mean)},
+  return {{"mean", json_number(across->mean)},
           {"ci95", pair_of(across->interval)},
-          {"deviation", number(across->deviation)}};
+          {"deviation", json_number(across->deviation)}};
 }
 
 json levels_as_json(const LevelAnalysis& levels) {
@@ -241,10 +241,10 @@ json levels_as_json(const LevelAnalysis& levels) {
   for (const ShapeFit& shape : levels.shapes) {
     result["shapes"].push_back({{"shape", name_of(shape.shape)},
                                 {"parameters", shape.parameters},
-                                {"log_likelihood", number(shape.log_likelihood)},
-                                {"deviance", number(shape.deviance)},
-                                {"aic", number(shape.aic)},
-                                {"jnd", number(shape.jnd)}});
+                                {"log_likelihood", json_number(shape.log_likelihood)},
+                                {"deviance", json_number(shape.deviance)},
+                                {"aic", json_number(shape.aic)},
+                                {"jnd", json_number(shape.jnd)}});
   }
   return result;
 }
@@ -260,16 +260,16 @@ json tracks_as_json(const std::vector<AdaptiveTrack>& tracks) {
                                          {"quest_plus", nullptr},
                                          {"note", note_of(track.note)}});
     if (track.staircase) {
-      one["mean_of_reversals"] = {{"value", number(track.staircase->threshold)},
-                                  {"std_error_of_log", number(track.staircase->standard_error)},
-                                  {"criterion", number(track.staircase->probability)},
+      one["mean_of_reversals"] = {{"value", json_number(track.staircase->threshold)},
+                                  {"std_error_of_log", json_number(track.staircase->standard_error)},
+                                  {"criterion", json_number(track.staircase->probability)},
                                   {"reversals", track.staircase->reversals}};
     }
     if (track.quest) {
-      one["quest_plus"] = {{"threshold", number(track.quest->threshold)},
+      one["quest_plus"] = {{"threshold", json_number(track.quest->threshold)},
                            {"credible95", pair_of(track.quest->interval)},
-                           {"slope", number(track.quest->slope)},
-                           {"lapse", number(track.quest->lapse)}};
+                           {"slope", json_number(track.quest->slope)},
+                           {"lapse", json_number(track.quest->lapse)}};
     }
   }
   return result;
@@ -277,12 +277,12 @@ json tracks_as_json(const std::vector<AdaptiveTrack>& tracks) {
 
 json times_as_json(const ResponseTimes& times) {
   return {{"trials", times.trials},
-          {"median_s", number(times.median_s)},
+          {"median_s", json_number(times.median_s)},
           {"quartiles_s", pair_of({.lower = times.lower_quartile_s, .upper = times.upper_quartile_s})},
-          {"median_right_s", number(times.median_right_s)},
-          {"median_wrong_s", number(times.median_wrong_s)},
-          {"right_is_faster", number(times.right_is_faster)},
-          {"p_value", number(times.p_value)},
+          {"median_right_s", json_number(times.median_right_s)},
+          {"median_wrong_s", json_number(times.median_wrong_s)},
+          {"right_is_faster", json_number(times.right_is_faster)},
+          {"p_value", json_number(times.p_value)},
           {"note", note_of(times.note)}};
 }
 
@@ -319,7 +319,7 @@ json analysis_as_json(const Analysis& analysis) {
     result["note"] = analysis.main_test;
   }
   result["trials"] = analysis.trials;
-  result["p_value"] = number(analysis.p_value);
+  result["p_value"] = json_number(analysis.p_value);
   result["main_test"] = analysis.main_test;
   result["preferred"] = preferred_as_json(analysis);
   result["practice"] = analysis.practice;

@@ -1,16 +1,16 @@
-#include "answers/analysis_page.h"
+#include "answer_pages/analysis_page.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
 
-#include "answers/analysis_charts.h"
-#include "answers/analysis_json.h"
-#include "answers/analysis_words.h"
+#include "answer_pages/analysis_charts.h"
+#include "answer_pages/analysis_json.h"
+#include "answer_pages/analysis_words.h"
 #include "answers/answers_table.h"
 #include "files/whole_file.h"
-#include "report/html.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -189,7 +189,7 @@ std::string analysis_page(const Analysis& analysis, std::span<const std::string>
   body += list_of("What they do not show", analysis.shows_not);
   body += list_of("To be minded", analysis.warnings);
   if (!drawings.empty()) body += "<h2>Drawings</h2>\n";
-  for (const std::string& drawing : drawings) body += "<figure>" + drawing + "</figure>\n";
+  for (const std::string& drawing : drawings) body += html_figure(drawing);
   if (analysis.levels) body += "<h2>Psychometric functions</h2>\n" + level_section(analysis);
   if (!analysis.rankings.empty()) {
     body += "<h2>Ranking</h2>\n";

@@ -1,4 +1,4 @@
-#include "answers/analysis_words.h"
+#include "answer_pages/analysis_words.h"
 
 #include <cctype>
 #include <cmath>

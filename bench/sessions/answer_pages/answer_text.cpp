@@ -1,4 +1,4 @@
-#include "answers/answer_text.h"
+#include "answer_pages/answer_text.h"
 
 #include <array>
 #include <cmath>

@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "answer_pages/analysis_words.h"
 #include "answers/analysis.h"
-#include "answers/analysis_words.h"
 
 namespace kerf::bench {
 namespace {

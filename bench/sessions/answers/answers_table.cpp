@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include "answers/answer_text.h"
+#include "answer_pages/answer_text.h"
 #include "files/whole_file.h"
 
 namespace kerf::bench {

@@ -12,9 +12,9 @@
 #include <kerf/drivers/device.h>
 
 #include "laws/placement.h"
-#include "loop/run.h"
 #include "protocol/samples.h"
 #include "regress/suite.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {
@@ -143,7 +143,7 @@ void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, Fel
           },
       .each_row = [&](const schema::Row& row) { rows->take(row); },
       .ramp_s = std::min(protocol_->ramp_s, soft_start_s),
-      .progress = false};
+  };
   const LoopReport report = run_on_device(options, stop).report;
   if (const auto faults = report.ticks_with(schema::flag_law_fault); faults > 0) {
     throw std::invalid_argument(fmt::format("law '{}' gives no finite force on {} in {} of {} ticks",

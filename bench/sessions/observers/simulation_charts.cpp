@@ -6,12 +6,10 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
 /// An upright line with its ends, for an interval.
 void add_interval(Curve& curve, double x, const psychophysics::Interval& interval, double scale = 1.0) {
   curve.x.insert(curve.x.end(), {x, x, x});
-  curve.y.insert(curve.y.end(), {scale * interval.lower, scale * interval.upper, not_a_number});
+  curve.y.insert(curve.y.end(), {scale * interval.lower, scale * interval.upper, line_break});
 }
 
 /// The truth over the levels, and the answers of one experiment.
@@ -79,8 +77,8 @@ Chart pairs_chart(const Simulation& simulation) {
     const auto interval = psychophysics::clopper_pearson(count);
     points.x.push_back(100.0 * count.successes / count.trials);
     points.y.push_back(y - 0.15);
-    bars.x.insert(bars.x.end(), {100.0 * interval.lower, 100.0 * interval.upper, not_a_number});
-    bars.y.insert(bars.y.end(), {y - 0.15, y - 0.15, not_a_number});
+    bars.x.insert(bars.x.end(), {100.0 * interval.lower, 100.0 * interval.upper, line_break});
+    bars.y.insert(bars.y.end(), {y - 0.15, y - 0.15, line_break});
   }
   chart.y_range = {0.4, static_cast<double>(simulation.truth.cells.size()) + 0.6};
   chart.vertical.push_back({.at = 100.0 * simulation.truth.chance, .label = "chance"});
@@ -125,7 +123,7 @@ Chart precision_chart(const Simulation& simulation) {
   for (const PowerPoint& point : simulation.curve) {
     const auto x = static_cast<double>(point.trials);
     for (Curve* curve : {&ratio, &scatter, &bias}) curve->x.push_back(x);
-    ratio.y.push_back(std::isfinite(point.found.jnd_ratio) ? point.found.jnd_ratio : not_a_number);
+    ratio.y.push_back(std::isfinite(point.found.jnd_ratio) ? point.found.jnd_ratio : line_break);
     scatter.y.push_back(std::exp(point.found.jnd_spread));
     bias.y.push_back(1.0 + point.found.jnd_bias);
   }
@@ -155,8 +153,8 @@ Chart promises_chart(const Simulation& simulation) {
     const auto interval = share.interval();
     points.x.push_back(100.0 * share.value());
     points.y.push_back(y);
-    bars.x.insert(bars.x.end(), {100.0 * interval.lower, 100.0 * interval.upper, not_a_number});
-    bars.y.insert(bars.y.end(), {y, y, not_a_number});
+    bars.x.insert(bars.x.end(), {100.0 * interval.lower, 100.0 * interval.upper, line_break});
+    bars.y.insert(bars.y.end(), {y, y, line_break});
   };
   add("false alarms", simulation.false_alarms);
   add("d' covered", simulation.found.d_prime_covered);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "observers/simulation_report.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 using nlohmann::ordered_json;
 
 /// JSON knows no infinity and no NaN: null.
-ordered_json number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
 ordered_json json_of(const SimulatedShare& share) {
   if (share.count.trials == 0) return nullptr;
   const auto interval = share.interval();
@@ -29,16 +26,16 @@ ordered_json json_of(const SimulatedFindings& found) {
           {"jnd_found", json_of(found.jnd_found)},
           {"jnd_bounded", json_of(found.jnd_bounded)},
           {"jnd_coverage", json_of(found.jnd_covered)},
-          {"jnd_bias", number(found.jnd_bias)},
-          {"jnd_spread", number(found.jnd_spread)},
-          {"jnd_interval_ratio", number(found.jnd_ratio)},
+          {"jnd_bias", json_number(found.jnd_bias)},
+          {"jnd_spread", json_number(found.jnd_spread)},
+          {"jnd_interval_ratio", json_number(found.jnd_ratio)},
           {"d_prime_coverage", json_of(found.d_prime_covered)},
-          {"d_prime_median", number(found.d_prime_median)},
+          {"d_prime_median", json_number(found.d_prime_median)},
           {"notes", found.notes}};
 }
 
 ordered_json json_of(const PowerPoint& point) {
-  ordered_json json{{"trials", point.trials}, {"theory", number(point.theory)}};
+  ordered_json json{{"trials", point.trials}, {"theory", json_number(point.theory)}};
   json.update(json_of(point.found));
   return json;
 }
@@ -57,12 +54,16 @@ ordered_json json_of(const SimulatedTruth& truth) {
   ordered_json cells = ordered_json::array();
   for (const CellTruth& cell : truth.cells)
     cells.push_back({{"name", cell.name},
-                     {"level", number(cell.level)},
+                     {"level", json_number(cell.level)},
                      {"jnds", cell.jnds},
                      {"d_prime", cell.d_prime},
                      {"share", cell.share}});
-  return {{"chance", truth.chance},       {"share", number(truth.share)}, {"d_prime", number(truth.d_prime)},
-          {"criterion", truth.criterion}, {"jnd", number(truth.jnd)},     {"note", truth.note},
+  return {{"chance", truth.chance},
+          {"share", json_number(truth.share)},
+          {"d_prime", json_number(truth.d_prime)},
+          {"criterion", truth.criterion},
+          {"jnd", json_number(truth.jnd)},
+          {"note", truth.note},
           {"cells", std::move(cells)}};
 }
 
@@ -96,7 +97,7 @@ ordered_json simulation_json(const Simulation& simulation) {
       {"psychometric", std::move(psychometric)},
       {"level", options.analysis.level},
       {"found", json_of(simulation.found)},
-      {"power_by_theory", number(simulation.theory)},
+      {"power_by_theory", json_number(simulation.theory)},
       {"false_alarms", json_of(simulation.false_alarms)},
       {"session_s", simulation.mean_session_s},
       {"power_wanted", options.power},

@@ -2,13 +2,13 @@
 
 #include <fmt/core.h>
 
+#include "html/html.h"
 #include "observers/simulation_report.h"
-#include "report/html.h"
 
 namespace kerf::bench {
 namespace {
 
-std::string percent(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
+std::string percent_cell(double share) { return fmt::format("{:.1f} %", 100.0 * share); }
 
 std::string curve_table(const Simulation& simulation) {
   const auto cell = [](double value, auto text) {
@@ -27,8 +27,9 @@ std::string curve_table(const Simulation& simulation) {
     auto& row = rows.emplace_back(
         std::vector<std::string>{std::to_string(point.trials), fmt::format("{:.0f}", found.trials)});
     if (of_levels) {
-      row.insert(row.end(), {cell(found.jnd_covered.value(), percent), cell(found.jnd_bias, percent),
-                             cell(found.jnd_spread, percent), cell(found.jnd_ratio, plain)});
+      row.insert(row.end(),
+                 {cell(found.jnd_covered.value(), percent_cell), cell(found.jnd_bias, percent_cell),
+                  cell(found.jnd_spread, percent_cell), cell(found.jnd_ratio, plain)});
     } else {
       row.insert(row.end(), {cell(found.significant.value(), plain), cell(point.theory, plain)});
     }
@@ -50,7 +51,7 @@ std::string simulation_page(const Simulation& simulation) {
                         escaped(lines[i]));
   std::vector<Chart> charts;
   for (const Figure& figure : simulation_charts(simulation)) charts.push_back(figure.chart);
-  for (const std::string& svg : draw_all(charts)) body += "<figure>" + svg + "</figure>\n";
+  for (const std::string& svg : draw_all(charts)) body += html_figure(svg);
   if (!simulation.curve.empty()) {
     body += fmt::format("<h2>Numbers of trials</h2>\n<p class=\"soft\">{} experiments each.</p>\n",
                         simulation.curve_experiments);

@@ -7,6 +7,7 @@
 
 #include "sealed/bytes.h"
 #include "sealed/plan_json.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -15,20 +16,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t head_bytes = 4096;
 
-Json number(double value) { return std::isnan(value) ? Json(nullptr) : Json(value); }
-
 double number_in(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
 Json head_of(const RecordedTrial& trial) {
-  Json head{
-      {"what", to_json(trial.what)}, {"answer", trial.answer},   {"response_s", number(trial.response_s)},
-      {"switches", trial.switches},  {"at", trial.at},           {"ticks", trial.trace.size()},
-      {"axes", Json::array()},       {"channels", Json::array()}};
+  Json head{{"what", to_json(trial.what)},
+            {"answer", trial.answer},
+            {"response_s", json_number(trial.response_s)},
+            {"switches", trial.switches},
+            {"at", trial.at},
+            {"ticks", trial.trace.size()},
+            {"axes", Json::array()},
+            {"channels", Json::array()}};
   for (const schema::Axis& axis : trial.axes) {
     head["axes"].push_back({axis.name, axis.position_unit, axis.force_unit, axis.lever,
-                            number(axis.contact_position), number(axis.contact_direction)});
+                            json_number(axis.contact_position), json_number(axis.contact_direction)});
   }
   for (const schema::Channel& channel : trial.channels) {
     head["channels"].push_back({channel.name, channel.unit});

@@ -12,8 +12,8 @@
 
 #include "chart/tick_cost.h"
 #include "laws/placement.h"
-#include "loop/run.h"
 #include "protocol/samples.h"
+#include "run/run.h"
 #include "stability/in_hand.h"
 
 namespace kerf::bench {
@@ -107,7 +107,7 @@ void require_rendered(const NamedSample& sample, const Protocol& protocol, const
             }};
           },
       .ramp_s = protocol.ramp_s,
-      .progress = false};
+  };
   const LoopReport report = run_on_device(options, stop).report;
   if (const auto faults = report.ticks_with(schema::flag_law_fault); faults > 0) {
     throw std::invalid_argument(

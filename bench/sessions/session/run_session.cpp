@@ -27,7 +27,6 @@ class SessionRun {
     RunOptions loop = options_.loop;
     loop.rate_hz = store_.protocol().rate_hz;
     loop.seconds = longest_s;
-    loop.progress = false;
     loop.rendering = [&](const drivers::DeviceInfo& device) { return start(device); };
     loop.each_row = [this](const schema::Row& row) {
       rendering_.record(row);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "loop/run.h"
+#include "run/run.h"
 #include "sealed/session_store.h"
 #include "session/director.h"
 #include "subject/subject.h"

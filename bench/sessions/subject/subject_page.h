@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
+#include "http/http_server.h"
+#include "pages/gate.h"
 #include "subject/subject.h"
-#include "web/gate.h"
-#include "web/http_server.h"
 
 namespace kerf::bench {
 

@@ -3,11 +3,11 @@
 #include <utility>
 
 #include "chart/speed_accuracy.h"
+#include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
 #include "fits/fit_series.h"
 #include "laws/render.h"
 #include "segment/segment.h"
-#include "studio/segment_editor.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,8 +1,8 @@
-#include "studio/editor_json.h"
+#include "editor/editor_json.h"
 
 #include <cmath>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace kerf::bench {
 namespace {

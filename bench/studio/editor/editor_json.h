@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "studio/segment_editor.h"
+#include "editor/segment_editor.h"
 
 namespace kerf::bench {
 

@@ -1,13 +1,13 @@
-#include "studio/editor_routes.h"
+#include "editor/editor_routes.h"
 
 #include <cmath>
 #include <list>
 #include <memory>
 #include <utility>
 
+#include "editor/editor_json.h"
+#include "editor/segment_editor.h"
 #include "recordings/provenance.h"
-#include "studio/editor_json.h"
-#include "studio/segment_editor.h"
 
 namespace kerf::bench {
 namespace {

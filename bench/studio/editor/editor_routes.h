@@ -2,9 +2,9 @@
 
 #include <functional>
 
+#include "http/routes.h"
 #include "laws/law_file.h"
-#include "studio/workspace.h"
-#include "web/routes.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "studio/segment_editor.h"
+#include "editor/segment_editor.h"
 
 #include <algorithm>
 #include <cmath>

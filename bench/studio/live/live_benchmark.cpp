@@ -13,7 +13,7 @@
 #include "live/live_event.h"
 #include "live/live_loop.h"
 #include "loop/clock.h"
-#include "loop/run.h"
+#include "run/run.h"
 #include "views/trace_view.h"
 
 // What watching costs a loop, and what it costs itself. Prints JSON.
@@ -50,7 +50,7 @@ void print(const bench::Percentiles& wake, const bench::Percentiles& cycle, std:
 
 /// The loop by itself, with the law compiled into it, or with a rendering that may be changed.
 void run_alone(double seconds, bool is_steered) {
-  bench::RunOptions options{.seconds = seconds, .scene = bench::default_scene(), .progress = false};
+  bench::RunOptions options{.seconds = seconds, .scene = bench::default_scene()};
   bench::LiveRendering rendering(options.ramp_s);
   if (is_steered) {
     const bench::LawFile law = kelvin();

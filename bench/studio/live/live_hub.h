@@ -18,7 +18,7 @@
 #include "live/loop_timing.h"
 #include "live/row_history.h"
 #include "live/running_recording.h"
-#include "loop/row_tap.h"
+#include "record/row_tap.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {

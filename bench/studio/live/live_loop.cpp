@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/realtime.h"
 #include "laws/placement.h"
-#include "loop/realtime.h"
 #include "loop/without_signals.h"
 
 namespace kerf::bench {
@@ -23,7 +23,6 @@ RunOptions run_options(const LiveOptions& options) {
   run.ramp_s = options.ramp_s;
   run.passivity_control = options.passivity_control;
   run.scene = options.scene;
-  run.progress = false;
   if (!options.device_uri.empty()) {
     run.device_uri = options.device_uri;
   } else if (options.scene) {

@@ -16,7 +16,7 @@
 #include "live/live_hub.h"
 #include "live/live_rendering.h"
 #include "live/live_status.h"
-#include "loop/run.h"
+#include "run/run.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {

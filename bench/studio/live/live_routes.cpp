@@ -12,8 +12,8 @@ namespace {
 
 using Pace = Routes::Pace;
 
-constexpr std::size_t most_ticks = 100'000;  ///< in a column
-constexpr std::size_t most_columns = 10'000;
+constexpr std::size_t max_sent_ticks = 100'000;  ///< in a column
+constexpr std::size_t max_sent_columns = 10'000;
 constexpr double latest_s = 1e7;
 
 /// One viewer of the stream; sees nothing of the loop while a session runs.
@@ -50,7 +50,7 @@ class LiveAnswers {
   }
 
   [[nodiscard]] HttpResponse stream(const HttpRequest& request) const {
-    const std::size_t ticks = count_in_query(request, "ticks", most_ticks);
+    const std::size_t ticks = count_in_query(request, "ticks", max_sent_ticks);
     if (ticks == 0) throw RequestError(400, "parameter 'ticks' is 0: a column has at least one tick");
     const auto viewer = std::make_shared<LiveViewer>(loop_, hooks_.is_closed, ticks);
     return {.type = "text/event-stream", .body = viewer->next(), .more = [viewer] { return viewer->next(); }};
@@ -64,7 +64,7 @@ class LiveAnswers {
         bytes_of(history.view(counts_in_query(request, "traces", history.traces().size() - 1),
                               number_in_query(request, "from", -latest_s, latest_s),
                               number_in_query(request, "to", -latest_s, latest_s),
-                              count_in_query(request, "columns", most_columns))));
+                              count_in_query(request, "columns", max_sent_columns))));
   }
 
   [[nodiscard]] HttpResponse start(const HttpRequest& request) const {

@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "http/routes.h"
 #include "laws/law_file.h"
 #include "live/live_loop.h"
 #include "scene/scene.h"
-#include "web/routes.h"
 
 namespace kerf::bench {
 

@@ -7,7 +7,7 @@
 
 #include <kerf/drivers/device.h>
 
-#include "loop/histogram.h"
+#include "host/histogram.h"
 
 namespace kerf::bench {
 

@@ -7,7 +7,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "loop/histogram.h"
+#include "host/histogram.h"
 
 namespace kerf::bench {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "loop/device_recording.h"
+#include "record/device_recording.h"
 
 namespace kerf::bench {
 namespace {

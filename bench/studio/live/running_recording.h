@@ -9,7 +9,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
-#include "loop/recorder.h"
+#include "record/recorder.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {

@@ -1,11 +1,11 @@
-#include "studio/jobs.h"
+#include "results/jobs.h"
 
 #include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
 
-#include "loop/realtime.h"
+#include "host/realtime.h"
 #include "loop/without_signals.h"
 
 namespace kerf::bench {

@@ -13,7 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace kerf::bench {
 

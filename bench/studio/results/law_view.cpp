@@ -1,4 +1,4 @@
-#include "studio/law_view.h"
+#include "results/law_view.h"
 
 #include <array>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "laws/render.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -56,8 +57,6 @@ PictureRange range_of(const LawFile& law) {
   return {default_depth_m, "10 mm: the law itself has no end"};
 }
 
-json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json options_of(const models::Options& options) {
   json object = json::object();
   for (const auto& [name, value] : options)
@@ -70,12 +69,11 @@ json parameters_of(const LawFile& law) {
   const auto parameters = law.law.parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const models::ParameterInfo& info = parameters[i];
-    list.push_back(
-        {{"name", info.name},
-         {"value", law.law.values()[i]},
-         {"unit", models::unit_of(info.quantity, law.force_unit, law.position_unit)},
-         {"std_error", i < law.std_errors.size() ? finite_or_null(law.std_errors[i]) : json(nullptr)},
-         {"meaning", info.meaning}});
+    list.push_back({{"name", info.name},
+                    {"value", law.law.values()[i]},
+                    {"unit", models::unit_of(info.quantity, law.force_unit, law.position_unit)},
+                    {"std_error", i < law.std_errors.size() ? json_number(law.std_errors[i]) : json(nullptr)},
+                    {"meaning", info.meaning}});
   }
   return list;
 }

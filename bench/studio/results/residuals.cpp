@@ -1,4 +1,4 @@
-#include "studio/residuals.h"
+#include "results/residuals.h"
 
 #include <algorithm>
 #include <array>

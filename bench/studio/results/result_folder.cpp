@@ -1,4 +1,4 @@
-#include "studio/result_folder.h"
+#include "results/result_folder.h"
 
 #include <atomic>
 #include <cctype>
@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace kerf::bench {
 namespace {

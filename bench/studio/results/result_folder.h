@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "studio/workspace.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "studio/result_jobs.h"
+#include "results/result_jobs.h"
 
 #include <stdexcept>
 #include <utility>
@@ -9,10 +9,10 @@
 #include "choose/choice_files.h"
 #include "choose/choose_on_device.h"
 #include "fits/fit_files.h"
+#include "host/realtime.h"
 #include "laws/render.h"
-#include "loop/realtime.h"
 #include "recordings/axes.h"
-#include "studio/result_folder.h"
+#include "results/result_folder.h"
 
 namespace kerf::bench {
 namespace {

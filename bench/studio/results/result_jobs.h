@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "choose/candidates.h"
+#include "results/jobs.h"
 #include "stability/study.h"
-#include "studio/jobs.h"
-#include "studio/workspace.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

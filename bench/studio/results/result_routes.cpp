@@ -1,4 +1,4 @@
-#include "studio/result_routes.h"
+#include "results/result_routes.h"
 
 #include <array>
 #include <cmath>
@@ -13,10 +13,10 @@
 #include "files/whole_file.h"
 #include "laws/law_file.h"
 #include "recordings/axes.h"
+#include "results/law_view.h"
+#include "results/residuals.h"
+#include "results/result_jobs.h"
 #include "stability/in_hand.h"
-#include "studio/law_view.h"
-#include "studio/residuals.h"
-#include "studio/result_jobs.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "studio/jobs.h"
-#include "studio/workspace.h"
-#include "web/routes.h"
+#include "http/routes.h"
+#include "results/jobs.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

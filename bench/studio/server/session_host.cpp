@@ -1,16 +1,16 @@
-#include "studio/session_host.h"
+#include "server/session_host.h"
 
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "http/routes.h"
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
 #include "session/run_session.h"
 #include "subject/subject_words.h"
-#include "web/routes.h"
 
 namespace kerf::bench {
 namespace {

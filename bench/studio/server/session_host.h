@@ -12,9 +12,9 @@
 #include <thread>
 #include <vector>
 
-#include "loop/run.h"
+#include "http/http_server.h"
+#include "run/run.h"
 #include "subject/subject_page.h"
-#include "web/http_server.h"
 
 namespace kerf::bench {
 

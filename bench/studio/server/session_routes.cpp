@@ -1,4 +1,4 @@
-#include "studio/session_routes.h"
+#include "server/session_routes.h"
 
 #include <utility>
 

@@ -2,9 +2,9 @@
 
 #include <functional>
 
-#include "studio/session_host.h"
-#include "studio/workspace.h"
-#include "web/routes.h"
+#include "http/routes.h"
+#include "server/session_host.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

@@ -1,25 +1,25 @@
-#include "studio/studio.h"
+#include "server/studio.h"
 
 #include <optional>
 #include <string_view>
 
+#include "editor/editor_routes.h"
+#include "http/http_server.h"
+#include "http/routes.h"
 #include "laws/law_file.h"
 #include "live/live_loop.h"
 #include "live/live_routes.h"
+#include "pages/gate.h"
+#include "results/jobs.h"
+#include "results/result_routes.h"
 #include "scene/scene.h"
-#include "studio/editor_routes.h"
-#include "studio/jobs.h"
-#include "studio/result_routes.h"
-#include "studio/session_host.h"
-#include "studio/session_routes.h"
-#include "studio/studio_page.h"
-#include "studio/workspace.h"
-#include "studio/workspace_routes.h"
+#include "server/session_host.h"
+#include "server/session_routes.h"
+#include "server/studio_page.h"
 #include "views/recording_routes.h"
 #include "views/recording_views.h"
-#include "web/gate.h"
-#include "web/http_server.h"
-#include "web/routes.h"
+#include "workspace/workspace.h"
+#include "workspace/workspace_routes.h"
 
 namespace kerf::bench {
 namespace {

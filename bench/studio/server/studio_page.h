@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "web/page_files.h"
+#include "pages/page_files.h"
 
 namespace kerf::bench {
 

@@ -12,7 +12,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t bucket = MinMaxPyramid::rows_a_bucket;
 constexpr std::size_t fan = MinMaxPyramid::buckets_a_bucket;
 
 /// Buckets of each level, the finest first; the last has one, or none without a row.

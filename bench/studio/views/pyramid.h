@@ -84,4 +84,6 @@ class PyramidBuilder {
                                                    std::size_t place, std::uint64_t first_row,
                                                    std::span<const std::uint64_t> boundaries);
 
+inline constexpr std::size_t bucket = MinMaxPyramid::rows_a_bucket;
+
 }  // namespace kerf::bench

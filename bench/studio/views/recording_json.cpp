@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "segment/segment.h"
+#include "tables/json_number.h"
 #include "views/loops.h"
 
 namespace kerf::bench {
@@ -24,8 +25,6 @@ constexpr std::size_t most_spans = 20'000;
 std::string dumped(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
-
-ordered_json number(double value) { return std::isfinite(value) ? ordered_json(value) : ordered_json(); }
 
 /// A list of numbers, by hand: a loop has some hundred, and there may be a hundred loops.
 void append_list(std::string& text, std::span<const double> values) {
@@ -67,7 +66,7 @@ ordered_json events_of(const schema::Recording& about) {
   ordered_json events = ordered_json::array();
   for (std::size_t i = 0; i < std::min(about.events.size(), most_events); ++i) {
     const schema::Event& event = about.events[i];
-    events.push_back({{"time_s", number(event.time_s)}, {"kind", event.kind}, {"text", event.text}});
+    events.push_back({{"time_s", json_number(event.time_s)}, {"kind", event.kind}, {"text", event.text}});
   }
   return events;
 }
@@ -75,7 +74,7 @@ ordered_json events_of(const schema::Recording& about) {
 ordered_json gaps_of(const RecordingView& recording) {
   ordered_json gaps = ordered_json::array();
   for (const auto& [from_s, to_s] : recording.rows().gaps()) {
-    gaps.push_back({number(from_s), number(to_s)});
+    gaps.push_back({json_number(from_s), json_number(to_s)});
   }
   return gaps;
 }
@@ -111,12 +110,12 @@ ordered_json cycles_of(const RecordingView& recording) {
     if (spans.size() == most_spans) break;
     spans.push_back({{"cycle", span.cycle},
                      {"phase", name_of(span.phase)},
-                     {"from_s", number(times.at(span.begin))},
-                     {"to_s", number(times.at(span.end - 1))}});
+                     {"from_s", json_number(times.at(span.begin))},
+                     {"to_s", json_number(times.at(span.end - 1))}});
   }
   return {{"axis", cycles->axis},
-          {"closing_direction", number(cycles->closing_direction)},
-          {"contact_position", number(cycles->contact_position)},
+          {"closing_direction", json_number(cycles->closing_direction)},
+          {"contact_position", json_number(cycles->contact_position)},
           {"spans", std::move(spans)}};
 }
 
@@ -128,8 +127,8 @@ std::string recording_json(const RecordingView& recording, const std::string& id
   const schema::Header& header = about.header;
   return dumped({{"id", id},
                  {"rows", file.rows()},
-                 {"seconds", number(file.rows() > 0 ? file.last_time_s() - file.first_time_s() : 0.0)},
-                 {"from_s", number(file.rows() > 0 ? file.first_time_s() : 0.0)},
+                 {"seconds", json_number(file.rows() > 0 ? file.last_time_s() - file.first_time_s() : 0.0)},
+                 {"from_s", json_number(file.rows() > 0 ? file.first_time_s() : 0.0)},
                  {"period_s", file.period_s()},
                  {"status", header.status},
                  {"device", header.device_uri},

@@ -9,7 +9,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_columns = 4000;
+constexpr std::size_t max_view_columns = 4000;
 constexpr std::size_t most_traces = 32;
 constexpr std::size_t most_loops = 200;
 constexpr double farthest_s = 1e12;  // thirty thousand years
@@ -27,7 +27,7 @@ HttpResponse stretch(const HttpRequest& request, RecordingView& recording) {
   const double from_s = number_in_query(request, "from", -farthest_s, farthest_s);
   const double to_s = number_in_query(request, "to", -farthest_s, farthest_s);
   return bytes_response(
-      bytes_of(recording.view(traces, from_s, to_s, count_in_query(request, "columns", most_columns))));
+      bytes_of(recording.view(traces, from_s, to_s, count_in_query(request, "columns", max_view_columns))));
 }
 
 HttpResponse loops(const HttpRequest& request, RecordingView& recording) {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "http/routes.h"
 #include "views/recording_views.h"
-#include "web/routes.h"
 
 namespace kerf::bench {
 

@@ -11,7 +11,6 @@ namespace {
 
 using schema::Column;
 
-constexpr std::uint64_t bucket = MinMaxPyramid::rows_a_bucket;
 /// Columns of fewer rows are made from the rows themselves.
 constexpr std::uint64_t near_rows = 2 * bucket;
 constexpr const char* index_name = "rows";

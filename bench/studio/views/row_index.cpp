@@ -11,8 +11,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t bucket = MinMaxPyramid::rows_a_bucket;
-
 std::size_t buckets_of(std::uint64_t rows) { return static_cast<std::size_t>((rows + bucket - 1) / bucket); }
 
 /// Some rows of what tells when they were.

@@ -1,4 +1,4 @@
-#include "studio/workspace.h"
+#include "workspace/workspace.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "studio/workspace_routes.h"
+#include "workspace/workspace_routes.h"
 
 #include <chrono>
 #include <cstdint>

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "studio/workspace.h"
-#include "web/routes.h"
+#include "http/routes.h"
+#include "workspace/workspace.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "web/http_messages.h"
+#include "http/http_messages.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 
 #include <boost/beast/http.hpp>
 
-#include "web/http_server.h"
+#include "http/http_server.h"
 
 // Between Boost.Beast's messages and ours; included by sources of this folder alone.
 

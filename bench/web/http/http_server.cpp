@@ -1,4 +1,4 @@
-#include "web/http_server.h"
+#include "http/http_server.h"
 
 #include <array>
 #include <chrono>
@@ -15,8 +15,8 @@
 #include <boost/beast/http.hpp>
 #include <fmt/format.h>
 
+#include "http/http_messages.h"
 #include "loop/without_signals.h"
-#include "web/http_messages.h"
 
 namespace kerf::bench {
 namespace {

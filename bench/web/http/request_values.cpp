@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "web/routes.h"
+#include "http/routes.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "web/routes.h"
+#include "http/routes.h"
 
 #include <algorithm>
 #include <system_error>
@@ -6,7 +6,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
-#include "loop/realtime.h"
+#include "host/realtime.h"
 #include "loop/without_signals.h"
 
 namespace kerf::bench {

@@ -16,7 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "web/http_server.h"
+#include "http/http_server.h"
 
 namespace kerf::bench {
 

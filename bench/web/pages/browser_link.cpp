@@ -1,4 +1,4 @@
-#include "web/browser_link.h"
+#include "pages/browser_link.h"
 
 #include <array>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "web/gate.h"
+#include "pages/gate.h"
 
 #include <algorithm>
 #include <array>

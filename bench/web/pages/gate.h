@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "web/http_server.h"
+#include "http/http_server.h"
 
 namespace kerf::bench {
 

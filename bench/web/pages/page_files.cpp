@@ -1,4 +1,4 @@
-#include "web/page_files.h"
+#include "pages/page_files.h"
 
 namespace kerf::bench {
 namespace {

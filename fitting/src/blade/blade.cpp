@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
-#include "blade_field.h"
-#include "blade_phases.h"
-#include "blade_rows.h"
-#include "statistics.h"
+#include "blade/blade_field.h"
+#include "blade/blade_phases.h"
+#include "blade/blade_rows.h"
+#include "infinite.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t fewest_events = 3;
 constexpr double hardly_apart = 0.99;  // correlation
 

@@ -1,4 +1,4 @@
-#include "blade_field.h"
+#include "blade/blade_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "infinite.h"
 #include "least_squares.h"
-#include "statistics.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double huber = 1.345;  // 95 % efficient on normal noise
 constexpr int robust_passes = 30;
 constexpr int weighting_passes = 3;

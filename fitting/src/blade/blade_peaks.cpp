@@ -1,4 +1,4 @@
-#include "blade_peaks.h"
+#include "blade/blade_peaks.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "blade_rows.h"
+#include "blade/blade_rows.h"
 
 namespace kerf::fitting {
 

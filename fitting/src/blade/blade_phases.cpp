@@ -1,4 +1,4 @@
-#include "blade_phases.h"
+#include "blade/blade_phases.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "blade_field.h"
-#include "blade_peaks.h"
+#include "blade/blade_field.h"
+#include "blade/blade_peaks.h"
 
 namespace kerf::fitting {
 

@@ -1,4 +1,4 @@
-#include "blade_rows.h"
+#include "blade/blade_rows.h"
 
 #include <algorithm>
 #include <array>

@@ -6,33 +6,31 @@
 #include <stdexcept>
 #include <string>
 
-#include "segmented_knots.h"
-#include "segmented_line.h"
-#include "segmented_polish.h"
-#include "segmented_search.h"
+#include "segmented/segmented_knots.h"
+#include "segmented/segmented_line.h"
+#include "segmented/segmented_polish.h"
+#include "segmented/segmented_search.h"
 
 namespace kerf::fitting {
 namespace {
 
 using segmented::Points;
 
-void refuse(const std::string& what) { throw std::invalid_argument("segmented fit: " + what); }
-
 void check(const SegmentedOptions& options, const Points& points) {
   const auto outside = [](std::size_t value, std::size_t least, std::size_t most) {
     return value < least || value > most;
   };
   if (outside(options.most_segments, 1, segmented::max_segments)) {
-    refuse("the number of segments must be from 1 to " + std::to_string(segmented::max_segments));
+    segmented::refuse("the number of segments must be from 1 to " + std::to_string(segmented::max_segments));
   }
-  if (outside(options.cells, 4, 1024)) refuse("the grid must have 4 to 1,024 cells");
-  if (options.fewest_points < 1) refuse("a segment must have at least 1 point");
+  if (outside(options.cells, 4, 1024)) segmented::refuse("the grid must have 4 to 1,024 cells");
+  if (options.fewest_points < 1) segmented::refuse("a segment must have at least 1 point");
   for (std::size_t i = 0; i < points.branches.size(); ++i) {
     const std::size_t have = points.branches[i].size();
     if (have >= options.fewest_points) continue;
     const std::string where = points.branches.size() == 1 ? "" : i == 0 ? " while closing" : " while opening";
-    refuse("a segment needs " + std::to_string(options.fewest_points) + " points; there are " +
-           std::to_string(have) + where);
+    segmented::refuse("a segment needs " + std::to_string(options.fewest_points) + " points; there are " +
+                      std::to_string(have) + where);
   }
 }
 
@@ -79,20 +77,21 @@ double information(const SegmentedCurve& curve, double effective_points) {
 
 std::vector<double> inner_knots(const Points& points, const std::vector<double>& breakpoints) {
   if (breakpoints.size() + 1 > segmented::max_segments) {
-    refuse("at most " + std::to_string(segmented::max_segments - 1) + " breakpoints can be given");
+    segmented::refuse("at most " + std::to_string(segmented::max_segments - 1) + " breakpoints can be given");
   }
   std::vector<double> knots{0.0};
   for (const double breakpoint : breakpoints) {
     const double scaled = points.scaled(breakpoint);
     if (!(scaled > 0.0 && scaled < 1.0)) {
-      refuse("breakpoint " + std::to_string(breakpoint) + " must lie between the ends of the points, " +
-             std::to_string(points.first) + " and " + std::to_string(points.last));
+      segmented::refuse("breakpoint " + std::to_string(breakpoint) +
+                        " must lie between the ends of the points, " + std::to_string(points.first) +
+                        " and " + std::to_string(points.last));
     }
-    if (!(scaled - knots.back() >= segmented::least_gap)) refuse("breakpoints must increase");
+    if (!(scaled - knots.back() >= segmented::least_gap)) segmented::refuse("breakpoints must increase");
     knots.push_back(scaled);
   }
   if (!(1.0 - knots.back() >= segmented::least_gap))
-    refuse("the last breakpoint is at the end of the points");
+    segmented::refuse("the last breakpoint is at the end of the points");
   knots.push_back(1.0);
   return knots;
 }
@@ -101,7 +100,8 @@ SegmentedCurve by_hand(const Points& points, const std::vector<double>& breakpoi
   const auto knots = inner_knots(points, breakpoints);
   const auto forces = segmented::best_forces(points, knots);
   if (!forces.determined) {
-    refuse("with these breakpoints the points leave the force at a knot open; move them to where points are");
+    segmented::refuse(
+        "with these breakpoints the points leave the force at a knot open; move them to where points are");
   }
   SegmentedCurve curve = finished(points, {.knots = knots, .error = forces.error});
   for (std::size_t i = 0; i < breakpoints.size(); ++i) curve.knots[i + 1] = breakpoints[i];
@@ -133,8 +133,9 @@ std::vector<SegmentedCurve> fit_segments(const Curve& curve, const SegmentedOpti
 }
 
 std::size_t choose_by_bic(std::span<const SegmentedCurve> curves, double effective_points) {
-  if (curves.empty()) refuse("there are no curves to choose from");
-  if (!(effective_points >= 0.0)) refuse("the effective number of points must be positive, or 0 for all");
+  if (curves.empty()) segmented::refuse("there are no curves to choose from");
+  if (!(effective_points >= 0.0))
+    segmented::refuse("the effective number of points must be positive, or 0 for all");
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < curves.size(); ++i) {

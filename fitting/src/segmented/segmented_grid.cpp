@@ -1,17 +1,16 @@
-#include "segmented_grid.h"
+#include "segmented/segmented_grid.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
-#include "segmented_line.h"
-#include "segmented_paths.h"
+#include "infinite.h"
+#include "segmented/segmented_line.h"
+#include "segmented/segmented_paths.h"
 
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t unlimited = std::size_t{1} << 32;
 constexpr double rounding = 1e-13;  ///< of the whole sum of squares: below it paths count as equal
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "segmented_points.h"
+#include "segmented/segmented_points.h"
 
 namespace kerf::fitting::segmented {
 

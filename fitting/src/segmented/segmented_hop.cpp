@@ -5,13 +5,13 @@
 
 #include <Eigen/Cholesky>
 
-#include "segmented_knots.h"
-#include "segmented_polish.h"
+#include "segmented/segmented_knots.h"
+#include "segmented/segmented_polish.h"
 
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double gain = 1e-12;               ///< share of the error below which a gain is rounding
+constexpr double hop_gain = 1e-12;           ///< share of the error below which a gain is rounding
 constexpr std::ptrdiff_t reach_of_one = 16;  ///< intervals to each side
 constexpr std::ptrdiff_t reach_of_two = 3;   ///< the same if two neighbouring knots hop at once
 constexpr std::size_t most_places_for_pairs = 2000;
@@ -55,7 +55,7 @@ Polished stepped(const Points& points, const std::vector<double>& start, const H
     here.normal.diagonal().array() += 1e-300;
     const Sensitivity::Vector move = here.normal.ldlt().solve(here.gradient);
     const double promised = here.gradient.dot(move);
-    if (!move.allFinite() || !(promised > gain * error)) break;
+    if (!move.allFinite() || !(promised > hop_gain * error)) break;
     // Where the steps no longer lead below the limit, they would only lead elsewhere.
     if (step > 1 && error - 2.0 * promised > limit) break;
     double share = 1.0;
@@ -101,7 +101,7 @@ class Hopper {
       const double before = best_.error;
       for (std::size_t knot = 1; knot + 1 < best_.knots.size(); ++knot) hop_one(knot);
       for (std::size_t knot = 1; pairs && knot + 2 < best_.knots.size(); ++knot) hop_two(knot);
-      moved = best_.error < before - gain * before;
+      moved = best_.error < before - hop_gain * before;
       ++best_.iterations;
     }
     return best_;

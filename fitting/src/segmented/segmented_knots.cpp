@@ -1,8 +1,8 @@
-#include "segmented_knots.h"
+#include "segmented/segmented_knots.h"
 
 #include <algorithm>
 
-#include "segmented_line.h"
+#include "segmented/segmented_line.h"
 
 namespace kerf::fitting::segmented {
 namespace {

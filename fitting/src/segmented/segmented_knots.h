@@ -8,7 +8,7 @@
 
 #include <kerf/models/piecewise.h>
 
-#include "segmented_points.h"
+#include "segmented/segmented_points.h"
 
 namespace kerf::fitting::segmented {
 

@@ -1,4 +1,4 @@
-#include "segmented_law.h"
+#include "segmented/segmented_law.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include <kerf/models/piecewise.h>
 
 #include "kerf/fitting/segmented.h"
-#include "segmented_memory.h"
-#include "statistics.h"
+#include "segmented/segmented_memory.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {

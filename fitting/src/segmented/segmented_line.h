@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "segmented_points.h"
+#include "segmented/segmented_points.h"
 
 namespace kerf::fitting::segmented {
 

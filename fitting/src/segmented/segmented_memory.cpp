@@ -1,4 +1,4 @@
-#include "segmented_memory.h"
+#include "segmented/segmented_memory.h"
 
 #include <algorithm>
 

@@ -1,14 +1,14 @@
-#include "segmented_paths.h"
+#include "segmented/segmented_paths.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "infinite.h"
 
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t few = 8;    ///< paths that are added one by one
 constexpr std::size_t crowd = 8;  ///< times the paths that may be kept: more are not looked at
 constexpr std::size_t nobody = static_cast<std::size_t>(-1);

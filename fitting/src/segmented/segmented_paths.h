@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "segmented_line.h"
+#include "segmented/segmented_line.h"
 
 namespace kerf::fitting::segmented {
 

@@ -1,4 +1,4 @@
-#include "segmented_points.h"
+#include "segmented/segmented_points.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,8 +13,6 @@ namespace kerf::fitting::segmented {
 namespace {
 
 constexpr std::size_t leaf_points = 32;
-
-void refuse(const std::string& what) { throw std::invalid_argument("segmented fit: " + what); }
 
 void check(const Curve& curve) {
   const std::size_t size = curve.position.size();
@@ -37,6 +35,8 @@ void check(const Curve& curve) {
 }
 
 }  // namespace
+
+void refuse(const std::string& what) { throw std::invalid_argument("segmented fit: " + what); }
 
 Branch::Branch(std::vector<Point> points) {
   const auto earlier = [](const Point& a, const Point& b) { return a.x < b.x; };

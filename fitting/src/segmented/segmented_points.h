@@ -2,11 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "kerf/fitting/segmented.h"
 
 namespace kerf::fitting::segmented {
+
+/// @throws std::invalid_argument that says what is wrong with a segmented fit.
+[[noreturn]] void refuse(const std::string& what);
 
 /// Weighted moments of points about their own mean: nothing large is ever subtracted from something large.
 struct Moments {

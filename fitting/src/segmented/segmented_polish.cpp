@@ -1,4 +1,4 @@
-#include "segmented_polish.h"
+#include "segmented/segmented_polish.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,14 +7,14 @@
 #include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
 
-#include "segmented_grid.h"
-#include "segmented_knots.h"
-#include "segmented_line.h"
+#include "segmented/segmented_grid.h"
+#include "segmented/segmented_knots.h"
+#include "segmented/segmented_line.h"
 
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double gain = 1e-10;  ///< share of the error below which a gain is not worth another round
+constexpr double polish_gain = 1e-10;  ///< share of the error below which a gain is not worth another round
 constexpr int rounds = 40;
 
 std::vector<double> with_ends(const double* inner, std::size_t count) {
@@ -166,7 +166,7 @@ Polished settle(const Points& points, const Polished& start, std::size_t fewest_
       moved.iterations += best.iterations;
       best = moved.error < next.error ? std::move(moved) : std::move(next);
     }
-    idle = best.error < before - gain * before ? 0 : idle + 1;
+    idle = best.error < before - polish_gain * before ? 0 : idle + 1;
   }
   best.converged = best.converged || idle >= 2;
   return best;

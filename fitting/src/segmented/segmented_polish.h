@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "segmented_points.h"
+#include "segmented/segmented_points.h"
 
 namespace kerf::fitting::segmented {
 

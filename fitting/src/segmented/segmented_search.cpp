@@ -1,18 +1,17 @@
-#include "segmented_search.h"
+#include "segmented/segmented_search.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
-#include "segmented_grid.h"
-#include "segmented_knots.h"
+#include "infinite.h"
+#include "segmented/segmented_grid.h"
+#include "segmented/segmented_knots.h"
 
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double gain = 1e-12;                        ///< share of an error below which a gain is rounding
+constexpr double search_gain = 1e-12;                 ///< share of an error below which a gain is rounding
 constexpr std::size_t most_places_for_hops = 50'000;  ///< with more the kinks are too small to matter
 constexpr double hopeless = 1.5;    ///< times the best error: not worth more than a first descent
 constexpr double promising = 1.02;  ///< times the best error: within reach of it
@@ -57,7 +56,7 @@ class Climb {
   bool offer(Polished& best, const std::vector<double>& knots) const {
     if (knots.empty()) return false;
     Polished moved = on_grid_ ? slide(knots) : polish(knots, best);
-    const bool better = best.knots.empty() || moved.error < best.error - gain * best.error;
+    const bool better = best.knots.empty() || moved.error < best.error - search_gain * best.error;
     const int iterations = best.iterations + moved.iterations;
     if (better) best = std::move(moved);
     best.iterations = iterations;
@@ -117,7 +116,7 @@ class Climb {
       }
       grid.reachable.assign(knots.size(), best.error);
       const GridPath path = search_grid(points_, grid).front();
-      moved = !path.knots.empty() && path.error < best.error * (1.0 - gain);
+      moved = !path.knots.empty() && path.error < best.error * (1.0 - search_gain);
       if (moved) best = {.knots = path.knots, .error = path.error};
     }
     return best;
@@ -207,7 +206,7 @@ std::vector<Found> search(const Points& points, const SegmentedOptions& options)
   if (options.polish) polish(points, options, even, best);
   for (std::size_t i = 0; i < all.size(); ++i) {
     // The points carry one segment more only if it does not cost.
-    if (i > 0 && best[i].error > best[i - 1].error + gain * points.weight) {
+    if (i > 0 && best[i].error > best[i - 1].error + search_gain * points.weight) {
       all.resize(i);
       break;
     }

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "segmented_points.h"
-#include "segmented_polish.h"
+#include "segmented/segmented_points.h"
+#include "segmented/segmented_polish.h"
 
 namespace kerf::fitting::segmented {
 

@@ -1,4 +1,4 @@
-#include "fracture_fit.h"
+#include "starts/fracture_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <kerf/models/exponential.h>
 #include <kerf/models/fracture.h>
 
-#include "scan.h"
+#include "starts/scan.h"
 
 namespace kerf::fitting {
 namespace {

@@ -1,4 +1,4 @@
-#include "prony.h"
+#include "starts/prony.h"
 
 #include <algorithm>
 #include <cmath>

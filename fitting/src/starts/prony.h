@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "scan.h"
+#include "starts/scan.h"
 
 namespace kerf::fitting {
 

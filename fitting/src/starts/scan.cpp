@@ -1,11 +1,11 @@
-#include "scan.h"
+#include "starts/scan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
-#include "prony.h"
+#include "starts/prony.h"
 
 namespace kerf::fitting {
 namespace {

@@ -1,12 +1,12 @@
-#include "search.h"
+#include "starts/search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "scan.h"
-#include "segmented_law.h"
-#include "staged.h"
+#include "segmented/segmented_law.h"
+#include "starts/scan.h"
+#include "starts/staged.h"
 #include "tables.h"
 
 namespace kerf::fitting {

@@ -1,4 +1,4 @@
-#include "staged.h"
+#include "starts/staged.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "fracture_fit.h"
 #include "kerf/fitting/rupture.h"
+#include "starts/fracture_fit.h"
 
 namespace kerf::fitting {
 namespace {

@@ -1,4 +1,4 @@
-#include "blocks.h"
+#include "uncertainty/blocks.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,19 +1,17 @@
-#include "estimates.h"
+#include "uncertainty/estimates.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "profile.h"
-#include "staged.h"
-#include "statistics.h"
+#include "infinite.h"
+#include "starts/staged.h"
 #include "tables.h"
-#include "uncertainty.h"
+#include "uncertainty/profile.h"
+#include "uncertainty/statistics.h"
+#include "uncertainty/uncertainty.h"
 
 namespace kerf::fitting {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Half the width of an interval is quantile times deviation, on the scale of the search.
 struct Spread {

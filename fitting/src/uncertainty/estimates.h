@@ -1,6 +1,6 @@
 #pragma once
 
-#include "search.h"
+#include "starts/search.h"
 
 namespace kerf::fitting {
 

@@ -1,18 +1,18 @@
-#include "indistinct.h"
+#include "uncertainty/indistinct.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 
 #include <Eigen/Eigenvalues>
+
+#include "infinite.h"
 
 namespace kerf::fitting {
 namespace {
 
 using Eigen::Index;
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double small_share = 0.05;  // of the largest: left out of what is told
 
 /// Another basis of the same space, by Gauss and Jordan with the largest pivot: each column has a parameter

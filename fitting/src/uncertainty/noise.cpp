@@ -1,4 +1,4 @@
-#include "noise.h"
+#include "uncertainty/noise.h"
 
 #include <algorithm>
 #include <cmath>

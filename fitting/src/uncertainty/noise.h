@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "blocks.h"
+#include "uncertainty/blocks.h"
 
 namespace kerf::fitting {
 

@@ -1,13 +1,13 @@
-#include "profile.h"
+#include "uncertainty/profile.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "infinite.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double step = 0.5;    ///< [standard errors]
 constexpr int most_steps = 20;  ///< outwards, doubling after the first few
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "problem.h"
-#include "uncertainty.h"
+#include "uncertainty/uncertainty.h"
 
 namespace kerf::fitting {
 

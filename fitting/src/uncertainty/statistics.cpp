@@ -1,4 +1,4 @@
-#include "statistics.h"
+#include "uncertainty/statistics.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "uncertainty.h"
+#include "uncertainty/uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,9 @@
 
 #include <Eigen/Cholesky>
 
-#include "noise.h"
-#include "statistics.h"
+#include "infinite.h"
+#include "uncertainty/noise.h"
+#include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
 namespace {
@@ -18,7 +19,6 @@ using Eigen::Index;
 // Of the logarithm of a variance under flicker noise, whose lowest frequency is known to a factor of four
 // only: the level to which the study of coverage leads.
 constexpr double flicker_variance = 0.1;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// y_s -= sum a_k y_{s-k}, on columns.
 void recur(Eigen::MatrixXd& y, Index s, const Eigen::VectorXd& a) {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "blocks.h"
-#include "indistinct.h"
+#include "uncertainty/blocks.h"
+#include "uncertainty/indistinct.h"
 
 namespace kerf::fitting {
 

@@ -1,14 +1,14 @@
 #include "kerf/mechanisms/falcon.h"
 
 #include <cmath>
-#include <numbers>
 
 #include <Eigen/LU>
+
+#include "kerf/mechanisms/angle.h"
 
 namespace kerf::mechanisms {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr std::array<double, 3> phi{105.0 * degree, -15.0 * degree, -135.0 * degree};
 // Lengths [m], by the letters of the header.
 constexpr double a = 0.060;

@@ -1,4 +1,4 @@
-#include "psychophysics/coverage.h"
+#include "fitting/psychophysics/coverage.h"
 
 #include <gtest/gtest.h>
 

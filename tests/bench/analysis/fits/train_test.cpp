@@ -19,7 +19,7 @@ test::Outcome kerf(std::vector<std::string> arguments) {
 }
 
 TEST(RuptureTable, TheOneInTheRepositoryIsThatOfTheFormula) {
-  const std::string file = std::string(KERF_SOURCE_DIR) + "/bench/fits/liver_ruptures.csv";
+  const std::string file = std::string(KERF_SOURCE_DIR) + "/bench/analysis/fits/liver_ruptures.csv";
   EXPECT_EQ(test::read_text(file), as_csv(liver_ruptures()));
   const auto read = read_ruptures(file);
   const auto made = liver_ruptures();

@@ -4,7 +4,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "bench/regress/small_suite.h"
+#include "bench/analysis/regress/small_suite.h"
 
 // Regression as a user runs it, with the accidents that it is there for.
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/regress/small_suite.h"
+#include "bench/analysis/regress/small_suite.h"
 
 namespace kerf::bench {
 namespace {

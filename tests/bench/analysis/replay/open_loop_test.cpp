@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "laws/placement.h"
-#include "loop/run.h"
 #include "motion.h"
+#include "run/run.h"
 #include "support/program.h"
 
 namespace kerf::bench {

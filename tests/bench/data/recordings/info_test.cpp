@@ -7,7 +7,7 @@
 #include <kerf/schema/recording_writer.h>
 #include <kerf/schema/validate.h>
 
-#include "bench/recordings/small_recording.h"
+#include "bench/data/recordings/small_recording.h"
 #include "support/program.h"
 
 namespace kerf::bench {

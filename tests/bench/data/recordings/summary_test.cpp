@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/recordings/small_recording.h"
+#include "bench/data/recordings/small_recording.h"
 
 namespace kerf::bench {
 namespace {

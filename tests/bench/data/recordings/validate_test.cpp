@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/recordings/small_recording.h"
+#include "bench/data/recordings/small_recording.h"
 #include "support/program.h"
 
 namespace kerf::bench {

@@ -1,4 +1,4 @@
-#include "stability/cases/cases.h"
+#include "cases/cases.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +17,10 @@
 #include <kerf/models/lattice.h>
 #include <kerf/models/law.h>
 
+#include "cases/control_cost.h"
+#include "cases/controlled_wall.h"
+#include "cases/document.h"
 #include "files/whole_file.h"
-#include "stability/cases/control_cost.h"
-#include "stability/cases/controlled_wall.h"
-#include "stability/cases/document.h"
 #include "stability/in_hand.h"
 #include "stability/law_force.h"
 

@@ -1,4 +1,4 @@
-#include "loop/histogram.h"
+#include "host/histogram.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "loop/host_floor.h"
+#include "host/host_floor.h"
 
 #include <cstdlib>
 

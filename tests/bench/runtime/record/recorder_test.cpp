@@ -1,4 +1,4 @@
-#include "loop/recorder.h"
+#include "record/recorder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "loop/row_ring.h"
+#include "record/row_ring.h"
 
 #include <thread>
 

@@ -1,4 +1,4 @@
-#include "loop/row_tap.h"
+#include "record/row_tap.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "loop/check.h"
+#include "run/check.h"
 
 #include <string>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "loop/run.h"
+#include "run/run.h"
 
 #include <latch>
 #include <memory>
@@ -10,7 +10,7 @@
 
 #include "loop/clock.h"
 #include "loop/law_switch.h"
-#include "loop/recorder.h"
+#include "record/recorder.h"
 #include "support/allocation_counter.h"
 #include "support/kelvin_law.h"
 #include "support/program.h"

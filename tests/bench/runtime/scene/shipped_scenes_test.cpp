@@ -8,7 +8,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "loop/run.h"
+#include "run/run.h"
 #include "scene/scalpel_paths.h"
 #include "scene/scene.h"
 #include "support/program.h"

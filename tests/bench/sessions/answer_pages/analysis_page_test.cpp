@@ -1,4 +1,4 @@
-#include "answers/analysis_page.h"
+#include "answer_pages/analysis_page.h"
 
 #include <filesystem>
 #include <stdexcept>
@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "answers/analysis_charts.h"
+#include "answer_pages/analysis_charts.h"
 #include "answers/answers_table.h"
-#include "bench/answers/studies.h"
+#include "bench/sessions/answers/studies.h"
 #include "files/whole_file.h"
 
 namespace kerf::bench {

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "answer_pages/analysis_json.h"
 #include "answers/analysis.h"
-#include "answers/analysis_json.h"
-#include "bench/answers/studies.h"
+#include "bench/sessions/answers/studies.h"
 #include "protocol/course.h"
 
 namespace kerf::bench {

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "answers/analysis_json.h"
+#include "answer_pages/analysis_json.h"
 #include "answers/answers_table.h"
-#include "bench/answers/studies.h"
+#include "bench/sessions/answers/studies.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "answers/analysis.h"
-#include "bench/answers/studies.h"
+#include "bench/sessions/answers/studies.h"
 
 namespace kerf::bench {
 namespace {

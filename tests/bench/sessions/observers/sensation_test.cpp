@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/observers/simulated_protocols.h"
+#include "bench/sessions/observers/simulated_protocols.h"
 
 namespace kerf::bench {
 namespace {

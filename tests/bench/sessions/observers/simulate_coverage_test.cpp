@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bench/observers/simulated_protocols.h"
+#include "bench/sessions/observers/simulated_protocols.h"
 #include "observers/simulate.h"
 
 // What intervals and tests promise, over a thousand experiments a design.

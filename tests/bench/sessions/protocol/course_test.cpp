@@ -8,7 +8,7 @@
 
 #include <kerf/psychophysics/random.h>
 
-#include "bench/protocol/written_protocol.h"
+#include "bench/sessions/protocol/written_protocol.h"
 
 namespace kerf::bench {
 namespace {

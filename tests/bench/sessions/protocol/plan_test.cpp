@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/protocol/written_protocol.h"
+#include "bench/sessions/protocol/written_protocol.h"
 
 namespace kerf::bench {
 namespace {

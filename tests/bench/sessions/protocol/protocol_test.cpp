@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/protocol/written_protocol.h"
+#include "bench/sessions/protocol/written_protocol.h"
 #include "protocol/judgement.h"
 #include "support/program.h"
 

@@ -9,7 +9,7 @@
 
 #include <kerf/drivers/hand.h>
 
-#include "bench/protocol/written_protocol.h"
+#include "bench/sessions/protocol/written_protocol.h"
 #include "laws/placement.h"
 #include "loop/command.h"
 #include "scene/scene.h"

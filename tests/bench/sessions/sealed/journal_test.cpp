@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/sealed/sealed_session.h"
 
 namespace kerf::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/sealed/sealed_session.h"
 #include "support/program.h"
 
 namespace kerf::bench {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/sealed/sealed_session.h"
 
 namespace kerf::bench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <kerf/schema/validate.h>
 
-#include "bench/sealed/stored_session.h"
+#include "bench/sessions/sealed/stored_session.h"
 
 namespace kerf::bench {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/protocol/written_protocol.h"
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/protocol/written_protocol.h"
+#include "bench/sessions/sealed/sealed_session.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench::test {

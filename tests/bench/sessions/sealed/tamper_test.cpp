@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/sealed/sealed_session.h"
 #include "sealed/sealed_entries.h"
 
 // HDF5 1.10 itself forgets memory where a file is damaged.

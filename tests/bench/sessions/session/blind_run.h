@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/protocol/written_protocol.h"
-#include "bench/sealed/sealed_session.h"
+#include "bench/sessions/protocol/written_protocol.h"
+#include "bench/sessions/sealed/sealed_session.h"
 #include "session/rehearsal.h"
 #include "session/run_session.h"
 #include "subject/subject_words.h"

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/session/blind_run.h"
+#include "bench/sessions/session/blind_run.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {

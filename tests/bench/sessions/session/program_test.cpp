@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "bench/protocol/written_protocol.h"
+#include "bench/sessions/protocol/written_protocol.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench {

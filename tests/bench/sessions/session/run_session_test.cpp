@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/session/blind_run.h"
+#include "bench/sessions/session/blind_run.h"
 #include "protocol/samples.h"
 
 namespace kerf::bench {

@@ -8,12 +8,12 @@
 #include <kerf/fitting/segmented.h>
 #include <kerf/models/piecewise.h>
 
-#include "bench/studio/editor_curves.h"
+#include "bench/studio/editor/editor_curves.h"
+#include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
-#include "studio/segment_editor.h"
 
 // From a recording to its curve, and from breakpoints to a law.
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "studio/segment_editor.h"
+#include "editor/segment_editor.h"
 
 namespace kerf::bench::test {
 

@@ -1,4 +1,4 @@
-#include "studio/editor_routes.h"
+#include "editor/editor_routes.h"
 
 #include <chrono>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "editor/segment_editor.h"
 #include "recordings/provenance.h"
 #include "segment/segment.h"
-#include "studio/segment_editor.h"
 #include "support/program.h"
 
 namespace kerf::bench {

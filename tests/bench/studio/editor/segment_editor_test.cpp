@@ -1,4 +1,4 @@
-#include "studio/segment_editor.h"
+#include "editor/segment_editor.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 #include <kerf/fitting/segmented.h>
 
-#include "bench/studio/editor_curves.h"
-#include "studio/editor_json.h"
+#include "bench/studio/editor/editor_curves.h"
+#include "editor/editor_json.h"
 
 namespace kerf::bench {
 namespace {
@@ -91,7 +91,7 @@ TEST(LawError, GoesOnBeyondTheBreakpointsAsTheRenderedLawDoes) {
 TEST(LawError, IsThatOfTheTableThatThePageIsHeldToToo) {
   const auto near = [](double value) { return DoubleNear(value, 1e-9 * std::abs(value)); };
   const auto cases = nlohmann::json::parse(
-      std::ifstream(std::filesystem::path(KERF_SOURCE_DIR) / "tests/bench/studio/editor_errors.json"));
+      std::ifstream(std::filesystem::path(KERF_SOURCE_DIR) / "tests/bench/studio/editor/editor_errors.json"));
   ASSERT_GE(cases.size(), 5U);
   for (const auto& one : cases) {
     const auto& of = one["curve"];

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/loop/scripted.h"
+#include "bench/runtime/loop/scripted.h"
 #include "loop/law_switch.h"
 #include "support/allocation_counter.h"
 

@@ -23,7 +23,7 @@ law = "hard.law.toml"
 
 /** The Kelvin law of the examples, with another parallel spring. */
 async function law(stiffness) {
-  const example = await readFile(new URL("../../../examples/kelvin.law.toml", import.meta.url), "utf8");
+  const example = await readFile(new URL("../../../../examples/kelvin.law.toml", import.meta.url), "utf8");
   return example.replace(/(parallel_stiffness = { value = )\d+/, `$1${stiffness}`);
 }
 

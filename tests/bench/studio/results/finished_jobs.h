@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "studio/jobs.h"
+#include "results/jobs.h"
 
 namespace kerf::test {
 

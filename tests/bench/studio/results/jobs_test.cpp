@@ -1,4 +1,4 @@
-#include "studio/jobs.h"
+#include "results/jobs.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "bench/studio/finished_jobs.h"
+#include "bench/studio/results/finished_jobs.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "studio/result_jobs.h"
+#include "results/result_jobs.h"
 
 #include <string>
 
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/studio/finished_jobs.h"
+#include "bench/studio/results/finished_jobs.h"
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "studio/law_view.h"
-#include "studio/residuals.h"
-#include "studio/result_folder.h"
+#include "results/law_view.h"
+#include "results/residuals.h"
+#include "results/result_folder.h"
 #include "support/recordings.h"
 
 namespace kerf::bench {

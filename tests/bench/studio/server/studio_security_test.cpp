@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
 
-#include "studio/studio.h"
+#include "server/studio.h"
 #include "support/plain_client.h"
 #include "support/program.h"
 

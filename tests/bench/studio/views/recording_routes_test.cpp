@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/views/long_recording.h"
+#include "bench/studio/views/long_recording.h"
 #include "support/program.h"
 
 namespace kerf::bench {

@@ -11,7 +11,7 @@
 
 #include <kerf/schema/recording_writer.h>
 
-#include "bench/views/long_recording.h"
+#include "bench/studio/views/long_recording.h"
 #include "support/program.h"
 #include "views/recording_views.h"
 

@@ -1,4 +1,4 @@
-#include "studio/workspace.h"
+#include "workspace/workspace.h"
 
 #include <filesystem>
 #include <fstream>
@@ -9,8 +9,8 @@
 
 #include <kerf/schema/recording.h>
 
+#include "http/routes.h"
 #include "support/program.h"
-#include "web/routes.h"
 
 namespace kerf::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "web/http_server.h"
+#include "http/http_server.h"
 
 #include <atomic>
 #include <list>
