@@ -11,10 +11,10 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/force_calibration.h>
-#include <kerf/drivers/latest.h>
 #include <kerf/drivers/protocols/labjack_u6.h>
 #include <kerf/drivers/protocols/labjack_u6_commands.h>
 #include <kerf/drivers/scan_clock.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
