@@ -72,7 +72,7 @@ TEST(Exponential, StiffnessIsTheSlopeOfTheForce) {
 
 TEST(Exponential, SaysHowDeepAStiffnessLies) {
   const Exponential<double> in_vivo{4.3e-7, 13.0, 20.0, 0.1, false};
-  EXPECT_NEAR(in_vivo.depth_at_stiffness(260.0) / 0.118097136991, 1.0, 1e-10) << "models.md, section 4";
+  EXPECT_NEAR(in_vivo.depth_at_stiffness(260.0) / 0.118097136991, 1.0, 1e-10) << "by the closed form";
   EXPECT_NEAR(in_vivo.stiffness(in_vivo.depth_at_stiffness(1e3)), 1e3, 1e-9);
   EXPECT_EQ(in_vivo.depth_at_stiffness(1e-9), 0.0) << "softer than at contact";
 }

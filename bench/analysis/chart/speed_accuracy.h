@@ -59,7 +59,7 @@ struct ChartOptions {
 };
 inline constexpr std::size_t chart_steps = 1000;
 
-/// A way of the tool that can be had at any rate, on the axes of a device.
+/// A path of the tool that can be had at any rate, on the axes of a device.
 struct ScriptedPath {
   drivers::DeviceInfo device;
   std::function<ToolPath(double rate_hz)> at;

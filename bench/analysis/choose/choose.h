@@ -21,7 +21,7 @@ struct ChooseOptions {
   std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
   std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates
   bool richer_too = true;  ///< also fit what is richer than the law that serves, for the table
-  WalkOptions walk;
+  CandidateSearchOptions search;
 };
 
 /// Fits every candidate to an axis of a recording and takes the simplest that serves (candidate_search.h), by

@@ -22,14 +22,14 @@ struct FidelityOptions {
   double rate_hz = 1000.0;
   fitting::ForceJnd jnd;
   TorqueJnd torque_jnd;
-  WalkOptions walk;
+  CandidateSearchOptions search;
 };
 
 /// Chooses among the fidelities of a scene's blade along the path of its script: `paper`, whose strips move
 /// all with the hand and so know no rotation, `strips`, and `exact`, which is the reference. Their errors are
 /// root mean squares of the difference of force and of torque over the ticks in which the reference pushes,
 /// in JNDs of each at its root mean square; the larger counts. They have the same parameters, so that the
-/// walk goes by the cost of a tick.
+/// search goes by the cost of a tick.
 /// @throws std::invalid_argument if the scene's law is no blade, has no path, or the blade never pushes.
 [[nodiscard]] LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options,
                                         const std::atomic<bool>& stop);

@@ -17,7 +17,7 @@ constexpr double margin = 0.7;
 /// A hand that leans on a wall with a spring drawn by 4 mm.
 CaseTrace lean(const SampledDevice& device, double stiffness) {
   return run_loop(device, WallForce{{.stiffness_n_per_m = stiffness}}, {}, 1.0,
-                  [](double) { return HandPush{.place_m = 4e-3}; });
+                  [](double) { return HandPush{.position_m = 4e-3}; });
 }
 
 CaseOutcome judged(const CaseTrace& trace, std::string figure) {

@@ -20,7 +20,7 @@ constexpr double press_s = 0.2;
 
 /// Where a tool is that presses to a depth and stays there.
 double pressed(double depth_m, double time_s) {
-  return depth_m * drivers::MinimumJerk::at(time_s / press_s).place;
+  return depth_m * drivers::MinimumJerk::at(time_s / press_s).position;
 }
 
 /// Largest distance of two traces at the times of the first; lost_n where the first got lost.

@@ -29,7 +29,7 @@ SampledDevice held(const HandImpedance& hand) {
 
 CaseTrace press(const HandImpedance& hand, const Wall& wall) {
   return run_loop(held(hand), WallForce{wall}, {}, seconds, [](double time_s) {
-    return HandPush{.place_m = into_tissue_m * drivers::MinimumJerk::at(2.0 * time_s).place};
+    return HandPush{.position_m = into_tissue_m * drivers::MinimumJerk::at(2.0 * time_s).position};
   });
 }
 

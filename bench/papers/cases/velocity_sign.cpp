@@ -40,8 +40,8 @@ CaseTrace close_and_hold(double ramp_band, double scale) {
       drivers::SimulatedScissors::lever_m};
   const SampledDevice device = held_scissors();
   return run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
-    return HandPush{.place_m = closed_m * drivers::MinimumJerk::at(time_s / 0.6).place -
-                               back_m * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).place};
+    return HandPush{.position_m = closed_m * drivers::MinimumJerk::at(time_s / 0.6).position -
+                                  back_m * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).position};
   });
 }
 

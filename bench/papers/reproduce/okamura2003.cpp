@@ -205,7 +205,7 @@ void scaling(Reproduction& paper, const schema::Recording& recording) {
   Chart chart{.title = "A reversal: pure recording and scaled (fig. 5)",
               .x_label = "time [s]",
               .y_label = "force at the handle [N]"};
-  const auto walk = [&](const models::Law& law, Curve curve) {
+  const auto rendered = [&](const models::Law& law, Curve curve) {
     auto state = law.initial_state();
     double worst = 0.0;
     double before = 0.0;
@@ -222,9 +222,9 @@ void scaling(Reproduction& paper, const schema::Recording& recording) {
     chart.curves.push_back(std::move(curve));
     return worst;
   };
-  const double jump = walk(pure, {.label = "pure recording", .colour = Colour::vermillion});
+  const double jump = rendered(pure, {.label = "pure recording", .colour = Colour::vermillion});
   const double scaled =
-      walk(file.law, {.label = "scaled after each reversal, ramp band", .colour = Colour::blue});
+      rendered(file.law, {.label = "scaled after each reversal, ramp band", .colour = Colour::blue});
   paper.figures.push_back({"scaling", std::move(chart)});
   paper.add("The discontinuities of a pure recording are removed by the scaling", "3.1, fig. 5",
             fmt::format("largest step from tick to tick: {:.2f} N pure, {:.3f} N scaled", jump, scaled),

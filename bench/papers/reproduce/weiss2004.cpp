@@ -61,7 +61,7 @@ void one_cut(Reproduction& paper) {
     }
   }
   Chart mesh{.title = "The slab after the cut, its banks drawn apart",
-             .x_label = "x, way of the cut [mm]",
+             .x_label = "x, along the cut [mm]",
              .y_label = "y [mm]"};
   Curve points{.colour = Colour::blue, .mark = Mark::points, .width = 0.8};
   for (int node = 0; node < state.slab.node_limit(); ++node) {

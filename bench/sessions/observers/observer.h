@@ -59,7 +59,7 @@ enum class Judging : std::uint8_t {
 struct FeltTrial {
   Judging judging = Judging::strongest;
   std::size_t slots = 2;
-  std::array<std::uint8_t, most_slots> plays{};  ///< which of the pair a slot plays
+  std::array<std::uint8_t, max_slots> plays{};  ///< which of the pair a slot plays
   double d_prime = 0.0;  ///< from the first of the pair to the second; below 0 only of the strongest
 };
 

@@ -16,7 +16,7 @@ namespace kerf::bench {
 ///
 /// Penetration grows along the contact's direction from its position, both as `kerf fit` takes them
 /// (contact_of()); a positive force resists growing penetration, so an opening that resists opening is
-/// negative. Closing is the way on which the penetration grows.
+/// negative. Closing is the direction in which the penetration grows.
 struct EditorCurve {
   std::string axis;
   std::string position_unit;  ///< "m" or "rad"

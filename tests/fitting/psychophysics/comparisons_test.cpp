@@ -29,8 +29,8 @@ TEST(BradleyTerry, AgreesWithAgrestisBaseball) {
     EXPECT_NEAR(over_baltimore.standard_error, error[i], 1e-3);
   }
   EXPECT_NEAR(found.deviance, 15.737, 1e-3);
-  EXPECT_EQ(found.deviance_freedom, 15);
-  EXPECT_EQ(found.ratio_freedom, 6);
+  EXPECT_EQ(found.deviance_degrees_of_freedom, 15);
+  EXPECT_EQ(found.ratio_degrees_of_freedom, 6);
 }
 
 TEST(BradleyTerry, OfTwoItemsIsTheLogOfTheOdds) {

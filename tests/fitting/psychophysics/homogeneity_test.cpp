@@ -25,7 +25,7 @@ TEST(EqualProportions, AddUpAllTablesOfThreeGroups) {
   const Homogeneity found = equal_proportions(std::vector<Count>{{3, 4}, {1, 4}, {2, 4}});
   EXPECT_NEAR(found.p, 708.0 / 924.0, 1e-12);
   EXPECT_TRUE(found.is_exact);
-  EXPECT_EQ(found.freedom, 2);
+  EXPECT_EQ(found.degrees_of_freedom, 2);
   EXPECT_NEAR(found.statistic, 2.0, 1e-12);
 }
 

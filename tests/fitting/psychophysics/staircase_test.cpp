@@ -49,7 +49,7 @@ TEST(Staircase, GoesDownAfterSoManyRightAnswersAndUpAfterAWrongOne) {
 }
 
 TEST(Staircase, StaysWithinItsBounds) {
-  Staircase stairs({.start = 1.0, .steps = {1.0}, .least = 0.5, .most = 2.0, .most_trials = 20});
+  Staircase stairs({.start = 1.0, .steps = {1.0}, .least = 0.5, .most = 2.0, .max_trials = 20});
   for (int i = 0; i < 10; ++i) {
     stairs.answer(true);
     EXPECT_GE(stairs.next(), 0.5);
@@ -74,7 +74,7 @@ TEST(Staircase, FindsTheThresholdOfAnObserverAtItsCriterion) {
                         .steps = {0.3, 0.1, 0.05},
                         .reversals = 30,
                         .dropped = 6,
-                        .most_trials = 2000});
+                        .max_trials = 2000});
       while (!stairs.finished()) stairs.answer(random.chance(observer.probability(stairs.next())));
       sum += std::log(stairs.estimate().threshold) / runs;
       probability = stairs.estimate().probability;

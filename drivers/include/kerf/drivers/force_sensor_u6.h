@@ -115,7 +115,7 @@ class ForceSensorU6 final : public Device {
   bool was_recovering_ = false;
 
   // Between the threads.
-  Latest<Scan> latest_;
+  TripleBuffer<Scan> latest_;
   std::atomic<bool> lost_{false};
   std::atomic<std::uint64_t> scans_{0};
   std::atomic<std::uint64_t> scans_lost_{0};

@@ -12,7 +12,7 @@ namespace kerf::drivers {
 ///
 /// Source: Flash and Hogan 1985.
 struct MinimumJerk {
-  double place = 0.0;
+  double position = 0.0;
   double speed = 0.0;
   static MinimumJerk at(double s) noexcept;
 };

@@ -59,7 +59,7 @@ class SpaceMouse final : public Device {
   DeviceInfo info_;
   Options options_;
   usb::HidDevice device_;
-  Latest<Report> latest_;
+  TripleBuffer<Report> latest_;
   Report report_;
   std::atomic<bool> lost_{false};
   std::atomic<std::uint64_t> reports_{0};

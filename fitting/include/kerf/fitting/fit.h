@@ -55,7 +55,7 @@ enum class Intervals : std::uint8_t {
 /// Piecewise curves that were found for every number of segments up to a limit, so that fits of the same
 /// samples with other numbers of segments find them again. Fits on several threads may share one.
 class SegmentedMemory;
-[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t most_segments);
+[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments);
 
 struct FitOptions {
   models::Options

@@ -17,7 +17,7 @@ struct Curve {
 };
 
 struct SegmentedOptions {
-  std::size_t most_segments = 12;   ///< 1 to 16
+  std::size_t max_segments = 12;    ///< 1 to 16
   std::size_t cells = 256;          ///< of the grid of the dynamic programming, 4 to 1024
   std::size_t fewest_points = 4;    ///< in a segment, on each branch, its ends included; at least 1
   std::vector<double> breakpoints;  ///< inner knots by hand: then these alone, and no search

@@ -53,7 +53,7 @@ struct BladeShape {
     std::size_t corners = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d across =
-        Eigen::Vector3d::Zero();  ///< along the first side: strips lie side by side that way
+        Eigen::Vector3d::Zero();  ///< along the first side: strips lie side by side in that direction
   };
   std::array<Polygon, max_polygons> polygon{};
   std::size_t polygons = 0;
@@ -98,7 +98,7 @@ struct BladeFidelity {
 ///     cutting:  the viscous field, until |F| < F0 < F1
 ///
 /// Without the option `thresholds` the blade always cuts. Displacements are those of the rigid motion since
-/// then: R R_0^T as a rotation vector, and the way of the hand point. Axes: x, y, z [m] of the hand point,
+/// then: R R_0^T as a rotation vector, and the path of the hand point. Axes: x, y, z [m] of the hand point,
 /// rx, ry, rz the rotation vector of the tool's frame [rad]; its rates become the angular velocity by the
 /// left Jacobian of the rotation, and the moment becomes the generalised torque of these axes by its
 /// transpose, so that force times velocity is the power.

@@ -16,7 +16,7 @@ namespace kerf::models {
 
 /// Scissors in a slab of tissue, by two lattices.
 ///
-/// The slab lies in the plane of x (the way of the cut) and y, its near border at x_m, its other three
+/// The slab lies in the plane of x (the direction of the cut) and y, its near border at x_m, its other three
 /// borders held. Its front node is the one on the middle line where the slab is still whole. Where the
 /// cutting point x_s + x_c(theta) pushes against it, a virtual coupling (spring kc, damper bc) moves the node
 /// and gives the force on x_s; it never pulls the scissors forward.

@@ -138,7 +138,7 @@ TEST(Subjects, WhoAreAllAlikeGiveStudentNoWidth) {
 }
 
 // Right 18 of 20 when it is the first, 6 of 20 when the second. R: fisher.test gives p = 0.00024.
-TEST(Answers, ThatLeanToASlotAreWarnedOf) {
+TEST(Answers, WithAResponseBiasAreWarnedOf) {
   Study study = study_with(Design::two_interval);
   for (std::size_t i = 0; i < 40; ++i) {
     const std::size_t right = i % 2;
@@ -153,10 +153,10 @@ TEST(Answers, ThatLeanToASlotAreWarnedOf) {
   // z(0.9) - z(0.7) = 1.2816 - 0.5244, over the root of two.
   EXPECT_NEAR(found.bias.detection->d_prime, (1.2815516 - 0.5244005) / std::sqrt(2.0), 1e-6);
   EXPECT_LT(found.bias.detection->criterion, 0.0);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("lean to one slot")));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("response bias to one slot")));
 }
 
-TEST(Answers, WithAnEqualShareInEachSlotLeanToNone) {
+TEST(Answers, WithAnEqualShareInEachSlotHaveNoBias) {
   Study study = study_with(Design::two_interval);
   add_answers(study, "P1", "", 20, 20);
   EXPECT_NEAR(analyse(study, quick()).bias.test.p, 1.0, 1e-12);

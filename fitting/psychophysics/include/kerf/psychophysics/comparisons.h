@@ -21,11 +21,11 @@ struct Ranking {
   std::vector<std::vector<double>> covariance;
   double log_likelihood = 0.0;
   double ratio = 0.0;  ///< likelihood ratio against "all are equal": chi-squared of items - 1
-  int ratio_freedom = 0;
+  int ratio_degrees_of_freedom = 0;
   double ratio_p = 1.0;
   double deviance = 0.0;  ///< against a free probability for each pair: does one scale describe them?
-  int deviance_freedom = 0;
-  double deviance_p = 1.0;  ///< 1 where no freedom is left
+  int deviance_degrees_of_freedom = 0;
+  double deviance_p = 1.0;  ///< 1 where no degree of freedom is left
 };
 
 /// Worth of two to fifty items by maximum likelihood (scoring; the likelihood is concave). Refused where

@@ -13,8 +13,8 @@ struct HomogeneityOptions {
 };
 
 struct Homogeneity {
-  double statistic = 0.0;  ///< sum over groups of (k - n p)^2 / (n p (1 - p)), p of all: Pearson's
-  int freedom = 0;         ///< groups with trials, less one
+  double statistic = 0.0;      ///< sum over groups of (k - n p)^2 / (n p (1 - p)), p of all: Pearson's
+  int degrees_of_freedom = 0;  ///< groups with trials, less one
   double p = 1.0;
   bool is_exact = true;  ///< all tables were added up
 };

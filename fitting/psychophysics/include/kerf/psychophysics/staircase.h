@@ -19,7 +19,7 @@ struct StaircaseOptions {
   double most = 1e9;
   int reversals = 12;  ///< ends after so many
   int dropped = 4;     ///< first reversals that do not count; what remains is even, or one more is dropped
-  int most_trials = 400;
+  int max_trials = 400;
 };
 
 /// Probability of a right answer where an up-down staircase settles: where the steps of a trial add up to
