@@ -8,7 +8,7 @@
 namespace kerf::models {
 namespace {
 
-// Porcine intestine in vivo (001).
+// Porcine intestine in vivo [Sepulveda2008].
 constexpr Exponential<double> intestine{
     .amplitude = 4.3e-7, .exponent = 13.0, .viscosity = 20.0, .thickness = 0.1, .zero_at_contact = false};
 

@@ -77,7 +77,8 @@ struct ScriptedPath {
 /// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
 /// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
-/// rendering aids of 004 where they have none. Only points at the chart's own rate compete for the front.
+/// rendering aids of [Okamura2003] where they have none. Only points at the chart's own rate compete for the
+/// front.
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);

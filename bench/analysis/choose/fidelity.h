@@ -10,7 +10,7 @@
 namespace kerf::bench {
 
 /// What of a torque a person can feel: the larger of a Weber fraction and an absolute threshold. Source of
-/// the fraction: Jandura and Srinivasan 1994 (12.7 % at 60 mN·m between two fingers); the threshold is
+/// the fraction: [JanduraSrinivasan1994] (12.7 % at 60 mN·m between two fingers); the threshold is
 /// assumed, 0.05 N at a radius of 10 mm.
 struct TorqueJnd {
   double weber_fraction = 0.127;

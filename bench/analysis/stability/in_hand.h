@@ -11,8 +11,8 @@
 
 namespace kerf::bench {
 
-/// A stylus held in a light and in a firm grip, at the ends of the range of Fu and Cavusoglu (2012), and an
-/// arm on a force-controlled device (Scientific Reports srep18004, fig. 3).
+/// A stylus held in a light and in a firm grip, at the ends of the range of Fu and Cavusoglu
+/// [FuCavusoglu2012], and an arm on a force-controlled device [ScientificReports18004], fig. 3.
 inline constexpr HandImpedance light_grip{
     .mass_kg = 0.1, .damping_n_s_per_m = 2.0, .stiffness_n_per_m = 200.0};
 inline constexpr HandImpedance firm_grip{

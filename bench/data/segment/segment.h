@@ -19,7 +19,8 @@ struct SegmentOptions {
   std::optional<double> closing_direction;  ///< +1 or -1; by default the direction that costs more work
 };
 
-/// Finds the cycles of a recording of opening and closing, with their four phases (004, section 3.1).
+/// Finds the cycles of a recording of opening and closing, with their four phases ([Okamura2003],
+/// section 3.1).
 ///
 /// Turning points of the low-passed position are those whose prominence exceeds a share of the range, so that
 /// neither noise nor a hesitation within a stroke counts. Each closing is one cycle, from 1: the turn from

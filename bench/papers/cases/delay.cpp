@@ -41,7 +41,7 @@ NamedCase delay(std::uint64_t) {
   const double prompt_ripple = ripple_n(lean(prompt, stiffness_n_per_m));
   const double damping = late.damping_n_s_per_m();
   return {
-      .where = "literature (Diolaiti et al. 2006)",
+      .where = "literature [Diolaiti2006]",
       .what =
           "A wall that is at rest under a hand at once vibrates when the force comes a few milliseconds "
           "late.",

@@ -63,7 +63,7 @@ NamedCase exponential_depth(std::uint64_t) {
   const CaseTrace holding = lean({.limit_m = kept_m});
   const double rest_m = kept_m + (push_n - intestine.elastic_force(kept_m)) / intestine.stiffness(kept_m);
   return {
-      .where = "001, eq. 11",
+      .where = "[Sepulveda2008], eq. 11",
       .what =
           "Exponential tissue stiffens with its own force, so that at some depth no sampled loop is "
           "passive any more: pressed harder, it has a limit cycle.",

@@ -94,7 +94,7 @@ NamedCase fast_contact(std::uint64_t) {
   picture.y_range = {-0.84, -0.6};
   picture.horizontal = {{.at = -speed_m_s}};
   return {
-      .where = "literature (Abbott and Okamura 2005); models/precontact.h is 000's",
+      .where = "literature [AbbottOkamura2005]; models/precontact.h is of [Henry2004]",
       .what =
           "A wall that Coulomb friction keeps passive when it is met slowly throws back a fast tool faster "
           "than it came.",

@@ -59,7 +59,7 @@ NamedCase quantised_velocity(std::uint64_t) {
   const QuantisationNoise holding = noise_of(filtered);
   const double count_n = wall.damping_n_s_per_m * device.encoder_step_m / device.period_s;
   return {
-      .where = "literature (Colgate and Brown 1994); the encoder of 004",
+      .where = "literature [ColgateBrown1994]; the encoder of [Okamura2003]",
       .what =
           "A damped wall on the plain difference of a coarse encoder rattles as soon as the hand moves: one "
           "count reads as a speed "

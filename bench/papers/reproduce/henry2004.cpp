@@ -21,7 +21,7 @@ using models::BladeFidelity;
 constexpr double period_s = 1e-3;
 
 /// A scalpel's blade in the plane of y and z, 10 mm wide, 30 mm long, its tip 12 mm under the surface, edge
-/// ahead on -y. Friction is five times as large across the blade as along it; 000 gives no numbers.
+/// ahead on -y. Friction is five times as large across the blade as along it; [Henry2004] gives no numbers.
 const models::BladeShape scalpel = models::BladeShape::parse(
     "0 -0.005 -0.112, 0 0.005 -0.112, 0 0.005 -0.082, 0 -0.005 -0.082", "0 -0.005 -0.112, 0 -0.005 -0.082");
 constexpr models::BladeField friction{.edge = 20.0, .normal = 2e4, .tangential = 4e3};

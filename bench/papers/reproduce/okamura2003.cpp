@@ -20,13 +20,13 @@ namespace {
 
 constexpr double period_s = 1e-3;
 constexpr double contact_rad = 40.0 * degree;  // where the blades meet whatever is cut
-constexpr double force_jnd = 0.07;             // Weber fraction, Pang, Tan and Durlach 1991
+constexpr double force_jnd = 0.07;             // Weber fraction, [Pang1991]
 constexpr double felt_n = 0.1;                 // a step of the force that a hand feels
 constexpr double least_force_n = 0.2;          // below it a JND is no share of the force
 constexpr Colour colours[] = {Colour::blue, Colour::vermillion, Colour::green, Colour::purple};
 
-/// A tissue between the blades: force of closing over the angle travelled, with the shapes of 004's figs. 4
-/// and 6. Made for this bench, not measured.
+/// A tissue between the blades: force of closing over the angle travelled, with the shapes of [Okamura2003]'s
+/// figs. 4 and 6. Made for this bench, not measured.
 struct Tissue {
   std::string name;
   std::vector<double> closing_n;  ///< at 0, 4, 8, ... 36 degrees past contact
@@ -130,7 +130,7 @@ LawFile fitted(const schema::Recording& recording, const std::string& model) {
   return fit.laws.front().file;
 }
 
-/// A segmented model of the averaged closing alone, as 004 draws it.
+/// A segmented model of the averaged closing alone, as [Okamura2003] draws it.
 models::Law segmented(const Averaged& mean, std::size_t segments) {
   std::vector<double> time_s, velocity;
   for (std::size_t i = 0; i < mean.force_n.size(); ++i) time_s.push_back(period_s * static_cast<double>(i));

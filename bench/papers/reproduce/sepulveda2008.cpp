@@ -25,7 +25,7 @@ constexpr double surface_height_m = 0.09;
 constexpr double yield_energy_j = 0.0153846120769;  // stored at 2 N by the in vivo law
 constexpr double toughness_j_m2 = 2000.0;
 constexpr double slow_m_s = 1e-3;  // so slow that the viscosity adds 20 mN at most
-constexpr double width_m = 1e-3;   // with it Jc w = 2 N; 001 gives the product alone
+constexpr double width_m = 1e-3;   // with it Jc w = 2 N; [Sepulveda2008] gives the product alone
 
 /// A closed loop of the simulated Premium, a hand that follows waypoints, and the law.
 struct Experiment {

@@ -9,7 +9,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-// Levitt (1971), table I.
+// Levitt [Levitt1971], table I.
 TEST(Staircase, SettlesWhereLevittSays) {
   EXPECT_NEAR(convergence_point(1, 1), 0.5, 1e-12);
   EXPECT_NEAR(convergence_point(1, 2), std::sqrt(0.5), 1e-12);
@@ -20,7 +20,7 @@ TEST(Staircase, SettlesWhereLevittSays) {
 }
 
 TEST(Staircase, SettlesElsewhereWithUnequalSteps) {
-  // Kaernbach (1991): one up by three, one down by one settles at 75 %.
+  // Kaernbach [Kaernbach1991]: one up by three, one down by one settles at 75 %.
   EXPECT_NEAR(convergence_point(1, 1, 1.0 / 3.0), 0.75, 1e-12);
 }
 

@@ -15,7 +15,7 @@ namespace kerf::drivers {
 /// lies below all arrivals, as high as it can. Of each block of 250 scans the one that came least late is
 /// kept, for 256 blocks (64 s at 1 kHz); of all lines below them the one with the least sum of distances is
 /// an edge of their lower convex hull, the one above their mean number. A packet that came late, or a whole
-/// second of them, does not move it. Source of the criterion: Moon, Skelly and Towsley 1999.
+/// second of them, does not move it. Source of the criterion: [Moon1999].
 ///
 /// For the first second the period is taken for the nominal one, or that from before a restart.
 ///

@@ -23,7 +23,7 @@ struct Series {
 };
 
 /// What a person can feel: the larger of a Weber fraction of the force and an absolute threshold.
-/// Source of the defaults: Pang, Tan and Durlach 1991 (7 %); order of magnitude at the fingertips (0.05 N).
+/// Source of the defaults: [Pang1991] (7 %); order of magnitude at the fingertips (0.05 N).
 struct ForceJnd {
   double weber_fraction = 0.07;
   double threshold_n = 0.05;

@@ -35,7 +35,7 @@ struct Pose {
 ///
 ///     dF = -ke v dl,      dF = -(kn n n^T + kt (I - n n^T)) v ds
 ///
-/// With displacements in place of velocities, the same field is elastic (000, eq. 5).
+/// With displacements in place of velocities, the same field is elastic ([Henry2004], eq. 5).
 struct BladeField {
   double edge = 0.0;        ///< ke [N·s/m² or N/m²]
   double normal = 0.0;      ///< kn [N·s/m³ or N/m³]
@@ -69,8 +69,8 @@ struct BladeShape {
 /// How the integrals over the blade are taken.
 struct BladeFidelity {
   enum class Kind : std::uint8_t {
-    paper,  ///< strips that all move with the velocity of the hand point (000, eqs. 6-9): no torque about the
-            ///< long axis
+    paper,   ///< strips that all move with the velocity of the hand point ([Henry2004], eqs. 6-9): no torque
+             ///< about the long axis
     strips,  ///< each strip moves with the velocity of the middle of its submerged length
     exact    ///< closed form in area, centroid and second moments of the submerged polygon
   };
@@ -103,8 +103,9 @@ struct BladeFidelity {
 /// left Jacobian of the rotation, and the moment becomes the generalised torque of these axes by its
 /// transpose, so that force times velocity is the power.
 ///
-/// Source: 000, eqs. 3-9 and section 2.3; differs from the paper in the fidelities `strips` and `exact`, and
-/// in the split of K'v into Kn and Kt, which the paper gives as a function of direction without numbers.
+/// Source: [Henry2004], eqs. 3-9 and section 3.5; differs from the paper in the fidelities `strips` and
+/// `exact`, and in the split of K'v into Kn and Kt, which the paper gives as a function of direction without
+/// numbers.
 struct Blade {
   static constexpr std::string_view name = "blade";
   static constexpr std::string_view equation = "dF = -Kv v dl - (Kn n n^T + Kt (I - n n^T)) v ds, z < 0";

@@ -25,7 +25,8 @@ namespace kerf::models {
 /// depth. The threshold is that of fuzzy_kelvin, met by the force against the cut alone. Above the surface
 /// there is no force, and the reference goes with the blade.
 ///
-/// Source: 002, section 2.3, whose three elements have no numbers of their own; figs. 4-6 are of the x axis.
+/// Source: [FuzzyKelvin], section 2.3, whose three elements have no numbers of their own; figs. 4-6 are of
+/// the x axis.
 struct FuzzyKelvin3d {
   static constexpr std::string_view name = "fuzzy_kelvin_3d";
   static constexpr std::string_view equation =

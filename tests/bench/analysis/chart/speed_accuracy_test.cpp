@@ -35,7 +35,7 @@ ScriptedPath strokes_along(const std::string& axis, double depth) {
   return path;
 }
 
-/// A vertical blade that turns about its own axis in the tissue, and goes nowhere: T2 of 000.
+/// A vertical blade that turns about its own axis in the tissue, and goes nowhere: T2 of [Henry2004].
 ScriptedPath turning_blade() {
   ScriptedPath path;
   for (const auto* name : {"x", "y", "z", "rx", "ry", "rz"}) {

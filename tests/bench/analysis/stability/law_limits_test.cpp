@@ -105,7 +105,7 @@ TEST(LawLimits, ADamperIsPassiveUpToTheDevicesFriction) {
 }
 
 TEST(LawLimits, AKelvinTissueIsPassiveAtAnyRate) {
-  // Liver (002): far softer than the friction of any handle.
+  // Liver [FuzzyKelvin]: far softer than the friction of any handle.
   const double values[] = {8.0, 7.0, 130.0};
   const LawLimits limits =
       limits_of(handle, {models::Law::make("kelvin", values)}, {.depth_m = 0.02, .speed_m_s = 0.3}, 0.1);

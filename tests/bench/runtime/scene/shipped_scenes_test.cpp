@@ -121,7 +121,7 @@ TEST_F(ShippedScenes, OfPalpationRelaxInTheHold) {
 
 TEST_F(ShippedScenes, OfTheTurningScalpelAreFeltAboutItsAxis) {
   const std::vector<double> torque = force_on(recorded("scalpel-t2"), "rz");
-  EXPECT_NEAR(largest(torque), 51e-6, 3e-6) << "the figure of `kerf reproduce 000`";
+  EXPECT_NEAR(largest(torque), 51e-6, 3e-6) << "the figure of `kerf reproduce Henry2004`";
   // The same with the strips of the paper, all of one velocity: none but the edge's own.
   Scene scene = shipped("scalpel-t2");
   auto options = scene.tissue.law.options();

@@ -20,7 +20,8 @@ struct Homogeneity {
 };
 
 /// Whether groups of answers (of subjects, of slots) share one probability of success: the exact test of
-/// Fisher, Freeman and Halton (1951). Given the trials of each group and all successes, tables have
+/// Fisher, Freeman and Halton [FreemanHalton1951]. Given the trials of each group and all successes, tables
+/// have
 ///
 ///     P(k_1 ... k_m) = product of C(n_i, k_i) / C(n, k)
 ///
