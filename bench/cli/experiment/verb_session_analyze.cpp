@@ -92,7 +92,7 @@ void add_session_analyze(CLI::App& session, Context& context) {
   Verb verb = add_verb(
       session, context, "analyze", "What the answers of sessions show, and what they do not",
       "kerf session analyze study/S*.h5 --key-file keeper.key -o analysis\n"
-      "  kerf session analyze examples/sessions/004-table-1.csv\n\n"
+      "  kerf session analyze examples/sessions/okamura2003-table-1.csv\n\n"
       "Takes the sessions of one protocol, or a table of answers. Margins belong in the protocol of\n"
       "a study, before its first session. docs/sessions.md has every equation.",
       [arguments, &context] { analyze(*arguments, context); });
@@ -101,15 +101,19 @@ void add_session_analyze(CLI::App& session, Context& context) {
   verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");
   verb.add_option("--reason", arguments->reason, "Why a session is opened before its end; kept in the file");
   verb.add_option("--design", arguments->design, "Design of a table that does not say it");
-  verb.add_option("--confidence", options.confidence, "Of the intervals").within(0.5, 0.999).with_default();
-  verb.add_option("--level", options.level, "Of the tests").within(0.001, 0.5).with_default();
-  verb.add_option("--margin", options.margin, "A preference is none within 50 % +- this")
+  verb.add_option("--confidence", options.confidence, "Confidence level of the intervals")
+      .within(0.5, 0.999)
+      .with_default();
+  verb.add_option("--level", options.level, "Significance level of the tests")
+      .within(0.001, 0.5)
+      .with_default();
+  verb.add_option("--margin", options.margin, "Equivalence margin of a preference, 50 % +- this")
       .within(0.001, 0.5)
       .with_default();
   verb.add_option("--d-prime", options.d_prime_bound, "Renderings count as equal below this d'")
       .positive()
       .with_default();
-  verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: a JND is as wanted between them")
+  verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: equivalence margin of a JND")
       .taking(2);
   verb.add_option("--correction", arguments->correction, "For several tests: holm or bh")
       .one_of({"holm", "bh"})

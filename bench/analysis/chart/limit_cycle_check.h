@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <kerf/drivers/device.h>
+
+#include "laws/law_file.h"
+
+namespace kerf::bench {
+
+/// A device in a hand, and how deep the hand presses.
+struct DeviceInHand {
+  drivers::DeviceInfo device;
+  double hand_mass_kg = 0.0;
+  double hand_damping_n_s_per_m = 0.0;
+  double hand_stiffness_n_per_m = 0.0;
+  double deepest = 0.0;  ///< penetration, in the unit of the law's axis
+};
+
+/// Says of a law at a rate why it would have a limit cycle in that hand (stability/in_hand.h); nothing if it
+/// would not, or if it cannot be judged.
+[[nodiscard]] std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
+    const DeviceInHand& held);
+
+}  // namespace kerf::bench

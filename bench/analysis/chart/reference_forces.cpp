@@ -1,0 +1,126 @@
+#include "chart/reference_forces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr double scene_runaway = 10.0;  // times the largest force of the reference
+
+}  // namespace
+
+std::vector<drivers::Sample> samples_of(const ToolPath& path) {
+  std::vector<drivers::Sample> samples(path.position.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].position = path.position[i];
+    samples[i].velocity = path.velocity[i];
+  }
+  return samples;
+}
+
+ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,
+                   std::span<const drivers::Sample> samples, double period_s) {
+  LawRendering rendering(law.law, law.contact, axes);
+  ForcePath path;
+  path.force.reserve(samples.size());
+  for (const drivers::Sample& sample : samples) {
+    const Command command = rendering(sample, period_s);
+    path.force.push_back(command.force);
+    path.fault = path.fault || command.flags != 0;
+  }
+  return path;
+}
+
+ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& path,
+                                 std::vector<std::size_t> axes, const fitting::ForceJnd& jnd)
+    : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
+  const ToolPath ticks = path.at(rate_hz_);
+  ForcePath forces = rendered(reference.law, axes_, samples_of(ticks), ticks.period_s);
+  if (forces.fault) {
+    throw std::invalid_argument(
+        fmt::format("the reference itself ({} of law '{}') fails on this path: its force is not finite",
+                    reference.label, reference.law.law.model()));
+  }
+  reference_ = std::move(forces.force);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < reference_.size(); ++i) {
+    if (pushes(static_cast<double>(i) / rate_hz_)) ++count;
+  }
+  if (count == 0) throw std::invalid_argument("the tool never meets the tissue on this path");
+  for (const std::size_t axis : axes_) {
+    const drivers::AxisInfo& info = path.device.axes.at(axis);
+    Axis about{.name = info.name, .axis = axis};
+    if (info.force_unit == "N·m") about.lever_m = info.lever != 1.0 ? info.lever : fingers_m;
+    double squares = 0.0;
+    for (const drivers::Axes& force : reference_) {
+      const double newtons = force[axis] / about.lever_m;
+      squares += newtons * newtons;
+      peak_n_ = std::max(peak_n_, std::abs(newtons));
+    }
+    about.jnd_n = jnd.at(std::sqrt(squares / static_cast<double>(count)));
+    about_.push_back(about);
+  }
+}
+
+bool ReferenceForces::pushes(double time_s) const {
+  const auto at = static_cast<std::size_t>(std::lround(time_s * rate_hz_));
+  const drivers::Axes& force = reference_[std::min(at, reference_.size() - 1)];
+  return std::any_of(axes_.begin(), axes_.end(), [&](std::size_t axis) { return force[axis] != 0.0; });
+}
+
+double ReferenceForces::force_n(std::size_t place, double time_s) const {
+  const Axis& about = about_[place];
+  const double at = std::min(time_s * rate_hz_, static_cast<double>(reference_.size() - 1));
+  const auto before = static_cast<std::size_t>(at + 1e-6);
+  const auto after = std::min(before + 1, reference_.size() - 1);
+  const double share = std::max(0.0, at - static_cast<double>(before));
+  const double from = reference_[before][about.axis];
+  return (from + share * (reference_[after][about.axis] - from)) / about.lever_m;
+}
+
+double ReferenceForces::jnd_of(const std::string& axis) const {
+  for (const Axis& about : about_) {
+    if (about.name == axis) return about.jnd_n;
+  }
+  return about_.front().jnd_n;
+}
+
+void ReferenceForces::compare(const ForcePath& forces, ChartPoint& point) const {
+  double largest_n = 0.0;
+  point.error_jnd = -1.0;
+  for (std::size_t place = 0; place < about_.size(); ++place) {
+    double squares = 0.0;
+    double worst = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < forces.force.size(); ++i) {
+      const double time_s = static_cast<double>(i) / point.rate_hz;
+      const double newtons = forces.force[i][about_[place].axis] / about_[place].lever_m;
+      largest_n = std::max(largest_n, std::abs(newtons));
+      if (!pushes(time_s)) continue;
+      const double error = newtons - force_n(place, time_s);
+      squares += error * error;
+      worst = std::max(worst, std::abs(error));
+      ++count;
+    }
+    const double error_n = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+    if (error_n / about_[place].jnd_n <= point.error_jnd) continue;
+    point.error_n = error_n;
+    point.error_jnd = error_n / about_[place].jnd_n;
+    point.worst_n = worst;
+    point.axis = about_[place].name;
+  }
+  if (forces.fault) {
+    point.stable = false;
+    point.why = "its force is not finite";
+  } else if (largest_n > scene_runaway * peak_n_) {
+    point.stable = false;
+    point.why = fmt::format("its force reaches {:.3g} N, the reference {:.3g} N", largest_n, peak_n_);
+  }
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <kerf/fitting/fit.h>
+#include <kerf/schema/recording.h>
+
+#include "choose/candidates.h"
+#include "choose/effects.h"
+#include "fits/fit_recording.h"
+
+namespace kerf::bench {
+
+/// How a law did in closed loop, by the wall clock.
+struct Deadline {
+  bool held = true;
+  bool machine_late = false;  ///< it did not hold, and by the machine's doing alone: says nothing of the law
+  double p999_us = 0.0;       ///< processor time of a tick's computation at 99.9 %
+  std::uint64_t missed = 0;
+  std::uint64_t ticks = 0;
+  std::string why;  ///< in words, if it did not hold
+};
+
+/// Runs a law by the wall clock.
+using DeadlineCheck = std::function<Deadline(const LawFile&)>;
+/// Why a law is not stable with the given hand and device; nothing if it is.
+using StabilityCheck = std::function<std::optional<std::string>(const LawFile&, const schema::Recording&)>;
+
+struct CandidateSearchOptions {
+  DeadlineCheck deadline;                              ///< empty: not checked
+  StabilityCheck stability;                            ///< empty: not checked
+  std::function<void(const std::string& law)> begins;  ///< a check in closed loop, which takes its time
+};
+
+/// One law of the table.
+struct Candidate {
+  CandidateLaw law;
+  std::optional<LawFile> file;   ///< none if it could not be fitted, or was not
+  std::optional<FittedLaw> fit;  ///< none of a law that was known and not fitted
+  bool converged = false;
+  double error_n = std::numeric_limits<double>::infinity();  ///< root mean square, on held-out data
+  double error_jnd = std::numeric_limits<double>::infinity();
+  double error_torque_n_m = std::numeric_limits<double>::quiet_NaN();  ///< of a law that gives torques
+  double tick_us = 0.0;                                                ///< median
+  bool within_jnd = false;                                             ///< and converged
+  std::optional<Deadline> deadline;                                    ///< none: not checked
+  std::optional<bool> stable;                                          ///< none: not checked
+  std::string why;  ///< it was passed over; empty for the law that was taken
+};
+
+/// The law that was taken, among those it was taken from.
+struct LawChoice {
+  double jnd_n = 0.0;  ///< at the root mean square force
+  double force_rms_n = 0.0;
+  std::string held_out;               ///< "5 folds of 10 cycles"
+  std::vector<Candidate> candidates;  ///< in the order of the search
+  std::optional<std::size_t> taken;   ///< the law that serves; where none is within the JND, the best one
+  bool serves = false;                ///< within the JND, in time and stable
+  bool in_doubt = false;              ///< it would serve, but the machine was too late to tell
+  /// Where none is within the JND: the simplest law that leaves out no more than the JND against the best.
+  std::optional<std::size_t> as_good;
+  std::string why;
+  std::vector<EffectVerdict> effects;
+  std::vector<std::string> warnings;
+  models::Contact contact;
+  fitting::FitOptions settings;
+};
+
+/// Goes over candidates whose errors are known, from the simplest on, and takes the first that serves.
+///
+/// The order is that of the number of parameters; of equal ones that of the cost of a tick in whole
+/// microseconds (a thousandth of the period at 1 kHz: finer differences buy nothing and do not repeat), then
+/// that of the number of effects that a law knows, then that of the error. A law serves that converged, whose
+/// error is within the JND, that holds its deadlines and is stable; the last two are checked only of laws
+/// that come up.
+class CandidateSearch {
+ public:
+  /// `recording` is what the stability is judged with.
+  CandidateSearch(LawChoice& choice, const CandidateSearchOptions& options,
+                  const schema::Recording& recording, const std::atomic<bool>& stop);
+
+  /// The candidates from one place on that have as many parameters as that one.
+  [[nodiscard]] std::size_t end_of_group(std::size_t begin) const;
+  /// Sorts such a group and goes over it.
+  void search_group(std::size_t begin, std::size_t end);
+  /// Says what came of it. Where none is within the JND the one with the least error is named, and checked.
+  void finish();
+
+  /// @throws std::system_error if the work was stopped.
+  void end_if_stopped() const;
+
+ private:
+  void consider(std::size_t place);
+  [[nodiscard]] bool passes_checks(Candidate& candidate);
+  void check_all_the_same(Candidate& candidate);
+  void take_the_best();
+  void explain();
+  void explain_the_best(const std::string& limit);
+
+  LawChoice& choice_;
+  const CandidateSearchOptions& options_;
+  const schema::Recording& recording_;
+  const std::atomic<bool>& stop_;
+};
+
+/// What a simpler law leaves out against a better one, sqrt(e^2 - b^2) [N]; 0 if it is not worse.
+[[nodiscard]] double left_out(double error_n, double better_n) noexcept;
+
+}  // namespace kerf::bench

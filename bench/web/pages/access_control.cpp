@@ -1,0 +1,52 @@
+#include "pages/access_control.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <sodium.h>
+
+namespace kerf::bench {
+namespace {
+
+std::string new_token() {
+  std::array<unsigned char, 16> bytes{};
+  randombytes_buf(bytes.data(), bytes.size());
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
+}
+
+/// In a time that does not tell how much of it is right.
+bool is_same_secret(std::string_view given, std::string_view secret) noexcept {
+  return given.size() == secret.size() && sodium_memcmp(given.data(), secret.data(), secret.size()) == 0;
+}
+
+}  // namespace
+
+AccessControl::AccessControl(std::vector<std::string> hosts)
+    : hosts_(std::move(hosts)), token_(new_token()) {}
+
+std::string AccessControl::url(std::string_view path) const {
+  return fmt::format("http://{}{}?token={}", hosts_.front(), path, token_);
+}
+
+bool AccessControl::is_ours(std::string_view host) const {
+  return std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end();
+}
+
+bool AccessControl::admits(const HttpRequest& request) const {
+  if (!is_ours(request.header("host"))) return false;
+  if (request.headers.contains("origin")) {
+    constexpr std::string_view scheme = "http://";
+    std::string_view origin = request.header("origin");
+    if (!origin.starts_with(scheme)) return false;
+    origin.remove_prefix(scheme.size());
+    if (!is_ours(origin)) return false;
+  }
+  if (request.headers.contains("x-kerf-token")) return is_same_secret(request.header("x-kerf-token"), token_);
+  const auto in_address = request.query.find("token");
+  return request.method != "POST" && in_address != request.query.end() &&
+         is_same_secret(in_address->second, token_);
+}
+
+}  // namespace kerf::bench

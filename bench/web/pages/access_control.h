@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "http/http_server.h"
+
+namespace kerf::bench {
+
+/// Who may ask a server of this machine. Whoever asks has to know the token of the address (128 random bits,
+/// compared in constant time), to have called the server by one of its own names, and not to come from
+/// another site. The token is in the address and then in a header that no other site can send, not in a
+/// cookie, which a browser would show to every server of this machine.
+class AccessControl {
+ public:
+  /// With a new token; `hosts` as HttpServer::hosts().
+  explicit AccessControl(std::vector<std::string> hosts);
+
+  [[nodiscard]] const std::string& token() const noexcept { return token_; }
+  /// The address to open: "http://127.0.0.1:8000/?token=..." for the path "/".
+  [[nodiscard]] std::string url(std::string_view path) const;
+  /// An address can be opened from anywhere; an action (POST) only by the page, which sends the header.
+  [[nodiscard]] bool admits(const HttpRequest& request) const;
+
+ private:
+  [[nodiscard]] bool is_ours(std::string_view host) const;
+
+  std::vector<std::string> hosts_;
+  std::string token_;
+};
+
+}  // namespace kerf::bench
