@@ -44,9 +44,9 @@ TEST(OtherPrograms, UsbipListsAttachesAndDetachesWhatIsEmulated) {
   EXPECT_TRUE(becomes_attached("spacemouse:", false));
 }
 
-// Not among the packages that the set-up installs: it would take a SpaceMouse from whoever uses one.
+// scripts/set-up unpacks it and does not install it: it would take a SpaceMouse from whoever uses one.
 TEST(OtherPrograms, SpacenavdUsesTheSpaceNavigator) {
-  if (std::system("command -v spacenavd >/dev/null") != 0) GTEST_SKIP() << "spacenavd is not installed";
+  if (std::system("command -v spacenavd >/dev/null") != 0) GTEST_SKIP() << "spacenavd is not installed, nor unpacked";
   const Emulator emulator("spacemouse");
   ASSERT_TRUE(becomes_attached("spacemouse:0"));
   const std::string said = output_of("stdbuf -oL timeout -s INT 3 spacenavd -d -v");

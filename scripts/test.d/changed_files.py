@@ -1,0 +1,32 @@
+"""Which files a run of scripts/test is about: all that differ from where this work began.
+
+That is the last commit shared with the default branch of `origin`; where nothing was done since then, the commit before the
+last one. What is not yet committed, or not yet known to git, counts too. Without git or without history: every file.
+"""
+
+import subprocess
+from pathlib import Path
+
+
+def _git(root: Path, *arguments: str) -> str | None:
+    result = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False)
+    return result.stdout if result.returncode == 0 else None
+
+
+def changed_files(root: Path) -> set[Path] | None:
+    """Paths below `root` that changed and still exist, or None for all of them."""
+    head = _git(root, "rev-parse", "HEAD")
+    if head is None:
+        return None
+    base = None
+    for branch in ("origin/HEAD", "origin/main"):
+        base = base or _git(root, "merge-base", "HEAD", branch)
+    untracked = _git(root, "ls-files", "--others", "--exclude-standard") or ""
+    edited = _git(root, "diff", "--name-only", "HEAD") or ""
+    if base is None or base == head:
+        base = head if edited or untracked else _git(root, "rev-parse", "HEAD~")
+    if base is None:
+        return None
+    committed = _git(root, "diff", "--name-only", base.strip(), "HEAD") or ""
+    names = set((committed + edited + untracked).splitlines())
+    return {root / name for name in names if (root / name).is_file()}

@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+"""Runs ctest, and says in the last lines what was not tested: skips by reason, and which command brings what was missing.
+
+    scripts/test.d/run_tests.py [--totals FILE] CTEST_ARGUMENT...
+
+The very last line is "N passed, N failed, N skipped". A GoogleTest case that is skipped within a test which ran (a suite over
+USB is one test) counts as a skip of its own. Where the environment says CI=true a skip is a failure, unless
+tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file.
+
+Exit status: ctest's own; 1 if ctest passed and a skip was a failure.
+"""
+
+import fnmatch
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from dataclasses import dataclass
+from pathlib import Path
+
+ALLOWED = Path(__file__).resolve().parents[2] / "tests" / "skips-allowed.txt"
+
+# What brings what is missing, for reasons that do not say so themselves.
+REMEDIES = [
+    (r"measured data", "scripts/fetch-data"),
+    (r"is not installed|is missing|are not there|no chrom|there is no Chromium", "scripts/set-up --tests"),
+]
+
+
+@dataclass(frozen=True)
+class Skip:
+    name: str
+    reason: str
+
+
+@dataclass
+class Outcome:
+    passed: int
+    failed: int
+    skips: list[Skip]
+
+
+def last_line(text: str) -> str:
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return lines[-1].removeprefix("skipped: ") if lines else "it says nothing"
+
+
+def skipped_cases(output: str) -> list[Skip]:
+    """The cases that GoogleTest skipped, with the first line of what each says."""
+    skips = []
+    reason = ""
+    awaits_reason = False
+    for line in output.splitlines():
+        if match := re.match(r"\[  SKIPPED \] (\S+) \(\d+ ms\)", line):
+            skips.append(Skip(match[1], reason or "it says nothing"))
+            reason = ""
+            awaits_reason = False
+        elif re.search(r":\d+: Skipped$", line):
+            awaits_reason = True
+        elif awaits_reason and line.strip():
+            reason = line.strip()
+            awaits_reason = False
+    return skips
+
+
+def outcome_of(junit: str) -> Outcome:
+    """Reads what `ctest --output-junit` writes. There, "notrun" is both a skip and a program that is missing."""
+    outcome = Outcome(0, 0, [])
+    for case in ElementTree.fromstring(junit).iter("testcase"):
+        name = case.get("name", "")
+        status = case.get("status")
+        output = case.findtext("system-out") or ""
+        skipped = case.find("skipped")
+        cases = skipped_cases(output)
+        if status == "disabled":
+            outcome.skips.append(Skip(name, "it is disabled"))
+        elif status == "notrun" and skipped is not None and skipped.get("message", "").startswith("SKIP_"):
+            outcome.skips.append(Skip(name, cases[0].reason if cases else last_line(output)))
+        else:
+            if status == "run":
+                outcome.passed += 1
+            else:
+                outcome.failed += 1
+            outcome.skips += [Skip(f"{name}: {skip.name}", skip.reason) for skip in cases]
+    return outcome
+
+
+@dataclass(frozen=True)
+class Allowance:
+    """A line of tests/skips-allowed.txt: a shell pattern of names, and a part of the reason that they may give."""
+
+    pattern: str
+    reason: str
+
+    def covers(self, skip: Skip) -> bool:
+        return fnmatch.fnmatchcase(skip.name, self.pattern) and self.reason in skip.reason
+
+
+def read_allowances(text: str) -> list[Allowance]:
+    allowances = []
+    for number, line in enumerate(text.splitlines(), 1):
+        line = line.strip()
+        if not line or line.startswith("#"):
+            continue
+        pattern, bar, reason = (part.strip() for part in line.partition("|"))
+        if not (pattern and bar and reason):
+            raise ValueError(f"line {number}: expected 'pattern of names | part of the reason', got '{line}'")
+        allowances.append(Allowance(pattern, reason))
+    return allowances
+
+
+def remedy(reason: str) -> str:
+    if "scripts/" in reason:
+        return ""
+    for pattern, command in REMEDIES:
+        if re.search(pattern, reason):
+            return f" ({command} brings it)"
+    return ""
+
+
+def names_of(skips: list[Skip]) -> str:
+    shown = [skip.name for skip in skips[:3]]
+    more = len(skips) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")
+
+
+def closing_lines(outcome: Outcome, allowances: list[Allowance], skip_is_failure: bool) -> tuple[list[str], bool]:
+    """What stands at the end of the output, and whether the skips let the run pass."""
+    lines = []
+    by_reason: dict[str, list[Skip]] = {}
+    for skip in outcome.skips:
+        by_reason.setdefault(skip.reason, []).append(skip)
+    if by_reason:
+        lines.append("Skipped, by reason:")
+    for reason, skips in sorted(by_reason.items(), key=lambda item: -len(item[1])):
+        lines.append(f"{len(skips):6}  {reason}{remedy(reason)}: {names_of(skips)}")
+    refused = []
+    if skip_is_failure:
+        refused = [skip for skip in outcome.skips if not any(one.covers(skip) for one in allowances)]
+        if refused:
+            lines.append(f"On CI a skip is a failure unless tests/skips-allowed.txt names it, and {len(refused)} it does "
+                         f"not: {names_of(refused)}")
+        unused = [one for one in allowances if not any(one.covers(skip) for skip in outcome.skips)]
+        lines += [f"Allowed to be skipped, and was not: {one.pattern} | {one.reason}" for one in unused]
+    lines.append(f"{outcome.passed} passed, {outcome.failed} failed, {len(outcome.skips)} skipped")
+    return lines, not refused
+
+
+def main(arguments: list[str]) -> int:
+    totals = None
+    if arguments[:1] == ["--totals"]:
+        totals, arguments = arguments[1], arguments[2:]
+    skip_is_failure = os.environ.get("CI", "").lower() in ("true", "1")
+    try:
+        allowances = read_allowances(ALLOWED.read_text()) if skip_is_failure else []
+    except ValueError as problem:
+        print(f"{ALLOWED}: {problem}", file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as folder:
+        junit = Path(folder) / "junit.xml"
+        # Of a passed test ctest keeps 1 KiB, and the skips within it may stand behind that.
+        status = subprocess.run(
+            ["ctest", "--no-tests=error", "--test-output-size-passed", "10000000", "--output-junit", str(junit), *arguments],
+            check=False).returncode
+        if not junit.exists():  # `ctest --show-only` and the like
+            return status
+        outcome = outcome_of(junit.read_text())
+    if outcome.passed + outcome.failed + len(outcome.skips) == 0:
+        return status
+    lines, passes = closing_lines(outcome, allowances, skip_is_failure)
+    if totals:
+        with open(totals, "a", encoding="utf-8") as file:
+            file.write(f"{outcome.passed} {outcome.failed} {len(outcome.skips)}\n")
+    print("\n" + "\n".join(lines), flush=True)
+    return status if status or passes else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

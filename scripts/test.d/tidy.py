@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy with the checks of .clang-tidy, on what changed or on everything, in parallel, and keeps the results.
+
+    scripts/test.d/tidy.py [--all] BUILD        BUILD: a folder that Clang has compiled, for example build/dev
+
+What has changed is said in changed_files.py: a changed source is read by itself; a changed header alone, or in a source that
+includes it. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
+NOLINTs), the command, the checks and the version of clang-tidy.
+
+Exit status: 0 if nothing was found, 1 if something was, 2 for bad usage.
+"""
+
+import concurrent.futures
+import dataclasses
+import hashlib
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from changed_files import changed_files
+from compile_commands import ROOT, Unit, read_units
+
+SOURCES = {".cpp"}
+HEADERS = {".h"}
+
+
+def by_itself(unit: Unit, source: Path) -> Unit:
+    return dataclasses.replace(unit, source=source, includes=())
+
+
+def units_of_changes(units: list[Unit], changed: set[Path]) -> list[Unit]:
+    """What has to be read for every changed file to be read once."""
+    chosen: dict[Path, Unit] = {}
+    for path in sorted(changed):
+        if path.suffix in SOURCES:
+            holders = [unit for unit in units if unit.source == path or path in unit.includes]
+            if holders:
+                chosen[path] = by_itself(holders[0], path)
+        elif path.suffix in HEADERS:
+            alone = [unit for unit in units if unit.is_header_alone and path in unit.includes]
+            user = None if alone else source_that_includes(path, units)
+            if alone:
+                chosen[alone[0].source] = alone[0]
+            elif user:
+                chosen.setdefault(user.source, user)
+    return list(chosen.values())
+
+
+def source_that_includes(header: Path, units: list[Unit]) -> Unit | None:
+    """The source beside it of the same name, or the first whose own text names it."""
+    sources = {source: unit for unit in units if not unit.is_header_alone
+               for source in (unit.includes or (unit.source,))}
+    beside = header.with_suffix(".cpp")
+    if beside in sources:
+        return by_itself(sources[beside], beside)
+    line = re.compile(rf'#include ["<](?:[^">]*/)?{re.escape(header.name)}[">]')
+    for source, unit in sorted(sources.items(), key=lambda item: (item[0].parent != header.parent, item[0])):
+        if source.exists() and line.search(source.read_text(errors="replace")):
+            return by_itself(unit, source)
+    return None
+
+
+def without_precompiled_header(arguments: tuple[str, ...]) -> list[str]:
+    """Its text is included instead: it may not be built, and what it holds must count in the hash."""
+    words = list(arguments)
+    while "-include-pch" in words:
+        at = words.index("-include-pch")
+        del words[at - 1:at + 3]  # -Xclang -include-pch -Xclang FILE
+    return words
+
+
+class Cache:
+    def __init__(self, folder: Path, tidy: str):
+        self.folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
+        version = subprocess.run([tidy, "--version"], capture_output=True, text=True, check=True).stdout
+        self.common = version + (ROOT / ".clang-tidy").read_text()
+
+    def entry(self, unit: Unit) -> Path | None:
+        compiler, *arguments = without_precompiled_header(unit.arguments)
+        preprocessed = subprocess.run([compiler, *arguments, "-E", "-C", str(unit.source)], cwd=unit.folder,
+                                      capture_output=True, check=False)
+        if preprocessed.returncode != 0:
+            return None
+        key = hashlib.sha256(self.common.encode() + "\0".join(unit.arguments).encode() + preprocessed.stdout)
+        return self.folder / key.hexdigest()
+
+    def prune(self) -> None:
+        for entry in self.folder.iterdir():
+            if entry.stat().st_mtime < time.time() - 30 * 86400:
+                entry.unlink()
+
+
+def findings(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
+    """What clang-tidy says, and whether that was known."""
+    entry = cache.entry(unit)
+    if entry and entry.exists():
+        os.utime(entry)
+        return entry.read_text(), True
+    result = subprocess.run(
+        [tidy, "--quiet", f"--config-file={ROOT}/.clang-tidy", str(unit.source), "--",
+         *without_precompiled_header(unit.arguments)[1:]],
+        cwd=unit.folder, capture_output=True, text=True, check=False)
+    text = result.stdout
+    if result.returncode != 0 and not text.strip():
+        text = f"{unit.source}: clang-tidy ends with {result.returncode}\n{result.stderr}"
+    elif entry:
+        partial = entry.with_suffix(f".{os.getpid()}")
+        partial.write_text(text)
+        partial.rename(entry)
+    return text, False
+
+
+def each_once(texts: list[str]) -> list[str]:
+    """One text a finding: of a header it is said by each source that includes it."""
+    seen: dict[str, str] = {}
+    for text in texts:
+        for finding in re.split(r"^(?=\S+:\d+:\d+: (?:warning|error): )", text, flags=re.MULTILINE):
+            if finding.strip():
+                seen.setdefault(finding.splitlines()[0], finding)
+    return list(seen.values())
+
+
+def main(arguments: list[str]) -> int:
+    everything = "--all" in arguments
+    folders = [word for word in arguments if word != "--all"]
+    if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
+        print("usage: scripts/test.d/tidy.py [--all] BUILD, a folder with compile_commands.json", file=sys.stderr)
+        return 2
+    tidy = shutil.which("clang-tidy")
+    if not tidy:
+        print("clang-tidy is missing: scripts/set-up --tests installs it", file=sys.stderr)
+        return 2
+    units = read_units(Path(folders[0]).resolve())
+    changed = None if everything else changed_files(ROOT)
+    if changed is None:
+        units = [unit for unit in units if not unit.is_header_alone]
+    else:
+        units = units_of_changes(units, changed)
+    cache = Cache(ROOT / "build" / "tidy-cache", tidy)
+    # The longest first, so that none is left for one processor at the end.
+    units.sort(key=lambda unit: -sum(path.stat().st_size for path in unit.includes or (unit.source,)))
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        results = list(pool.map(lambda unit: findings(tidy, unit, cache), units))
+    found = each_once([text for text, _ in results])
+    print("".join(found), end="")
+    cache.prune()
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"clang-tidy: {len(found)} findings in {len(units)} units, {sum(known for _, known in results)} of them known from "
+          f"before, {usage.ru_utime + usage.ru_stime:.0f} s of processor time")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
