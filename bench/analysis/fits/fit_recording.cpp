@@ -12,6 +12,7 @@
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
 #include "recordings/provenance.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -163,11 +164,9 @@ models::Options with_rendering_aids(models::Options options, const AxisSeries& s
   if (loop == options.end() || !std::get<bool>(loop->second)) return options;
   std::vector<double> speeds;
   for (const double velocity : series.velocity) speeds.push_back(std::abs(velocity));
-  const auto high = speeds.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(speeds.size()));
-  std::nth_element(speeds.begin(), high, speeds.end());
   const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
   options["velocity_corner"] = velocity_corner_rad_s;
-  options["ramp_band"] = ramp_share * *high;
+  options["ramp_band"] = ramp_share * quantile(std::move(speeds), 0.95);
   options["reversal_scale"] = 1.0 / (reversal_share * (*most - *least));
   return options;
 }

@@ -14,6 +14,7 @@
 #include "report/charts.h"
 #include "reproduce/reproduce.h"
 #include "segment/segment.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -114,9 +115,7 @@ double relative_error(const std::vector<double>& force, const Averaged& mean) {
     errors.push_back(std::abs(force[i] - mean.force_n[i]) /
                      std::max(std::abs(mean.force_n[i]), least_force_n));
   }
-  const auto high = errors.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size()));
-  std::nth_element(errors.begin(), high, errors.end());
-  return *high;
+  return quantile(std::move(errors), 0.95);
 }
 
 LawFile fitted(const schema::Recording& recording, const std::string& model) {

@@ -50,11 +50,6 @@ class RealFit : public testing::Test {
             .force = series.force,
             .cycle = series.cycle};
   }
-  static double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
   static double rms(const std::vector<double>& values) {
     double squares = 0.0;
     for (const double value : values) squares += value * value;
