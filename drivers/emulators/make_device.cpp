@@ -6,7 +6,7 @@
 #include "falcon.h"
 #include "labjack_u6.h"
 #include "spacemouse.h"
-#include "woody.h"
+#include "woodenhaptics.h"
 
 namespace kerf::emulators {
 

@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "ages.h"
+#include "age_limits.h"
 #include "falcon_link.h"
 #include "falcon_setup.h"
 #include "interruption.h"

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "ages.h"
+#include "age_limits.h"
 #include "falcon_setup.h"
 #include "kerf/mechanisms/falcon.h"
 

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "kerf/drivers/falcon.h"
-#include "kerf/drivers/latest.h"
+#include "kerf/drivers/triple_buffer.h"
 #include "kerf/drivers/protocols/falcon.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "kerf/drivers/usb/usb_device.h"

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <libusb.h>
 
-#include "ages.h"
+#include "age_limits.h"
 
 namespace kerf::drivers {
 namespace {

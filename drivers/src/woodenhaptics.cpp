@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "ages.h"
+#include "age_limits.h"
 #include "interruption.h"
 
 namespace kerf::drivers {

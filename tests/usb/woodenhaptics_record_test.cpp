@@ -15,7 +15,7 @@
 #include "emulator.h"
 #include "support/program.h"
 #include "wall.h"
-#include "woody_bench.h"
+#include "woodenhaptics_bench.h"
 
 namespace kerf::test {
 namespace {

@@ -15,7 +15,7 @@
 #include "opening.h"
 #include "support/allocation_counter.h"
 #include "support/program.h"
-#include "woody_bench.h"
+#include "woodenhaptics_bench.h"
 
 namespace kerf::test {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
-#include "chart/front.h"
-#include "chart/judgement.h"
+#include "chart/pareto_front.h"
+#include "chart/reference_forces.h"
 #include "laws/placement.h"
 
 namespace kerf::bench {

@@ -96,7 +96,7 @@ inline constexpr double fingers_m = 0.01;
 [[nodiscard]] FitSource charted(const schema::Recording& recording, const std::string& name,
                                 const std::string& axis);
 
-/// Marks the points of the front (front.h), costs p50 and warm, errors in JNDs, those under a thousandth of a
+/// Marks the points of the front (pareto_front.h), costs p50 and warm, errors in JNDs, those under a thousandth of a
 /// JND alike.
 void mark_front(std::vector<ChartPoint>& points, double rate_hz);
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 #include "plot/plot.h"
 
 namespace kerf::bench {

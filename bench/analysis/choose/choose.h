@@ -8,7 +8,7 @@
 #include <kerf/schema/recording.h>
 
 #include "choose/candidates.h"
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 
 namespace kerf::bench {
 
@@ -24,7 +24,7 @@ struct ChooseOptions {
   WalkOptions walk;
 };
 
-/// Fits every candidate to an axis of a recording and takes the simplest that serves (walk.h), by its error
+/// Fits every candidate to an axis of a recording and takes the simplest that serves (candidate_search.h), by its error
 /// on held-out data and the JND at the recording's root mean square force. So a richer law is taken only if
 /// the simpler ones leave out more than the JND.
 /// @throws std::invalid_argument for a recording without force, a missing axis, or one that no law can be

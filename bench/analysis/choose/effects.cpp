@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 
 namespace kerf::bench {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "chart/judgement.h"
+#include "chart/reference_forces.h"
 #include "chart/tick_cost.h"
 #include "laws/placement.h"
 #include "loop/command.h"

@@ -4,7 +4,7 @@
 
 #include <kerf/fitting/fit.h>
 
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {

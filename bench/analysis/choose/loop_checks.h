@@ -8,7 +8,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 #include "laws/law_file.h"
 
 namespace kerf::bench {

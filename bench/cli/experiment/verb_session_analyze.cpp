@@ -92,7 +92,7 @@ void add_session_analyze(CLI::App& session, Context& context) {
   Verb verb = add_verb(
       session, context, "analyze", "What the answers of sessions show, and what they do not",
       "kerf session analyze study/S*.h5 --key-file keeper.key -o analysis\n"
-      "  kerf session analyze examples/sessions/004-table-1.csv\n\n"
+      "  kerf session analyze examples/sessions/okamura2003-table-1.csv\n\n"
       "Takes the sessions of one protocol, or a table of answers. Margins belong in the protocol of\n"
       "a study, before its first session. docs/sessions.md has every equation.",
       [arguments, &context] { analyze(*arguments, context); });

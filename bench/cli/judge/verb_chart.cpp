@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "chart/chart_files.h"
-#include "chart/held_loop.h"
+#include "chart/limit_cycle_check.h"
 #include "chart/speed_accuracy.h"
 #include "files/whole_file.h"
 #include "laws/placement.h"

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "answers/analysis.h"
-#include "protocol/course.h"
+#include "protocol/trial_sequence.h"
 
 namespace kerf::bench {
 namespace {

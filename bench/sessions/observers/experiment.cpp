@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "protocol/course.h"
+#include "protocol/trial_sequence.h"
 
 namespace kerf::bench {
 namespace {

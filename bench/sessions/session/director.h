@@ -9,7 +9,7 @@
 
 #include <kerf/drivers/device.h>
 
-#include "protocol/course.h"
+#include "protocol/trial_sequence.h"
 #include "sealed/session_store.h"
 #include "session/blind_rendering.h"
 #include "subject/subject.h"

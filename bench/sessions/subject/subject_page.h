@@ -10,7 +10,7 @@
 #include <string>
 
 #include "http/http_server.h"
-#include "pages/gate.h"
+#include "pages/access_control.h"
 #include "subject/subject.h"
 
 namespace kerf::bench {

@@ -9,7 +9,7 @@
 #include "laws/law_file.h"
 #include "live/live_loop.h"
 #include "live/live_routes.h"
-#include "pages/gate.h"
+#include "pages/access_control.h"
 #include "results/jobs.h"
 #include "results/result_routes.h"
 #include "scene/scene.h"

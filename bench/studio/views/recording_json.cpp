@@ -9,7 +9,7 @@
 
 #include "segment/segment.h"
 #include "tables/json_number.h"
-#include "views/loops.h"
+#include "views/hysteresis_loops.h"
 
 namespace kerf::bench {
 namespace {

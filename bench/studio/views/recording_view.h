@@ -14,7 +14,7 @@
 
 #include <kerf/schema/recording_file.h>
 
-#include "views/loops.h"
+#include "views/hysteresis_loops.h"
 #include "views/pyramid.h"
 #include "views/row_index.h"
 #include "views/trace_view.h"

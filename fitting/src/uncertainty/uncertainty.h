@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "uncertainty/blocks.h"
-#include "uncertainty/indistinct.h"
+#include "uncertainty/unidentifiable.h"
 
 namespace kerf::fitting {
 

@@ -22,7 +22,7 @@ struct Table {
 };
 
 Table read_table() {
-  std::ifstream file(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv");
+  std::ifstream file(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   Table table;
   std::string line;
   while (std::getline(file, line)) {

@@ -11,7 +11,7 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/force_calibration.h>
-#include <kerf/drivers/latest.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/protocols/labjack_u6.h>
 #include <kerf/drivers/protocols/labjack_u6_commands.h>
 #include <kerf/drivers/scan_clock.h>

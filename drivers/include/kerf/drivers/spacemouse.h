@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <kerf/drivers/device.h>
-#include <kerf/drivers/latest.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/protocols/spacemouse.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/hid_device.h>

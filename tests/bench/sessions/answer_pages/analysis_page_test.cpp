@@ -24,7 +24,7 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
 }
 
 TEST(TheFigures, AreThoseThatTheStudyHasSomethingFor) {
-  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv");
+  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   EXPECT_THAT(names_of(analysis_figures(table, analyse(table))), ::testing::ElementsAre("proportions"));
   Study levels = testing::study_with(Design::constant);
   levels.scale.levels = {0.05, 0.1, 0.2};
@@ -38,7 +38,7 @@ TEST(TheFigures, AreThoseThatTheStudyHasSomethingFor) {
 
 // 12 answers, the mean of the subjects, four tissues, three subjects.
 TEST(TheProportions, HaveALineForEachGroup) {
-  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv");
+  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   const Chart chart = proportion_chart(analyse(table));
   ASSERT_EQ(chart.y_ticks.size(), 9U);
   EXPECT_EQ(chart.y_ticks[0].name, "all (12)");
@@ -62,7 +62,7 @@ TEST(ThePage, SaysWhatIsShownAndWhatIsNotAndEscapesNames) {
 TEST(AnAnalysisThatIsWritten, IsNotReplacedUnasked) {
   const auto folder = std::filesystem::temp_directory_path() / "kerf-session-analysis-test";
   std::filesystem::remove_all(folder);
-  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv");
+  const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   const Analysis analysis = analyse(table);
   EXPECT_THAT(write_analysis(table, analysis, folder, false),
               ::testing::ElementsAre("analysis.html", "analysis.json", "answers.csv", "proportions.svg"));

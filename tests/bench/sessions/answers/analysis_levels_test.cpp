@@ -7,7 +7,7 @@
 #include "answer_pages/analysis_json.h"
 #include "answers/analysis.h"
 #include "bench/sessions/answers/studies.h"
-#include "protocol/course.h"
+#include "protocol/trial_sequence.h"
 
 namespace kerf::bench {
 namespace {

@@ -22,7 +22,7 @@ using testing::study_with;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 
-Study table_of_004() { return read_answers(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv"); }
+Study table_of_004() { return read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv"); }
 
 // P(X >= 12 | 16, 1/2) = 2517 / 65536; the interval and the power as R's binom.test and pbinom give them.
 TEST(AnAbxSession, OfTwelveInSixteenIsRightOneSided) {

@@ -110,7 +110,7 @@ TEST(AnswersThatAreWritten, AreReadAgain) {
 }
 
 TEST(AnswersThatAreWritten, AreReadAgainWithoutSlots) {
-  const Study study = read_answers(KERF_SOURCE_DIR "/examples/sessions/004-table-1.csv");
+  const Study study = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   const Study again = parse_answers(answers_csv(study), "answers.csv");
   EXPECT_FALSE(again.slots_known);
   EXPECT_EQ(analyse(again).preferred, analyse(study).preferred);

@@ -1,4 +1,4 @@
-#include "views/loops.h"
+#include "views/hysteresis_loops.h"
 
 #include <algorithm>
 #include <map>

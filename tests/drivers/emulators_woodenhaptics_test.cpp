@@ -14,7 +14,7 @@
 #include <kerf/mechanisms/woodenhaptics.h>
 
 #include "support/program.h"
-#include "woody.h"
+#include "woodenhaptics.h"
 
 namespace kerf::emulators {
 namespace {

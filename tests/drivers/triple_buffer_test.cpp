@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <kerf/drivers/latest.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/usb/io_thread.h>
 
 namespace kerf::drivers {

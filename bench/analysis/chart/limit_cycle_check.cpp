@@ -1,4 +1,4 @@
-#include "chart/held_loop.h"
+#include "chart/limit_cycle_check.h"
 
 #include "stability/in_hand.h"
 

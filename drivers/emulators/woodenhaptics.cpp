@@ -1,4 +1,4 @@
-#include "woody.h"
+#include "woodenhaptics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "chart/front.h"
+#include "chart/pareto_front.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "choose/walk.h"
+#include "choose/candidate_search.h"
 
 #include <algorithm>
 #include <cmath>

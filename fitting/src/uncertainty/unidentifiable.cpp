@@ -1,4 +1,4 @@
-#include "uncertainty/indistinct.h"
+#include "uncertainty/unidentifiable.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pages/gate.h"
+#include "pages/access_control.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "chart/judgement.h"
+#include "chart/reference_forces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "protocol/course.h"
+#include "protocol/trial_sequence.h"
 
 #include <algorithm>
 #include <cmath>
