@@ -129,14 +129,14 @@ WritableFile WritableFile::open(const std::filesystem::path& file) {
   auto failure = std::make_unique<int>(0);
   const auto access = sturdy_access(*failure);
   // A reader locks a file for the moment in which it learns that the file is written.
-  constexpr int most_attempts = 20;
+  constexpr int max_attempts = 20;
   for (int attempt = 1;; ++attempt) {
     try {
       Handle handle(call(H5Fopen, file.c_str(), H5F_ACC_RDWR, access.id()));
       return {std::move(failure), std::move(handle)};
     } catch (const Error& error) {
       const bool is_locked = std::string_view(error.what()).find("unable to lock") != std::string_view::npos;
-      if (!is_locked || attempt == most_attempts) throw;
+      if (!is_locked || attempt == max_attempts) throw;
       std::this_thread::sleep_for(std::chrono::milliseconds(attempt));
     }
   }
@@ -250,9 +250,9 @@ std::size_t bytes_to_unpack(hid_t dataset) {
 Handle open_to_pass_through(hid_t parent, const std::string& path) {
   // What is open already would be opened with the cache that it has.
   const std::size_t bytes = bytes_to_unpack(open(parent, path).id());
-  constexpr std::size_t most_bytes = std::size_t{32} << 20U;
+  constexpr std::size_t max_bytes = std::size_t{32} << 20U;
   const auto access = property_list(H5P_DATASET_ACCESS);
-  call(H5Pset_chunk_cache, access.id(), std::size_t{11}, std::min(bytes, most_bytes),
+  call(H5Pset_chunk_cache, access.id(), std::size_t{11}, std::min(bytes, max_bytes),
        H5D_CHUNK_CACHE_W0_DEFAULT);
   return Handle(call(H5Dopen2, parent, path.c_str(), access.id()));
 }

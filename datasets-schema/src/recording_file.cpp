@@ -19,7 +19,7 @@ namespace kerf::schema {
 namespace {
 
 /// Rows of one call of HDF5, which keeps its lock meanwhile: 3 MB of 6 axes, a millisecond or two.
-constexpr std::uint64_t most_rows_at_once = 65536;
+constexpr std::uint64_t max_rows_at_once = 65536;
 
 constexpr std::array<const char*, 9> column_paths{
     "/samples/time",           "/samples/position",     "/samples/velocity",  "/samples/force_commanded",
@@ -57,7 +57,7 @@ template <typename T>
 void read_in_pieces(const h5::Handle& dataset, std::uint64_t first, std::uint64_t rows, std::size_t width,
                     T* values) {
   while (rows > 0) {
-    const auto piece = std::min(rows, most_rows_at_once);
+    const auto piece = std::min(rows, max_rows_at_once);
     h5::read(dataset.id(), h5::native<T>(), piece, values, first);
     first += piece;
     rows -= piece;

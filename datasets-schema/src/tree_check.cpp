@@ -101,8 +101,8 @@ std::optional<h5::Extent> TreeCheck::extent_of(const std::string& path, const st
     return std::nullopt;
   }
   // Deflated, zeros take a thousandth of their room.
-  constexpr std::uintmax_t most_deflated = 1100;
-  if (bytes_of(dataset.id(), found.extent) / most_deflated > size_) {
+  constexpr std::uintmax_t max_deflated = 1100;
+  if (bytes_of(dataset.id(), found.extent) / max_deflated > size_) {
     fail(path, in_words(found), "no more than the file can hold");
     return std::nullopt;
   }

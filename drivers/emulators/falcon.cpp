@@ -25,7 +25,7 @@ constexpr std::string_view hello = "\x0A\x43\x0D";
 constexpr std::array<std::uint8_t, 4> answer{0x0A, 0x44, 0x2C, 0x0D};
 constexpr std::uint8_t autobaud = 0x41;
 constexpr std::int64_t frame_time_ns = 100'000;  // on the line, each way
-constexpr int most_motor = 4096;
+constexpr int max_motor = 4096;
 constexpr double lead_m = 0.03;
 
 const Description& falcon() {
@@ -68,7 +68,7 @@ EmulatedFalcon::EmulatedFalcon(const Options& options)
     : options_(options),
       boot_(options.loaded ? Boot::running : Boot::silent),
       // A cube of 8 cm that the arms reach in every corner.
-      tip_({.centre_m = {0.0, 0.0, 0.12}, .sway_m = options.sway_m, .most_travel_m = 0.04}),
+      tip_({.centre_m = {0.0, 0.0, 0.12}, .sway_m = options.sway_m, .max_travel_m = 0.04}),
       homed_(options.homed),
       trace_(open_trace(options.trace,
                         "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,"
@@ -172,7 +172,7 @@ void EmulatedFalcon::turn_motors(const std::array<int, 3>& asked, double time_s)
   tip_.run_until(time_s);
   Eigen::Vector3d torque_n_m;
   for (std::size_t i = 0; i < 3; ++i) {
-    motor_[i] = std::clamp(asked[i], -most_motor, most_motor);
+    motor_[i] = std::clamp(asked[i], -max_motor, max_motor);
     if (motor_[i] != asked[i]) ++clips_;
     torque_n_m[static_cast<Eigen::Index>(i)] = -motor_[i] / options_.units_per_n_m;
   }

@@ -19,8 +19,8 @@ HeldTip::HeldTip(const Options& options)
       axis_{.mass_kg = options.mass_kg,
             .hand_stiffness_n_per_m = options.hand_stiffness_n_per_m,
             .hand_damping_n_s_per_m = options.hand_damping_n_s_per_m,
-            .lower_m = -options.most_travel_m,
-            .upper_m = options.most_travel_m} {}
+            .lower_m = -options.max_travel_m,
+            .upper_m = options.max_travel_m} {}
 
 void HeldTip::run_until(double time_s) noexcept {
   const auto target = static_cast<std::uint64_t>(std::llround(std::max(0.0, time_s) / step_s));

@@ -17,8 +17,8 @@ class HeldTip {
   struct Options {
     Eigen::Vector3d centre_m{0.0, 0.0, 0.0};
     double sway_m = 0.01;
-    double most_travel_m = 0.05;  ///< hard stops, from the centre
-    double mass_kg = 0.25;        ///< of tip and hand
+    double max_travel_m = 0.05;  ///< hard stops, from the centre
+    double mass_kg = 0.25;       ///< of tip and hand
     double hand_stiffness_n_per_m = 300.0;
     double hand_damping_n_s_per_m = 5.0;
   };

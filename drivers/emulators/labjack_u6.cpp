@@ -23,10 +23,10 @@ constexpr std::array wrench_hz{0.7, 1.1, 1.3, 1.7, 1.9, 2.3};
 constexpr std::size_t buffer_samples = 984;
 constexpr std::uint16_t dummy_sample = 0xFFFF;
 constexpr std::int64_t blocked_ns = 190'000'000;
-constexpr std::uint8_t most_clock_bits = 0x0A;  // 48 MHz, and its division by 256
+constexpr std::uint8_t max_clock_bits = 0x0A;  // 48 MHz, and its division by 256
 constexpr double slowest_clock_hz = 4e6;
 constexpr double fastest_clock_hz = 48e6;
-constexpr double most_samples_per_s = 50e3;
+constexpr double max_samples_per_s = 50e3;
 
 constexpr std::uint8_t error_active = 48;
 constexpr std::uint8_t error_table = 49;
@@ -173,14 +173,14 @@ Bytes EmulatedU6::stream_config(std::span<const std::uint8_t> command) {
   const double rate_hz = (fast ? fastest_clock_hz : slowest_clock_hz) / divisor / interval;
   if (streaming_) {
     reply[6] = error_active;
-  } else if (count < 1 || count > wire::most_channels || command.size() != 14 + 2 * count) {
+  } else if (count < 1 || count > wire::max_scan_channels || command.size() != 14 + 2 * count) {
     reply[6] = error_table;
-  } else if (per_packet < 1 || per_packet > wire::most_samples || (command[11] & ~most_clock_bits) != 0 ||
+  } else if (per_packet < 1 || per_packet > wire::max_samples || (command[11] & ~max_clock_bits) != 0 ||
              command[7] > 8) {
     reply[6] = error_config;
   } else if (interval < 1.0) {
     reply[6] = error_rate;
-  } else if (rate_hz * static_cast<double>(count) > most_samples_per_s) {
+  } else if (rate_hz * static_cast<double>(count) > max_samples_per_s) {
     reply[6] = error_overlap;
   }
   if (reply[6] != 0) return reply;
@@ -310,8 +310,8 @@ std::optional<std::size_t> EmulatedU6::send_stream(std::span<std::uint8_t> buffe
     end_recovery();
   }
   // Packets of 64 bytes do not end a transfer: a full one fills it. Shorter ones end it each.
-  const bool fills = samples_per_packet_ == wire::most_samples;
-  const std::size_t wanted = fills ? std::max<std::size_t>(1, buffer.size() / wire::most_packet) : 1;
+  const bool fills = samples_per_packet_ == wire::max_samples;
+  const std::size_t wanted = fills ? std::max<std::size_t>(1, buffer.size() / wire::max_packet) : 1;
   if (fifo_.size() < wanted * samples_per_packet_) return std::nullopt;
   std::size_t filled = 0;
   for (std::size_t i = 0; i < wanted; ++i) {

@@ -160,7 +160,7 @@ Bytes EmulatedU6::feedback(std::span<const std::uint8_t> command, std::int64_t n
     const std::size_t size = size_of_io(rest[0]);
     const Bytes before = reply;
     if (size == 0 || size > rest.size() || !feed_back(rest.first(size), reply, now_ns) ||
-        reply.size() > wire::most_packet) {
+        reply.size() > wire::max_packet) {
       reply = before;
       reply[6] = error_io_type;
       reply[7] = frame;

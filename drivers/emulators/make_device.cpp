@@ -19,7 +19,7 @@ std::unique_ptr<EmulatedDevice> make_device(std::string_view text) {
   }
   if (uri.name == "u6") return std::make_unique<EmulatedU6>(EmulatedU6::parse_options(std::move(uri)));
   if (uri.name == "woody")
-    return std::make_unique<EmulatedWoody>(EmulatedWoody::parse_options(std::move(uri)));
+    return std::make_unique<EmulatedWoodenHaptics>(EmulatedWoodenHaptics::parse_options(std::move(uri)));
   throw drivers::DeviceError("no emulator of '" + uri.name + "'; there are falcon, woody, u6 and spacemouse");
 }
 

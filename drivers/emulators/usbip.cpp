@@ -7,7 +7,7 @@ namespace kerf::emulators::usbip {
 namespace {
 
 constexpr std::uint16_t version = 0x0111;
-constexpr std::uint32_t most_length = 1U << 20U;
+constexpr std::uint32_t max_length = 1U << 20U;
 constexpr std::size_t path_size = 256;
 enum Command : std::uint32_t { cmd_submit = 1, cmd_unlink = 2, ret_submit = 3, ret_unlink = 4 };
 
@@ -71,7 +71,7 @@ std::optional<Request> parse_request(std::span<const std::uint8_t, header_size> 
     return request;
   }
   request.length = word_at(header, 24);
-  if (command != cmd_submit || request.length > most_length) return std::nullopt;
+  if (command != cmd_submit || request.length > max_length) return std::nullopt;
   std::copy(header.begin() + 40, header.end(), request.setup.begin());
   return request;
 }

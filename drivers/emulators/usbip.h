@@ -8,8 +8,7 @@
 
 #include "emulated_device.h"
 
-/// USB/IP on the wire, version 1.1.1: pure functions. Numbers are big-endian. Source: the kernel's
-/// usbip_protocol.rst.
+/// USB/IP on the wire, version 1.1.1: pure functions. Numbers are big-endian. Source: [usbip].
 namespace kerf::emulators::usbip {
 
 inline constexpr std::size_t header_size = 48;  ///< of every message of an attached device

@@ -17,7 +17,7 @@ constexpr std::int64_t frame_ns = 1'000'000;
 constexpr std::int64_t watchdog_ns = 500'000'000;
 constexpr std::int64_t push_ns = 250'000;   // so often the force follows the pose at a constant current
 constexpr std::size_t hardware_orders = 2;  // the endpoint of V1 is buffered twice
-constexpr double most_travel_m = 0.04;      // all models reach every corner of it
+constexpr double max_travel_m = 0.04;       // all models reach every corner of it
 
 Description mbed(std::uint8_t size) {
   return {
@@ -54,20 +54,20 @@ struct Endpoints {
   std::uint8_t in;
   std::uint8_t out;
 };
-Endpoints endpoints_of(EmulatedWoody::Generation generation) {
-  return generation == EmulatedWoody::Generation::v3 ? Endpoints{3, 4} : Endpoints{1, 1};
+Endpoints endpoints_of(EmulatedWoodenHaptics::Generation generation) {
+  return generation == EmulatedWoodenHaptics::Generation::v3 ? Endpoints{3, 4} : Endpoints{1, 1};
 }
 
-HeldTip::Options held(const EmulatedWoody::Options& options) {
+HeldTip::Options held(const EmulatedWoodenHaptics::Options& options) {
   const mechanisms::WoodenHaptics mechanism(*options.model);
   return {.centre_m = mechanism.tip(mechanism.angles({0, 0, 0})),
           .sway_m = options.sway_m,
-          .most_travel_m = most_travel_m};
+          .max_travel_m = max_travel_m};
 }
 
 }  // namespace
 
-EmulatedWoody::Options EmulatedWoody::parse_options(drivers::Uri uri) {
+EmulatedWoodenHaptics::Options EmulatedWoodenHaptics::parse_options(drivers::Uri uri) {
   drivers::UriOptions given(std::move(uri));
   Options options;
   const std::string generation = given.text("generation").value_or("v2");
@@ -87,13 +87,13 @@ EmulatedWoody::Options EmulatedWoody::parse_options(drivers::Uri uri) {
   }
   options.button_s = given.number("button", {"s", options.button_s, 0.0, 1e6});
   options.counter_offset = static_cast<int>(given.number("counter_offset", {"1", 0.0, -32768.0, 32767.0}));
-  options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, most_travel_m});
+  options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, max_travel_m});
   options.trace = given.text("trace").value_or("");
   given.refuse_others();
   return options;
 }
 
-EmulatedWoody::EmulatedWoody(const Options& options)
+EmulatedWoodenHaptics::EmulatedWoodenHaptics(const Options& options)
     : options_(options),
       mechanism_(*options.model),
       tip_(held(options)),
@@ -103,26 +103,29 @@ EmulatedWoody::EmulatedWoody(const Options& options)
   trace_.precision(9);
 }
 
-const Description& EmulatedWoody::description() const {
+const Description& EmulatedWoodenHaptics::description() const {
   static const Description v1 = mbed(0x08);
   static const Description v2 = mbed(0x0E);
   static const Description v3 = teensy();
   return options_.generation == Generation::v1 ? v1 : options_.generation == Generation::v2 ? v2 : v3;
 }
 
-std::optional<Bytes> EmulatedWoody::control(const Setup& setup, std::span<const std::uint8_t>, std::int64_t) {
+std::optional<Bytes> EmulatedWoodenHaptics::control(const Setup& setup, std::span<const std::uint8_t>,
+                                                    std::int64_t) {
   // Reading a report by the control endpoint gives zeros; writing one is taken.
   return Bytes((setup.request_type & 0x80U) != 0 ? setup.length : 0, 0);
 }
 
-void EmulatedWoody::begin(std::int64_t now_ns) noexcept { start_ns_ = reached_ns_ = last_order_ns_ = now_ns; }
+void EmulatedWoodenHaptics::begin(std::int64_t now_ns) noexcept {
+  start_ns_ = reached_ns_ = last_order_ns_ = now_ns;
+}
 
-double EmulatedWoody::seconds_at(std::int64_t now_ns) const noexcept {
+double EmulatedWoodenHaptics::seconds_at(std::int64_t now_ns) const noexcept {
   return 1e-9 * static_cast<double>(now_ns - start_ns_);
 }
 
 /// The motors' force at the pose that there is, from the currents that they have.
-void EmulatedWoody::push_for(std::int64_t span_ns) {
+void EmulatedWoodenHaptics::push_for(std::int64_t span_ns) {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   if (const auto angles = mechanism_.angles_of(tip_.position())) {
     force = mechanism_.force({1e-3 * current_ma_[0], 1e-3 * current_ma_[1], 1e-3 * current_ma_[2]}, *angles);
@@ -132,7 +135,7 @@ void EmulatedWoody::push_for(std::int64_t span_ns) {
   tip_.run_until(seconds_at(reached_ns_));
 }
 
-void EmulatedWoody::run_until(std::int64_t now_ns) {
+void EmulatedWoodenHaptics::run_until(std::int64_t now_ns) {
   if (start_ns_ < 0) {
     begin(now_ns);
     if (!streams()) build_report(now_ns);
@@ -154,7 +157,7 @@ void EmulatedWoody::run_until(std::int64_t now_ns) {
   }
 }
 
-std::array<int, 3> EmulatedWoody::motor_counts() const {
+std::array<int, 3> EmulatedWoodenHaptics::motor_counts() const {
   std::array<int, 3> whole{};
   if (const auto angles = mechanism_.angles_of(tip_.position())) {
     const auto counts = mechanism_.counts(*angles);
@@ -163,7 +166,7 @@ std::array<int, 3> EmulatedWoody::motor_counts() const {
   return whole;
 }
 
-std::array<int, 6> EmulatedWoody::counters() const {
+std::array<int, 6> EmulatedWoodenHaptics::counters() const {
   std::array<int, 6> all = counter_zero_;
   const auto motors = motor_counts();
   for (std::size_t i = 0; i < 3; ++i) all[i] += motors[i];
@@ -171,13 +174,13 @@ std::array<int, 6> EmulatedWoody::counters() const {
   return all;
 }
 
-void EmulatedWoody::set_currents(const Currents& current_ma) {
-  const int most = static_cast<int>(std::lround(1e3 * options_.model->most_current_a));
+void EmulatedWoodenHaptics::set_currents(const Currents& current_ma) {
+  const int most = static_cast<int>(std::lround(1e3 * options_.model->max_current_a));
   for (std::size_t i = 0; i < 3; ++i) current_ma_[i] = std::clamp(current_ma[i], -most, most);
   if (current_ma_ != current_ma) ++cut_;
 }
 
-void EmulatedWoody::apply(const Order& order, std::int64_t now_ns) {
+void EmulatedWoodenHaptics::apply(const Order& order, std::int64_t now_ns) {
   ++taken_;
   last_order_ns_ = now_ns;
   watchdog_ = false;
@@ -191,7 +194,8 @@ void EmulatedWoody::apply(const Order& order, std::int64_t now_ns) {
   note("order");
 }
 
-void EmulatedWoody::receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, std::int64_t now_ns) {
+void EmulatedWoodenHaptics::receive(std::uint8_t endpoint, std::span<const std::uint8_t> bytes,
+                                    std::int64_t now_ns) {
   if (endpoint != endpoints_of(options_.generation).out) return;
   run_until(now_ns);
   const auto order = wire::parse_order(bytes, options_.generation);
@@ -211,7 +215,7 @@ void EmulatedWoody::receive(std::uint8_t endpoint, std::span<const std::uint8_t>
   }
 }
 
-void EmulatedWoody::build_report(std::int64_t now_ns) {
+void EmulatedWoodenHaptics::build_report(std::int64_t now_ns) {
   const auto input =
       wire::encode({.encoder = counters(), .button = button_latched_, .counter = streams() ? counter_++ : 0},
                    options_.generation);
@@ -224,8 +228,8 @@ void EmulatedWoody::build_report(std::int64_t now_ns) {
   note("report");
 }
 
-std::optional<std::size_t> EmulatedWoody::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
-                                               std::int64_t, std::int64_t now_ns, Disturbance& next) {
+std::optional<std::size_t> EmulatedWoodenHaptics::send(std::uint8_t endpoint, std::span<std::uint8_t> buffer,
+                                                       std::int64_t, std::int64_t now_ns, Disturbance& next) {
   if (endpoint != endpoints_of(options_.generation).in) return std::nullopt;
   run_until(now_ns);
   if (const auto size = wire_.send_rest(buffer)) return size;
@@ -248,13 +252,13 @@ std::optional<std::size_t> EmulatedWoody::send(std::uint8_t endpoint, std::span<
   return wire_.send(std::move(report), buffer, next);
 }
 
-std::optional<std::int64_t> EmulatedWoody::next_event_ns(std::int64_t) const {
+std::optional<std::int64_t> EmulatedWoodenHaptics::next_event_ns(std::int64_t) const {
   if (start_ns_ < 0) return std::nullopt;
   if (streams() || !report_.empty()) return start_ns_ + frame_ * frame_ns;
   return watchdog_ ? std::nullopt : std::optional(last_order_ns_ + watchdog_ns);
 }
 
-void EmulatedWoody::note(const char* event) {
+void EmulatedWoodenHaptics::note(const char* event) {
   if (!trace_.is_open()) return;
   const auto counts = counters();
   const Eigen::Vector3d at = tip_.position();
@@ -263,7 +267,7 @@ void EmulatedWoody::note(const char* event) {
          << at[1] << ',' << at[2] << ',' << (watchdog_ ? 1 : 0) << '\n';
 }
 
-std::string EmulatedWoody::tell() const {
+std::string EmulatedWoodenHaptics::tell() const {
   return std::to_string(reports_) + " reports sent, " + std::to_string(taken_) + " orders taken, " +
          std::to_string(overrun_) + " overrun, " + std::to_string(cut_) +
          " cut to the amplifiers' limit, watchdog " + std::to_string(watchdog_trips_) + " times";

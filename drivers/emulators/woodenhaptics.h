@@ -32,7 +32,7 @@ namespace kerf::emulators {
 /// counter_offset (what the counters say at home), sway=0.01m (0m: the hand holds still) and trace=FILE, a
 /// CSV with a row for each order that is applied, each report that is built and each time that the motors are
 /// switched off: `t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog`.
-class EmulatedWoody final : public EmulatedDevice {
+class EmulatedWoodenHaptics final : public EmulatedDevice {
  public:
   using Generation = drivers::woodenhaptics::Generation;
   using Currents = std::array<int, 3>;  ///< [mA]
@@ -45,7 +45,7 @@ class EmulatedWoody final : public EmulatedDevice {
     std::string trace;  ///< empty: none
   };
   static Options parse_options(drivers::Uri uri);
-  explicit EmulatedWoody(const Options& options);
+  explicit EmulatedWoodenHaptics(const Options& options);
 
   [[nodiscard]] const Description& description() const override;
   std::optional<Bytes> control(const Setup& setup, std::span<const std::uint8_t> data,

@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size >= sizeof torque) {
     std::memcpy(torque.data(), data, sizeof torque);
     for (const int value : falcon::motors_for(torque, 1e4).value) {
-      if (value > falcon::most_motor || value < -falcon::most_motor) std::abort();
+      if (value > falcon::max_motor || value < -falcon::max_motor) std::abort();
     }
   }
   return 0;

@@ -16,8 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)parse_stream_start({data, size});
   (void)is_no_timers({data, size});
   if (size < 2) return 0;
-  const std::size_t channels = 1 + data[0] % most_channels;
-  const std::size_t samples = 1 + data[1] % most_samples;
+  const std::size_t channels = 1 + data[0] % max_scan_channels;
+  const std::size_t samples = 1 + data[1] % max_samples;
   ScanAssembler assembler(channels, samples);
   std::uint64_t next_scan = 0;
   for (std::size_t begin = 2; begin + 16 <= size;) {

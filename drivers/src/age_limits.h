@@ -6,11 +6,11 @@
 namespace kerf::drivers {
 
 /// A reading that is older is Status::fault.
-inline constexpr std::int64_t stale_ns = 20'000'000;
+inline constexpr std::int64_t max_reading_age_ns = 20'000'000;
 /// A device that has said nothing for longer is Status::lost.
-inline constexpr std::int64_t gone_ns = 1'000'000'000;
+inline constexpr std::int64_t max_silence_ns = 1'000'000'000;
 /// An older command is not held any longer: five periods of the slowest loop, so the one that gave it is
 /// dead.
-inline constexpr std::int64_t most_command_age_ns = 50'000'000;
+inline constexpr std::int64_t max_command_age_ns = 50'000'000;
 
 }  // namespace kerf::drivers

@@ -104,7 +104,7 @@ Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options,
 Falcon::~Falcon() = default;
 
 void Falcon::wait_for_report(const std::atomic<bool>* stop) {
-  const std::int64_t until_ns = usb::now_ns() + gone_ns;
+  const std::int64_t until_ns = usb::now_ns() + max_silence_ns;
   while (link_->take().at_ns == 0) {
     refuse_if_stopped(falcon_identity.what, stop);
     if (link_->lost() || usb::now_ns() > until_ns) {
@@ -141,7 +141,7 @@ void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
 Status Falcon::read(double now_s, Sample& sample) noexcept {
   const FalconLink::Reading& reading = link_->take();
   const std::int64_t age_ns = usb::now_ns() - reading.at_ns;
-  if (link_->lost() || age_ns > gone_ns) return Status::lost;
+  if (link_->lost() || age_ns > max_silence_ns) return Status::lost;
   for (std::size_t at = 0; at < axes; ++at) {
     sample.position[at] = reading.knob[at];
     sample.velocity[at] = velocity_.update(at, reading.knob[at], now_s);
@@ -154,7 +154,7 @@ Status Falcon::read(double now_s, Sample& sample) noexcept {
   sample.channels[4] = 1e-9 * static_cast<double>(age_ns);
   sample.faults = limited_ ? force_was_limited : 0U;
   const bool knows_where = reading.reachable && (!options_.homing || link_->homed());
-  return knows_where && age_ns <= stale_ns ? Status::ok : Status::fault;
+  return knows_where && age_ns <= max_reading_age_ns ? Status::ok : Status::fault;
 }
 
 Status Falcon::write(const Axes& force) noexcept {

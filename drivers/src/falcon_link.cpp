@@ -17,8 +17,8 @@ using End = usb::Transfer::End;
 constexpr std::int64_t millisecond = 1'000'000;
 constexpr std::int64_t answer_ns = 5 * millisecond;   // it takes at most 1.3
 constexpr std::int64_t unasked_ns = 2 * millisecond;  // a tick of 1 kHz, and as much again
-constexpr std::int64_t farewell_ns = 50 * millisecond;
-constexpr unsigned most_bad = 20;
+constexpr std::int64_t final_zero_ns = 50 * millisecond;
+constexpr unsigned max_bad = 20;
 constexpr std::array<int, 3> zero{};
 constexpr std::array<double, 3> middle{0.0, 0.0, 0.12};
 
@@ -97,7 +97,7 @@ void FalconLink::sent(End end) noexcept {
 
 void FalconLink::ended_badly(End end, std::uint8_t endpoint) noexcept {
   counts_.malformed.fetch_add(1, std::memory_order_relaxed);
-  if (end == End::gone || ++bad_in_a_row_ > most_bad) lost_.store(true);
+  if (end == End::gone || ++bad_in_a_row_ > max_bad) lost_.store(true);
   if (end == End::stalled) halted_ = endpoint;
 }
 
@@ -113,7 +113,7 @@ void FalconLink::recover() noexcept {
 void FalconLink::take_report(const falcon::Report& report) noexcept {
   const auto shoulder = mechanisms::Falcon::shoulder_of(report.encoder);
   auto knob = mechanisms::Falcon::knob(shoulder, nearby_);
-  // Homing moves the origin, perhaps too far for the way from the last place.
+  // Homing moves the origin, perhaps too far for the travel from the last position.
   if (!knob) knob = mechanisms::Falcon::knob(shoulder, vector_of(middle));
   if (knob) nearby_ = *knob;
   readings_.put({.report = report,
@@ -130,7 +130,7 @@ void FalconLink::send_if_due() noexcept {
   (void)orders_.take(order_);
   if (out_.pending() || lost()) return;
   const std::int64_t now = now_ns();
-  const bool holds = order_.number > released_.load() && now - order_.at_ns <= most_command_age_ns;
+  const bool holds = order_.number > released_.load() && now - order_.at_ns <= max_command_age_ns;
   const auto& motor = holds ? order_.motor : zero;
   const bool lets_go = !holds && sent_motor_ != zero;  // waits for no answer
   if (unanswered_ > 0 && !lets_go) {
@@ -161,7 +161,7 @@ void FalconLink::send(const std::array<int, 3>& motor, Falcon::Led led) noexcept
 }
 
 void FalconLink::let_go() noexcept {
-  const std::int64_t until_ns = now_ns() + farewell_ns;
+  const std::int64_t until_ns = now_ns() + final_zero_ns;
   bool said = false;
   // Its answer is waited for too: then the device has it.
   while (now_ns() < until_ns && !lost() && !(said && !out_.pending() && unanswered_ == 0)) {

@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "kerf/drivers/falcon.h"
-#include "kerf/drivers/triple_buffer.h"
 #include "kerf/drivers/protocols/falcon.h"
+#include "kerf/drivers/triple_buffer.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "kerf/drivers/usb/usb_device.h"
 
@@ -85,8 +85,8 @@ class FalconLink {
   Falcon::Led led_;
 
   // Between the threads.
-  Latest<Order> orders_;
-  Latest<Reading> readings_;
+  TripleBuffer<Order> orders_;
+  TripleBuffer<Reading> readings_;
   Reading taken_;              ///< of the tick
   std::uint64_t ordered_ = 0;  ///< of the tick
   std::atomic<std::uint64_t> last_order_{0};

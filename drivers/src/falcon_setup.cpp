@@ -27,10 +27,10 @@ constexpr std::int64_t ask_again_ns = 20 * millisecond;
 constexpr std::int64_t boot_ns = 1000 * millisecond;
 constexpr std::int64_t hello_ns = 30 * millisecond;  // 7 on the line, 16 of latency
 constexpr std::int64_t echo_ns = 1000 * millisecond;
-constexpr int most_hellos = 60;
+constexpr int max_hellos = 60;
 constexpr int read_timeout_ms = 100;
 constexpr std::size_t block_size = 62;  // the data of one packet
-constexpr std::size_t most_image = 1U << 20U;
+constexpr std::size_t max_image = 1U << 20U;
 
 constexpr std::array<std::uint8_t, 3> hello{0x0A, 0x43, 0x0D};
 constexpr std::array<std::uint8_t, 4> answer{0x0A, 0x44, 0x2C, 0x0D};
@@ -74,9 +74,9 @@ void enter_run_mode(usb::UsbDevice& device) {
 /// Reads for so long and calls `take(byte)` for each byte of data until it returns true. @returns whether it
 /// did.
 template <typename F>
-bool read_until(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup& setup, F take) {
+bool read_until(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& setup, F take) {
   std::array<std::uint8_t, 64> buffer{};
-  const std::int64_t until_ns = now_ns() + most_ns;
+  const std::int64_t until_ns = now_ns() + max_ns;
   while (now_ns() < until_ns) {
     refuse_if_stopped(falcon_identity.what, setup.stop);
     const std::size_t size = device.bulk_in(falcon_in, buffer, read_timeout_ms);
@@ -89,10 +89,10 @@ bool read_until(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup&
 }
 
 /// Whether it answers a run-time frame within so long.
-bool runs(usb::UsbDevice& device, std::int64_t most_ns, const FalconSetup& setup) {
+bool runs(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& setup) {
   const auto frame = falcon::encode(falcon::Command{.homing = setup.homing});
   falcon::FrameReader reader;
-  const std::int64_t until_ns = now_ns() + most_ns;
+  const std::int64_t until_ns = now_ns() + max_ns;
   while (now_ns() < until_ns) {
     device.bulk_out(falcon_out, frame);
     if (read_until(device, ask_again_ns, setup,
@@ -113,7 +113,7 @@ std::vector<std::uint8_t> read_image(const std::string& path) {
   std::vector<char> piece(4096);
   while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
     image.insert(image.end(), piece.begin(), piece.begin() + file.gcount());
-    if (image.size() > most_image) break;
+    if (image.size() > max_image) break;
   }
   const auto problem = c2000::problem_of(image);
   if (!problem.empty()) {
@@ -134,7 +134,7 @@ void greet(usb::UsbDevice& device, const FalconSetup& setup) {
   device.control_out(bridge::modem_control, bridge::dtr_low);
   device.control_out(bridge::modem_control, bridge::dtr_high);
   std::array<std::uint8_t, answer.size()> last{};  // a glitch may come before it
-  for (int tries = 0; tries < most_hellos; ++tries) {
+  for (int tries = 0; tries < max_hellos; ++tries) {
     device.bulk_out(falcon_out, hello);
     const bool answered = read_until(device, hello_ns, setup, [&](std::uint8_t byte) {
       std::rotate(last.begin(), last.begin() + 1, last.end());

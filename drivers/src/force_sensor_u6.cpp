@@ -98,7 +98,7 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
       .mounts = calibration_.mounts};
   for (std::size_t i = 0; i < transfer_count; ++i) {
     transfers_.push_back(
-        std::make_unique<Transfer>(usb_, labjack_u6::stream_endpoint, labjack_u6::most_packet,
+        std::make_unique<Transfer>(usb_, labjack_u6::stream_endpoint, labjack_u6::max_packet,
                                    [this, i](Transfer::End end, std::span<const std::uint8_t> bytes) {
                                      if (end == Transfer::End::gone) lost_.store(true);
                                      if (end == Transfer::End::stalled || end == Transfer::End::failed)
@@ -136,7 +136,7 @@ std::size_t ForceSensorU6::ask(const labjack_u6::Message& question, std::span<st
 
 void ForceSensorU6::drain() noexcept {
   try {
-    std::array<std::uint8_t, labjack_u6::most_packet> left{};
+    std::array<std::uint8_t, labjack_u6::max_packet> left{};
     while (usb_.bulk_in(labjack_u6::answer_endpoint, left, drain_timeout_ms) > 0) {
     }
   } catch (const DeviceError&) {
@@ -145,7 +145,7 @@ void ForceSensorU6::drain() noexcept {
 }
 
 void ForceSensorU6::stop_stream() {
-  std::array<std::uint8_t, labjack_u6::most_packet> answer{};
+  std::array<std::uint8_t, labjack_u6::max_packet> answer{};
   const std::size_t size = ask(labjack_u6::stream_stop(), answer);
   const auto error = labjack_u6::parse_stream_stop(std::span(answer).first(size));
   if (!error) refuse("it does not answer; unplug it and plug it in again");
@@ -159,7 +159,7 @@ void ForceSensorU6::stop_stream() {
 }
 
 void ForceSensorU6::identify() {
-  std::array<std::uint8_t, labjack_u6::most_packet> answer{};
+  std::array<std::uint8_t, labjack_u6::max_packet> answer{};
   const std::size_t size = ask(labjack_u6::identify(), answer);
   const auto found = labjack_u6::parse_identification(std::span(answer).first(size));
   if (!found) refuse("it does not say that it is a U6; unplug it and plug it in again");
@@ -168,7 +168,7 @@ void ForceSensorU6::identify() {
 
 void ForceSensorU6::read_constants() {
   const auto block = [&](std::uint8_t number) {
-    std::array<std::uint8_t, labjack_u6::most_packet> answer{};
+    std::array<std::uint8_t, labjack_u6::max_packet> answer{};
     const std::size_t size = ask(labjack_u6::read_constants(number), answer);
     const auto constants = labjack_u6::parse_constants(std::span(answer).first(size));
     if (!constants)
@@ -183,7 +183,7 @@ void ForceSensorU6::read_constants() {
 }
 
 void ForceSensorU6::configure() {
-  std::array<std::uint8_t, labjack_u6::most_packet> answer{};
+  std::array<std::uint8_t, labjack_u6::max_packet> answer{};
   std::size_t size = ask(labjack_u6::no_timers(), answer);
   if (!labjack_u6::is_no_timers(std::span(answer).first(size))) {
     refuse("its timers and counters do not turn off; unplug it and plug it in again");
@@ -200,7 +200,7 @@ void ForceSensorU6::configure() {
 }
 
 void ForceSensorU6::start_stream() {
-  std::array<std::uint8_t, labjack_u6::most_packet> answer{};
+  std::array<std::uint8_t, labjack_u6::max_packet> answer{};
   const std::size_t size = ask(labjack_u6::stream_start(), answer);
   const auto error = labjack_u6::parse_stream_start(std::span(answer).first(size));
   if (!error) refuse("its stream does not start; unplug it and plug it in again");
@@ -221,7 +221,7 @@ void ForceSensorU6::stream(const std::stop_token& stop) noexcept {
       last_scans = scans_.load(std::memory_order_relaxed);
       last_scan_ns = now;
     }
-    if (now - last_scan_ns > gone_ns) lost_.store(true);
+    if (now - last_scan_ns > max_silence_ns) lost_.store(true);
     const bool silent = now - last_packet_ns_ > silent_ns;
     if (!lost_.load(std::memory_order_relaxed) && (broken_ || silent) && !restart()) lost_.store(true);
   }
@@ -307,7 +307,7 @@ Status ForceSensorU6::read(double now_s, Sample& sample) noexcept {
   loop_start_ns_ = std::min(loop_start_ns_, now - loop_ns);
   sample.position = sample.velocity = {};
   const std::int64_t age_ns = loop_start_ns_ + loop_ns - scan_.taken_ns;
-  const bool fresh = has_scan_ && now - scan_.taken_ns <= stale_ns;
+  const bool fresh = has_scan_ && now - scan_.taken_ns <= max_reading_age_ns;
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   if (fresh) {
     sample.force_measured = scan_.wrench;
@@ -317,7 +317,7 @@ Status ForceSensorU6::read(double now_s, Sample& sample) noexcept {
   sample.channels[0] = has_scan_ ? 1e-9 * static_cast<double>(age_ns) : nothing;
   sample.channels[1] = has_scan_ ? static_cast<double>(scan_.number) : nothing;
   if (fresh) return Status::ok;
-  return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > gone_ns ? Status::lost : Status::fault;
+  return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > max_silence_ns ? Status::lost : Status::fault;
 }
 
 Status ForceSensorU6::write(const Axes& force) noexcept {

@@ -13,7 +13,8 @@ constexpr std::size_t strokes_drawn = 4096;  ///< over an hour of cutting; then 
 
 MinimumJerk MinimumJerk::at(double s) noexcept {
   s = std::clamp(s, 0.0, 1.0);
-  return {.place = s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), .speed = 30.0 * s * s * (1.0 - s) * (1.0 - s)};
+  return {.position = s * s * s * (10.0 + s * (-15.0 + 6.0 * s)),
+          .speed = 30.0 * s * s * (1.0 - s) * (1.0 - s)};
 }
 
 Strokes::Strokes(const HandOptions& options) {
@@ -42,7 +43,7 @@ Strokes::Equilibrium Strokes::at(double time_s) noexcept {
   const Stroke& stroke = strokes_[current_];
   const MinimumJerk motion = MinimumJerk::at((time_s - stroke.begin_s) / stroke.duration_s);
   const double travel = stroke.to_rad - stroke.from_rad;
-  return {.angle_rad = stroke.from_rad + travel * motion.place,
+  return {.angle_rad = stroke.from_rad + travel * motion.position,
           .speed_rad_s = travel * motion.speed / stroke.duration_s};
 }
 

@@ -101,7 +101,7 @@ PosePath::Equilibrium PosePath::at(double time_s) const noexcept {
   Equilibrium wish;
   for (std::size_t axis = 0; axis < max_axes; ++axis) {
     const double travel = next->position[axis] - from.position[axis];
-    wish.position[axis] = from.position[axis] + motion.place * travel;
+    wish.position[axis] = from.position[axis] + motion.position * travel;
     wish.velocity[axis] = motion.speed / stroke_s * travel;
   }
   return wish;

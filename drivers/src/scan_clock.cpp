@@ -46,18 +46,18 @@ std::int64_t ScanClock::time_ns(std::uint64_t scan) const noexcept {
 
 void ScanClock::end_block() noexcept {
   if (!has_least_) return;
-  if (block_count_ == most_blocks) {
-    first_block_ = (first_block_ + 1) % most_blocks;
+  if (block_count_ == max_blocks) {
+    first_block_ = (first_block_ + 1) % max_blocks;
     --block_count_;
   }
-  blocks_[(first_block_ + block_count_) % most_blocks] = least_;
+  blocks_[(first_block_ + block_count_) % max_blocks] = least_;
   ++block_count_;
   has_least_ = false;
   if (block_count_ >= least_blocks) fit_line();
 }
 
 void ScanClock::fit_line() noexcept {
-  std::array<Point, most_blocks> hull{};
+  std::array<Point, max_blocks> hull{};
   std::size_t corners = 0;
   double mean_s = 0.0;
   for (std::size_t at = 0; at < block_count_; ++at) {
@@ -79,7 +79,7 @@ void ScanClock::fit_line() noexcept {
   slope_ = std::clamp((to.late_s - from.late_s) / (to.nominal_s - from.nominal_s), -steepest, steepest);
   offset_s_ = from.late_s - slope_ * from.nominal_s;
   for (std::size_t at = 0; at < block_count_; ++at) offset_s_ += std::min(0.0, above_line(kept(at)));
-  std::array<double, most_blocks> above{};
+  std::array<double, max_blocks> above{};
   for (std::size_t at = 0; at < block_count_; ++at) above[at] = above_line(kept(at));
   // Two lie on the line because it was laid through them: they say nothing of how well.
   const auto median = above.begin() + static_cast<std::ptrdiff_t>(2 + (block_count_ - 2) / 2);

@@ -164,7 +164,7 @@ void SimulatedPremium::move(double time_s, SimulatedMechanism::States& states,
     const double stiffness = options_.hand_stiffness_n_per_m;
     const double damping = options_.hand_damping_n_s_per_m;
     const TipPath::Equilibrium wish = path_.at(time_s);
-    Vector pull = stiffness * (wish.place_m - now.tip) + damping * wish.speed_m_s;
+    Vector pull = stiffness * (wish.position_m - now.tip) + damping * wish.speed_m_s;
     if (options_.arm.with_gravity) pull[1] += options_.hand_mass_kg * Premium::gravity_m_s2;
     inertia += dt * (damping + dt * stiffness) * now.jacobian.transpose() * now.jacobian;
     impulse += dt * now.jacobian.transpose() * pull;

@@ -45,7 +45,8 @@ TipPath::Equilibrium TipPath::at(double time_s) const noexcept {
   const Eigen::Vector3d& from = waypoints[leg % waypoints.size()];
   const Eigen::Vector3d travel = waypoints[(leg + 1) % waypoints.size()] - from;
   const MinimumJerk motion = MinimumJerk::at((time_s - legs * leg_s - options_.pause_s) / options_.stroke_s);
-  return {.place_m = from + motion.place * travel, .speed_m_s = motion.speed / options_.stroke_s * travel};
+  return {.position_m = from + motion.position * travel,
+          .speed_m_s = motion.speed / options_.stroke_s * travel};
 }
 
 std::vector<Eigen::Vector3d> parse_waypoints(std::string_view text) {

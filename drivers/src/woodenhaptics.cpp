@@ -23,10 +23,10 @@ constexpr std::int64_t ms_ns = 1'000'000;
 constexpr std::int64_t keep_alive_ns = 50 * ms_ns;  // a tenth of the device's own watchdog
 constexpr std::int64_t answer_wait_ns = 10 * ms_ns;
 constexpr std::int64_t idle_ns = 2 * ms_ns;  // V2 and V3 without a tick: so often a position nevertheless
-constexpr std::int64_t most_goodbye_ns = 20 * ms_ns;
-constexpr unsigned goodbye_reports = 3;       // the order that waits, this one, and the turn that applies it
+constexpr std::int64_t max_final_zero_ns = 20 * ms_ns;
+constexpr unsigned final_zero_reports = 3;    // the order that waits, this one, and the turn that applies it
 constexpr std::uint16_t usage_page = 0xFFAB;  // a Teensy has another interface, for its own debugging
-constexpr int most_preset_error = 200;        // counts: a hand holds the tip
+constexpr int max_preset_error = 200;         // counts: a hand holds the tip
 constexpr unsigned many_refusals = 3;
 // Of a stylus with a switch, which its firmware adds to the counter of the first gimbal encoder.
 constexpr int switch_threshold = 5000;
@@ -66,7 +66,7 @@ AxisInfo axis(std::string name, double home, double resolution, double force_lim
 
 Configuration with_most_current(const WoodenHaptics::Options& options) {
   Configuration made = *options.model;
-  made.most_current_a = options.most_current_a;
+  made.max_current_a = options.max_current_a;
   return made;
 }
 
@@ -102,8 +102,8 @@ WoodenHaptics::Options WoodenHaptics::parse_options(Uri uri, const Product& prod
     throw DeviceError(
         fmt::format("device '{}': option 'model' is '{}', expected one of {}", product.scheme, name, all));
   }
-  const double most = options.model->most_current_a;
-  options.most_current_a = given.number("most_current", {"A", most, 0.0, most});
+  const double most = options.model->max_current_a;
+  options.max_current_a = given.number("most_current", {"A", most, 0.0, most});
   options.calibrate = given.flag("calibrate", false);
   if (const auto preset = given.text("preset")) {
     if (*preset != "home") {
@@ -123,8 +123,8 @@ WoodenHaptics::WoodenHaptics(std::string_view uri, const Product& product, const
       device_({product.vendor, product.product, product.what}, options.index, usage_page),
       generation_(recognise(product)) {
   const double least_step_m = steps_at_home(mechanism_).colwise().norm().minCoeff();
-  most_count_rate_ = 2.0 * speed_limit_m_s / least_step_m;  // nearer to the column a count is half as long
-  most_count_step_ = static_cast<int>(2.5 * workspace_m / least_step_m);
+  max_count_rate_ = 2.0 * speed_limit_m_s / least_step_m;  // nearer to the column a count is half as long
+  max_count_step_ = static_cast<int>(2.5 * workspace_m / least_step_m);
   meet(product, stop);
   describe(uri, product);
   opened_ns_ = usb::now_ns();
@@ -146,8 +146,8 @@ Generation WoodenHaptics::recognise(const Product& product) const {
 
 /// The first report that is not older than the question.
 Report WoodenHaptics::first_report(const Product& product, const std::atomic<bool>* stop) {
-  std::array<std::uint8_t, woodenhaptics::most_report_size> bytes{};
-  const std::int64_t until_ns = usb::now_ns() + gone_ns;
+  std::array<std::uint8_t, woodenhaptics::max_report_size> bytes{};
+  const std::int64_t until_ns = usb::now_ns() + max_silence_ns;
   // What a device in lock-step had ready when it was last closed is as old as that; the next one may be it as
   // well.
   int wanted = streams() ? 1 : 3;
@@ -188,7 +188,7 @@ void WoodenHaptics::meet(const Product& product, const std::atomic<bool>* stop) 
   if (options_.calibrate || options_.preset) home_count_ = counters_.count();
   if (options_.preset) {
     const bool far =
-        std::ranges::any_of(home_count_, [](int count) { return std::abs(count) > most_preset_error; });
+        std::ranges::any_of(home_count_, [](int count) { return std::abs(count) > max_preset_error; });
     if (far) {
       throw DeviceError(
           fmt::format("{}: {} did not preset its counters (they are {}, {}, {}); leave out preset=home",
@@ -213,7 +213,7 @@ void WoodenHaptics::describe(std::string_view uri, const Product& product) {
   const Configuration& made = mechanism_.configuration();
   const Vector home = mechanism_.tip(mechanism_.angles({0, 0, 0}));
   const Vector resolution = steps_at_home(mechanism_).rowwise().maxCoeff();
-  const double force = made.most_force_n;
+  const double force = made.max_force_n;
   info_ = {.uri = std::string(uri),
            .model = fmt::format("{} {} ({})", product.what, made.name, name_of(generation_)),
            .about = std::string(product.about),
@@ -243,7 +243,7 @@ std::string WoodenHaptics::configuration() const {
       options_.preset      ? "preset where it was opened"
       : options_.calibrate ? "where it was opened"
                            : "where it was switched on",
-      home_count_[0], home_count_[1], home_count_[2], made.most_current_a, made.most_force_n,
+      home_count_[0], home_count_[1], home_count_[2], made.max_current_a, made.max_force_n,
       three(made.capstan_m), three(made.body_m), three(made.length_m), three(made.origin_m),
       three(made.torque_constant), made.counts_per_turn);
 }
@@ -262,8 +262,8 @@ Status WoodenHaptics::read(double now_s, Sample& sample) noexcept {
   velocity_.advance(now_s);
   sample.channels[3] = 1e-9 * static_cast<double>(age_ns);
   if (!streams()) sample.channels[4] = last_.button ? 1.0 : 0.0;
-  if (lost_.load(std::memory_order_relaxed) || age_ns > gone_ns) return Status::lost;
-  return age_ns > stale_ns ? Status::fault : Status::ok;
+  if (lost_.load(std::memory_order_relaxed) || age_ns > max_silence_ns) return Status::lost;
+  return age_ns > max_reading_age_ns ? Status::fault : Status::ok;
 }
 
 Status WoodenHaptics::write(const Axes& force) noexcept {
@@ -272,7 +272,7 @@ Status WoodenHaptics::write(const Axes& force) noexcept {
   if (finite) {
     Vector cut;
     for (std::size_t at = 0; at < 3; ++at) {
-      const double limit = mechanism_.configuration().most_force_n;
+      const double limit = mechanism_.configuration().max_force_n;
       cut[static_cast<Eigen::Index>(at)] = std::clamp(force[at], -limit, limit);
     }
     const auto currents = mechanism_.currents(cut, mechanism_.angles(last_.count));
@@ -304,15 +304,16 @@ void WoodenHaptics::serve(const std::stop_token& stop) noexcept {
     now_ns = usb::now_ns();
     speak(now_ns);
   }
-  say_goodbye();
+  send_final_zero();
 }
 
 /// Zero, and some reports more: a device that nobody reads from any more does not come to its next order
 /// either.
-void WoodenHaptics::say_goodbye() noexcept {
+void WoodenHaptics::send_final_zero() noexcept {
   send({});
-  const std::uint64_t enough = reports_.load(std::memory_order_relaxed) + (streams() ? goodbye_reports : 1);
-  const std::int64_t until_ns = usb::now_ns() + most_goodbye_ns;
+  const std::uint64_t enough =
+      reports_.load(std::memory_order_relaxed) + (streams() ? final_zero_reports : 1);
+  const std::int64_t until_ns = usb::now_ns() + max_final_zero_ns;
   while (reports_.load(std::memory_order_relaxed) < enough && usb::now_ns() < until_ns) {
     if (device_.wait(until_ns - usb::now_ns(), -1).report && !hear()) return;
   }
@@ -325,7 +326,7 @@ std::int64_t WoodenHaptics::next_turn_ns(std::int64_t now_ns) const noexcept {
 
 /// Takes a report. False if the device is gone.
 bool WoodenHaptics::hear() noexcept {
-  std::array<std::uint8_t, woodenhaptics::most_report_size> bytes{};
+  std::array<std::uint8_t, woodenhaptics::max_report_size> bytes{};
   const int size = device_.read(bytes, 0);
   if (size <= 0) return size == 0;
   const auto report =
@@ -343,8 +344,8 @@ void WoodenHaptics::hear(const Report& report) noexcept {
   const std::int64_t now = usb::now_ns();
   // Of several that waited in a row each may be a millisecond from the one before.
   const std::int64_t elapsed_ns = std::max(now - heard_ns_, ms_ns);
-  const double most = std::min(1e-9 * static_cast<double>(elapsed_ns) * most_count_rate_,
-                               static_cast<double>(most_count_step_));
+  const double most = std::min(1e-9 * static_cast<double>(elapsed_ns) * max_count_rate_,
+                               static_cast<double>(max_count_step_));
   answered_ = true;
   if (!counters_.take(report.encoder, static_cast<int>(most) + 2)) {
     implausible_.fetch_add(1, std::memory_order_relaxed);
@@ -371,7 +372,7 @@ void WoodenHaptics::hear(const Report& report) noexcept {
 
 WoodenHaptics::Currents WoodenHaptics::wanted(std::int64_t now_ns) const noexcept {
   const bool released = command_.releases != releases_.load(std::memory_order_acquire);
-  return released || now_ns - command_.at_ns > most_command_age_ns ? Currents{} : command_.current_ma;
+  return released || now_ns - command_.at_ns > max_command_age_ns ? Currents{} : command_.current_ma;
 }
 
 /// Sends what the tick wants, when it is time to.

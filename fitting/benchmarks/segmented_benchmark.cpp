@@ -77,7 +77,7 @@ int run(const std::vector<std::string>& arguments) {
   const std::string& name = arguments.at(0);
   const Columns columns = name.starts_with("made:") ? made(name) : read(name);
   kerf::fitting::SegmentedOptions options;
-  if (arguments.size() > 1) options.most_segments = std::stoul(arguments[1]);
+  if (arguments.size() > 1) options.max_segments = std::stoul(arguments[1]);
   if (arguments.size() > 2) options.fewest_points = std::stoul(arguments[2]);
   if (arguments.size() > 3) options.cells = std::stoul(arguments[3]);
   const std::clock_t begin_cpu = std::clock();

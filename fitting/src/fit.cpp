@@ -23,7 +23,7 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
 constexpr double deviation_of_mad = 1.4826;
-constexpr std::size_t most_arms = 4;
+constexpr std::size_t max_arms = 4;
 constexpr double white_below = 3.0;    ///< samples of correlation time
 constexpr double worth_an_arm = 0.95;  ///< share of the held-out error that a further arm has to reach
 
@@ -195,7 +195,7 @@ FitResult fit_problem(const Problem& problem, const Samples& samples, const FitO
 FitResult fit_arms(const FitOptions& options, const Samples& samples) {
   FitResult best;
   int failures = 0;
-  for (std::size_t arms = 1; arms <= most_arms; ++arms) {
+  for (std::size_t arms = 1; arms <= max_arms; ++arms) {
     FitOptions with_arms(options);
     with_arms.law_options["arms"] = static_cast<double>(arms);
     FitResult next = fit_problem(make_problem("maxwell", with_arms, samples), samples, with_arms);

@@ -135,13 +135,13 @@ bool finish(Minimum& minimum, const Objective& objective, const Bounds& bounds, 
 /// Steps of Gauss and Newton from a minimum to its last digits. There the sum of squares is flat to rounding,
 /// and it is the promise of the next step that says whether one was good.
 void settle(Minimum& minimum, const Objective& objective, const Bounds& bounds, double tolerance) {
-  constexpr int most_steps = 50;
+  constexpr int max_steps = 50;
   constexpr double level = 1e-9;  // a rise of the sum of squares that may be rounding
   Triangle triangle;
   Sums sums;
   if (!objective.factor(minimum.at, sums, triangle)) return;
   double promised = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < max_steps; ++i) {
     const Eigen::VectorXd step = step_within(bounds, minimum.at, sums, triangle);
     const double promise = (triangle.r * step).squaredNorm();
     if (!(promise < 0.8 * promised) || (step.array().abs() <= tolerance * minimum.at.array().abs()).all())

@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 
 constexpr double ridge = 1e-9;  ///< e, of a sum of squares of order one: for rules that no sample speaks of
 constexpr double least_width = 0.1;
-constexpr double most_width = 10.0;
-constexpr double most_centre = 3.0;  ///< beyond the samples: a bound that is met slows the search
+constexpr double max_width = 10.0;
+constexpr double max_centre = 3.0;  ///< beyond the samples: a bound that is met slows the search
 
 /// One input, scaled to run from 0 to 1 over the samples.
 struct Scaled {
@@ -221,10 +221,10 @@ Learned by_projection(Rules& rules, const VectorXd& force, std::size_t iteration
   problem.AddResidualBlock(&cost, nullptr, premises);
   for (Index i = 0; i < m; ++i) {
     for (const Index begin : {Index{0}, 2 * m}) {
-      problem.SetParameterLowerBound(premises, static_cast<int>(begin + i), -most_centre);
-      problem.SetParameterUpperBound(premises, static_cast<int>(begin + i), 1.0 + most_centre);
+      problem.SetParameterLowerBound(premises, static_cast<int>(begin + i), -max_centre);
+      problem.SetParameterUpperBound(premises, static_cast<int>(begin + i), 1.0 + max_centre);
       problem.SetParameterLowerBound(premises, static_cast<int>(begin + m + i), std::log(least_width));
-      problem.SetParameterUpperBound(premises, static_cast<int>(begin + m + i), std::log(most_width));
+      problem.SetParameterUpperBound(premises, static_cast<int>(begin + m + i), std::log(max_width));
     }
   }
   ceres::Solver::Options options;

@@ -15,7 +15,7 @@ namespace {
 constexpr double bridge = 1e-7;  ///< weight of the smoothness that carries a table over cells without data
 constexpr Eigen::Index stretches = 20;
 constexpr double fewest_groups = 1.5;
-constexpr int most_reweighings = 50;
+constexpr int max_reweighings = 50;
 constexpr double settled = 1e-9;
 
 /// Where a sample falls in a table: the point to its left, and its share of the next one.
@@ -90,7 +90,7 @@ Solution solve_tables(const Problem& problem, const Samples& samples, const Weig
   const auto branch = branches(samples, loop);
   Weights robust(weights);
   Solution solution{.values = {}, .converged = true, .iterations = 0, .message = "linear least squares"};
-  for (int round = 0; round < most_reweighings; ++round) {
+  for (int round = 0; round < max_reweighings; ++round) {
     ++solution.iterations;
     std::vector<double> values;
     for (int which = 0; which < (loop ? 2 : 1); ++which) {

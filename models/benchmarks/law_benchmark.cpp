@@ -68,7 +68,7 @@ Law table_of_1000() {
   return Law::make("recording", table, {{"points", 1000.0}, {"last", 0.4}});
 }
 
-/// The blade of 000's scalpel with two more sides, so that four polygons are in the tissue.
+/// The blade of [Henry2004]'s scalpel with two more sides, so that four polygons are in the tissue.
 Law blade(const std::string& fidelity) {
   return Law::make(
       "blade", std::vector{5.0, 2e4, 4e3},

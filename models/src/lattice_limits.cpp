@@ -12,7 +12,7 @@ namespace {
 
 constexpr double largest = std::numeric_limits<double>::max();
 constexpr double smallest = std::numeric_limits<double>::min();
-constexpr int most_substeps = 1'000'000;
+constexpr int max_substeps = 1'000'000;
 
 void check(std::string_view name, double value, double lower, double upper) {
   if (value >= lower && value <= upper) return;
@@ -69,9 +69,9 @@ double stable_step(const LatticeOptions& options, double coupling_stiffness_n_pe
 
 int substeps(const LatticeOptions& options, double period_s) {
   const double number = std::ceil(period_s / (step_safety * stable_step(options)));
-  if (number >= 1.0 && number <= most_substeps) return static_cast<int>(number);
+  if (number >= 1.0 && number <= max_substeps) return static_cast<int>(number);
   std::ostringstream message;
-  message << "period_s is " << period_s << ", expected a time above 0 of at most " << most_substeps
+  message << "period_s is " << period_s << ", expected a time above 0 of at most " << max_substeps
           << " sub-steps of " << step_safety * stable_step(options) << " s";
   throw std::invalid_argument(message.str());
 }

@@ -37,7 +37,7 @@ ScissorsFree ScissorsFree::make(std::span<const double> values, const Options& g
 
 AxisValues ScissorsFree::step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
   const double theta = motion.position[0];
-  // Closing is the way into the material, so that the selector's penetration is -theta.
+  // Closing is the direction into the material, so that the selector's penetration is -theta.
   const auto branch = selector.step(state.branch, Motion{-theta, -motion.velocity[0]}, period_s);
   if (!point.cuts_at(theta)) return {};
   const double x_c = point(theta);

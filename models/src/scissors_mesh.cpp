@@ -9,14 +9,14 @@
 namespace kerf::models {
 namespace {
 
-constexpr int most_substeps = 1000;  // a tick; more than that no machine does in 1 ms
+constexpr int max_substeps = 1000;  // a tick; more than that no machine does in 1 ms
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_columns = 8;        // of the strip that the blades press at once
+constexpr int max_columns = 8;         // of the strip that the blades press at once
 constexpr double slack_columns = 2.0;  // beyond the blades' length that the strip reaches
 
 int substeps_for(double largest_step_s, double period_s) {
   const double needed = std::ceil(period_s / (step_safety * largest_step_s));
-  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(most_substeps)));
+  return static_cast<int>(std::clamp(needed, 1.0, static_cast<double>(max_substeps)));
 }
 
 }  // namespace
@@ -91,13 +91,13 @@ ScissorsMesh ScissorsMesh::make(std::span<const double> values, const Options& g
   law.edge_m = reader.number("edge", -10.0, 10.0);
   law.lever_m = reader.number("lever", 1e-6, 10.0);
   law.opening_speed = reader.number("opening_speed", 0.0, 100.0);
-  law.fixed_substeps = static_cast<int>(reader.count("substeps", 0, most_substeps));
+  law.fixed_substeps = static_cast<int>(reader.count("substeps", 0, max_substeps));
   law.point = CuttingPoint(scissors);
   constexpr double tick_s = 1e-3;
   for (const auto& [what, step_s] :
        {std::pair{"slab", stable_step(law.slab, law.coupling_stiffness, law.coupling_damping)},
         std::pair{"strip", stable_step(law.strip, law.contact_stiffness, law.contact_damping)}}) {
-    if (tick_s <= step_safety * step_s * most_substeps) continue;
+    if (tick_s <= step_safety * step_s * max_substeps) continue;
     throw std::invalid_argument("law 'scissors_mesh': the " + std::string(what) +
                                 " is stable only in steps of " + std::to_string(1e9 * step_s) +
                                 " ns; make it softer, heavier or less damped, or no machine follows it");
@@ -177,7 +177,7 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, doubl
     return state.strip_origin_m + strip.spacing_m * column - blades.x_s;
   };
   const Blades& before = state.before.cut ? state.before : blades;
-  std::array<Coupling, 2 * most_columns> couplings;
+  std::array<Coupling, 2 * max_columns> couplings;
   std::size_t count = 0;
   for (int column = state.strip_front; column + 1 < strip.columns && count < couplings.size(); ++column) {
     const double gap = std::max(0.0, point.half_gap(blades.theta, distance(column)));

@@ -28,8 +28,8 @@ using testing::HasSubstr;
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::int64_t begin = 5'000 * ms;  // of a clock that has gone for a while
 
-EmulatedWoody::Options options_of(const std::string& options) {
-  return EmulatedWoody::parse_options(drivers::parse_uri("woody?" + options));
+EmulatedWoodenHaptics::Options options_of(const std::string& options) {
+  return EmulatedWoodenHaptics::parse_options(drivers::parse_uri("woody?" + options));
 }
 
 /// A host that speaks to the emulator at times of its choice.
@@ -57,7 +57,7 @@ class Host {
   void preset(const std::array<int, 6>& counts, std::int64_t at) {
     send(*drivers::woodenhaptics::preset_counters(counts, generation_), at);
   }
-  EmulatedWoody& device() { return device_; }
+  EmulatedWoodenHaptics& device() { return device_; }
   const WoodenHaptics::Configuration& model() const { return *options_.model; }
 
  private:
@@ -66,33 +66,34 @@ class Host {
                     std::span(output.bytes).subspan(1, output.size - 1), begin + at);
   }
 
-  EmulatedWoody::Options options_;
+  EmulatedWoodenHaptics::Options options_;
   Generation generation_;
-  EmulatedWoody device_;
+  EmulatedWoodenHaptics device_;
 };
 
-TEST(EmulatedWoody, DescribesReportsOfTheLengthOfItsGeneration) {
+TEST(EmulatedWoodenHaptics, DescribesReportsOfTheLengthOfItsGeneration) {
   const auto sizes = [](const std::string& options) {
-    return drivers::usb::hid_report_sizes(EmulatedWoody(options_of(options)).description().reports[0]);
+    return drivers::usb::hid_report_sizes(
+        EmulatedWoodenHaptics(options_of(options)).description().reports[0]);
   };
   EXPECT_EQ(sizes("generation=v1"), (drivers::usb::HidReportSizes{8, 8}));
   EXPECT_EQ(sizes("generation=v2"), (drivers::usb::HidReportSizes{14, 14}));
   EXPECT_EQ(sizes("generation=v3"), (drivers::usb::HidReportSizes{64, 64}));
-  const EmulatedWoody teensy(options_of("generation=v3"));
+  const EmulatedWoodenHaptics teensy(options_of("generation=v3"));
   EXPECT_EQ(teensy.description().vendor(), 0x16C0);
   EXPECT_EQ(teensy.description().product(), 0x0486);
   EXPECT_EQ(drivers::usb::hid_report_sizes(teensy.description().reports[1]),
             (drivers::usb::HidReportSizes{64, 32}));
   // Each configuration is as long as it says.
   for (const char* generation : {"generation=v1", "generation=v2", "generation=v3"}) {
-    const EmulatedWoody device(options_of(generation));
+    const EmulatedWoodenHaptics device(options_of(generation));
     const Bytes& configuration = device.description().configuration;
     EXPECT_EQ(configuration[2] | configuration[3] << 8, configuration.size());
     EXPECT_EQ(device.description().device.size(), 18U);
   }
 }
 
-TEST(EmulatedWoody, V1SendsAReportEachMillisecondByItself) {
+TEST(EmulatedWoodenHaptics, V1SendsAReportEachMillisecondByItself) {
   Host host("generation=v1");
   int reports = 0;
   for (std::int64_t at = 0; at < 100 * ms; at += ms / 10) {
@@ -104,7 +105,7 @@ TEST(EmulatedWoody, V1SendsAReportEachMillisecondByItself) {
   EXPECT_EQ(reports, 100);
 }
 
-TEST(EmulatedWoody, V1AppliesTheOldestOrderInEachTurn) {
+TEST(EmulatedWoodenHaptics, V1AppliesTheOldestOrderInEachTurn) {
   Host host("generation=v1");
   ASSERT_TRUE(host.poll(0));
   host.order({100, 0, 0}, ms / 4);
@@ -116,7 +117,7 @@ TEST(EmulatedWoody, V1AppliesTheOldestOrderInEachTurn) {
   EXPECT_EQ(host.device().current_ma()[0], 200);
 }
 
-TEST(EmulatedWoody, V2AndV3SendOneReportAndWaitForAnOrder) {
+TEST(EmulatedWoodenHaptics, V2AndV3SendOneReportAndWaitForAnOrder) {
   for (const char* generation : {"generation=v2", "generation=v3"}) {
     Host host(generation);
     ASSERT_TRUE(host.poll(0));
@@ -129,7 +130,7 @@ TEST(EmulatedWoody, V2AndV3SendOneReportAndWaitForAnOrder) {
   }
 }
 
-TEST(EmulatedWoody, V2AppliesTheNewestOfSeveralOrders) {
+TEST(EmulatedWoodenHaptics, V2AppliesTheNewestOfSeveralOrders) {
   Host host("generation=v2");
   // Its first report is not fetched yet: the orders wait, and the newest wins.
   host.order({100, 0, 0}, 0);
@@ -139,7 +140,7 @@ TEST(EmulatedWoody, V2AppliesTheNewestOfSeveralOrders) {
   EXPECT_EQ(host.device().current_ma()[0], 200);
 }
 
-TEST(EmulatedWoody, WithoutAnOrderForHalfASecondTheMotorsHaveNoCurrent) {
+TEST(EmulatedWoodenHaptics, WithoutAnOrderForHalfASecondTheMotorsHaveNoCurrent) {
   for (const char* generation : {"generation=v1", "generation=v2", "generation=v3"}) {
     Host host(generation);
     (void)host.poll(0);
@@ -157,7 +158,7 @@ TEST(EmulatedWoody, WithoutAnOrderForHalfASecondTheMotorsHaveNoCurrent) {
   }
 }
 
-TEST(EmulatedWoody, CountersWrapAtSixteenBits) {
+TEST(EmulatedWoodenHaptics, CountersWrapAtSixteenBits) {
   Host host("generation=v2&counter_offset=32767");
   int least = 0;
   int most = 0;
@@ -173,7 +174,7 @@ TEST(EmulatedWoody, CountersWrapAtSixteenBits) {
   EXPECT_GT(most, 32000);
 }
 
-TEST(EmulatedWoody, PresetsItsCountersAndForgetsTheButton) {
+TEST(EmulatedWoodenHaptics, PresetsItsCountersAndForgetsTheButton) {
   Host host("generation=v2&button=0.1s&sway=0m");
   ASSERT_TRUE(host.poll(0));
   host.order({10, 20, 30}, 50 * ms);
@@ -189,7 +190,7 @@ TEST(EmulatedWoody, PresetsItsCountersAndForgetsTheButton) {
   EXPECT_FALSE(report->button);
 }
 
-TEST(EmulatedWoody, TellsThePoseByItsCounters) {
+TEST(EmulatedWoodenHaptics, TellsThePoseByItsCounters) {
   for (const char* options :
        {"generation=v1&model=woody-2016", "generation=v2&model=aluhaptics", "generation=v3"}) {
     Host host(options);
@@ -209,7 +210,7 @@ TEST(EmulatedWoody, TellsThePoseByItsCounters) {
   }
 }
 
-TEST(EmulatedWoody, ItsMotorsPushAsTheDocumentedCheckSays) {
+TEST(EmulatedWoodenHaptics, ItsMotorsPushAsTheDocumentedCheckSays) {
   // At home with 0.0259 N·m/A: 1 N along x is -0.660 A in B, along y 0.591 A in A, along z -0.788 A in C.
   const auto force = [](const std::array<int, 3>& current_ma) {
     Host host("generation=v2&model=woody-2016&sway=0m");
@@ -223,7 +224,7 @@ TEST(EmulatedWoody, ItsMotorsPushAsTheDocumentedCheckSays) {
   EXPECT_LE((force({0, 0, -788}) - Eigen::Vector3d::UnitZ()).norm(), 1e-3);
 }
 
-TEST(EmulatedWoody, ItsMotorsMoveTheHandThatHoldsIt) {
+TEST(EmulatedWoodenHaptics, ItsMotorsMoveTheHandThatHoldsIt) {
   Host host("generation=v2&model=woody-2016&sway=0m");
   const Eigen::Vector3d home = host.device().tip();
   for (std::int64_t at = 0; at < 1000 * ms; at += ms) {
@@ -237,7 +238,7 @@ TEST(EmulatedWoody, ItsMotorsMoveTheHandThatHoldsIt) {
   EXPECT_LE(std::abs(moved[1]), 1e-9);
 }
 
-TEST(EmulatedWoody, ItsAmplifiersCutMotorForMotor) {
+TEST(EmulatedWoodenHaptics, ItsAmplifiersCutMotorForMotor) {
   Host host("generation=v2");
   (void)host.poll(0);
   host.order({5000, -5000, 1000}, 0);
@@ -245,7 +246,7 @@ TEST(EmulatedWoody, ItsAmplifiersCutMotorForMotor) {
   EXPECT_EQ(host.device().cut(), 1U);
 }
 
-TEST(EmulatedWoody, V3IgnoresAndSendsNoiseBehindItsFourteenBytes) {
+TEST(EmulatedWoodenHaptics, V3IgnoresAndSendsNoiseBehindItsFourteenBytes) {
   Host host("generation=v3&sway=0m");
   const auto first = host.poll(0);
   ASSERT_TRUE(first);
@@ -263,7 +264,7 @@ TEST(EmulatedWoody, V3IgnoresAndSendsNoiseBehindItsFourteenBytes) {
   EXPECT_FALSE(host.device().send(1, buffer, begin, begin + 10 * ms, none));
 }
 
-TEST(EmulatedWoody, DisturbsAReportWhenAskedTo) {
+TEST(EmulatedWoodenHaptics, DisturbsAReportWhenAskedTo) {
   Host host("generation=v1&sway=0m");
   ASSERT_TRUE(host.poll(0));
   EXPECT_FALSE(host.poll(ms, Disturbance::drop));
@@ -276,7 +277,7 @@ TEST(EmulatedWoody, DisturbsAReportWhenAskedTo) {
   EXPECT_EQ(host.report(5 * ms)->counter, 5) << "the dropped one was counted";
 }
 
-TEST(EmulatedWoody, WritesATraceOfWhatItDid) {
+TEST(EmulatedWoodenHaptics, WritesATraceOfWhatItDid) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "trace.csv";
   {
@@ -294,7 +295,7 @@ TEST(EmulatedWoody, WritesATraceOfWhatItDid) {
   EXPECT_THAT(text, HasSubstr("\n0.501,watchdog,0,0,0,"));
 }
 
-TEST(EmulatedWoody, RefusesWhatItIsNot) {
+TEST(EmulatedWoodenHaptics, RefusesWhatItIsNot) {
   const auto refusal = [](const std::string& options) -> std::string {
     try {
       (void)options_of(options);

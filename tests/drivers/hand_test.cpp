@@ -13,7 +13,7 @@ const HandOptions steady{
 
 TEST(MinimumJerk, FollowsItsClosedForm) {
   for (const double s : {0.0, 0.1, 0.25, 0.5, 0.9, 1.0}) {
-    EXPECT_NEAR(MinimumJerk::at(s).place, 10 * std::pow(s, 3) - 15 * std::pow(s, 4) + 6 * std::pow(s, 5),
+    EXPECT_NEAR(MinimumJerk::at(s).position, 10 * std::pow(s, 3) - 15 * std::pow(s, 4) + 6 * std::pow(s, 5),
                 1e-14);
     EXPECT_NEAR(MinimumJerk::at(s).speed, 30 * std::pow(s, 2) - 60 * std::pow(s, 3) + 30 * std::pow(s, 4),
                 1e-14);
@@ -22,8 +22,8 @@ TEST(MinimumJerk, FollowsItsClosedForm) {
 }
 
 TEST(MinimumJerk, HoldsItsEnds) {
-  EXPECT_EQ(MinimumJerk::at(-1.0).place, 0.0);
-  EXPECT_EQ(MinimumJerk::at(2.0).place, 1.0);
+  EXPECT_EQ(MinimumJerk::at(-1.0).position, 0.0);
+  EXPECT_EQ(MinimumJerk::at(2.0).position, 1.0);
   EXPECT_EQ(MinimumJerk::at(2.0).speed, 0.0);
 }
 

@@ -12,18 +12,18 @@ using Eigen::Vector3d;
 TEST(TipPath, RestsAtEachWaypointAndGoesStraightToTheNext) {
   const TipPath path(
       {.waypoints_m = {{0.0, 0.0, 0.0}, {0.02, -0.04, 0.0}}, .stroke_s = 0.5, .pause_s = 0.25});
-  EXPECT_EQ(path.at(0.2).place_m, Vector3d::Zero());
+  EXPECT_EQ(path.at(0.2).position_m, Vector3d::Zero());
   EXPECT_EQ(path.at(0.2).speed_m_s, Vector3d::Zero());
-  EXPECT_LT((path.at(0.5).place_m - Vector3d(0.01, -0.02, 0.0)).norm(), 1e-15) << "half of the stroke";
+  EXPECT_LT((path.at(0.5).position_m - Vector3d(0.01, -0.02, 0.0)).norm(), 1e-15) << "half of the stroke";
   EXPECT_LT((path.at(0.5).speed_m_s - 1.875 / 0.5 * Vector3d(0.02, -0.04, 0.0)).norm(), 1e-14);
-  EXPECT_LT((path.at(0.9).place_m - Vector3d(0.02, -0.04, 0.0)).norm(), 1e-15);
-  EXPECT_LT(path.at(1.5).place_m.norm(), 1e-15) << "and back to the first";
+  EXPECT_LT((path.at(0.9).position_m - Vector3d(0.02, -0.04, 0.0)).norm(), 1e-15);
+  EXPECT_LT(path.at(1.5).position_m.norm(), 1e-15) << "and back to the first";
 }
 
 TEST(TipPath, StaysAtItsOnlyWaypoint) {
   const TipPath path({.waypoints_m = {{0.01, 0.02, 0.03}}});
   for (const double time_s : {0.0, 0.5, 3.3}) {
-    EXPECT_EQ(path.at(time_s).place_m, Vector3d(0.01, 0.02, 0.03));
+    EXPECT_EQ(path.at(time_s).position_m, Vector3d(0.01, 0.02, 0.03));
     EXPECT_EQ(path.at(time_s).speed_m_s, Vector3d::Zero());
   }
 }

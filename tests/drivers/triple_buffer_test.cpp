@@ -9,8 +9,8 @@
 namespace kerf::drivers {
 namespace {
 
-TEST(Latest, GivesTheNewestValueOnce) {
-  Latest<int> latest;
+TEST(TripleBuffer, GivesTheNewestValueOnce) {
+  TripleBuffer<int> latest;
   int value = -1;
   EXPECT_FALSE(latest.take(value));
   EXPECT_EQ(value, -1);
@@ -23,13 +23,13 @@ TEST(Latest, GivesTheNewestValueOnce) {
   EXPECT_EQ(value, 11);
 }
 
-TEST(Latest, NeverGivesHalfOfOneAndHalfOfAnother) {
+TEST(TripleBuffer, NeverGivesHalfOfOneAndHalfOfAnother) {
   struct Pair {
     std::uint64_t one = 0;
     std::uint64_t padding[30] = {};
     std::uint64_t two = 0;
   };
-  Latest<Pair> latest;
+  TripleBuffer<Pair> latest;
   constexpr std::uint64_t last = 200'000;
   std::jthread producer([&] {
     for (std::uint64_t i = 1; i <= last; ++i) latest.put({.one = i, .two = i});

@@ -33,8 +33,9 @@ TEST_P(Nist, HasTheCertifiedStandardDeviations) {
   fitting::Sums sums;
   fitting::Triangle triangle;
   ASSERT_TRUE(nist_objective(problem)->factor(problem.certified, sums, triangle));
-  const auto freedom = static_cast<double>(problem.y.size() - problem.certified.size());
-  const Eigen::VectorXd deviation = triangle.r.inverse().rowwise().norm() * std::sqrt(sums.squares / freedom);
+  const auto degrees_of_freedom = static_cast<double>(problem.y.size() - problem.certified.size());
+  const Eigen::VectorXd deviation =
+      triangle.r.inverse().rowwise().norm() * std::sqrt(sums.squares / degrees_of_freedom);
   EXPECT_GE(digits(deviation, problem.deviation), 8.0) << deviation.transpose();
 }
 

@@ -44,7 +44,7 @@ TEST(Segmented, IsTheBestOfAllChoicesOfKnotsOnAGrid) {
                           : which % 3 == 1 ? sampled(75, 0.1, seed, false, step)
                                            : sampled(60, 1.0, seed, false, [](double) { return 0.0; });
       ++which;
-      const auto curves = fit_segments(points.curve(), {.most_segments = 5, .cells = cells, .polish = false});
+      const auto curves = fit_segments(points.curve(), {.max_segments = 5, .cells = cells, .polish = false});
       ASSERT_EQ(curves.size(), 5U);
       for (const auto& curve : curves) {
         const double truth = test::exhaustive_error(points, cells, curve.segments(), 4);
@@ -60,7 +60,7 @@ TEST(Segmented, IsTheBestOfAllChoicesForALoopToo) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const auto points =
         seed % 2 == 0 ? sampled(60, 0.3, seed, true, wave) : sampled(60, 0.2, seed, true, step);
-    const auto curves = fit_segments(points.curve(), {.most_segments = 5, .cells = 12, .polish = false});
+    const auto curves = fit_segments(points.curve(), {.max_segments = 5, .cells = 12, .polish = false});
     ASSERT_EQ(curves.size(), 5U);
     for (const auto& curve : curves) {
       const double truth = test::exhaustive_error(points, 12, curve.segments(), 4);
@@ -78,7 +78,7 @@ TEST(Segmented, HoldsOnAGridWithWeightsGapsAndRepeatedPositions) {
     points.x[i] = std::round(40.0 * points.x[i]) / 40.0;
     if (points.x[i] > 0.42 && points.x[i] < 0.68) points.x[i] = 0.7;
   }
-  const auto curves = fit_segments(points.curve(), {.most_segments = 4, .cells = 12, .polish = false});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 4, .cells = 12, .polish = false});
   ASSERT_EQ(curves.size(), 4U);
   for (const auto& curve : curves) {
     const double truth = test::exhaustive_error(points, 12, curve.segments(), 4);
@@ -91,7 +91,7 @@ TEST(Segmented, FindsTheKnotsOfAPolygonExactly) {
   const std::vector<double> force{0.1, 0.4, 2.0, 2.3, -1.0};
   const auto points =
       sampled(1001, 0.0, 0, true, [&](double x) { return test::interpolate(knots, force, x); });
-  const auto curves = fit_segments(points.curve(), {.most_segments = 6});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 6});
   ASSERT_EQ(curves.size(), 6U);
   const auto& found = curves[3];
   for (std::size_t i = 0; i < knots.size(); ++i) {
@@ -105,7 +105,7 @@ TEST(Segmented, FindsTheKnotsOfAPolygonExactly) {
 
 TEST(Segmented, FindsTheKnotsOfANoisyPolygon) {
   const auto points = sampled(4000, 0.05, 11, false, ramp);
-  const auto curves = fit_segments(points.curve(), {.most_segments = 8});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 8});
   ASSERT_EQ(curves.size(), 8U);
   ASSERT_EQ(choose_by_bic(curves), 2U);
   // Standard errors of the knots by the linearised law: about 0.0012 and 0.0010.
@@ -116,7 +116,7 @@ TEST(Segmented, FindsTheKnotsOfANoisyPolygon) {
 
 TEST(Segmented, ReportsTheErrorOfTheCurveThatItReturns) {
   const auto points = sampled(500, 0.1, 5, true, step);
-  for (const auto& curve : fit_segments(points.curve(), {.most_segments = 7})) {
+  for (const auto& curve : fit_segments(points.curve(), {.max_segments = 7})) {
     double error = 0.0;
     for (std::size_t i = 0; i < points.x.size(); ++i) {
       const double miss =
@@ -137,7 +137,7 @@ TEST(Segmented, IsNeverWorseWithMoreSegments) {
   for (const bool loop : {false, true}) {
     for (const double noise : {0.0, 0.3}) {
       const auto points = sampled(120, noise, 7, loop, wave);
-      const auto curves = fit_segments(points.curve(), {.most_segments = 8});
+      const auto curves = fit_segments(points.curve(), {.max_segments = 8});
       EXPECT_EQ(curves.size(), 8U);
       for (std::size_t s = 1; s < curves.size(); ++s) {
         EXPECT_EQ(curves[s].segments(), s + 1);
@@ -152,7 +152,7 @@ TEST(Segmented, IsNeverWorseThanDifferentialEvolution) {
   const std::vector<CurvePoints> all{sampled(100, 0.0, 0, false, wave), sampled(100, 0.1, 1, false, ramp),
                                      sampled(80, 0.05, 2, false, step), sampled(100, 0.02, 3, false, bend)};
   for (const auto& points : all) {
-    const auto curves = fit_segments(points.curve(), {.most_segments = 6});
+    const auto curves = fit_segments(points.curve(), {.max_segments = 6});
     for (const std::size_t segments : {3, 6}) {
       const double evolved = test::evolved_error(points, segments, 4);
       EXPECT_LE(curves[segments - 1].sum_of_squares, evolved * (1.0 + 1e-9))
@@ -169,8 +169,8 @@ TEST(Segmented, DoesNotDependOnTheOrderOrTheUnits) {
     other.x.push_back(1e3 + 1e-3 * points.x[j]);
     other.y.push_back(-1e5 + 100.0 * points.y[j]);
   }
-  const auto one = fit_segments(points.curve(), {.most_segments = 6});
-  const auto two = fit_segments(other.curve(), {.most_segments = 6});
+  const auto one = fit_segments(points.curve(), {.max_segments = 6});
+  const auto two = fit_segments(other.curve(), {.max_segments = 6});
   ASSERT_EQ(one.size(), two.size());
   for (std::size_t s = 0; s < one.size(); ++s) {
     EXPECT_NEAR(two[s].sum_of_squares, 1e4 * one[s].sum_of_squares, 1e-4 * one[s].sum_of_squares);
@@ -189,8 +189,8 @@ TEST(Segmented, TakesAWeightOfZeroForAbsenceAndOfTwoForTwice) {
   points.weight[60] = 2.0;
   plain.x.push_back(plain.x[60]);
   plain.y.push_back(plain.y[60]);
-  const auto weighted = fit_segments(points.curve(), {.most_segments = 4});
-  const auto repeated = fit_segments(plain.curve(), {.most_segments = 4});
+  const auto weighted = fit_segments(points.curve(), {.max_segments = 4});
+  const auto repeated = fit_segments(plain.curve(), {.max_segments = 4});
   for (std::size_t s = 0; s < 4; ++s) {
     EXPECT_NEAR(weighted[s].sum_of_squares, repeated[s].sum_of_squares, 1e-9 * repeated[s].sum_of_squares);
     EXPECT_EQ(weighted[s].points, 200U);
@@ -202,7 +202,7 @@ TEST(Segmented, CrossesAGapWithOneLine) {
   std::erase_if(points.x, [](double x) { return std::abs(x - 0.5) < 0.2; });
   points.y.clear();
   for (const double x : points.x) points.y.push_back(std::abs(x - 0.5));
-  const auto curves = fit_segments(points.curve(), {.most_segments = 3});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 3});
   ASSERT_GE(curves.size(), 2U);
   EXPECT_NEAR(curves[1].knots[1], 0.5, 1e-9) << "where the lines on both sides meet";
   EXPECT_NEAR(curves[1].force[0][1], 0.0, 1e-9);
@@ -212,7 +212,7 @@ TEST(Segmented, OfAConstantForceIsAConstant) {
   const auto points = sampled(100, 0.0, 0, true, [](double) { return 0.0; });
   CurvePoints constant{
       .x = points.x, .y = std::vector<double>(points.x.size(), 2.7), .weight = {}, .branch = {}};
-  const auto curves = fit_segments(constant.curve(), {.most_segments = 4});
+  const auto curves = fit_segments(constant.curve(), {.max_segments = 4});
   ASSERT_FALSE(curves.empty());
   for (const auto& curve : curves) {
     EXPECT_LT(curve.rmse, 1e-12);
@@ -223,7 +223,7 @@ TEST(Segmented, OfAConstantForceIsAConstant) {
 
 TEST(Segmented, TakesTwoPointsForALine) {
   const CurvePoints points{.x = {2.0, 1.0}, .y = {5.0, 3.0}, .weight = {}, .branch = {}};
-  const auto curves = fit_segments(points.curve(), {.most_segments = 3, .fewest_points = 2});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 3, .fewest_points = 2});
   ASSERT_EQ(curves.size(), 1U);
   EXPECT_THAT(curves[0].knots, testing::ElementsAre(1.0, 2.0));
   EXPECT_THAT(curves[0].force[0],
@@ -232,8 +232,8 @@ TEST(Segmented, TakesTwoPointsForALine) {
 
 TEST(Segmented, LeavesOutNumbersThatThePointsDoNotCarry) {
   const auto points = sampled(20, 0.1, 2, false, wave);
-  EXPECT_LE(fit_segments(points.curve(), {.most_segments = 12}).size(), 5U);
-  EXPECT_GE(fit_segments(points.curve(), {.most_segments = 12}).size(), 4U);
+  EXPECT_LE(fit_segments(points.curve(), {.max_segments = 12}).size(), 5U);
+  EXPECT_GE(fit_segments(points.curve(), {.max_segments = 12}).size(), 4U);
 }
 
 TEST(Segmented, TakesBreakpointsByHand) {
@@ -246,7 +246,7 @@ TEST(Segmented, TakesBreakpointsByHand) {
 }
 
 TEST(Segmented, ChoosesTheFewestWithinALimit) {
-  const auto curves = fit_segments(sampled(400, 0.02, 9, false, wave).curve(), {.most_segments = 6});
+  const auto curves = fit_segments(sampled(400, 0.02, 9, false, wave).curve(), {.max_segments = 6});
   const auto chosen = fewest_within(curves, 0.1);
   ASSERT_TRUE(chosen.has_value());
   EXPECT_LE(curves[*chosen].rmse, 0.1);
@@ -255,7 +255,7 @@ TEST(Segmented, ChoosesTheFewestWithinALimit) {
 }
 
 TEST(Segmented, ChoosesFewerSegmentsIfThePointsSayLess) {
-  const auto curves = fit_segments(sampled(2000, 0.1, 9, false, wave).curve(), {.most_segments = 7});
+  const auto curves = fit_segments(sampled(2000, 0.1, 9, false, wave).curve(), {.max_segments = 7});
   EXPECT_LT(choose_by_bic(curves, 40.0), choose_by_bic(curves));
 }
 
@@ -280,7 +280,7 @@ TEST(Segmented, RefusesWhatCannotBeFitted) {
   EXPECT_THAT(refusal(points), HasSubstr("while opening"));
   points.branch.assign(30, 2);
   EXPECT_THAT(refusal(points), HasSubstr("0 (closing) or 1 (opening)"));
-  EXPECT_THAT(refusal(good, {.most_segments = 17}), HasSubstr("1 to 16"));
+  EXPECT_THAT(refusal(good, {.max_segments = 17}), HasSubstr("1 to 16"));
   EXPECT_THAT(refusal(good, {.cells = 2}), HasSubstr("4 to 1,024"));
   EXPECT_THAT(refusal(good, {.fewest_points = 31}), HasSubstr("needs 31 points; there are 30"));
   EXPECT_THAT(refusal(good, {.breakpoints = {0.5, 0.4}}), HasSubstr("must increase"));

@@ -69,7 +69,7 @@ TEST(Uncertainty, OfAPerfectFitIsNone) {
   const auto result = uncertainty_of(waves(2'000, Eigen::VectorXd::Zero(2'000)), 0.95);
   EXPECT_EQ(result.covariance(0, 0), 0.0);
   EXPECT_TRUE(result.determined[0]);
-  EXPECT_TRUE(result.indistinct.empty());
+  EXPECT_TRUE(result.unidentifiable.empty());
 }
 
 TEST(Uncertainty, IsInfiniteWithoutRowsToSpare) {
@@ -104,7 +104,7 @@ const std::vector<std::string> kelvin_names{"parallel_stiffness", "series_stiffn
 const std::vector<bool> logarithmic(3, true);
 
 TEST(Identifiability, OfARampAndHoldIsGood) {
-  EXPECT_TRUE(of_kelvin(test::ramp_and_hold(5.0, 0.1)).indistinct.empty());
+  EXPECT_TRUE(of_kelvin(test::ramp_and_hold(5.0, 0.1)).unidentifiable.empty());
 }
 
 TEST(Identifiability, OfAHoldAloneLeavesTheArmUnknown) {
@@ -112,11 +112,11 @@ TEST(Identifiability, OfAHoldAloneLeavesTheArmUnknown) {
   EXPECT_EQ(result.determined, (std::vector<bool>{true, false, false}));
   EXPECT_TRUE(std::isfinite(result.covariance(0, 0)));
   EXPECT_TRUE(std::isinf(result.covariance(1, 1)));
-  ASSERT_EQ(result.indistinct.size(), 2);
-  for (const Indistinct& each : result.indistinct) ASSERT_EQ(each.parts.size(), 1);
-  EXPECT_EQ(result.indistinct[0].parts[0].first + result.indistinct[1].parts[0].first, 3);
-  EXPECT_EQ(describe(result.indistinct[0], kelvin_names, logarithmic).find("the data say nothing about '"),
-            0);
+  ASSERT_EQ(result.unidentifiable.size(), 2);
+  for (const UnidentifiableDirection& each : result.unidentifiable) ASSERT_EQ(each.parts.size(), 1);
+  EXPECT_EQ(result.unidentifiable[0].parts[0].first + result.unidentifiable[1].parts[0].first, 3);
+  EXPECT_EQ(
+      describe(result.unidentifiable[0], kelvin_names, logarithmic).find("the data say nothing about '"), 0);
 }
 
 TEST(Identifiability, OfAFastRampConfusesTheTwoSprings) {
@@ -124,7 +124,7 @@ TEST(Identifiability, OfAFastRampConfusesTheTwoSprings) {
   for (int i = 0; i < 200; ++i) path.push_back({.penetration = 5e-4 * i, .velocity = 0.5});
   const auto result = of_kelvin(path, 1e4);
   bool found = false;
-  for (const Indistinct& each : result.indistinct) {
+  for (const UnidentifiableDirection& each : result.unidentifiable) {
     if (each.parts.size() != 2) continue;
     found = true;
     EXPECT_EQ(each.parts[0].first, 1);  // k2 +8 against k1 -7
@@ -141,10 +141,10 @@ TEST(Identifiability, OfASlowRampKnowsTheDashpotButNotItsSpring) {
   test::Path path;
   for (int i = 0; i < 20'000; ++i) path.push_back({.penetration = 5e-6 * i, .velocity = 5e-3});
   const auto result = of_kelvin(path, 0.05);
-  ASSERT_EQ(result.indistinct.size(), 1);
-  ASSERT_EQ(result.indistinct[0].parts.size(), 1);
-  EXPECT_EQ(result.indistinct[0].parts[0].first, 1);
-  EXPECT_EQ(describe(result.indistinct[0], kelvin_names, logarithmic),
+  ASSERT_EQ(result.unidentifiable.size(), 1);
+  ASSERT_EQ(result.unidentifiable[0].parts.size(), 1);
+  EXPECT_EQ(result.unidentifiable[0].parts[0].first, 1);
+  EXPECT_EQ(describe(result.unidentifiable[0], kelvin_names, logarithmic),
             "the data hardly say anything about 'series_stiffness'");
 }
 
@@ -153,9 +153,9 @@ TEST(Identifiability, OfAProductNamesTheProduct) {
   data.jacobian.col(0) = data.jacobian.col(1);  // toughness and width, both logarithmic
   const auto result = uncertainty_of(data, 0.95);
   EXPECT_EQ(result.determined, (std::vector<bool>{false, false}));
-  ASSERT_EQ(result.indistinct.size(), 1);
-  EXPECT_TRUE(std::isinf(result.indistinct[0].relative_error));
-  const std::string sentence = describe(result.indistinct[0], {"toughness", "width"}, {true, true});
+  ASSERT_EQ(result.unidentifiable.size(), 1);
+  EXPECT_TRUE(std::isinf(result.unidentifiable[0].relative_error));
+  const std::string sentence = describe(result.unidentifiable[0], {"toughness", "width"}, {true, true});
   EXPECT_EQ(sentence, "the data determine the product of 'toughness' and 'width', but neither of them");
 }
 
@@ -163,7 +163,7 @@ TEST(Identifiability, DoesNotDependOnTheUnitOfALinearParameter) {
   auto data = waves(2'000, test::Noise::white().draw(2'000, 0.1, 1));
   data.jacobian.col(1) *= 1e-6;  // per micrometre
   data.scale = {1.0, 1e6};
-  EXPECT_TRUE(uncertainty_of(data, 0.95).indistinct.empty());
+  EXPECT_TRUE(uncertainty_of(data, 0.95).unidentifiable.empty());
 }
 
 // Of 150 intervals of 95 % fewer than 134 cover the truth once in 600 times, if they are right (binomial);

@@ -20,7 +20,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// The rectangle of models.md, section 7: 10 mm along x, 30 mm along z, tip 12 mm under, hand at z = 0.10 m.
+/// A rectangle: 10 mm along x, 30 mm along z, tip 12 mm under, hand at z = 0.10 m.
 const BladeShape rectangle =
     BladeShape::parse("-0.005 0 -0.112, 0.005 0 -0.112, 0.005 0 -0.082, -0.005 0 -0.082", "");
 const BladeField friction{.edge = 0.0, .normal = 2e4, .tangential = 4e3};

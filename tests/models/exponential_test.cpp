@@ -8,7 +8,7 @@
 namespace kerf::models {
 namespace {
 
-// Porcine intestine in vivo (001).
+// Porcine intestine in vivo [Sepulveda2008].
 constexpr Exponential<double> intestine{
     .amplitude = 4.3e-7, .exponent = 13.0, .viscosity = 20.0, .thickness = 0.1, .zero_at_contact = false};
 
@@ -72,7 +72,7 @@ TEST(Exponential, StiffnessIsTheSlopeOfTheForce) {
 
 TEST(Exponential, SaysHowDeepAStiffnessLies) {
   const Exponential<double> in_vivo{4.3e-7, 13.0, 20.0, 0.1, false};
-  EXPECT_NEAR(in_vivo.depth_at_stiffness(260.0) / 0.118097136991, 1.0, 1e-10) << "models.md, section 4";
+  EXPECT_NEAR(in_vivo.depth_at_stiffness(260.0) / 0.118097136991, 1.0, 1e-10) << "by the closed form";
   EXPECT_NEAR(in_vivo.stiffness(in_vivo.depth_at_stiffness(1e3)), 1e3, 1e-9);
   EXPECT_EQ(in_vivo.depth_at_stiffness(1e-9), 0.0) << "softer than at contact";
 }

@@ -12,7 +12,7 @@ namespace {
 
 using Mode = Fracture<double>::Mode;
 
-/// In vivo intestine of 001: 2 N at the yield energy, and 2 N while cutting.
+/// In vivo intestine of [Sepulveda2008]: 2 N at the yield energy, and 2 N while cutting.
 const Fracture<double> intestine{4.3e-7, 13.0, 0.0153846120769, 2000.0, 1e-3, 0.1};
 
 TEST(Fracture, YieldsWhereTheStoredEnergyReachesTheCheckValue) {

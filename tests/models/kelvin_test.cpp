@@ -13,7 +13,7 @@
 namespace kerf::models {
 namespace {
 
-// Liver of 002, and the check values that follow from its equation in closed form.
+// Liver of [FuzzyKelvin], and the check values that follow from its equation in closed form.
 constexpr Kelvin<double> liver{.parallel_stiffness = 8.0, .series_stiffness = 7.0, .damping = 130.0};
 
 double ramp_and_hold(double time_s) { return std::min(2e-3 * time_s, 5e-3); }

@@ -70,8 +70,7 @@ TEST(Maxwell, WithOneArmIsKelvin) {
 
 TEST(Maxwell, MeetsTheCheckValuesOfLiver) {
   const auto law = maxwell({8.0, 7.0, 130.0 / 7.0}, 1.0);
-  EXPECT_NEAR(force_at(law, ramp_and_hold, 2.5, 1e-3) / 0.0727464745656, 1.0, 1e-10)
-      << "models.md, section 1";
+  EXPECT_NEAR(force_at(law, ramp_and_hold, 2.5, 1e-3) / 0.0727464745656, 1.0, 1e-10) << "by the closed form";
   EXPECT_NEAR(force_at(law, ramp_and_hold, 30.0, 1e-3) / 0.0474485998763, 1.0, 1e-10);
 }
 

@@ -119,8 +119,8 @@ TEST(ImplicitSurface, TheRateOfTheJacobianIsThatOfTheMotion) {
 Orthogonal made(std::vector<double> values, Options options) { return Orthogonal::make(values, options); }
 
 TEST(Orthogonal, PressesOutOfThePlaneWithTheForceOfItsLaw) {
-  // In vivo intestine of 001 under a horizontal plane at the origin, device at rest: J_tip^-T tau is the
-  // force.
+  // In vivo intestine of [Sepulveda2008] under a horizontal plane at the origin, device at rest: J_tip^-T tau
+  // is the force.
   const Orthogonal law = made({4.3e-7, 13.0, 20.0, 0.06}, {{"point", std::string("0 0.1 0")}});
   Orthogonal::State state;
   const Vector3d q(0.1, 0.05, -0.05);

@@ -21,7 +21,7 @@ double force_at(const std::vector<double>& values, double theta, double velocity
 }
 
 TEST(ScissorsAnalytic, IsTheSumOfItsThreePartsAtTheCheckValues) {
-  // x_c at 10 degrees from models.md, section 8.
+  // x_c at 10 degrees by the closed form.
   const double x_c = 23.1825114283e-3;
   const double theta = 10.0 * degree;
   EXPECT_NEAR(force_at({0.01, 0.0, 0.0}, theta, 1.0), 0.01 / lever, 1e-12);

@@ -192,7 +192,7 @@ TEST(Falcon, ForcesArriveAsTheRightMotorNumbers) {
   const auto trace = read_trace(folder / "trace.csv");
   std::size_t matched = 0;
   std::size_t next = 0;
-  double most_degrees = 0.0;
+  double max_degrees = 0.0;
   for (const TraceRow& row : trace) {
     const auto begin = asked.begin() + static_cast<std::ptrdiff_t>(next);
     const auto end = asked.begin() + static_cast<std::ptrdiff_t>(std::min(asked.size(), next + 4));
@@ -209,14 +209,13 @@ TEST(Falcon, ForcesArriveAsTheRightMotorNumbers) {
     if (found->force.norm() < 1.0) continue;
     const Eigen::Vector3d torque = -Eigen::Vector3d(row.raw[0], row.raw[1], row.raw[2]) / 10000.0;
     const Eigen::Vector3d felt = Falcon::force(torque, *Falcon::angles(found->knob));
-    most_degrees =
-        std::max(most_degrees, std::atan2(felt.cross(found->force).norm(), felt.dot(found->force)) * 180.0 /
-                                   std::numbers::pi);
+    max_degrees = std::max(max_degrees, std::atan2(felt.cross(found->force).norm(), felt.dot(found->force)) *
+                                            180.0 / std::numbers::pi);
   }
   EXPECT_GT(matched, 980U);
   EXPECT_LT(trace.size() - matched, 20U);  // zeros before the first tick and after the last
-  EXPECT_GT(most_degrees, 0.0);
-  EXPECT_LT(most_degrees, 0.1);
+  EXPECT_GT(max_degrees, 0.0);
+  EXPECT_LT(max_degrees, 0.1);
 }
 
 TEST(Falcon, TheWallHoldsTheHandWhereTheSpringsSay) {

@@ -51,7 +51,7 @@ bool has_currents(const schema::Recording& recording, std::size_t row, const std
   return true;
 }
 
-TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
+TEST(WoodenHapticsLoop, AVirtualWallIsClosedOverEachGeneration) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
     const std::size_t seconds = seconds_of(one);
@@ -107,7 +107,7 @@ TEST(WoodyLoop, AVirtualWallIsClosedOverEachGeneration) {
   }
 }
 
-TEST(WoodyLoop, ARecordingOutlivesTheDevice) {
+TEST(WoodenHapticsLoop, ARecordingOutlivesTheDevice) {
   for (const Generation& one : {generations[0], generations[1]}) {
     SCOPED_TRACE(one.emulator);
     const TemporaryFolder folder;
@@ -129,7 +129,7 @@ TEST(WoodyLoop, ARecordingOutlivesTheDevice) {
 }
 
 // tests/usb/same-twice runs it in two guests: what it writes must be the same to the last bit.
-TEST(WoodyTwice, WritesTheSameRecordingInEachGuest) {
+TEST(WoodenHapticsTwice, WritesTheSameRecordingInEachGuest) {
   const char* folder = std::getenv("KERF_TWICE");
   if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
   for (const Generation& one : generations) {

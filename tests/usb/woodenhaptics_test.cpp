@@ -46,7 +46,7 @@ void hold(Device& device, int ticks, const Axes& force) {
   hold(device, ticks, force, [](int, Status status, const Sample&) { EXPECT_EQ(status, Status::ok); });
 }
 
-TEST(Woody, EachGenerationIsKnownAndFollowsItsTip) {
+TEST(WoodenHaptics, EachGenerationIsKnownAndFollowsItsTip) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
     const Emulator emulator(one.emulator);
@@ -74,7 +74,7 @@ TEST(Woody, EachGenerationIsKnownAndFollowsItsTip) {
   }
 }
 
-TEST(Woody, TheTickAllocatesNothing) {
+TEST(WoodenHaptics, TheTickAllocatesNothing) {
   const Emulator emulator("woody?generation=v2");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   const auto device = drivers::open_device("hid:1234:0006");
@@ -88,7 +88,7 @@ TEST(Woody, TheTickAllocatesNothing) {
   }
 }
 
-TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
+TEST(WoodenHaptics, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
   for (const char* generation : {"v1", "v2"}) {
     SCOPED_TRACE(generation);
     const TemporaryFolder folder;
@@ -125,7 +125,7 @@ TEST(Woody, ALoopThatStopsWritingHasZeroCurrentWithinATenthOfASecond) {
   }
 }
 
-TEST(Woody, ReleaseMakesTheForceZeroUntilTheNextWrite) {
+TEST(WoodenHaptics, ReleaseMakesTheForceZeroUntilTheNextWrite) {
   const Emulator emulator("woody?generation=v1");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   const auto device = drivers::open_device("hid:1234:0006");
@@ -146,7 +146,7 @@ TEST(Woody, ReleaseMakesTheForceZeroUntilTheNextWrite) {
   EXPECT_EQ(sample.channels[0], 0.0);
 }
 
-TEST(Woody, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
+TEST(WoodenHaptics, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
   const Emulator emulator("woody?generation=v2&model=woody-2016&sway=0m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   const auto device = drivers::open_device("hid:1234:0006?model=woody-2016&most_current=1A");
@@ -161,7 +161,7 @@ TEST(Woody, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
   EXPECT_EQ(figure(*device, "current_limited"), 1.0);
 }
 
-TEST(Woody, CountsFromWhereItIsToldToBeAtHome) {
+TEST(WoodenHaptics, CountsFromWhereItIsToldToBeAtHome) {
   // 32760: the counters wrap while the hand sways.
   const Emulator emulator("woody?generation=v2&counter_offset=32760&button=0.2s&sway=0.005m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
@@ -192,7 +192,7 @@ TEST(Woody, CountsFromWhereItIsToldToBeAtHome) {
   follow(*device);
 }
 
-TEST(Woody, WhatItHadReadyWhenItWasClosedIsNotTakenForNew) {
+TEST(WoodenHaptics, WhatItHadReadyWhenItWasClosedIsNotTakenForNew) {
   const Emulator emulator("woody?generation=v2&sway=0.02m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   for (int times = 0; times < 4; ++times) {
@@ -210,7 +210,7 @@ TEST(Woody, WhatItHadReadyWhenItWasClosedIsNotTakenForNew) {
   }
 }
 
-TEST(Woody, TornTurnedLostAndRefusedReportsDoNoHarm) {
+TEST(WoodenHaptics, TornTurnedLostAndRefusedReportsDoNoHarm) {
   for (const Generation& one : generations) {
     SCOPED_TRACE(one.emulator);
     const Emulator emulator(
@@ -240,7 +240,7 @@ TEST(Woody, TornTurnedLostAndRefusedReportsDoNoHarm) {
   }
 }
 
-TEST(Woody, IsLostWhenItIsUnpluggedAndComesBackTwentyTimes) {
+TEST(WoodenHaptics, IsLostWhenItIsUnpluggedAndComesBackTwentyTimes) {
   Held at_first;
   for (int times = 0; times < 20; ++times) {
     Emulator emulator(times % 2 == 0 ? "woody?generation=v1" : "woody?generation=v2");
@@ -260,7 +260,7 @@ TEST(Woody, IsLostWhenItIsUnpluggedAndComesBackTwentyTimes) {
   EXPECT_THAT(refusal("hid:1234:0006"), HasSubstr("is not attached (0 of 1234:0006 found); plug it in"));
 }
 
-TEST(Woody, OfTwoDevicesEachIsOpenedByItsIndexAndByOneProgram) {
+TEST(WoodenHaptics, OfTwoDevicesEachIsOpenedByItsIndexAndByOneProgram) {
   const Emulator first("woody?generation=v1");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   const Emulator second("woody?generation=v2");
@@ -272,7 +272,7 @@ TEST(Woody, OfTwoDevicesEachIsOpenedByItsIndexAndByOneProgram) {
   EXPECT_THAT(refusal("hid:1234:0006?index=2"), HasSubstr("number 2 is not attached (2 of 1234:0006 found)"));
 }
 
-TEST(Woody, SaysWhatIsWrongAndHowToMendIt) {
+TEST(WoodenHaptics, SaysWhatIsWrongAndHowToMendIt) {
   EXPECT_THAT(refusal("hid:1234:0007"),
               AllOf(HasSubstr("no HID device 'hid:1234:0007' is known"),
                     HasSubstr("hid:1234:0006 (WoodenHaptics)"), HasSubstr("hid:16c0:0486 (Polhem)")));
@@ -296,7 +296,7 @@ TEST(Woody, SaysWhatIsWrongAndHowToMendIt) {
   EXPECT_TRUE(attached[0].emulated);
 }
 
-TEST(WoodyRate, IsAboutAThousandReportsASecondByTheClock) {
+TEST(WoodenHapticsRate, IsAboutAThousandReportsASecondByTheClock) {
   for (const Generation& one : generations) {
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));

@@ -13,9 +13,9 @@
 namespace kerf::bench {
 namespace {
 
-constexpr int most_lattice_nodes = 40'000;
-constexpr std::size_t most_segments = 12;
-constexpr std::size_t most_table_points = 256;
+constexpr int max_lattice_nodes = 40'000;
+constexpr std::size_t max_segments = 12;
+constexpr std::size_t max_table_points = 256;
 
 std::string rate_label(double rate_hz) { return fmt::format("{:g} Hz", rate_hz); }
 
@@ -68,7 +68,7 @@ std::optional<LawFile> relaid(const LawFile& law, double factor) {
     return std::round((option_number(law, side) - 1.0) * factor) + 1.0;
   };
   if (nodes("columns") < 4.0 || nodes("rows") < 4.0) return std::nullopt;
-  if (nodes("columns") * nodes("rows") > most_lattice_nodes) return std::nullopt;
+  if (nodes("columns") * nodes("rows") > max_lattice_nodes) return std::nullopt;
   models::Options options = law.law.options();
   options["columns"] = nodes("columns");
   options["rows"] = nodes("rows");
@@ -161,8 +161,8 @@ Fidelities fidelities_of(const LawFile& law, double rate_hz) {
     result.all.push_back({"as given", given, rate_hz});
     const bool sampled = model == "piecewise" || model == "recording" || model.starts_with("fuzzy_");
     result.reference = {"as given", given, sampled ? rate_hz : reference_rate_factor * rate_hz};
-    if (model == "piecewise") append(result.all, resampled_segments(given, most_segments, rate_hz));
-    if (model == "recording") append(result.all, resampled_tables(given, most_table_points, rate_hz));
+    if (model == "piecewise") append(result.all, resampled_segments(given, max_segments, rate_hz));
+    if (model == "recording") append(result.all, resampled_tables(given, max_table_points, rate_hz));
     if (model.starts_with("fuzzy_")) add_memberships(given, rate_hz, result);
   }
   if (in_float) {

@@ -11,7 +11,7 @@
 namespace kerf::bench {
 
 /// A device in a hand, and how deep the hand presses.
-struct HeldDevice {
+struct DeviceInHand {
   drivers::DeviceInfo device;
   double hand_mass_kg = 0.0;
   double hand_damping_n_s_per_m = 0.0;
@@ -19,9 +19,9 @@ struct HeldDevice {
   double deepest = 0.0;  ///< penetration, in the unit of the law's axis
 };
 
-/// Says of a law at a rate why it would hum in that hand (stability/in_hand.h); nothing if it would not, or
-/// if it cannot be judged.
-[[nodiscard]] std::function<std::optional<std::string>(const LawFile&, double rate_hz)> hum_of(
-    const HeldDevice& held);
+/// Says of a law at a rate why it would have a limit cycle in that hand (stability/in_hand.h); nothing if it
+/// would not, or if it cannot be judged.
+[[nodiscard]] std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
+    const DeviceInHand& held);
 
 }  // namespace kerf::bench

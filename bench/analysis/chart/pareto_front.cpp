@@ -10,21 +10,21 @@ namespace {
 
 using Places = std::vector<std::size_t>;
 
-double error_of(const FrontEntry& entry, const FrontTolerance& tolerance) {
+double error_of(const ParetoEntry& entry, const ParetoTolerance& tolerance) {
   return std::max(entry.error, tolerance.error_floor);
 }
 
 /// The most that still counts as equal to a cost.
-double equal_to(double cost_ns, const FrontTolerance& tolerance) {
+double equal_to(double cost_ns, const ParetoTolerance& tolerance) {
   return cost_ns * (1.0 + tolerance.cost_share) + tolerance.cost_ns;
 }
 
 /// Of a class with costs that count as equal, the one for the front: the least error, and of all that count
 /// as equal to that one in both, in the class or just beyond its edge, the simplest.
-std::size_t best_of(std::span<const FrontEntry> entries, const Places& better, double most_ns,
-                    const FrontTolerance& tolerance) {
+std::size_t best_of(std::span<const ParetoEntry> entries, const Places& better, double max_ns,
+                    const ParetoTolerance& tolerance) {
   const auto error = [&](std::size_t place) { return error_of(entries[place], tolerance); };
-  const auto in_class = [&](std::size_t place) { return entries[place].cost_ns <= most_ns; };
+  const auto in_class = [&](std::size_t place) { return entries[place].cost_ns <= max_ns; };
   std::size_t least = *std::find_if(better.begin(), better.end(), in_class);
   for (const std::size_t place : better) {
     if (in_class(place) && error(place) < error(least)) least = place;
@@ -44,14 +44,15 @@ std::size_t best_of(std::span<const FrontEntry> entries, const Places& better, d
 
 }  // namespace
 
-std::vector<std::size_t> pareto_front(std::span<const FrontEntry> entries, const FrontTolerance& tolerance) {
+std::vector<std::size_t> pareto_front(std::span<const ParetoEntry> entries,
+                                      const ParetoTolerance& tolerance) {
   Places front;
   double reached = std::numeric_limits<double>::infinity();
   for (;;) {
     Places better;
     double cheapest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < entries.size(); ++i) {
-      const FrontEntry& entry = entries[i];
+      const ParetoEntry& entry = entries[i];
       if (!entry.competes || !std::isfinite(entry.cost_ns) || !std::isfinite(entry.error)) continue;
       if (!(error_of(entry, tolerance) * (1.0 + tolerance.error_share) < reached)) continue;
       better.push_back(i);

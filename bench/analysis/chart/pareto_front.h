@@ -6,8 +6,8 @@
 
 namespace kerf::bench {
 
-/// What a front is made of: a cost, an error, and what tells points apart that have both alike.
-struct FrontEntry {
+/// What a Pareto front is made of: a cost, an error, and what tells points apart that have both alike.
+struct ParetoEntry {
   double cost_ns = 0.0;
   double error = 0.0;
   std::size_t parameters = 0;
@@ -16,7 +16,7 @@ struct FrontEntry {
 };
 
 /// When two measured costs, and two errors, count as equal.
-struct FrontTolerance {
+struct ParetoTolerance {
   double cost_share = 0.15;
   double cost_ns = 3.0;
   double error_share = 0.02;
@@ -30,7 +30,7 @@ struct FrontTolerance {
 /// with the fewest parameters, then the first by name, then the first given. Then again among the entries
 /// with an error that is truly smaller than the last one's, until there are none. So a few nanoseconds of a
 /// busy machine do not decide between two laws, unless one lies at the very edge of a class.
-[[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const FrontEntry> entries,
-                                                    const FrontTolerance& tolerance = {});
+[[nodiscard]] std::vector<std::size_t> pareto_front(std::span<const ParetoEntry> entries,
+                                                    const ParetoTolerance& tolerance = {});
 
 }  // namespace kerf::bench

@@ -14,7 +14,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_timed_ticks = 4000;
+constexpr std::size_t max_timed_ticks = 4000;
 constexpr double runaway = 10.0;  // times the largest force recorded
 
 bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
@@ -22,7 +22,7 @@ bool stopped(const ChartOptions& options) { return options.stop != nullptr && op
 /// The stretch of a recording that laws are timed along: that with most contact.
 std::vector<drivers::Sample> timed_stretch(const AxisSeries& series, const FitSource& source) {
   const std::size_t rows = series.time_s.size();
-  const std::size_t length = std::min(rows, most_timed_ticks);
+  const std::size_t length = std::min(rows, max_timed_ticks);
   std::size_t inside = 0;
   std::size_t most = 0;
   std::size_t begin = 0;

@@ -36,8 +36,8 @@ ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,
   return path;
 }
 
-Judge::Judge(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
-             const fitting::ForceJnd& jnd)
+ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& path,
+                                 std::vector<std::size_t> axes, const fitting::ForceJnd& jnd)
     : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
   const ToolPath ticks = path.at(rate_hz_);
   ForcePath forces = rendered(reference.law, axes_, samples_of(ticks), ticks.period_s);
@@ -67,13 +67,13 @@ Judge::Judge(const Fidelity& reference, const ScriptedPath& path, std::vector<st
   }
 }
 
-bool Judge::pushes(double time_s) const {
+bool ReferenceForces::pushes(double time_s) const {
   const auto at = static_cast<std::size_t>(std::lround(time_s * rate_hz_));
   const drivers::Axes& force = reference_[std::min(at, reference_.size() - 1)];
   return std::any_of(axes_.begin(), axes_.end(), [&](std::size_t axis) { return force[axis] != 0.0; });
 }
 
-double Judge::force_n(std::size_t place, double time_s) const {
+double ReferenceForces::force_n(std::size_t place, double time_s) const {
   const Axis& about = about_[place];
   const double at = std::min(time_s * rate_hz_, static_cast<double>(reference_.size() - 1));
   const auto before = static_cast<std::size_t>(at + 1e-6);
@@ -83,14 +83,14 @@ double Judge::force_n(std::size_t place, double time_s) const {
   return (from + share * (reference_[after][about.axis] - from)) / about.lever_m;
 }
 
-double Judge::jnd_of(const std::string& axis) const {
+double ReferenceForces::jnd_of(const std::string& axis) const {
   for (const Axis& about : about_) {
     if (about.name == axis) return about.jnd_n;
   }
   return about_.front().jnd_n;
 }
 
-void Judge::judge(const ForcePath& forces, ChartPoint& point) const {
+void ReferenceForces::compare(const ForcePath& forces, ChartPoint& point) const {
   double largest_n = 0.0;
   point.error_jnd = -1.0;
   for (std::size_t place = 0; place < about_.size(); ++place) {

@@ -25,14 +25,14 @@ struct ForcePath {
                                  std::span<const drivers::Sample> samples, double period_s);
 
 /// The reference that points of a scene are judged by.
-class Judge {
+class ReferenceForces {
  public:
   /// @throws std::invalid_argument if the reference fails, or never pushes.
-  Judge(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
-        const fitting::ForceJnd& jnd);
+  ReferenceForces(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
+                  const fitting::ForceJnd& jnd);
 
   /// Fills the point's errors and its stability from the forces of its law at its rate.
-  void judge(const ForcePath& forces, ChartPoint& point) const;
+  void compare(const ForcePath& forces, ChartPoint& point) const;
 
   [[nodiscard]] const std::vector<std::size_t>& axes() const noexcept { return axes_; }
   [[nodiscard]] double jnd_n(std::size_t place) const { return about_.at(place).jnd_n; }

@@ -82,14 +82,14 @@ fitting::RuptureSamples samples_of_surface(const models::Law& law, std::size_t b
     return least + (most - least) * static_cast<double>(i) / static_cast<double>(surface_points - 1);
   };
   fitting::RuptureSamples samples;
-  const double most_depth = option_or(law, "most_depth", 0.01);
-  const double most_speed = option_or(law, "most_speed", 0.01);
+  const double max_depth = option_or(law, "most_depth", 0.01);
+  const double max_speed = option_or(law, "most_speed", 0.01);
   for (std::size_t i = 0; i < surface_points; ++i) {
     for (std::size_t j = 0; j < surface_points; ++j) {
-      const double depth = place(option_or(law, "least_depth", 0.0), most_depth, i);
-      const double speed = place(option_or(law, "least_speed", 0.0), most_speed, j);
+      const double depth = place(option_or(law, "least_depth", 0.0), max_depth, i);
+      const double speed = place(option_or(law, "least_speed", 0.0), max_speed, j);
       // At no depth at all there is no force, although the surface has one.
-      const models::Motion motion{.penetration = std::max(depth, 1e-9 * most_depth), .velocity = speed};
+      const models::Motion motion{.penetration = std::max(depth, 1e-9 * max_depth), .velocity = speed};
       samples.depth_m.push_back(depth);
       samples.speed_m_per_s.push_back(speed);
       samples.force_n.push_back(surface.step(state, motion, 1e-3).force);
@@ -110,7 +110,7 @@ std::vector<Fidelity> resampled_segments(const LawFile& file, std::size_t most, 
        .force = points.force,
        .weight = {},
        .branch = loop ? std::span<const std::uint8_t>(points.branch) : std::span<const std::uint8_t>()},
-      {.most_segments = most});
+      {.max_segments = most});
   std::vector<Fidelity> all;
   for (const fitting::SegmentedCurve& curve : curves) {
     std::vector<double> values = curve.knots;

@@ -16,7 +16,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_fit_samples = 4000;
+constexpr std::size_t max_fit_samples = 4000;
 constexpr double shown_from_jnd = 1e-3;
 
 bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
@@ -42,10 +42,10 @@ struct ReferenceSeries {
   std::vector<double> time_s, penetration, velocity, force;
   std::vector<std::uint32_t> cycle;
 
-  ReferenceSeries(const LawFile& law, const Judge& judge, const std::vector<drivers::Sample>& samples,
-                  double rate_hz) {
-    const std::size_t axis = judge.axes().front();
-    const std::size_t step = samples.size() / most_fit_samples + 1;
+  ReferenceSeries(const LawFile& law, const ReferenceForces& reference,
+                  const std::vector<drivers::Sample>& samples, double rate_hz) {
+    const std::size_t axis = reference.axes().front();
+    const std::size_t step = samples.size() / max_fit_samples + 1;
     std::uint32_t number = 0;
     bool inwards = false;
     for (std::size_t i = 0; i < samples.size(); i += step) {
@@ -55,7 +55,7 @@ struct ReferenceSeries {
       time_s.push_back(static_cast<double>(i) / rate_hz);
       penetration.push_back(motion.penetration);
       velocity.push_back(motion.velocity);
-      force.push_back(-law.contact.direction * judge.force_n(0, time_s.back()));
+      force.push_back(-law.contact.direction * reference.force_n(0, time_s.back()));
       cycle.push_back(number);
     }
   }
@@ -138,7 +138,7 @@ void time_points(const std::vector<std::size_t>& axes, Samples& samples, const C
 }  // namespace
 
 void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
-  std::vector<FrontEntry> entries;
+  std::vector<ParetoEntry> entries;
   for (ChartPoint& point : points) {
     point.on_front = false;
     entries.push_back({.cost_ns = point.cost.p50_ns,
@@ -170,19 +170,19 @@ ScriptedPath scripted_path(const Scene& scene) {
 
 SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const ChartOptions& options) {
   const Fidelities fidelities = fidelities_of(law, options.rate_hz);
-  const Judge judge(fidelities.reference, path, axes_for(law, path.device), options.jnd);
+  const ReferenceForces reference(fidelities.reference, path, axes_for(law, path.device), options.jnd);
   SpeedAccuracy chart{.source = {},
                       .reference = fmt::format("{}, {} at {:g} Hz", law.law.model(),
                                                fidelities.reference.label, fidelities.reference.rate_hz),
                       .rate_hz = options.rate_hz,
-                      .jnd_n = judge.jnd_n(0),
-                      .one_axis = judge.axes().size() == 1,
+                      .jnd_n = reference.jnd_n(0),
+                      .one_axis = reference.axes().size() == 1,
                       .points = {},
                       .notes = fidelities.notes};
   Samples samples(path);
   for (const Fidelity& fidelity : fidelities.all) chart.points.push_back(point_of(fidelity));
   if (!law.law.is_spatial()) {
-    const ReferenceSeries series(law, judge, samples.at(options.rate_hz), options.rate_hz);
+    const ReferenceSeries series(law, reference, samples.at(options.rate_hz), options.rate_hz);
     add_fitted(law, series, options, chart);
   } else if (!options.models.empty()) {
     chart.notes.push_back(
@@ -190,15 +190,16 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   }
   for (ChartPoint& point : chart.points) {
     if (stopped(options)) break;
-    judge.judge(rendered(point.file, judge.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz), point);
-    if (!law.law.is_spatial()) add_aids(point.file, samples.at(options.rate_hz), judge.axes().front());
+    reference.compare(rendered(point.file, reference.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz),
+                      point);
+    if (!law.law.is_spatial()) add_aids(point.file, samples.at(options.rate_hz), reference.axes().front());
     if (!point.stable || !options.unstable) continue;
     if (const auto why = options.unstable(point.file, point.rate_hz)) {
       point.stable = false;
       point.why = *why;
     }
   }
-  if (!stopped(options)) time_points(judge.axes(), samples, options, chart);
+  if (!stopped(options)) time_points(reference.axes(), samples, options, chart);
   chart.stopped = chart.stopped || stopped(options);
   if (chart.stopped) {
     chart.points.clear();
@@ -209,7 +210,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   if (chart.one_axis) return chart;
   const auto worst = std::max_element(chart.points.begin(), chart.points.end(),
                                       [](const auto& a, const auto& b) { return a.error_jnd < b.error_jnd; });
-  chart.jnd_n = judge.jnd_of(worst->axis);
+  chart.jnd_n = reference.jnd_of(worst->axis);
   return chart;
 }
 

@@ -59,7 +59,7 @@ struct ChartOptions {
 };
 inline constexpr std::size_t chart_steps = 1000;
 
-/// A way of the tool that can be had at any rate, on the axes of a device.
+/// A path of the tool that can be had at any rate, on the axes of a device.
 struct ScriptedPath {
   drivers::DeviceInfo device;
   std::function<ToolPath(double rate_hz)> at;
@@ -77,7 +77,8 @@ struct ScriptedPath {
 /// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
 /// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
-/// rendering aids of 004 where they have none. Only points at the chart's own rate compete for the front.
+/// rendering aids of [Okamura2003] where they have none. Only points at the chart's own rate compete for the
+/// front.
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);
@@ -96,8 +97,8 @@ inline constexpr double fingers_m = 0.01;
 [[nodiscard]] FitSource charted(const schema::Recording& recording, const std::string& name,
                                 const std::string& axis);
 
-/// Marks the points of the front (pareto_front.h), costs p50 and warm, errors in JNDs, those under a thousandth of a
-/// JND alike.
+/// Marks the points of the front (pareto_front.h), costs p50 and warm, errors in JNDs, those under a
+/// thousandth of a JND alike.
 void mark_front(std::vector<ChartPoint>& points, double rate_hz);
 
 }  // namespace kerf::bench

@@ -157,7 +157,7 @@ class Subject {
   [[nodiscard]] bool wants_round(const TickCostOptions& options) const {
     const std::size_t done = warm_.p50.size();
     return done < std::min(fewest_rounds, options.rounds) ||
-           (done < options.rounds && static_cast<double>(done + 1) * longest_s_ <= options.most_seconds);
+           (done < options.rounds && static_cast<double>(done + 1) * longest_s_ <= options.max_seconds);
   }
   [[nodiscard]] TickCost cost(double unit_ns) const {
     return {.p50_ns = unit_ns * quantile(warm_.p50, quiet_share),

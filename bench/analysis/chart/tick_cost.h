@@ -30,7 +30,7 @@ struct TimedLaw {
 struct TickCostOptions {
   std::size_t rounds = 25;
   std::size_t cold_ticks = 128;             ///< at most, a law; 0: the cold costs are not measured and NaN
-  double most_seconds = 0.25;               ///< a law: fewer rounds, but two at least, where they take longer
+  double max_seconds = 0.25;                ///< a law: fewer rounds, but two at least, where they take longer
   const std::atomic<bool>* stop = nullptr;  ///< ends early, without a result
   std::atomic<std::size_t>* done = nullptr;  ///< counts up to tick_cost_steps()
 };

@@ -29,22 +29,22 @@ std::string why_not_instead(const Candidate& one, const Candidate& taken) {
 
 }  // namespace
 
-Walk::Walk(LawChoice& choice, const WalkOptions& options, const schema::Recording& recording,
-           const std::atomic<bool>& stop)
+CandidateSearch::CandidateSearch(LawChoice& choice, const CandidateSearchOptions& options,
+                                 const schema::Recording& recording, const std::atomic<bool>& stop)
     : choice_(choice), options_(options), recording_(recording), stop_(stop) {}
 
-void Walk::end_if_stopped() const {
+void CandidateSearch::end_if_stopped() const {
   if (stop_) throw std::system_error(std::make_error_code(std::errc::interrupted), "no law was chosen");
 }
 
-std::size_t Walk::end_of_group(std::size_t begin) const {
+std::size_t CandidateSearch::end_of_group(std::size_t begin) const {
   const std::vector<Candidate>& all = choice_.candidates;
   std::size_t end = begin;
   while (end < all.size() && all[end].law.parameters == all[begin].law.parameters) ++end;
   return end;
 }
 
-void Walk::over_group(std::size_t begin, std::size_t end) {
+void CandidateSearch::search_group(std::size_t begin, std::size_t end) {
   std::ranges::stable_sort(
       std::span(choice_.candidates).subspan(begin, end - begin), {}, [](const Candidate& one) {
         return std::tuple(std::floor(one.tick_us), one.law.effects.size(), one.error_jnd);
@@ -52,7 +52,7 @@ void Walk::over_group(std::size_t begin, std::size_t end) {
   for (std::size_t place = begin; place < end; ++place) consider(place);
 }
 
-void Walk::consider(std::size_t place) {
+void CandidateSearch::consider(std::size_t place) {
   Candidate& candidate = choice_.candidates[place];
   if (!candidate.file || !candidate.why.empty()) return;
   if (!std::isfinite(candidate.error_n)) {
@@ -68,7 +68,7 @@ void Walk::consider(std::size_t place) {
   }
 }
 
-bool Walk::passes_checks(Candidate& candidate) {
+bool CandidateSearch::passes_checks(Candidate& candidate) {
   end_if_stopped();
   if (options_.begins && (options_.deadline || options_.stability)) options_.begins(candidate.law.name);
   if (options_.stability) {
@@ -87,7 +87,7 @@ bool Walk::passes_checks(Candidate& candidate) {
   return true;
 }
 
-void Walk::check_all_the_same(Candidate& candidate) {
+void CandidateSearch::check_all_the_same(Candidate& candidate) {
   const std::string before = std::move(candidate.why);
   candidate.why.clear();
   (void)passes_checks(candidate);
@@ -95,7 +95,7 @@ void Walk::check_all_the_same(Candidate& candidate) {
   choice_.in_doubt = false;
 }
 
-void Walk::take_the_best() {
+void CandidateSearch::take_the_best() {
   std::vector<Candidate>& all = choice_.candidates;
   if (std::ranges::any_of(all, &Candidate::within_jnd) || std::ranges::none_of(all, is_judged)) return;
   const auto best = std::ranges::min_element(all, {}, [](const Candidate& one) {
@@ -110,13 +110,13 @@ void Walk::take_the_best() {
   if (good != best) check_all_the_same(*good);
 }
 
-void Walk::finish() {
+void CandidateSearch::finish() {
   choice_.serves = choice_.taken.has_value() && !choice_.in_doubt;
   if (!choice_.taken) take_the_best();
   explain();
 }
 
-void Walk::explain() {
+void CandidateSearch::explain() {
   const std::string limit = fmt::format("the JND of {:.3g} N (at the root mean square force of {:.3g} N)",
                                         choice_.jnd_n, choice_.force_rms_n);
   if (choice_.as_good) return explain_the_best(limit);
@@ -141,7 +141,7 @@ void Walk::explain() {
   }
 }
 
-void Walk::explain_the_best(const std::string& limit) {
+void CandidateSearch::explain_the_best(const std::string& limit) {
   const Candidate& best = choice_.candidates[*choice_.taken];
   const Candidate& good = choice_.candidates[*choice_.as_good];
   choice_.why = fmt::format("None is within {}; the best is {} with {:.3g} N on {}, {:.2g} JND", limit,

@@ -33,7 +33,7 @@ using DeadlineCheck = std::function<Deadline(const LawFile&)>;
 /// Why a law is not stable with the given hand and device; nothing if it is.
 using StabilityCheck = std::function<std::optional<std::string>(const LawFile&, const schema::Recording&)>;
 
-struct WalkOptions {
+struct CandidateSearchOptions {
   DeadlineCheck deadline;                              ///< empty: not checked
   StabilityCheck stability;                            ///< empty: not checked
   std::function<void(const std::string& law)> begins;  ///< a check in closed loop, which takes its time
@@ -60,7 +60,7 @@ struct LawChoice {
   double jnd_n = 0.0;  ///< at the root mean square force
   double force_rms_n = 0.0;
   std::string held_out;               ///< "5 folds of 10 cycles"
-  std::vector<Candidate> candidates;  ///< in the order of the walk
+  std::vector<Candidate> candidates;  ///< in the order of the search
   std::optional<std::size_t> taken;   ///< the law that serves; where none is within the JND, the best one
   bool serves = false;                ///< within the JND, in time and stable
   bool in_doubt = false;              ///< it would serve, but the machine was too late to tell
@@ -80,16 +80,16 @@ struct LawChoice {
 /// that of the number of effects that a law knows, then that of the error. A law serves that converged, whose
 /// error is within the JND, that holds its deadlines and is stable; the last two are checked only of laws
 /// that come up.
-class Walk {
+class CandidateSearch {
  public:
   /// `recording` is what the stability is judged with.
-  Walk(LawChoice& choice, const WalkOptions& options, const schema::Recording& recording,
-       const std::atomic<bool>& stop);
+  CandidateSearch(LawChoice& choice, const CandidateSearchOptions& options,
+                  const schema::Recording& recording, const std::atomic<bool>& stop);
 
   /// The candidates from one place on that have as many parameters as that one.
   [[nodiscard]] std::size_t end_of_group(std::size_t begin) const;
   /// Sorts such a group and goes over it.
-  void over_group(std::size_t begin, std::size_t end);
+  void search_group(std::size_t begin, std::size_t end);
   /// Says what came of it. Where none is within the JND the one with the least error is named, and checked.
   void finish();
 
@@ -105,7 +105,7 @@ class Walk {
   void explain_the_best(const std::string& limit);
 
   LawChoice& choice_;
-  const WalkOptions& options_;
+  const CandidateSearchOptions& options_;
   const schema::Recording& recording_;
   const std::atomic<bool>& stop_;
 };

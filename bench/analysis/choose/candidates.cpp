@@ -98,10 +98,10 @@ std::string_view name_of(Effect effect) noexcept {
 std::vector<CandidateLaw> candidates_for(const schema::Axis& axis, bool has_cycles,
                                          const CandidateOptions& options) {
   std::vector<CandidateLaw> all = plain_laws();
-  for (std::size_t arms = 2; arms <= options.most_arms; ++arms) all.push_back(maxwell(arms));
+  for (std::size_t arms = 2; arms <= options.max_arms; ++arms) all.push_back(maxwell(arms));
   for (const bool loop : {false, true}) {
     if (loop && !has_cycles) continue;
-    for (std::size_t segments = 1; segments <= options.most_segments; ++segments)
+    for (std::size_t segments = 1; segments <= options.max_segments; ++segments)
       all.push_back(piecewise(segments, loop));
     all.push_back(table(loop));
   }

@@ -30,21 +30,25 @@ std::size_t cycles_in(const schema::Recording& recording, std::size_t axis) {
 }
 
 /// A choice while it is made.
-class Making {
+class LawSelection {
  public:
-  Making(const schema::Recording& recording, const ChooseOptions& options, const std::atomic<bool>& stop)
-      : recording_(recording), options_(options), stop_(stop), walk_(choice_, options.walk, recording, stop) {
+  LawSelection(const schema::Recording& recording, const ChooseOptions& options,
+               const std::atomic<bool>& stop)
+      : recording_(recording),
+        options_(options),
+        stop_(stop),
+        search_(choice_, options.search, recording, stop) {
     if (options.axis >= recording.dimensions()) throw std::invalid_argument("the recording has no such axis");
     if (options.fit.folds < 2)
       throw std::invalid_argument("a law is chosen by held-out data: at least 2 folds are needed");
     choice_.settings = options.fit;
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
-    if (options.richer_too) memory_ = fitting::remember_segments(options.candidates.most_segments);
+    if (options.richer_too) memory_ = fitting::remember_segments(options.candidates.max_segments);
     const FitSeries series = fit_series(recording, options.axis, choice_.contact);
     if (series.axis.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
-    look_at(series.axis);
+    measure(series.axis);
     const std::size_t cycles = cycles_in(recording, options.axis);
-    say_folds(cycles);
+    describe_folds(cycles);
     const schema::Axis& axis = recording.axes[options.axis];
     for (CandidateLaw& law : candidates_for(axis, cycles > 0, options.candidates)) {
       choice_.candidates.emplace_back();
@@ -52,24 +56,24 @@ class Making {
     }
   }
 
-  LawChoice make() {
+  LawChoice select() {
     std::vector<Candidate>& all = choice_.candidates;
     if (options_.of != nullptr) *options_.of = all.size();
     if (options_.richer_too) fit_all(all);
     std::size_t begin = 0;
     while (begin < all.size() && !(choice_.taken && !options_.richer_too)) {
-      const std::size_t end = walk_.end_of_group(begin);
+      const std::size_t end = search_.end_of_group(begin);
       const auto group = std::span(all).subspan(begin, end - begin);
       if (!options_.richer_too) fit_all(group);
       time(group);
-      walk_.over_group(begin, end);
+      search_.search_group(begin, end);
       begin = end;
     }
     all.resize(begin);
     if (std::ranges::none_of(all, [](const Candidate& one) { return one.file.has_value(); }))
       throw std::invalid_argument(all.empty() ? "no law fits the axis" : all.front().why);
     choice_.effects = judge_effects(all, choice_.taken, choice_.jnd_n);
-    walk_.finish();
+    search_.finish();
     if (choice_.taken) fit_with_intervals(all[*choice_.taken]);
     return std::move(choice_);
   }
@@ -82,14 +86,14 @@ class Making {
       if (one.file) timed.push_back({LawRendering(one.file->law, {}, {0}), path_, period_s_});
     }
     const std::vector<TickCost> costs =
-        tick_costs(timed, {.rounds = timing_rounds, .cold_ticks = 0, .most_seconds = timing_s});
+        tick_costs(timed, {.rounds = timing_rounds, .cold_ticks = 0, .max_seconds = timing_s});
     auto cost = costs.begin();
     for (Candidate& one : group) {
       if (one.file) one.tick_us = 1e-3 * (cost++)->p50_ns;
     }
   }
 
-  void look_at(const AxisSeries& series) {
+  void measure(const AxisSeries& series) {
     choice_.jnd_n = jnd_of(series.force, options_.fit.jnd);
     const double squares =
         std::inner_product(series.force.begin(), series.force.end(), series.force.begin(), 0.0);
@@ -101,7 +105,7 @@ class Making {
       path_.push_back({.position = {series.penetration[i]}, .velocity = {series.velocity[i]}});
   }
 
-  void say_folds(std::size_t cycles) {
+  void describe_folds(std::size_t cycles) {
     const std::size_t folds = options_.fit.folds;
     if (cycles >= 2) {
       choice_.held_out = fmt::format("{} cycles, held out in {} folds", cycles, std::min(folds, cycles));
@@ -111,7 +115,7 @@ class Making {
     if (cycles > 0) return;
     choice_.warnings.emplace_back(
         "the recording has no cycles along this axis: errors are held out by blocks of time, and laws with a "
-        "branch for each way are left out; 'kerf segment' finds cycles");
+        "branch for each direction are left out; 'kerf segment' finds cycles");
   }
 
   [[nodiscard]] RecordingFit fit_of(const CandidateLaw& law, fitting::FitOptions settings) const {
@@ -158,7 +162,7 @@ class Making {
         others.emplace_back(work);
       work();
     }
-    walk_.end_if_stopped();
+    search_.end_if_stopped();
   }
 
   void fit_with_intervals(Candidate& taken) const {
@@ -178,7 +182,7 @@ class Making {
   const ChooseOptions& options_;
   const std::atomic<bool>& stop_;
   LawChoice choice_;
-  Walk walk_;
+  CandidateSearch search_;
   std::vector<drivers::Sample> path_;  ///< the recording, as penetration on one axis
   double period_s_ = 1e-3;
   std::shared_ptr<fitting::SegmentedMemory> memory_;
@@ -188,7 +192,7 @@ class Making {
 
 LawChoice choose_law(const schema::Recording& recording, const ChooseOptions& options,
                      const std::atomic<bool>& stop) {
-  return Making(recording, options, stop).make();
+  return LawSelection(recording, options, stop).select();
 }
 
 }  // namespace kerf::bench

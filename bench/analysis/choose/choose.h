@@ -7,8 +7,8 @@
 #include <kerf/fitting/fit.h>
 #include <kerf/schema/recording.h>
 
-#include "choose/candidates.h"
 #include "choose/candidate_search.h"
+#include "choose/candidates.h"
 
 namespace kerf::bench {
 
@@ -21,12 +21,12 @@ struct ChooseOptions {
   std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
   std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates
   bool richer_too = true;  ///< also fit what is richer than the law that serves, for the table
-  WalkOptions walk;
+  CandidateSearchOptions search;
 };
 
-/// Fits every candidate to an axis of a recording and takes the simplest that serves (candidate_search.h), by its error
-/// on held-out data and the JND at the recording's root mean square force. So a richer law is taken only if
-/// the simpler ones leave out more than the JND.
+/// Fits every candidate to an axis of a recording and takes the simplest that serves (candidate_search.h), by
+/// its error on held-out data and the JND at the recording's root mean square force. So a richer law is taken
+/// only if the simpler ones leave out more than the JND.
 /// @throws std::invalid_argument for a recording without force, a missing axis, or one that no law can be
 /// fitted to; std::system_error if it was stopped.
 [[nodiscard]] LawChoice choose_law(const schema::Recording& recording, const ChooseOptions& options,

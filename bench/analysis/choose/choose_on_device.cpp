@@ -26,10 +26,10 @@ void add_warnings(const std::optional<LoopChecks>& checks, TriedBy tried_by, Law
 
 }  // namespace
 
-void connect(const LoopChecks& checks, TriedBy tried_by, WalkOptions& walk) {
+void connect(const LoopChecks& checks, TriedBy tried_by, CandidateSearchOptions& search) {
   if (tried_by == TriedBy::wall_clock)
-    walk.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
-  walk.stability = [&checks](const LawFile& law, const schema::Recording&) {
+    search.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
+  search.stability = [&checks](const LawFile& law, const schema::Recording&) {
     return checks.instability(law);
   };
 }
@@ -44,9 +44,9 @@ DeviceChoice choose_on_device(const schema::Recording& recording, const std::fil
     const std::string uri = options.loop.device_uri;
     checks.emplace(std::move(options.loop), stop);
     if (options.begins)
-      how.walk.begins = [begins = options.begins, uri](const std::string& law) { begins(law, uri); };
+      how.search.begins = [begins = options.begins, uri](const std::string& law) { begins(law, uri); };
     checks->place(recording, how.axis, *how.contact);
-    connect(*checks, options.tried_by, how.walk);
+    connect(*checks, options.tried_by, how.search);
   }
   LawChoice choice = choose_law(recording, how, stop);
   add_warnings(checks, options.tried_by, choice);

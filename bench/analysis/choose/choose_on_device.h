@@ -21,7 +21,7 @@ enum class TriedBy : std::uint8_t {
 };
 
 struct DeviceChoiceOptions {
-  ChooseOptions choose;   ///< with the contact; its walk's checks are set here
+  ChooseOptions choose;   ///< with the contact; its search's checks are set here
   LoopCheckOptions loop;  ///< without a device: device_for() the recording
   TriedBy tried_by = TriedBy::wall_clock;
   /// Before a law is tried, with the device's URI.
@@ -40,7 +40,7 @@ struct DeviceChoice {
                                             const std::filesystem::path& file, DeviceChoiceOptions options,
                                             const std::atomic<bool>& stop);
 
-/// Lets a walk try laws by these checks, which must outlive it.
-void connect(const LoopChecks& checks, TriedBy tried_by, WalkOptions& walk);
+/// Lets a search try laws by these checks, which must outlive it.
+void connect(const LoopChecks& checks, TriedBy tried_by, CandidateSearchOptions& search);
 
 }  // namespace kerf::bench

@@ -19,13 +19,13 @@ namespace {
 constexpr std::array strip_counts{1, 2, 4, 8, 16, 32, 64};
 
 /// The scene's script, tick by tick, and the device's axes that the blade is rendered on.
-struct Way {
+struct BladePath {
   std::vector<drivers::Sample> samples;
   std::vector<std::size_t> axes;
   double period_s = 0.0;
 };
 
-Way way_of(const Scene& scene, double rate_hz) {
+BladePath blade_path(const Scene& scene, double rate_hz) {
   const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
   return {.samples = samples_of(tool_path(scene, rate_hz)),
           .axes = axes_for(scene.tissue, device),
@@ -41,27 +41,27 @@ LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
   return other;
 }
 
-LawRendering rendering_of(const Candidate& one, const Way& way) {
-  return {one.file->law, one.file->contact, way.axes};
+LawRendering rendering_of(const Candidate& one, const BladePath& path) {
+  return {one.file->law, one.file->contact, path.axes};
 }
 
-/// The forces of a candidate along the way, by the blade's own axes.
-std::vector<models::AxisValues> forces_of(const Candidate& one, const Way& way) {
-  LawRendering rendering = rendering_of(one, way);
+/// The forces of a candidate along the path, by the blade's own axes.
+std::vector<models::AxisValues> forces_of(const Candidate& one, const BladePath& path) {
+  LawRendering rendering = rendering_of(one, path);
   std::vector<models::AxisValues> forces;
-  for (const drivers::Sample& sample : way.samples) {
-    const Command command = rendering(sample, way.period_s);
+  for (const drivers::Sample& sample : path.samples) {
+    const Command command = rendering(sample, path.period_s);
     models::AxisValues force{};
-    for (std::size_t i = 0; i < way.axes.size(); ++i) force[i] = command.force[way.axes[i]];
+    for (std::size_t i = 0; i < path.axes.size(); ++i) force[i] = command.force[path.axes[i]];
     forces.push_back(force);
   }
   return forces;
 }
 
 /// What a tick of each costs in the loop.
-void time(std::vector<Candidate>& all, const Way& way) {
+void time(std::vector<Candidate>& all, const BladePath& path) {
   std::vector<TimedLaw> timed;
-  for (const Candidate& one : all) timed.push_back({rendering_of(one, way), way.samples, way.period_s});
+  for (const Candidate& one : all) timed.push_back({rendering_of(one, path), path.samples, path.period_s});
   const std::vector<TickCost> costs = tick_costs(timed, {.rounds = 9, .cold_ticks = 0});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].tick_us = 1e-3 * costs[i].p50_ns;
 }
@@ -125,15 +125,15 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
                     "'blade' has",
                     scene.tissue.law.model()));
   }
-  const Way way = way_of(scene, options.rate_hz);
-  if (way.samples.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
+  const BladePath path = blade_path(scene, options.rate_hz);
+  if (path.samples.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
   LawChoice choice;
   choice.settings.jnd = options.jnd;
   choice.candidates.push_back(candidate(scene.tissue, "exact", 16));
   for (const char* kind : {"paper", "strips"}) {
     for (const int strips : strip_counts) choice.candidates.push_back(candidate(scene.tissue, kind, strips));
   }
-  const auto reference = forces_of(choice.candidates.front(), way);
+  const auto reference = forces_of(choice.candidates.front(), path);
   std::vector<bool> pushes;
   for (const models::AxisValues& force : reference)
     pushes.push_back(std::ranges::any_of(force, [](double value) { return value != 0.0; }));
@@ -144,9 +144,9 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
   choice.jnd_n = options.jnd.at(whole.force_n);
   const double jnd_n_m = options.torque_jnd.at(whole.torque_n_m);
   choice.held_out = fmt::format("the scene's path, {} ticks of {} in the tissue", ticks, pushes.size());
-  time(choice.candidates, way);
+  time(choice.candidates, path);
   for (Candidate& one : choice.candidates) {
-    const Size error = size_of(forces_of(one, way), reference, pushes);
+    const Size error = size_of(forces_of(one, path), reference, pushes);
     one.error_n = error.force_n;
     one.error_torque_n_m = error.torque_n_m;
     one.error_jnd = std::max(error.force_n / choice.jnd_n, error.torque_n_m / jnd_n_m);
@@ -165,9 +165,9 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
   const Candidate paper = named("blade-paper-64");
   choice.effects = {rotation_of(paper, named("blade-exact"), !paper.within_jnd)};
   const schema::Recording none;
-  Walk walk(choice, options.walk, none, stop);
-  walk.over_group(0, choice.candidates.size());
-  walk.finish();
+  CandidateSearch search(choice, options.search, none, stop);
+  search.search_group(0, choice.candidates.size());
+  search.finish();
   return choice;
 }
 

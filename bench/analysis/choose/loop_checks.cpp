@@ -148,8 +148,9 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
 }
 
 std::optional<std::string> LoopChecks::instability(const LawFile& law) const {
-  if (auto hum = hum_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_))
-    return fmt::format("on {}, {}", options_.device_uri, *hum);
+  if (auto limit_cycle =
+          limit_cycle_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_))
+    return fmt::format("on {}, {}", options_.device_uri, *limit_cycle);
   if (!device_.simulated) return std::nullopt;
   const auto run = [&](double seconds) {
     return run_on_device({.device_uri = options_.device_uri,

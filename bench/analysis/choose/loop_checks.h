@@ -40,10 +40,10 @@ class LoopChecks {
   /// By the wall clock. Where the machine alone was late, up to three times.
   [[nodiscard]] Deadline deadline(const LawFile& law) const;
 
-  /// Nothing if a hand that presses and holds feels no hum, as far as the axis' mass and friction are known
-  /// (hum_in_hand()), and, on a simulated device in virtual time, fewer than one tick in a thousand hits a
-  /// limit of force or slew and what the rendering gives to the hand does not grow from one half of the run
-  /// to the next.
+  /// Nothing if a hand that presses and holds feels no limit cycle, as far as the axis' mass and friction are
+  /// known (limit_cycle_in_hand()), and, on a simulated device in virtual time, fewer than one tick in a
+  /// thousand hits a limit of force or slew and what the rendering gives to the hand does not grow from one
+  /// half of the run to the next.
   [[nodiscard]] std::optional<std::string> instability(const LawFile& law) const;
 
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }

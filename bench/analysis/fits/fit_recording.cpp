@@ -17,7 +17,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double velocity_corner_rad_s = 10.0;  // 004, section 2.2
+constexpr double velocity_corner_rad_s = 10.0;  // [Okamura2003], section 2.2
 constexpr double ramp_share = 0.05;             // of the 95th percentile of the speed
 constexpr double reversal_share = 0.05;  // of the range of the penetration, until the full force is back
 

@@ -86,8 +86,8 @@ struct RecordingFit {
 [[nodiscard]] RecordingFit fit_recordings(std::span<const FitSource> sources,
                                           const FitRecordingOptions& options);
 
-/// Options of a law with the rendering aids of 004 added (velocity filter, ramp band, reversal scaling) if it
-/// has branches, scaled to a series of what it met.
+/// Options of a law with the rendering aids of [Okamura2003] added (velocity filter, ramp band, reversal
+/// scaling) if it has branches, scaled to a series of what it met.
 [[nodiscard]] models::Options with_rendering_aids(models::Options options, const AxisSeries& series);
 
 /// The laws that are asked for, each once: those named, every scalar law for "all", or the five that say

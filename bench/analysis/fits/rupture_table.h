@@ -7,8 +7,8 @@
 
 namespace kerf::bench {
 
-/// Rupture forces of a liver-like tissue, made from a formula with the trends of 002 (deeper is harder;
-/// faster is harder, less and less so), not measured:
+/// Rupture forces of a liver-like tissue, made from a formula with the trends of [FuzzyKelvin] (deeper is
+/// harder; faster is harder, less and less so), not measured:
 ///
 ///     F = 0.05 N (d / 5 mm)^1.2 (0.6 + 0.4 sqrt(s / 2 mm/s)),   d = 1 to 10 mm, s = 0.5 to 10 mm/s
 [[nodiscard]] fitting::RuptureSamples liver_ruptures();

@@ -86,9 +86,9 @@ void find_scale(const Pairs& pairs, std::vector<std::string>& found) {
 
 /// Whether the force is that of some ticks before or after.
 void find_shift(Pairs pairs, std::vector<std::string>& found) {
-  constexpr std::size_t most_ticks = 5;
+  constexpr std::size_t max_ticks = 5;
   const double straight = pairs.residual(1.0);
-  for (std::size_t ticks = 1; ticks <= most_ticks; ++ticks) {
+  for (std::size_t ticks = 1; ticks <= max_ticks; ++ticks) {
     for (const bool late : {true, false}) {
       pairs.expected_from = late ? 0 : ticks;
       pairs.got_from = late ? ticks : 0;

@@ -74,11 +74,11 @@ double tick_cost(const models::Law& law, const models::Contact& contact, const R
   if (path.ticks() == 0) throw std::invalid_argument("there is no motion to time a law along");
   constexpr double enough_ns = 2e7;
   constexpr std::size_t fewest_turns = 7;
-  constexpr std::size_t most_turns = 25;
+  constexpr std::size_t max_turns = 25;
   std::vector<double> ratios;
   double spent_ns = 0.0;
   double sum = 0.0;
-  while (ratios.size() < fewest_turns || (spent_ns < enough_ns && ratios.size() < most_turns)) {
+  while (ratios.size() < fewest_turns || (spent_ns < enough_ns && ratios.size() < max_turns)) {
     const double before_ns = calibration_ns();
     models::Law::State state = law.initial_state();
     const double begin_ns = thread_ns();

@@ -31,8 +31,8 @@ struct Point {
 
 /// From a to b in `lasting_s`, along a stroke of minimum jerk.
 Point stroke(double a, double b, double t, double lasting_s) {
-  const drivers::MinimumJerk way = drivers::MinimumJerk::at(t / lasting_s);
-  return {a + (b - a) * way.place, (b - a) * way.speed / lasting_s};
+  const drivers::MinimumJerk progress = drivers::MinimumJerk::at(t / lasting_s);
+  return {a + (b - a) * progress.position, (b - a) * progress.speed / lasting_s};
 }
 
 Point at(const Rest& rest, double) { return {rest.at, 0.0}; }

@@ -9,7 +9,7 @@
 
 namespace kerf::bench {
 
-/// The way of a tool as a law sees it, tick by tick, on the law's axes in their own frame.
+/// The path of a tool as a law sees it, tick by tick, on the law's axes in their own frame.
 struct RegressionPath {
   std::vector<models::LawAxis> axes;
   std::vector<double> time_s;

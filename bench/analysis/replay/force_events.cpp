@@ -22,7 +22,7 @@ struct Sample {
 class ContactFinder {
  public:
   explicit ContactFinder(double threshold) : threshold_(threshold) {}
-  void look_at(const Sample& now, std::vector<ForceEvent>& events) {
+  void process(const Sample& now, std::vector<ForceEvent>& events) {
     const bool crossed = touching_ ? now.size < 0.5 * threshold_ : now.size > threshold_;
     if (!crossed) return;
     touching_ = !touching_;
@@ -40,7 +40,7 @@ class ContactFinder {
 class DropFinder {
  public:
   explicit DropFinder(const ForceEventOptions& options) : options_(options) {}
-  void look_at(const Sample& now, std::vector<ForceEvent>& events) {
+  void process(const Sample& now, std::vector<ForceEvent>& events) {
     while (!peaks_.empty() && peaks_.front().time_s < now.time_s - options_.window_s * (1.0 + 1e-9))
       peaks_.pop_front();
     while (!peaks_.empty() && peaks_.back().size <= now.size) peaks_.pop_back();
@@ -124,8 +124,8 @@ std::vector<ForceEvent> find_force_events(std::span<const double> time_s, std::s
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!std::isfinite(force[i])) continue;
     const Sample now{.time_s = time_s[i], .size = std::abs(force[i])};
-    contacts.look_at(now, events);
-    drops.look_at(now, events);
+    contacts.process(now, events);
+    drops.process(now, events);
   }
   return events;
 }

@@ -97,7 +97,7 @@ void find_longest_pass(Path& path, const drivers::DeviceInfo& device) {
     upper[axis] = device.axes[axis].upper;
   }
   for (const Path::Piece& piece : path.pieces)
-    path.most_ticks += piece.ticks + piece.wait_ticks + ticks_of_move(path, lower, upper) + 2;
+    path.max_ticks += piece.ticks + piece.wait_ticks + ticks_of_move(path, lower, upper) + 2;
 }
 
 }  // namespace
@@ -184,9 +184,9 @@ void PathPlayer::move_on() noexcept {
   const double seconds = static_cast<double>(length_) * path_->period_s;
   const drivers::MinimumJerk stroke =
       length_ > 0 ? drivers::MinimumJerk::at(static_cast<double>(at_) / static_cast<double>(length_))
-                  : drivers::MinimumJerk{.place = 1.0};
+                  : drivers::MinimumJerk{.position = 1.0};
   for (const std::size_t axis : path_->axes) {
-    reference_.position[axis] = from_[axis] + stroke.place * (to[axis] - from_[axis]);
+    reference_.position[axis] = from_[axis] + stroke.position * (to[axis] - from_[axis]);
     if (length_ > 0) reference_.velocity[axis] = stroke.speed * (to[axis] - from_[axis]) / seconds;
   }
 }

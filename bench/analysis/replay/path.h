@@ -38,7 +38,7 @@ struct Path {
   std::vector<std::size_t> axes;  ///< of the device
   drivers::Axes move_limit{};     ///< peak speed of a move, by axis of the device
   std::vector<Piece> pieces;
-  std::uint64_t most_ticks = 0;  ///< of one pass, from wherever the device is
+  std::uint64_t max_ticks = 0;  ///< of one pass, from wherever the device is
 };
 
 /// @throws std::invalid_argument if the device lacks an axis of the recording, or a row is out of its range

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double turn_stiffness_n_m_per_rad = 1.0;
 constexpr double turn_damping_n_m_s_per_rad = 0.02;
-constexpr double most_force_n = 5.0;
-constexpr double most_torque_n_m = 0.5;
+constexpr double max_force_n = 5.0;
+constexpr double max_torque_n_m = 0.5;
 
 /// What "VALUE" and "AXIS=VALUE" say of an axis, the last word counting.
 double value_for(const CouplingOptions::PerAxis& given, const char* option, const drivers::DeviceInfo& device,
@@ -58,8 +58,8 @@ std::array<Coupling, drivers::max_axes> couplings(const CouplingOptions& options
                                   turn_stiffness_n_m_per_rad);
     one.damping = lever * value(options.damping, "--damping", drivers::usual_grip.damping_n_s_per_m,
                                 turn_damping_n_m_s_per_rad);
-    one.force_limit = value(options.force_limit, "--limit", std::min(0.5 * info.force_limit, most_force_n),
-                            std::min(0.5 * info.force_limit, most_torque_n_m));
+    one.force_limit = value(options.force_limit, "--limit", std::min(0.5 * info.force_limit, max_force_n),
+                            std::min(0.5 * info.force_limit, max_torque_n_m));
     if (one.force_limit > info.force_limit) {
       throw std::invalid_argument(fmt::format("--limit: {:g} {} is more than axis '{}' of {} may exert, {:g}",
                                               one.force_limit, info.force_unit, info.name, device.model,

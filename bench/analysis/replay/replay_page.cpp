@@ -29,7 +29,7 @@ std::pair<Chart, Chart> charts_of_axis(const Source& source, const OpenLoopResul
                 .y_label = "difference [JND]",
                 .horizontal = {{.at = 1.0, .label = "1 JND"}, {.at = -1.0, .label = ""}},
                 .legend_below = true};
-  double most_jnd = 1.3;
+  double max_jnd = 1.3;
   for (std::size_t i = 0; i < result.laws.size(); ++i) {
     for (const AxisComparison& one : result.laws[i].axes) {
       if (one.axis != axis) continue;
@@ -50,10 +50,10 @@ std::pair<Chart, Chart> charts_of_axis(const Source& source, const OpenLoopResul
       for (std::size_t row = 0; row < law.y.size(); ++row)
         law.y[row] = (one.rendered[row] - one.recorded[row]) / jnd.at(one.recorded[row]);
       between.curves.push_back(decimated(law));
-      most_jnd = std::max(most_jnd, 1.05 * one.worst_jnd);
+      max_jnd = std::max(max_jnd, 1.05 * one.worst_jnd);
     }
   }
-  between.y_range = {-most_jnd, most_jnd};
+  between.y_range = {-max_jnd, max_jnd};
   return {std::move(forces), std::move(between)};
 }
 

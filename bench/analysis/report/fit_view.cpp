@@ -14,7 +14,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-constexpr std::size_t most_shown = 4;
+constexpr std::size_t max_shown = 4;
 constexpr std::array law_colours{Colour::vermillion, Colour::blue, Colour::green, Colour::purple};
 
 /// The recording's place in the fit; 0 also if the fit does not name it.
@@ -62,7 +62,7 @@ FitView view_of_fits(const schema::Recording& recording, std::size_t axis, const
     if ((a.model == chosen) != (b.model == chosen)) return a.model == chosen;
     return compared_error(a.fit) < compared_error(b.fit);
   });
-  view.shown = std::min(most_shown, view.traces.size());
+  view.shown = std::min(max_shown, view.traces.size());
   if (view.traces.empty()) return view;
   view.series = fit_series(recording, axis, view.traces.front().law.contact).axis;
   for (std::size_t i = 0; i < view.traces.size(); ++i) {

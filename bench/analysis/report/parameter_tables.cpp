@@ -15,7 +15,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr std::size_t parameters_listed = 40;  ///< of a law; a longer list is a table to be seen as a curve
-constexpr std::size_t most_searched = 12;      ///< for correlations and profiles
+constexpr std::size_t max_searched = 12;       ///< for correlations and profiles
 
 constexpr double log_profile_from =
     8.0;                           ///< ratio of a profile's ends from which it is drawn over a logarithm
@@ -72,7 +72,7 @@ std::string correlation_table(const json& fit) {
   if (!fit.contains("correlation")) return {};
   const json& names = fit.at("correlation").at("parameters");
   const json& matrix = fit.at("correlation").at("matrix");
-  if (names.size() < 2 || names.size() > most_searched || matrix.size() != names.size()) return {};
+  if (names.size() < 2 || names.size() > max_searched || matrix.size() != names.size()) return {};
   std::string html =
       "<p class=\"soft\">Correlation of the estimates; near 1 or -1 the data tell only a combination of the "
       "two.</p>\n"
@@ -158,7 +158,7 @@ Chart profile_chart(const FittedTrace& trace, const json& profile, double confid
 }
 
 std::string profile_part(const FittedTrace& trace, double confidence) {
-  if (!trace.fit.contains("profiles") || trace.fit.at("profiles").size() > most_searched) return {};
+  if (!trace.fit.contains("profiles") || trace.fit.at("profiles").size() > max_searched) return {};
   std::vector<Chart> charts;
   for (const json& profile : trace.fit.at("profiles")) {
     Chart chart = profile_chart(trace, profile, confidence);

@@ -10,7 +10,7 @@ namespace kerf::bench {
 
 /// Where an axis is and how fast it moves.
 struct AxisMotion {
-  double place_m = 0.0;
+  double position_m = 0.0;
   double speed_m_s = 0.0;
 };
 
@@ -29,7 +29,7 @@ class FreeMotion {
   [[nodiscard]] AxisMotion after(AxisMotion motion, double force_n) const noexcept {
     if (coulomb_n_ == 0.0) return levels_[0].step(motion, force_n);
     const double sign = direction(motion, force_n);
-    if (sign == 0.0) return {motion.place_m, 0.0};
+    if (sign == 0.0) return {motion.position_m, 0.0};
     const AxisMotion end = levels_[0].step(motion, force_n - sign * coulomb_n_);
     return end.speed_m_s * sign >= 0.0 ? end : through_rest(motion, force_n, sign);
   }
@@ -39,8 +39,8 @@ class FreeMotion {
     double xx = 1.0, xv = 0.0, xf = 0.0;
     double vx = 0.0, vv = 1.0, vf = 0.0;
     [[nodiscard]] AxisMotion step(AxisMotion at, double force_n) const noexcept {
-      return {xx * at.place_m + xv * at.speed_m_s + xf * force_n,
-              vx * at.place_m + vv * at.speed_m_s + vf * force_n};
+      return {xx * at.position_m + xv * at.speed_m_s + xf * force_n,
+              vx * at.position_m + vv * at.speed_m_s + vf * force_n};
     }
   };
   [[nodiscard]] const Transition& transition() const noexcept { return levels_[0]; }
@@ -48,10 +48,10 @@ class FreeMotion {
  private:
   static constexpr std::size_t halvings = 16;
 
-  /// Which way it moves now; 0 if friction holds it.
+  /// Its direction of motion now; 0 if friction holds it.
   [[nodiscard]] double direction(AxisMotion motion, double force_n) const noexcept {
     if (motion.speed_m_s != 0.0) return std::copysign(1.0, motion.speed_m_s);
-    const double drive = force_n - stiffness_n_per_m_ * motion.place_m;
+    const double drive = force_n - stiffness_n_per_m_ * motion.position_m;
     return std::abs(drive) > coulomb_n_ ? std::copysign(1.0, drive) : 0.0;
   }
   [[nodiscard]] AxisMotion through_rest(AxisMotion motion, double force_n, double sign) const noexcept;

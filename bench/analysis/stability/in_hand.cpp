@@ -20,8 +20,8 @@ HandImpedance grip_named(std::string_view name) {
   throw std::invalid_argument(fmt::format("grip '{}' is not none, light, firm or arm", name));
 }
 
-std::optional<std::string> hum_in_hand(const LawFile& law, const drivers::DeviceInfo& device, double rate_hz,
-                                       const HandImpedance& hand, double deepest) {
+std::optional<std::string> limit_cycle_in_hand(const LawFile& law, const drivers::DeviceInfo& device,
+                                               double rate_hz, const HandImpedance& hand, double deepest) {
   if (law.law.is_spatial() || !(deepest > 0.0)) return std::nullopt;
   const std::size_t axis = axis_for(law, device);
   if (!device.axes[axis].mechanics) return std::nullopt;

@@ -22,7 +22,7 @@ class LawForce {
       : law_(of.law), state_(law_.initial_state()), per_lever_(1.0 / of.lever), period_s_(period_s) {}
 
   double operator()(const AxisReading& reading) noexcept {
-    const models::Motion motion{.penetration = reading.place_m * per_lever_,
+    const models::Motion motion{.penetration = reading.position_m * per_lever_,
                                 .velocity = reading.speed_m_s * per_lever_};
     return -law_.step(state_, motion, period_s_).force;
   }

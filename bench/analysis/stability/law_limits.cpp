@@ -43,7 +43,7 @@ double held_force(const AxisLaw& law, double depth_m, double period_s) {
   for (int tick = 0; tick <= 2 * ticks; ++tick) {
     const double part = std::min(1.0, static_cast<double>(tick) / ticks);
     const double speed = tick < ticks ? depth_m / (ticks * period_s) : 0.0;
-    felt = -force({.place_m = part * depth_m, .speed_m_s = speed});
+    felt = -force({.position_m = part * depth_m, .speed_m_s = speed});
   }
   return felt;
 }
@@ -123,11 +123,12 @@ double passive_stiffness_up_to(const SampledDevice& device, double speed_m_s, do
 Local local_impedance(const AxisLaw& law, double depth_m, double period_s) {
   constexpr int ticks = 1000;
   LawForce come(law, period_s);
-  for (int tick = 0; tick <= ticks; ++tick) (void)come({.place_m = depth_m * tick / ticks, .speed_m_s = 0.0});
+  for (int tick = 0; tick <= ticks; ++tick)
+    (void)come({.position_m = depth_m * tick / ticks, .speed_m_s = 0.0});
   // Beside one that stays, so that a law that relaxes is not taken for a softer one.
-  const auto next = [&](double place_m, double speed_m_s) {
+  const auto next = [&](double position_m, double speed_m_s) {
     LawForce from_here = come;
-    return -from_here({.place_m = place_m, .speed_m_s = speed_m_s});
+    return -from_here({.position_m = position_m, .speed_m_s = speed_m_s});
   };
   const double little_m = 1e-4 * depth_m;
   constexpr double little_m_s = 1e-3;
@@ -183,7 +184,7 @@ PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press&
   const double pulled_m = held_force(law, how.depth_m, device.period_s) / device.hand.stiffness_n_per_m;
   const double begin_m = -0.2 * how.depth_m;
   const double way_m = how.depth_m + pulled_m - begin_m;
-  SampledLoop loop(device, LawForce(law, device.period_s), {.place_m = begin_m});
+  SampledLoop loop(device, LawForce(law, device.period_s), {.position_m = begin_m});
   const auto approach = static_cast<std::size_t>(how.approach_s / device.period_s);
   const auto quarter =
       std::max<std::size_t>(static_cast<std::size_t>(0.25 * how.hold_s / device.period_s), 4);
@@ -194,7 +195,7 @@ PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press&
     const double part = static_cast<double>(tick) / static_cast<double>(std::max<std::size_t>(approach, 1));
     const drivers::MinimumJerk hand = drivers::MinimumJerk::at(part);
     const double hand_speed = part < 1.0 ? hand.speed * way_m / how.approach_s : 0.0;
-    loop.step(device.hand.damping_n_s_per_m * hand_speed, begin_m + way_m * hand.place);
+    loop.step(device.hand.damping_n_s_per_m * hand_speed, begin_m + way_m * hand.position);
     const double force_n = -loop.held_n();
     verdict.peak_n = std::max(verdict.peak_n, std::abs(force_n));
     if (!(std::abs(force_n) < largest_force_n))

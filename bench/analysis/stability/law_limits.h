@@ -76,7 +76,7 @@ struct Press {
   double hold_s = 1.0;
 };
 
-/// Whether a hand that presses and holds feels a hum.
+/// Whether a hand that presses and holds feels a limit cycle.
 struct PressVerdict {
   bool stable = true;
   double ripple_n = 0.0;  ///< rms of the force about its mean over the last quarter of the hold

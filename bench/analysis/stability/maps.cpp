@@ -83,18 +83,18 @@ double WallMap::boundary_error() const {
 Grid2 wall_grid(const SampledDevice& device, std::size_t columns, std::size_t rows) {
   constexpr double softest = 1.0;
   constexpr double stiffest = 1e7;
-  const double most_damping =
+  const double max_damping =
       first_change({.lower = 1e-3, .upper = 1e5, .share = 1e-2, .scan = 48}, [&](double damping) {
         return spectral_radius(device, {.stiffness_n_per_m = softest, .damping_n_s_per_m = damping}) < 1.0;
       });
-  const std::vector<double> dampings = linear(0.0, 1.1 * most_damping, rows);
-  double most_stiffness = softest;
+  const std::vector<double> dampings = linear(0.0, 1.1 * max_damping, rows);
+  double max_stiffness = softest;
   for (const double damping : dampings) {
-    most_stiffness = std::max(most_stiffness, eigenvalue_boundary(device, damping, softest, stiffest));
+    max_stiffness = std::max(max_stiffness, eigenvalue_boundary(device, damping, softest, stiffest));
   }
   const double passive = passive_stiffness(device, 0.0);
-  const double least_stiffness = std::clamp(1e-2 * passive, softest, 0.1 * most_stiffness);
-  return {.first = logarithmic(least_stiffness, 2.0 * most_stiffness, columns), .second = dampings};
+  const double least_stiffness = std::clamp(1e-2 * passive, softest, 0.1 * max_stiffness);
+  return {.first = logarithmic(least_stiffness, 2.0 * max_stiffness, columns), .second = dampings};
 }
 
 double WallMap::agreement() const { return share_of_agreement(cells); }

@@ -20,9 +20,9 @@ enum class BrakeOn { travel, read_velocity };
 ///
 /// dx is the travel that was read in a tick, U(x) the energy that the rendering means to store at a place, b
 /// the viscous friction of the device and v its read velocity. Without U all that was pressed into a wall
-/// would be a reserve that a hum may use up; without b walls would be braked that the device keeps passive by
-/// itself. Coulomb friction is left out of the account. What is left over in a tick is not saved up (E <= 0):
-/// a tool that came through free air would else have paid for a hum.
+/// would be a reserve that a limit cycle may use up; without b walls would be braked that the device keeps
+/// passive by itself. Coulomb friction is left out of the account. What is left over in a tick is not saved
+/// up (E <= 0): a tool that came through free air would else have paid for a limit cycle.
 ///
 /// The controller brakes on the travel of the last tick. On the velocity of a driver, which lags behind by
 /// its filter, it may push where it means to brake; that is here to be shown.
@@ -48,16 +48,16 @@ class PassivityControlled {
   }
 
   double operator()(const AxisReading& reading) noexcept {
-    const double travel_m = started_ ? reading.place_m - last_m_ : 0.0;
+    const double travel_m = started_ ? reading.position_m - last_m_ : 0.0;
     if (travel_m != 0.0) {
-      const double elastic_n = -(stored_(reading.place_m) - stored_(last_m_)) / travel_m;
+      const double elastic_n = -(stored_(reading.position_m) - stored_(last_m_)) / travel_m;
       const double friction_n =
           -viscous_n_s_per_m_ * reading.speed_m_s * reading.speed_m_s * period_s_ / travel_m;
-      observer_.observe({held_n_ - elastic_n + friction_n}, {reading.place_m});
+      observer_.observe({held_n_ - elastic_n + friction_n}, {reading.position_m});
     }
-    if (travel_m == 0.0 || observer_.energy_j() > 0.0) forget(reading.place_m);
+    if (travel_m == 0.0 || observer_.energy_j() > 0.0) forget(reading.position_m);
     started_ = true;
-    last_m_ = reading.place_m;
+    last_m_ = reading.position_m;
     drivers::Axes force{force_(reading)};
     const double speed_m_s = brake_on_ == BrakeOn::travel ? travel_m / period_s_ : reading.speed_m_s;
     acted_ = observer_.control({speed_m_s}, period_s_, force);
@@ -70,9 +70,9 @@ class PassivityControlled {
 
  private:
   /// From here on, with no more than what is owed.
-  void forget(double place_m) noexcept {
+  void forget(double position_m) noexcept {
     if (observer_.energy_j() > 0.0) observer_ = fresh_;
-    observer_.restart({place_m});
+    observer_.restart({position_m});
   }
 
   Force force_;

@@ -13,7 +13,7 @@ namespace kerf::bench {
 
 /// What the encoder and its driver say of an axis at a tick.
 struct AxisReading {
-  double place_m = 0.0;
+  double position_m = 0.0;
   double speed_m_s = 0.0;
 };
 
@@ -23,15 +23,15 @@ class AxisSensor {
   explicit AxisSensor(const SampledDevice& device) noexcept
       : step_m_(device.encoder_step_m), per_period_(1.0 / device.period_s), gain_(device.velocity_gain()) {}
 
-  [[nodiscard]] AxisReading read(double place_m) noexcept {
-    const double read_m = step_m_ > 0.0 ? step_m_ * std::nearbyint(place_m / step_m_) : place_m;
+  [[nodiscard]] AxisReading read(double position_m) noexcept {
+    const double read_m = step_m_ > 0.0 ? step_m_ * std::nearbyint(position_m / step_m_) : position_m;
     if (!started_) {
       last_m_ = read_m;
       started_ = true;
     }
     speed_m_s_ += gain_ * ((read_m - last_m_) * per_period_ - speed_m_s_);
     last_m_ = read_m;
-    return {.place_m = read_m, .speed_m_s = speed_m_s_};
+    return {.position_m = read_m, .speed_m_s = speed_m_s_};
   }
 
  private:
@@ -104,13 +104,13 @@ class SampledLoop {
         line_(moves_->delay.ticks) {}
 
   /// One period: read, compute, hold.
-  void step(double push_n = 0.0, double hand_place_m = 0.0) noexcept {
-    const double arrived = line_.pass(force_(sensor_.read(motion_.place_m)));
-    AxisMotion at{.place_m = motion_.place_m - hand_place_m, .speed_m_s = motion_.speed_m_s};
+  void step(double push_n = 0.0, double hand_position_m = 0.0) noexcept {
+    const double arrived = line_.pass(force_(sensor_.read(motion_.position_m)));
+    AxisMotion at{.position_m = motion_.position_m - hand_position_m, .speed_m_s = motion_.speed_m_s};
     if (moves_->delay.share > 0.0) at = moves_->before.after(at, held_n_ + push_n);
     held_n_ = arrived;
     at = moves_->after.after(at, held_n_ + push_n);
-    motion_ = {.place_m = at.place_m + hand_place_m, .speed_m_s = at.speed_m_s};
+    motion_ = {.position_m = at.position_m + hand_position_m, .speed_m_s = at.speed_m_s};
   }
 
   [[nodiscard]] const AxisMotion& motion() const noexcept { return motion_; }

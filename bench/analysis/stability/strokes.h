@@ -13,7 +13,7 @@ namespace kerf::bench {
 struct Stroke {
   double from_m = 0.0;
   double to_m = 0.0;      ///< deeper than from_m
-  std::size_t ticks = 1;  ///< one way
+  std::size_t ticks = 1;  ///< in one direction
 
   [[nodiscard]] double speed_m_s(double period_s) const noexcept {
     return (to_m - from_m) / (static_cast<double>(ticks) * period_s);
@@ -40,17 +40,18 @@ template <typename Force>
   const double step_m = (stroke.to_m - stroke.from_m) / static_cast<double>(stroke.ticks);
   const double friction_j =
       device.viscous_n_s_per_m * step_m * step_m / device.period_s + device.coulomb_n * step_m;
-  double place_m = stroke.from_m;
+  double position_m = stroke.from_m;
   double held_n = 0.0;
   double gained_j = 0.0;
   for (int leg = 0; leg < 2 * times; ++leg) {
-    const double way = leg % 2 == 0 ? 1.0 : -1.0;
+    const double direction = leg % 2 == 0 ? 1.0 : -1.0;
     if (leg == 2 * times - 2) gained_j = 0.0;
     for (std::size_t tick = 0; tick < stroke.ticks; ++tick) {
-      const double arrived = line.pass(force(sensor.read(place_m - 0.5 * way * device.encoder_step_m)));
-      gained_j += way * step_m * (delay.share * held_n + (1.0 - delay.share) * arrived) - friction_j;
+      const double arrived =
+          line.pass(force(sensor.read(position_m - 0.5 * direction * device.encoder_step_m)));
+      gained_j += direction * step_m * (delay.share * held_n + (1.0 - delay.share) * arrived) - friction_j;
       held_n = arrived;
-      place_m += way * step_m;
+      position_m += direction * step_m;
     }
   }
   return gained_j;

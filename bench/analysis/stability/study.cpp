@@ -89,7 +89,7 @@ LawFindings study_law(const LawFile& file, const std::string& name, const StudyO
   const SampledDevice device = device_of(options.on, info, axis);
   const AxisLaw law{.law = file.law, .lever = info.axes[axis].lever};
   const ToolRange& range = options.range;
-  const std::size_t cells = std::min(options.cells, most_law_cells);
+  const std::size_t cells = std::min(options.cells, max_law_cells);
   const double rate_hz = options.on.rate_hz;
   const Grid2 grid{
       .first = linear(2.0 * range.depth_m / static_cast<double>(cells), 2.0 * range.depth_m, cells),

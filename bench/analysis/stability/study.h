@@ -36,7 +36,7 @@ struct StudyOptions {
 };
 
 /// A law's map has so many cells a side at most: each is a hundred strokes.
-inline constexpr std::size_t most_law_cells = 60;
+inline constexpr std::size_t max_law_cells = 60;
 
 /// Walls on an axis. @throws std::invalid_argument: no such axis, its mass and friction are not known and not
 /// given, a range that is none; drivers::DeviceError; std::system_error if it was stopped.

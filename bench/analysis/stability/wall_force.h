@@ -13,9 +13,9 @@ struct WallForce {
   Wall wall;
   bool one_sided = true;
   double operator()(const AxisReading& reading) const noexcept {
-    if (one_sided && reading.place_m <= 0.0) return 0.0;
+    if (one_sided && reading.position_m <= 0.0) return 0.0;
     const double force =
-        -wall.stiffness_n_per_m * reading.place_m - wall.damping_n_s_per_m * reading.speed_m_s;
+        -wall.stiffness_n_per_m * reading.position_m - wall.damping_n_s_per_m * reading.speed_m_s;
     return one_sided ? std::min(force, 0.0) : force;
   }
 };

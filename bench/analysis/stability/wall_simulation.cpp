@@ -17,19 +17,20 @@ constexpr double periods_of_soft_walls = 20.0;
 
 /// Sums over a stretch of time, for the energy about the mean.
 struct Stretch {
-  double place = 0.0, place_squared = 0.0, speed_squared = 0.0, force = 0.0, force_squared = 0.0;
+  double position = 0.0, position_squared = 0.0, speed_squared = 0.0, force = 0.0, force_squared = 0.0;
   std::size_t ticks = 0;
 
   void add(const AxisMotion& motion, double force_n) noexcept {
     force += force_n;
     force_squared += force_n * force_n;
-    place += motion.place_m;
-    place_squared += motion.place_m * motion.place_m;
+    position += motion.position_m;
+    position_squared += motion.position_m * motion.position_m;
     speed_squared += motion.speed_m_s * motion.speed_m_s;
     ++ticks;
   }
   [[nodiscard]] double energy(double mass, double stiffness) const noexcept {
-    return mass * speed_squared / static_cast<double>(ticks) + stiffness * variance(place, place_squared);
+    return mass * speed_squared / static_cast<double>(ticks) +
+           stiffness * variance(position, position_squared);
   }
   [[nodiscard]] double ripple_n() const noexcept { return std::sqrt(variance(force, force_squared)); }
 
@@ -47,7 +48,7 @@ class Trial {
         const WallTrial& trial)
       : trial_(trial),
         start_m_(trial.start_m + (trial.push_n > 0.0 ? trial.push_n / wall.stiffness_n_per_m : 0.0)),
-        loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.place_m = start_m_}) {}
+        loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.position_m = start_m_}) {}
 
   /// A tick of a quarter of the time; of no effect once the device is lost.
   void step(int quarter) noexcept {
@@ -55,7 +56,7 @@ class Trial {
     loop_.step(trial_.push_n);
     if (quarter == 1) second_.add(loop_.motion(), loop_.held_n());
     if (quarter == 3) last_.add(loop_.motion(), loop_.held_n());
-    lost_ = !(std::abs(loop_.motion().place_m) < lost_m + start_m_);
+    lost_ = !(std::abs(loop_.motion().position_m) < lost_m + start_m_);
   }
   [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
     if (lost_) return false;

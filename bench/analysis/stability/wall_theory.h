@@ -13,11 +13,11 @@ struct Wall {
 /// Stiffest wall of a given damping that is passive by each of three criteria [N/m]; 0 where none is. All of
 /// them speak of the device's own friction: whatever the hand does, it is given no energy.
 
-/// b > K T / 2 + |B|, for the plain difference and no delay (Colgate and Schenkel 1994/1997).
+/// b > K T / 2 + |B|, for the plain difference and no delay [ColgateSchenkel1997].
 [[nodiscard]] double colgate_schenkel(const SampledDevice& device, double wall_damping);
 
 /// K <= min(2 b / T, 2 f_c / delta), for B = 0, necessary and sufficient with Coulomb friction f_c and the
-/// encoder step delta (Abbott and Okamura 2005).
+/// encoder step delta [AbbottOkamura2005].
 [[nodiscard]] double abbott_okamura(const SampledDevice& device);
 
 /// The same theorem of Colgate and Schenkel as it stands for any linear wall H(z), here with the velocity

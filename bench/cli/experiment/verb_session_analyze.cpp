@@ -101,15 +101,19 @@ void add_session_analyze(CLI::App& session, Context& context) {
   verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");
   verb.add_option("--reason", arguments->reason, "Why a session is opened before its end; kept in the file");
   verb.add_option("--design", arguments->design, "Design of a table that does not say it");
-  verb.add_option("--confidence", options.confidence, "Of the intervals").within(0.5, 0.999).with_default();
-  verb.add_option("--level", options.level, "Of the tests").within(0.001, 0.5).with_default();
-  verb.add_option("--margin", options.margin, "A preference is none within 50 % +- this")
+  verb.add_option("--confidence", options.confidence, "Confidence level of the intervals")
+      .within(0.5, 0.999)
+      .with_default();
+  verb.add_option("--level", options.level, "Significance level of the tests")
+      .within(0.001, 0.5)
+      .with_default();
+  verb.add_option("--margin", options.margin, "Equivalence margin of a preference, 50 % +- this")
       .within(0.001, 0.5)
       .with_default();
   verb.add_option("--d-prime", options.d_prime_bound, "Renderings count as equal below this d'")
       .positive()
       .with_default();
-  verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: a JND is as wanted between them")
+  verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: equivalence margin of a JND")
       .taking(2);
   verb.add_option("--correction", arguments->correction, "For several tests: holm or bh")
       .one_of({"holm", "bh"})

@@ -126,7 +126,7 @@ void add_session_new(CLI::App& session, Context& context) {
   verb.add_option("--subject", arguments->subject,
                   "Code of the subject, no name: letters, digits, _ and -, 16 at most");
   verb.add_option("--subjects", arguments->subjects,
-                  "So many sessions, S01.h5 and so on, into the folder -o");
+                  "Number of sessions to make, S01.h5 and so on, in the folder -o");
   verb.add_option("-o,--output", arguments->output, "The session file, or with --subjects a folder")
       .required();
   verb.add_option("--device", arguments->device,

@@ -163,7 +163,7 @@ void add_session_run(CLI::App& session, Context& context) {
   verb.add_flag("--passivity-control", arguments->loop.passivity_control,
                 "Add damping wherever the rendering has given energy");
   verb.add_flag("--rehearse", arguments->rehearse,
-                "Nobody answers: by chance and in virtual time, on a simulated device; the file is marked");
+                "Rehearsal: answers by chance, in virtual time, on a simulated device; the file is marked");
   verb.add_flag("--no-check", arguments->no_check, "Do not check the laws on the device first");
 }
 

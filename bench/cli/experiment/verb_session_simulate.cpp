@@ -109,14 +109,14 @@ void add_session_simulate(CLI::App& session, Context& context) {
   verb.add_option("--jnd", arguments->jnd_percent, "The observers' JND of force [%]")
       .positive()
       .with_default();
-  verb.add_option("--least-jnd", observer.least_jnd_n, "and at least so many newtons")
-      .positive()
-      .with_default();
+  verb.add_option("--least-jnd", observer.least_jnd_n, "Smallest JND of force [N]").positive().with_default();
   verb.add_option("--jnd-criterion", arguments->jnd_criterion_percent,
                   "Share of right answers in two intervals one JND apart [%]")
       .with_default();
-  verb.add_option("--lapse", observer.lapse, "Share of answers by chance").within(0.0, 1.0).with_default();
-  verb.add_option("--bias", observer.bias, "Leaning to the first slot [d']").with_default();
+  verb.add_option("--lapse", observer.lapse, "Lapse rate: share of answers by chance")
+      .within(0.0, 1.0)
+      .with_default();
+  verb.add_option("--bias", observer.bias, "Response bias to the first slot [d']").with_default();
   verb.add_option("--spread", observer.spread, "Between subjects: standard deviation of ln(JND)")
       .not_negative()
       .with_default();
@@ -129,19 +129,20 @@ void add_session_simulate(CLI::App& session, Context& context) {
       .one_of({"asked", "strength", "difference"})
       .with_default();
   verb.add_option("--d-prime", arguments->d_prime,
-                  "All pairs of samples are so many d' apart, whatever their laws render");
+                  "Distance of all pairs of samples in d', whatever their laws render");
   verb.add_flag("--peak", arguments->peak, "Strength is the peak of the force, not its root mean square");
-  verb.add_option("--subjects", arguments->simulation.subjects, "Of each experiment").with_default();
-  verb.add_option("--experiments", arguments->simulation.experiments, "How many are simulated")
+  verb.add_option("--subjects", arguments->simulation.subjects, "Subjects of each experiment").with_default();
+  verb.add_option("--experiments", arguments->simulation.experiments, "Number of simulated experiments")
       .with_default();
-  verb.add_option("--trials", arguments->trials, "In place of the protocol's");
-  verb.add_option("--power", arguments->simulation.power, "For which trials are counted").with_default();
+  verb.add_option("--trials", arguments->trials, "Trials, in place of the protocol's");
+  verb.add_option("--power", arguments->simulation.power, "Power for which the number of trials is found")
+      .with_default();
   verb.add_option("--device", arguments->simulation.sensation.felt.device_uri,
                   "Simulated device that the laws are felt on (default: the protocol's)");
   verb.add_option("--seconds", arguments->simulation.sensation.felt.seconds,
-                  "Felt for so long (default: the protocol's [motion])");
+                  "Duration of a rendering (default: the protocol's [motion])");
   verb.add_option("--renderings", arguments->simulation.sensation.felt.renderings,
-                  "So often, each time with other strokes of the simulated hand")
+                  "Number of renderings, each with other strokes of the simulated hand")
       .with_default();
   verb.add_flag("--open-loop", arguments->simulation.sensation.felt.open_loop,
                 "Forces along the protocol's [motion], without a device");

@@ -15,7 +15,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_segments = 16;
+constexpr std::size_t max_segments = 16;
 
 struct Segments {
   fitting::CountBy by = fitting::CountBy::given;
@@ -27,9 +27,9 @@ Segments parse_segments(const std::string& text) {
   if (text == "jnd") return {.by = fitting::CountBy::jnd};
   std::size_t count = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > most_segments) {
+  if (error != std::errc() || end != text.data() + text.size() || count < 1 || count > max_segments) {
     throw std::invalid_argument(
-        fmt::format("--segments: '{}' is not a number from 1 to {}, bic or jnd", text, most_segments));
+        fmt::format("--segments: '{}' is not a number from 1 to {}, bic or jnd", text, max_segments));
   }
   return {.count = count};
 }
@@ -109,7 +109,8 @@ void add_data_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--axis", arguments.axis, "Axis to fit (default: the first)");
   verb.add_option("--contact", arguments.contact,
                   "Position where the penetration is zero, in m or rad (default: from the recording)");
-  verb.add_option("--direction", arguments.direction, "Way into the tissue (default: from the recording)")
+  verb.add_option("--direction", arguments.direction,
+                  "Direction into the tissue (default: from the recording)")
       .one_of({"increasing", "decreasing"});
   verb.add_option("--noise", arguments.noise,
                   "Standard deviation of the force's noise, one or one a recording [N] (default: estimated)")
@@ -132,11 +133,12 @@ void add_estimation_options(Verb& verb, FitArguments& arguments) {
                   "Last share of the cycles, or of the time, that no fit sees and each is tested on")
       .within(0.0, 0.9)
       .with_default();
-  verb.add_option("--loss", arguments.loss, "What a residual costs")
+  verb.add_option("--loss", arguments.loss, "Loss function of the residuals")
       .one_of({"squares", "huber", "soft_l1", "cauchy"})
       .with_default();
   verb.add_option("--loss-scale", fit.loss_scale_n,
-                  "Residual from which a robust loss grows more slowly [N] (default: 1.345 robust standard "
+                  "Scale of a robust loss: the residual above which it grows more slowly [N] (default: 1.345 "
+                  "robust standard "
                   "deviations)")
       .positive();
   verb.add_option("--confidence", fit.confidence, "Confidence of the intervals")

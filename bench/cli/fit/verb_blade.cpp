@@ -89,13 +89,15 @@ void add_blade(CLI::App& app, Context& context) {
                   "exact, strips:N or paper (default: the law file's, exact there)");
   verb.add_flag("--thresholds", options.thresholds,
                 "Also the elastic field and the forces at which the tissue ruptures and holds again");
-  verb.add_flag("--robust", options.robust, "Huber's loss: forgive forces that are far off");
-  verb.add_option("--confidence", options.confidence, "Of the intervals").within(0.5, 0.9999).with_default();
+  verb.add_flag("--robust", options.robust, "Huber's loss, against outliers");
+  verb.add_option("--confidence", options.confidence, "Confidence level of the intervals")
+      .within(0.5, 0.9999)
+      .with_default();
   verb.add_option("--prominence", options.peaks.prominence,
-                  "Of a drop of the force, in its standard errors, with --thresholds")
+                  "Prominence of a drop of the force, in standard errors, with --thresholds")
       .positive()
       .with_default();
-  verb.add_option("--window", options.peaks.window_s, "Before and after a drop, with --thresholds [s]")
+  verb.add_option("--window", options.peaks.window_s, "Time before and after a drop, with --thresholds [s]")
       .positive()
       .with_default();
   verb.add_option("-o,--output", arguments->output, "Law file to write");

@@ -94,7 +94,7 @@ void add_train(CLI::App& app, Context& context) {
       .one_of({"projection", "gradient"})
       .with_default();
   verb.add_option("--iterations", arguments->options.iterations,
-                  "At most so many (default: 200, or 20000 of gradient)")
+                  "Largest number of iterations (default: 200, or 20000 of gradient)")
       .within(1, 10000000);
   verb.add_option("--element", arguments->element,
                   "K1 K2 B of a Kelvin element [N/m, N/m, N·s/m]: write a fuzzy_kelvin law")

@@ -79,11 +79,11 @@ SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions o
   try {
     const ScriptedPath path = scripted_path(scene);
     if (!arguments.no_hold)
-      options.unstable = hum_of({.device = path.device,
-                                 .hand_mass_kg = scene.hand.mass_kg,
-                                 .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
-                                 .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
-                                 .deepest = deepest_of(scene, path, options.rate_hz)});
+      options.unstable = limit_cycle_check({.device = path.device,
+                                            .hand_mass_kg = scene.hand.mass_kg,
+                                            .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
+                                            .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
+                                            .deepest = deepest_of(scene, path, options.rate_hz)});
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
     if (!scene.deeper.empty())
@@ -164,7 +164,7 @@ void add_chart(CLI::App& app, Context& context) {
       .within(100.0, 10000.0);
   verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");
   verb.add_flag("--no-hold", arguments->no_hold,
-                "Cross out nothing because it hums when the scene's hand presses it and holds still");
+                "Do not look for limit cycles when the scene's hand presses a law and holds");
   verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
   verb.add_option("-o,--output", arguments->output,
                   "Folder for chart.svg, .csv, .json, .html, and points/ with the law of each point");

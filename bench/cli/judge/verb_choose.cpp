@@ -110,8 +110,8 @@ void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, co
   std::optional<LoopChecks> checks;
   if (!arguments.no_loop) {
     checks.emplace(std::move(loop), stop);
-    options.walk.begins = [uri](const std::string& law) { say_begins(law, uri); };
-    connect(*checks, TriedBy::wall_clock, options.walk);
+    options.search.begins = [uri](const std::string& law) { say_begins(law, uri); };
+    connect(*checks, TriedBy::wall_clock, options.search);
   }
   LawChoice choice = choose_fidelity(scene, options, stop);
   nlohmann::ordered_json json{{"name", scene.name},
@@ -163,7 +163,7 @@ void add_choose(CLI::App& app, Context& context) {
       "kerf choose cut.h5 -o choice\n"
       "  kerf choose punch.h5 --device sim:scissors?grip=300 --most-segments 7 -o choice\n"
       "  kerf choose --scene examples/scenes/palpation.scene.toml -o choice\n\n"
-      "Fits every law that fits the axis, walks from the fewest parameters and the cheapest tick up,\n"
+      "Fits every law that fits the axis, tries them from the fewest parameters and the cheapest tick up,\n"
       "and takes the first whose error on held-out cycles is within the force JND, that holds its\n"
       "deadlines in closed loop with the device, and that is stable there. Segment a recording of\n"
       "cycles first. Exit status 1 if no law serves. docs/choosing.md says more.",
@@ -175,7 +175,8 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("--axis", arguments->axis, "Axis (default: that of the cycles, or the first)");
   verb.add_option("--contact", arguments->contact,
                   "Position where the penetration is zero, in m or rad (default: from the recording)");
-  verb.add_option("--direction", arguments->direction, "Way into the tissue (default: from the recording)")
+  verb.add_option("--direction", arguments->direction,
+                  "Direction into the tissue (default: from the recording)")
       .one_of({"increasing", "decreasing"});
   verb.add_option("--device", arguments->loop.device_uri,
                   "Device for the closed loop (default: that of the recording if it was simulated, else the "
@@ -187,12 +188,12 @@ void add_choose(CLI::App& app, Context& context) {
       .within(100.0, 10000.0)
       .with_default();
   verb.add_option("--margin", arguments->loop.margin,
-                  "Share of the period that 99.9 % of the ticks may compute for")
+                  "Largest share of the period that the computation may take in 99.9 % of the ticks")
       .within(0.001, 0.5)
       .with_default();
   verb.add_flag("--no-loop", arguments->no_loop, "No closed loop: judge by held-out data alone");
-  verb.add_option("--most-segments", arguments->choose.candidates.most_segments,
-                  "Most segments of the piecewise law")
+  verb.add_option("--most-segments", arguments->choose.candidates.max_segments,
+                  "Largest number of segments of the piecewise law")
       .within(1, 16)
       .with_default();
   verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by block of time")
@@ -205,7 +206,7 @@ void add_choose(CLI::App& app, Context& context) {
       .positive()
       .with_default();
   verb.add_option("--record-seconds", arguments->record_s,
-                  "How long a scene is cut (default: as it says) [s]")
+                  "Duration of the recording of a scene (default: the scene's) [s]")
       .within(1.0, 600.0);
   verb.add_option("--grip", arguments->loop.grip,
                   "Hand that presses a law and holds: stability is judged in it")

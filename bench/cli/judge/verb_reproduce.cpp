@@ -12,7 +12,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_points = 1600;  // of a curve: more than a page shows
+constexpr std::size_t max_points = 1600;  // of a curve: more than a page shows
 
 struct ReproduceVerbArguments {
   std::string paper;
@@ -27,7 +27,7 @@ void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   std::filesystem::create_directories(folder);
   for (const Figure& figure : result.figures) {
     Chart chart = figure.chart;
-    for (Curve& curve : chart.curves) curve = decimated(curve, most_points);
+    for (Curve& curve : chart.curves) curve = decimated(curve, max_points);
     write_whole_file(folder / (figure.name + ".svg"), draw(chart));
   }
   context.result = to_json(result);

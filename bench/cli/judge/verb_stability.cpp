@@ -72,7 +72,8 @@ void add_stability(CLI::App& app, Context& context) {
       "Without a law: virtual walls over stiffness and damping, simulated in virtual time, with the\n"
       "boundaries of the eigenvalues, of Colgate and Schenkel, and of Abbott and Okamura. With a law: the\n"
       "deepest penetration, the steepest approach and the lowest rate at which it is passive; exit\n"
-      "status 1 if it is not passive over --depth and --speed, or hums in the hand that was given. With\n"
+      "status 1 if it is not passive over --depth and --speed, or has a limit cycle in the hand that was "
+      "given. With\n"
       "--cases: failures that the papers met, each of which must fail without its remedy and hold with it.\n"
       "docs/stability.md says what is simulated and what the lines mean.",
       [arguments, &context] { run_stability(*arguments, context); });
@@ -94,7 +95,7 @@ void add_stability(CLI::App& app, Context& context) {
   verb.add_option("--filter", on.velocity_corner_rad_s,
                   "Corner of the velocity filter; 0: none (default: the driver's) [rad/s]")
       .not_negative();
-  verb.add_option("--delay", on.delay_s, "From reading to force [s]").not_negative().with_default();
+  verb.add_option("--delay", on.delay_s, "Delay from reading to force [s]").not_negative().with_default();
   verb.add_option("--grip", on.grip, "Hand on the device: none, light, firm (a stylus) or arm")
       .one_of({"none", "light", "firm", "arm"})
       .with_default();
@@ -103,10 +104,11 @@ void add_stability(CLI::App& app, Context& context) {
       .not_negative();
   verb.add_option("--hand-stiffness", on.hand_stiffness_n_per_m, "Instead of the grip's [N/m]")
       .not_negative();
-  verb.add_option("--stiffness", arguments->study.stiffness_n_per_m, "Walls from so stiff to so stiff [N/m]")
+  verb.add_option("--stiffness", arguments->study.stiffness_n_per_m,
+                  "Smallest and largest stiffness of the walls [N/m]")
       .taking(2);
   verb.add_option("--damping", arguments->study.damping_n_s_per_m,
-                  "Walls from so damped to so damped [N·s/m]")
+                  "Smallest and largest damping of the walls [N·s/m]")
       .taking(2);
   verb.add_option("--cells", arguments->study.cells, "Cells along each side of a map")
       .within(2, 1000)
@@ -115,15 +117,16 @@ void add_stability(CLI::App& app, Context& context) {
       .within(0.01, 1000.0)
       .with_default();
   verb.add_option("--push", arguments->study.trial.push_n,
-                  "The hand leans on the wall so hard; 0: the wall pulls as it pushes [N]")
+                  "Force of the hand on the wall; 0: a two-sided wall, which also pulls [N]")
       .not_negative()
       .with_default();
   verb.add_flag("--boundaries", arguments->no_cells, "Only the boundaries, by bisection");
-  verb.add_option("--depth", arguments->study.range.depth_m,
-                  "How deep a tool goes into the law, in travel [m]")
+  verb.add_option("--depth", arguments->study.range.depth_m, "Largest penetration of the tool, in travel [m]")
       .positive()
       .with_default();
-  verb.add_option("--speed", arguments->study.range.speed_m_s, "How fast [m/s]").positive().with_default();
+  verb.add_option("--speed", arguments->study.range.speed_m_s, "Largest speed of the tool [m/s]")
+      .positive()
+      .with_default();
   verb.add_option("--threads", arguments->threads, "0: one a processor; the result is the same")
       .with_default();
   verb.add_option("-o,--output", arguments->output,

@@ -94,7 +94,8 @@ void add_segment(CLI::App& app, Context& context) {
   verb.add_option("--points", arguments->options.points, "Points of the grid of the averaged cycle")
       .within(2, 4096)
       .with_default();
-  verb.add_option("--closing", arguments->closing, "Way of closing (default: the one that costs more work)")
+  verb.add_option("--closing", arguments->closing,
+                  "Direction of closing (default: the one that costs more work)")
       .one_of({"increasing", "decreasing"});
   verb.add_option("-o,--output", arguments->charts, "Folder for charts: cycles.svg and loops.svg");
 }

@@ -59,7 +59,7 @@ void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& s
   verb.add_flag("--virtual", options.virtual_time, "In virtual time: as fast as the machine can");
   verb.add_option("--switch", arguments.changes,
                   "LAW@SECONDS: go over to another law, softly; may be repeated");
-  verb.add_option("--ramp", options.ramp_s, "Soft start, and softly from law to law, over so long [s]")
+  verb.add_option("--ramp", options.ramp_s, "Duration of the soft start and of the blend from law to law [s]")
       .within(0.0, 60.0)
       .with_default();
   verb.add_flag("--passivity-control", options.passivity_control,

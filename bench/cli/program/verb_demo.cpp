@@ -58,15 +58,15 @@ struct ClosedLoop {
 LawChoice choose_for(const schema::Recording& recording, const LoopChecks& checks, ClosedLoop& loop,
                      double seconds, const std::atomic<bool>& stop) {
   ChooseOptions options;
-  options.candidates.most_segments = 5;
+  options.candidates.max_segments = 5;
   options.threads = std::max(1U, std::thread::hardware_concurrency());
-  options.walk.stability = [&](const LawFile& law, const schema::Recording&) {
+  options.search.stability = [&](const LawFile& law, const schema::Recording&) {
     return checks.instability(law);
   };
-  options.walk.deadline = [&](const LawFile& law) {
+  options.search.deadline = [&](const LawFile& law) {
     return loop.run(law, checks.device_uri(), seconds, stop);
   };
-  options.walk.begins = [&](const std::string& law) {
+  options.search.begins = [&](const std::string& law) {
     say(fmt::format("   {} is rendered on the scissors in closed loop for {:.0f} s, by the wall clock", law,
                     seconds));
   };

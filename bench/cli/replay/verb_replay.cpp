@@ -203,7 +203,8 @@ void replay_as_table(const ReplayVerbArguments& arguments, Context& context, con
   const FittedLaw table = table_of(recording, arguments.recording, arguments.axis, contact);
   if (!recording.cycles)
     warn(
-        "the recording has no cycles, so that one table serves both ways, without smoothing; 'kerf segment' "
+        "the recording has no cycles, so that one table serves both directions, without smoothing; 'kerf "
+        "segment' "
         "finds "
         "them");
   options.law = table.file;
@@ -260,7 +261,7 @@ void replay_as_path(const ReplayVerbArguments& arguments, Context& context, Sour
     return OtherRendering{.step = [&](const drivers::Sample& sample,
                                       double elapsed_s) { return (*rendering)(sample, elapsed_s); },
                           .finished = [&] { return rendering->finished(); },
-                          .most_ticks = path.loop ? 0 : path.most_ticks + fade};
+                          .max_ticks = path.loop ? 0 : path.max_ticks + fade};
   };
   const StopOnSignal signals;
   const RunResult result = run_on_device(options, signals.requested());
@@ -287,10 +288,10 @@ void run_replay(const ReplayVerbArguments& arguments, Context& context) {
 }
 
 void add_path_options(Verb& verb, ReplayVerbArguments& arguments) {
-  verb.add_option("--speed", arguments.path.speed, "So many times as fast, 0.1 to 10")
+  verb.add_option("--speed", arguments.path.speed, "Speed relative to the recording's, 0.1 to 10")
       .within(0.1, 10.0)
       .with_default();
-  verb.add_flag("--loop", arguments.path.loop, "--as path: over and over, with a soft way back");
+  verb.add_flag("--loop", arguments.path.loop, "--as path: over and over, with a soft return");
   verb.add_flag("--bridge", arguments.path.bridge, "Fill gaps by straight lines");
   verb.add_option(
       "--stiffness", arguments.coupling.stiffness,
@@ -336,10 +337,11 @@ void add_replay(CLI::App& app, Context& context) {
   verb.add_option("--contact-force", arguments->contact_force,
                   "Force above which there is contact (default: twice the JND's threshold) [N, N·m]")
       .positive();
-  verb.add_option("--drop-window", arguments->window_ms, "A drop loses more than a JND within so long [ms]")
+  verb.add_option("--drop-window", arguments->window_ms,
+                  "Time within which a drop loses more than a JND [ms]")
       .within(0.1, 1000.0)
       .with_default();
-  verb.add_option("--match", arguments->match_ms, "Events farther apart are not the same [ms]")
+  verb.add_option("--match", arguments->match_ms, "Largest time between events that count as the same [ms]")
       .within(0.0, 10000.0)
       .with_default();
   add_loop_options(verb, arguments->loop, "Scene file: its device, hand and, --as path, tissue");

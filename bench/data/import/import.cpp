@@ -22,11 +22,11 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_lines_named = 10;
+constexpr std::size_t max_lines_named = 10;
 
 /// "3, 7, 9 and 12 more"
 std::string named_lines(const std::vector<std::size_t>& lines) {
-  const std::size_t shown = std::min(lines.size(), most_lines_named);
+  const std::size_t shown = std::min(lines.size(), max_lines_named);
   const std::string text =
       fmt::format("{}", fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   return shown == lines.size() ? text : fmt::format("{} and {} more", text, lines.size() - shown);

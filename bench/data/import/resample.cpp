@@ -49,13 +49,13 @@ std::vector<double> resampled(const std::vector<double>& time, const std::vector
 }  // namespace
 
 void resample(schema::Recording& recording, double rate_hz, double period_s) {
-  constexpr double most_rows = 1e8;
+  constexpr double max_rows = 1e8;
   if (recording.rows() < 3) throw std::invalid_argument("--resample needs at least three samples");
   const double rows = recording.time.back() * std::max(rate_hz, 1.0 / period_s);
-  if (!(rows <= most_rows)) {
+  if (!(rows <= max_rows)) {
     throw std::invalid_argument(
         fmt::format("--resample: {:.4g} s at {:.4g} Hz are more than {:.0e} rows; is the unit of time right?",
-                    recording.time.back(), std::max(rate_hz, 1.0 / period_s), most_rows));
+                    recording.time.back(), std::max(rate_hz, 1.0 / period_s), max_rows));
   }
   const Grid grid = make_grid(recording.time, rate_hz, period_s);
   const auto apply = [&](std::vector<double>& values, std::string_view channel) {

@@ -18,7 +18,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_preamble_lines = 1000;
+constexpr std::size_t max_preamble_lines = 1000;
 constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
@@ -267,7 +267,7 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
   // The reading is chosen on the first lines and on some from the middle, where a long preamble has ended.
   std::vector<std::string_view> lines;
   std::string_view head = rest;
-  while (!head.empty() && lines.size() < most_preamble_lines) lines.push_back(take_line(head));
+  while (!head.empty() && lines.size() < max_preamble_lines) lines.push_back(take_line(head));
   std::vector<std::string_view> sample = lines;
   std::string_view middle = rest.substr(rest.size() / 2);
   (void)take_line(middle);

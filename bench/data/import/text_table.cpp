@@ -164,17 +164,17 @@ TextTable parse_table(std::string_view text, const TextLayout& layout, std::span
   const LineReader reader(layout, columns);
   std::vector<Part> parts = split_into_parts(text.substr(layout.data_begin));
   on_all_cores(parts, [](Part& part) { part.lines = count_lines(part.text); });
-  std::size_t most_rows = 0;
+  std::size_t max_rows = 0;
   for (Part& part : parts) {
-    part.first_row = most_rows;
-    most_rows += part.lines;
+    part.first_row = max_rows;
+    max_rows += part.lines;
     part.lines = 0;
   }
 
   TextTable table{.columns = {}, .bad_lines = {}, .empty_lines = {}, .first_line = layout.preamble_lines + 1};
   std::vector<double*> begins;
   for (std::size_t i = 0; i < columns.size(); ++i)
-    begins.push_back(table.columns.emplace_back(most_rows).data());
+    begins.push_back(table.columns.emplace_back(max_rows).data());
   on_all_cores(parts, [&](Part& part) { read_part(part, reader, begins, bytes_done); });
 
   std::size_t rows = 0;

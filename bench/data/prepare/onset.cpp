@@ -285,18 +285,18 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
   }
   double travelled = 0.0;
   for (std::size_t i = 1; i < position.size(); ++i) travelled += std::abs(position[i] - position[i - 1]);
-  const double way = position.empty() ? 0.0 : position.back() - position.front();
-  const bool one_way = travelled > 0.0 && std::abs(way) > 0.95 * travelled;
-  const double sign = way > 0.0 ? 1.0 : -1.0;
+  const double net_travel = position.empty() ? 0.0 : position.back() - position.front();
+  const bool one_direction = travelled > 0.0 && std::abs(net_travel) > 0.95 * travelled;
+  const double sign = net_travel > 0.0 ? 1.0 : -1.0;
   std::vector<double> u(time_s.begin(), time_s.end());
-  for (std::size_t i = 0; one_way && i < u.size(); ++i) {
+  for (std::size_t i = 0; one_direction && i < u.size(); ++i) {
     // An encoder may step back by one; the hinge asks for order.
     u[i] = i > 0 ? std::max(sign * position[i], u[i - 1]) : sign * position[i];
   }
   const Hinge hinge = fit_hinge(u, force);
   if (!hinge.found) return window.end;
   contact.refined = true;
-  if (one_way) {
+  if (one_direction) {
     const auto above = std::upper_bound(u.begin(), u.end(), hinge.corner) - u.begin();
     const auto i = static_cast<std::size_t>(
         std::clamp<std::ptrdiff_t>(above, 1, static_cast<std::ptrdiff_t>(u.size()) - 1));
@@ -305,7 +305,7 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
     contact.onset_position = sign * hinge.corner;
     contact.onset_position_error = hinge.corner_error;
     contact.onset_s = time_s[i - 1] + share * (time_s[i] - time_s[i - 1]);
-    contact.onset_error_s = hinge.corner_error / std::abs(way) * (time_s.back() - time_s.front());
+    contact.onset_error_s = hinge.corner_error / std::abs(net_travel) * (time_s.back() - time_s.front());
   } else {
     contact.onset_s = hinge.corner;
     contact.onset_error_s = hinge.corner_error;
@@ -317,7 +317,7 @@ std::size_t Search::place_onset(ContactFound& contact, const RowSpan& window,
       std::min(std::max(3.0 * found_.threshold, 15.0 * found_.noise), 0.7 * contact.peak) / hinge.slope;
   std::size_t end = window.begin;
   while (end < contact.rows.end &&
-         (one_way ? sign * signal_.position[end] : signal_.time_s[end]) < hinge.corner + clear) {
+         (one_direction ? sign * signal_.position[end] : signal_.time_s[end]) < hinge.corner + clear) {
     ++end;
   }
   return end;

@@ -71,7 +71,7 @@ struct ContactsFound {
 /// A threshold is crossed late, and the later the slower the force rises. So each onset is found anew as the
 /// corner of a hinge f = b before, rising after, by least squares over the rows about the crossing (up to
 /// three times the threshold or 15 times the noise, not beyond the peak): against the position where that
-/// moves one way there, else against time.
+/// moves in one direction there, else against time.
 /// @throws std::invalid_argument if the signal is too short, not finite, or a free span holds no row.
 [[nodiscard]] ContactsFound find_contacts(const ContactSignal& signal, const OnsetOptions& options);
 

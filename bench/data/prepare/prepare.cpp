@@ -165,7 +165,7 @@ class Run {
       if (weight.mass_kg < 3.0 * weight.mass_error_kg) {
         done_.warnings.push_back(
             fmt::format("the weight is {:.3g} +- {:.2g} kg: not told from zero, or the sensor counts forces "
-                        "the other way",
+                        "in the other direction",
                         weight.mass_kg, weight.mass_error_kg));
       }
     }
@@ -230,7 +230,8 @@ class Run {
     schema::Axis& about = recording().axes[axis];
     if (travel == 0.0) {
       done_.warnings.push_back(fmt::format(
-          "{} moves neither way from the onsets to the peaks, so no contact position is stored", about.name));
+          "{} moves in neither direction from the onsets to the peaks, so no contact position is stored",
+          about.name));
       return {};
     }
     about.contact_position = median(positions);

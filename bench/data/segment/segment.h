@@ -16,17 +16,18 @@ struct SegmentOptions {
   double dwell = 0.05;       ///< share of a stroke at either end that counts as turning round, in (0, 0.5)
   double corner_hz = 20.0;   ///< of the zero-phase low-pass, at most a fifth of the rate
   std::size_t points = 101;  ///< of the grid on which cycles are averaged, at least 2
-  std::optional<double> closing_direction;  ///< +1 or -1; by default the way that costs more work
+  std::optional<double> closing_direction;  ///< +1 or -1; by default the direction that costs more work
 };
 
-/// Finds the cycles of a recording of opening and closing, with their four phases (004, section 3.1).
+/// Finds the cycles of a recording of opening and closing, with their four phases ([Okamura2003],
+/// section 3.1).
 ///
 /// Turning points of the low-passed position are those whose prominence exceeds a share of the range, so that
 /// neither noise nor a hesitation within a stroke counts. Each closing is one cycle, from 1: the turn from
 /// opening to closing before it, the closing, the turn from closing to opening, the opening, as far as they
 /// were recorded. Turning round is what happens within a share of the stroke from its ends. Closing is the
-/// way that costs more work, unless it is given. Forces are low-passed and averaged over the cycles on a
-/// uniform grid of positions, NaN where a cycle did not reach.
+/// direction that costs more work, unless it is given. Forces are low-passed and averaged over the cycles on
+/// a uniform grid of positions, NaN where a cycle did not reach.
 /// @throws std::invalid_argument if there is no such axis, no force, a value that is not finite, or no
 /// closing,
 ///         saying which.

@@ -9,7 +9,7 @@
 
 namespace kerf::bench {
 
-/// Colours that colour-blind readers tell apart (Okabe and Ito 2008), in the order in which charts use them.
+/// Colours that colour-blind readers tell apart [OkabeIto2008], in the order in which charts use them.
 enum class Colour { black, blue, vermillion, green, purple, orange, sky, yellow, grey };
 
 enum class Mark { line, points, circles, crosses, steps, boxes };

@@ -17,8 +17,8 @@ constexpr double stroke_s = 0.1;
 
 /// Where a tap is: in within 0.1 s, there for 0.1 s, out again.
 double tapped(double time_s) {
-  const double in = drivers::MinimumJerk::at(time_s / stroke_s).place;
-  const double out = drivers::MinimumJerk::at(time_s / stroke_s - 2.0).place;
+  const double in = drivers::MinimumJerk::at(time_s / stroke_s).position;
+  const double out = drivers::MinimumJerk::at(time_s / stroke_s - 2.0).position;
   return -above_m + (above_m + inside_m) * (in - out);
 }
 

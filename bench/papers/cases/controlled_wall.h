@@ -12,8 +12,8 @@ namespace kerf::bench {
 /// Energy in the spring of a one-sided wall.
 struct WallEnergy {
   double stiffness_n_per_m = 0.0;
-  double operator()(double place_m) const noexcept {
-    const double inside_m = std::max(place_m, 0.0);
+  double operator()(double position_m) const noexcept {
+    const double inside_m = std::max(position_m, 0.0);
     return 0.5 * stiffness_n_per_m * inside_m * inside_m;
   }
 };
@@ -32,7 +32,7 @@ inline constexpr double above_wall_m = 5e-3;
 /// A weight of 4 N that falls on a wall from 5 mm above it.
 template <typename Force>
 [[nodiscard]] CaseTrace lean_on(const SampledDevice& device, Force wall, double seconds = 3.0) {
-  return run_loop(device, std::move(wall), {.place_m = -above_wall_m}, seconds,
+  return run_loop(device, std::move(wall), {.position_m = -above_wall_m}, seconds,
                   [](double) { return HandPush{.force_n = leaning_n}; });
 }
 

@@ -17,7 +17,7 @@ constexpr double margin = 0.7;
 /// A hand that leans on a wall with a spring drawn by 4 mm.
 CaseTrace lean(const SampledDevice& device, double stiffness) {
   return run_loop(device, WallForce{{.stiffness_n_per_m = stiffness}}, {}, 1.0,
-                  [](double) { return HandPush{.place_m = 4e-3}; });
+                  [](double) { return HandPush{.position_m = 4e-3}; });
 }
 
 CaseOutcome judged(const CaseTrace& trace, std::string figure) {
@@ -41,7 +41,7 @@ NamedCase delay(std::uint64_t) {
   const double prompt_ripple = ripple_n(lean(prompt, stiffness_n_per_m));
   const double damping = late.damping_n_s_per_m();
   return {
-      .where = "literature (Diolaiti et al. 2006)",
+      .where = "literature [Diolaiti2006]",
       .what =
           "A wall that is at rest under a hand at once vibrates when the force comes a few milliseconds "
           "late.",

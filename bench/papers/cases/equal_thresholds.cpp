@@ -62,7 +62,7 @@ NamedCase equal_thresholds(std::uint64_t seed) {
   const double step_n = 2.0 * peak_n / seconds * period_s;
   const double expected = 4.0 * noise_n / (std::sqrt(std::numbers::pi) * step_n);
   return {
-      .where = "000, section 3.5",
+      .where = "[Henry2004], section 3.5",
       .what =
           "With one threshold for breaking in and for letting go, the noise of the force alone makes "
           "the tissue alternate between holding and being cut.",

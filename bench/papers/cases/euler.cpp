@@ -20,7 +20,7 @@ constexpr double press_s = 0.2;
 
 /// Where a tool is that presses to a depth and stays there.
 double pressed(double depth_m, double time_s) {
-  return depth_m * drivers::MinimumJerk::at(time_s / press_s).place;
+  return depth_m * drivers::MinimumJerk::at(time_s / press_s).position;
 }
 
 /// Largest distance of two traces at the times of the first; lost_n where the first got lost.
@@ -93,7 +93,7 @@ NamedCase euler_maxwell(std::uint64_t) {
   picture.x_range = {0.0, 0.1};
   picture.y_range = {-0.5, 1.0};
   return {
-      .where = "002, section 2.1 (the model); literature",
+      .where = "[FuzzyKelvin], section 2.1 (the model); literature",
       .what = "Forward Euler on a Maxwell arm that relaxes faster than half a period diverges.",
       .remedy = "The exact step over a period, a = exp(-T / tau), which is stable at any ratio.",
       .limit = felt_n,
@@ -116,7 +116,7 @@ NamedCase euler_lattice(std::uint64_t) {
                              fmt::format("{} sub-steps", needed));
   picture.x_range = {0.0, 0.1};
   picture.y_range = {-0.2, 0.4};
-  return {.where = "003, section 3 (333 Hz of the 1000 Hz it aimed at)",
+  return {.where = "[Weiss2004], section 3 (333 Hz of the 1000 Hz it aimed at)",
           .what =
               "A lattice of stiff springs and light nodes, stepped once a tick, blows up within a few "
               "milliseconds of being touched.",

@@ -22,9 +22,9 @@ constexpr double margin = 0.5;  // of the stiffness at the passive depth
 struct LimitedDepth {
   double limit_m = deepest_m;
   double operator()(const AxisReading& reading) const noexcept {
-    const double followed_m = std::min(reading.place_m, limit_m);
+    const double followed_m = std::min(reading.position_m, limit_m);
     return -intestine.elastic_force(followed_m) -
-           intestine.stiffness(limit_m) * (reading.place_m - followed_m);
+           intestine.stiffness(limit_m) * (reading.position_m - followed_m);
   }
 };
 
@@ -39,7 +39,7 @@ SampledDevice weighted_handle() {
 CaseTrace lean(const LimitedDepth& law) {
   const double begin_m =
       intestine.depth_at_stiffness(0.5 * push_n * intestine.exponent / intestine.thickness);
-  return run_loop(weighted_handle(), law, {.place_m = begin_m}, 3.0,
+  return run_loop(weighted_handle(), law, {.position_m = begin_m}, 3.0,
                   [](double time_s) { return HandPush{.force_n = push_n * std::min(1.0, 0.5 + time_s)}; });
 }
 
@@ -63,10 +63,10 @@ NamedCase exponential_depth(std::uint64_t) {
   const CaseTrace holding = lean({.limit_m = kept_m});
   const double rest_m = kept_m + (push_n - intestine.elastic_force(kept_m)) / intestine.stiffness(kept_m);
   return {
-      .where = "001, eq. 11",
+      .where = "[Sepulveda2008], eq. 11",
       .what =
           "Exponential tissue stiffens with its own force, so that at some depth no sampled loop is "
-          "passive any more: pressed harder, it hums.",
+          "passive any more: pressed harder, it has a limit cycle.",
       .remedy =
           fmt::format("The law ends where its slope is {} of that at its passive depth on this device, and "
                       "goes on with that slope.",

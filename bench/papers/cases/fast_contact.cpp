@@ -34,7 +34,7 @@ struct SoftContact {
   models::Precontact<double> law{.stiffness = stiffness_n_per_m, .width = precontact_m};
   double operator()(const AxisReading& reading) const noexcept {
     models::Precontact<double>::State state;
-    return -law.step(state, {.penetration = reading.place_m - precontact_m}, 0.0);
+    return -law.step(state, {.penetration = reading.position_m - precontact_m}, 0.0);
   }
 };
 
@@ -47,11 +47,11 @@ struct Bounce {
 template <typename Force>
 Bounce bounce(double speed, double share, Force force) {
   const SampledDevice device = thrown_handle();
-  SampledLoop loop(device, force, {.place_m = -share * speed * device.period_s, .speed_m_s = speed});
+  SampledLoop loop(device, force, {.position_m = -share * speed * device.period_s, .speed_m_s = speed});
   Bounce done;
   for (int tick = 0; tick < 1000; ++tick) {
     done.speed.add(tick * device.period_s, loop.motion().speed_m_s);
-    if (tick > 1 && loop.motion().place_m < 0.0) break;
+    if (tick > 1 && loop.motion().position_m < 0.0) break;
     loop.step();
   }
   const double out = loop.motion().speed_m_s;
@@ -61,7 +61,7 @@ Bounce bounce(double speed, double share, Force force) {
 
 /// Most that is gained, over the moments at which a tick may find the contact [J].
 template <typename Force>
-double most_gained(double speed, Force force) {
+double max_gained(double speed, Force force) {
   double most = -std::numeric_limits<double>::infinity();
   for (int i = 0; i < phases; ++i) {
     most = std::max(most, bounce(speed, static_cast<double>(i) / phases, force).gained_j);
@@ -79,10 +79,10 @@ NamedCase fast_contact(std::uint64_t) {
   const WallForce stiff{{.stiffness_n_per_m = stiffness_n_per_m}};
   const WallForce damped{{.stiffness_n_per_m = stiffness_n_per_m, .damping_n_s_per_m = damping_n_s_per_m}};
   const SampledDevice device = thrown_handle();
-  const double failing_j = most_gained(speed_m_s, stiff);
-  const double slow_j = most_gained(0.25 * speed_m_s, stiff);
-  const double holding_j = most_gained(speed_m_s, damped);
-  const double precontact_j = most_gained(speed_m_s, SoftContact{});
+  const double failing_j = max_gained(speed_m_s, stiff);
+  const double slow_j = max_gained(0.25 * speed_m_s, stiff);
+  const double holding_j = max_gained(speed_m_s, damped);
+  const double precontact_j = max_gained(speed_m_s, SoftContact{});
   const double leak = 0.5 * stiffness_n_per_m * device.period_s - device.viscous_n_s_per_m;
   Chart picture =
       two_traces("Leaving a wall of 1000 N/m that was met at 0.8 m/s", bounce(speed_m_s, 0.5, stiff).speed,
@@ -94,7 +94,7 @@ NamedCase fast_contact(std::uint64_t) {
   picture.y_range = {-0.84, -0.6};
   picture.horizontal = {{.at = -speed_m_s}};
   return {
-      .where = "literature (Abbott and Okamura 2005); models/precontact.h is 000's",
+      .where = "literature [AbbottOkamura2005]; models/precontact.h is of [Henry2004]",
       .what =
           "A wall that Coulomb friction keeps passive when it is met slowly throws back a fast tool faster "
           "than it came.",

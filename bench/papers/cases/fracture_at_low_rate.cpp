@@ -15,7 +15,7 @@ namespace {
 
 using Tissue = models::Fracture<double>;
 
-/// In vivo intestine (001) that yields at 2 N, cut by a blade of 10 mm: Jc w = 2 N.
+/// In vivo intestine [Sepulveda2008] that yields at 2 N, cut by a blade of 10 mm: Jc w = 2 N.
 constexpr Tissue tissue{.amplitude = 4.3e-7,
                         .exponent = 13.0,
                         .yield_energy = 0.0153846120769,
@@ -144,7 +144,7 @@ NamedCase fracture_at_low_rate(std::uint64_t) {
                              holding.front().error_mj, "from the path");
   picture.y_label = "energy [mJ]";
   picture.x_range = {0.8, 1.6};
-  return {.where = "001, section 4.3",
+  return {.where = "[Sepulveda2008], section 4.3",
           .what =
               "Work counted as F dx tick by tick, with the fracture noticed at a tick, does not add up to "
               "what is stored and what became crack; the lower the rate, the less.",

@@ -28,10 +28,10 @@ NamedCase passivity_control(std::uint64_t) {
   const double lagging_n =
       ripple_n(lean_on(device, ControlledWall(wall, device, {stiffness}, BrakeOn::read_velocity)));
   return {
-      .where = "literature (Hannaford and Ryu 2002)",
-      .what = fmt::format("A wall {} times as stiff as the device's friction keeps passive hums under a "
-                          "weight.",
-                          share),
+      .where = "literature [HannafordRyu2002]",
+      .what = fmt::format(
+          "Under a weight a wall {} times as stiff as the device's friction keeps passive has a limit cycle.",
+          share),
       .remedy =
           "A passivity controller that brakes away in a tick what the hold gave in the one before, on the "
           "travel of that tick.",

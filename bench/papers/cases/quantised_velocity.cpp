@@ -17,26 +17,27 @@ constexpr double into_wall_m_s = 10e-3;
 
 /// A hand that goes into the wall at 10 mm/s for a second and stays.
 CaseTrace slow_press(const SampledDevice& device) {
-  return run_loop(device, WallForce{wall}, {}, seconds,
-                  [](double time_s) { return HandPush{.place_m = into_wall_m_s * std::min(time_s, 1.0)}; });
+  return run_loop(device, WallForce{wall}, {}, seconds, [](double time_s) {
+    return HandPush{.position_m = into_wall_m_s * std::min(time_s, 1.0)};
+  });
 }
 
-struct Hum {
+struct QuantisationNoise {
   CaseTrace trace;
   double rms_n = 0.0;
 };
 
 /// Against the same loop with an encoder without steps.
-Hum hum_of(SampledDevice device) {
-  Hum hum{.trace = slow_press(device)};
+QuantisationNoise noise_of(SampledDevice device) {
+  QuantisationNoise noise{.trace = slow_press(device)};
   device.encoder_step_m = 0.0;
   const CaseTrace smooth = slow_press(device);
   double squares = 0.0;
   for (std::size_t i = 0; i < smooth.force_n.size(); ++i) {
-    squares += std::pow(hum.trace.force_n[i] - smooth.force_n[i], 2);
+    squares += std::pow(noise.trace.force_n[i] - smooth.force_n[i], 2);
   }
-  hum.rms_n = std::sqrt(squares / static_cast<double>(smooth.force_n.size()));
-  return hum;
+  noise.rms_n = std::sqrt(squares / static_cast<double>(smooth.force_n.size()));
+  return noise;
 }
 
 CaseOutcome judged(double rms_n, std::string figure) {
@@ -49,16 +50,16 @@ NamedCase quantised_velocity(std::uint64_t) {
   SampledDevice device = scissors_handle();
   device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = 0.0;
-  const Hum failing = hum_of(device);
+  const QuantisationNoise failing = noise_of(device);
   SampledDevice finer = device;
   finer.encoder_step_m /= 16.0;
-  const Hum fine = hum_of(finer);
+  const QuantisationNoise fine = noise_of(finer);
   SampledDevice filtered = device;
   filtered.velocity_corner_rad_s = corner_rad_s;
-  const Hum holding = hum_of(filtered);
+  const QuantisationNoise holding = noise_of(filtered);
   const double count_n = wall.damping_n_s_per_m * device.encoder_step_m / device.period_s;
   return {
-      .where = "literature (Colgate and Brown 1994); the encoder of 004",
+      .where = "literature [ColgateBrown1994]; the encoder of [Okamura2003]",
       .what =
           "A damped wall on the plain difference of a coarse encoder rattles as soon as the hand moves: one "
           "count reads as a speed "

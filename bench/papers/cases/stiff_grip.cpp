@@ -29,7 +29,7 @@ SampledDevice held(const HandImpedance& hand) {
 
 CaseTrace press(const HandImpedance& hand, const Wall& wall) {
   return run_loop(held(hand), WallForce{wall}, {}, seconds, [](double time_s) {
-    return HandPush{.place_m = into_tissue_m * drivers::MinimumJerk::at(2.0 * time_s).place};
+    return HandPush{.position_m = into_tissue_m * drivers::MinimumJerk::at(2.0 * time_s).position};
   });
 }
 
@@ -56,7 +56,7 @@ NamedCase stiff_grip(std::uint64_t) {
   const double firm_ripple = ripple_n(failing);
   const double held_ripple = ripple_n(holding);
   return {
-      .where = "literature (Fu and Cavusoglu 2012 for the hands)",
+      .where = "literature ([FuCavusoglu2012] for the hands)",
       .what =
           "A damped tissue that is at rest in a light grip vibrates when the same hand stiffens: the loop "
           "moves faster, and late damping pushes instead of braking.",

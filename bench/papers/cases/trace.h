@@ -45,11 +45,11 @@ inline constexpr double felt_n = 0.05;
 /// What a hand does to a device: a force on it, and where its spring rests.
 struct HandPush {
   double force_n = 0.0;
-  double place_m = 0.0;
+  double position_m = 0.0;
 };
 
-/// The force that a device in a hand renders over `seconds`, positive against the way in; `hand(t)` gives
-/// the HandPush. Ends early at lost_n.
+/// The force that a device in a hand renders over `seconds`, positive against the motion into it; `hand(t)`
+/// gives the HandPush. Ends early at lost_n.
 template <typename Force, typename Hand>
 [[nodiscard]] CaseTrace run_loop(const SampledDevice& device, Force force, AxisMotion start, double seconds,
                                  Hand hand) {
@@ -59,7 +59,7 @@ template <typename Force, typename Hand>
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     const double time_s = static_cast<double>(tick) * device.period_s;
     const HandPush push = hand(time_s);
-    loop.step(push.force_n, push.place_m);
+    loop.step(push.force_n, push.position_m);
     trace.add(time_s, -loop.held_n());
     if (!(std::abs(loop.held_n()) < lost_n)) break;
   }

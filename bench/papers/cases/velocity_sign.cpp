@@ -16,10 +16,10 @@ namespace kerf::bench::cases {
 namespace {
 
 constexpr double closing_n = 1.5;
-constexpr double opening_n = -0.5 * closing_n;  // as 004 has it for empty scissors
+constexpr double opening_n = -0.5 * closing_n;  // as [Okamura2003] has it for empty scissors
 constexpr double band_rad_s = 0.4;
 constexpr double reversal_scale = 30.0;
-constexpr double corner_rad_s = 10.0;  // 004
+constexpr double corner_rad_s = 10.0;  // [Okamura2003]
 constexpr double closed_m = 8e-3;
 constexpr double back_m = 2e-3;
 
@@ -40,8 +40,8 @@ CaseTrace close_and_hold(double ramp_band, double scale) {
       drivers::SimulatedScissors::lever_m};
   const SampledDevice device = held_scissors();
   return run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
-    return HandPush{.place_m = closed_m * drivers::MinimumJerk::at(time_s / 0.6).place -
-                               back_m * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).place};
+    return HandPush{.position_m = closed_m * drivers::MinimumJerk::at(time_s / 0.6).position -
+                                  back_m * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).position};
   });
 }
 
@@ -84,7 +84,7 @@ NamedCase velocity_sign(std::uint64_t) {
   const double scaled_n = ripple_n(close_and_hold(0.0, reversal_scale));
   const NarrowestBands bands = narrowest_bands();
   return {
-      .where = "004, section 3.1",
+      .where = "[Okamura2003], section 3.1",
       .what =
           "A law that chooses its branch by the sign of a filtered velocity is a relay behind a lag: "
           "where a hand has let go a little and holds still, it switches to and fro for ever.",

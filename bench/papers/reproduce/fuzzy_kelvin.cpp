@@ -26,7 +26,7 @@ struct Cut {
 };
 
 Cut cut(const models::Law& threshold, double depth_m, double speed, double seconds) {
-  std::vector<double> values{8.0, 7.0, 130.0};  // liver, 002
+  std::vector<double> values{8.0, 7.0, 130.0};  // liver, [FuzzyKelvin]
   values.insert(values.end(), threshold.values().begin(), threshold.values().end());
   models::Options options = threshold.options();
   options["depth"] = depth_m;

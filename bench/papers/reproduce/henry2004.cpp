@@ -22,7 +22,7 @@ using models::BladeFidelity;
 constexpr double period_s = 1e-3;
 
 /// A scalpel's blade in the plane of y and z, 10 mm wide, 30 mm long, its tip 12 mm under the surface, edge
-/// ahead on -y. Friction is five times as large across the blade as along it; 000 gives no numbers.
+/// ahead on -y. Friction is five times as large across the blade as along it; [Henry2004] gives no numbers.
 const models::BladeShape scalpel = models::BladeShape::parse(
     "0 -0.005 -0.112, 0 0.005 -0.112, 0 0.005 -0.082, 0 -0.005 -0.082", "0 -0.005 -0.112, 0 -0.005 -0.082");
 constexpr models::BladeField friction{.edge = 20.0, .normal = 2e4, .tangential = 4e3};
@@ -35,10 +35,10 @@ struct Path {
 };
 
 Path sampled(const std::vector<drivers::PoseKeyframe>& keyframes) {
-  const drivers::PosePath way({.keyframes = keyframes});
+  const drivers::PosePath pose_path({.keyframes = keyframes});
   Path path;
   for (double t = 0.0; t < keyframes.back().at_s; t += period_s) {
-    const auto now = way.at(t);
+    const auto now = pose_path.at(t);
     const auto part = [](const drivers::Axes& axes, std::size_t from) {
       return Vector3d(axes[from], axes[from + 1], axes[from + 2]);
     };
@@ -51,12 +51,12 @@ Path sampled(const std::vector<drivers::PoseKeyframe>& keyframes) {
   return path;
 }
 
-std::vector<models::Wrench> feel(const Path& path, BladeFidelity fidelity) {
-  std::vector<models::Wrench> felt;
+std::vector<models::Wrench> wrenches_along(const Path& path, BladeFidelity fidelity) {
+  std::vector<models::Wrench> wrenches;
   for (std::size_t i = 0; i < path.time_s.size(); ++i) {
-    felt.push_back(models::blade_wrench(scalpel, friction, fidelity, path.pose[i], path.twist[i]));
+    wrenches.push_back(models::blade_wrench(scalpel, friction, fidelity, path.pose[i], path.twist[i]));
   }
-  return felt;
+  return wrenches;
 }
 
 template <typename Get>
@@ -87,8 +87,8 @@ Chart over_time(const Path& path, const std::string& title, const std::string& y
 
 void cut_and_push(Reproduction& paper) {
   const Path path = sampled(scalpel_t1());
-  const auto felt = feel(path, {BladeFidelity::Kind::paper, 16});
-  const auto milli_newton = [&](std::size_t i, int axis) { return 1e3 * felt[i].force[axis]; };
+  const auto wrenches = wrenches_along(path, {BladeFidelity::Kind::paper, 16});
+  const auto milli_newton = [&](std::size_t i, int axis) { return 1e3 * wrenches[i].force[axis]; };
   paper.figures.push_back(
       {"t1_velocity", over_time(path, "T1: velocity (fig. 12)", "velocity [mm/s]",
                                 [&](std::size_t i, int a) { return 1e3 * path.twist[i].linear[a]; })});
@@ -96,19 +96,19 @@ void cut_and_push(Reproduction& paper) {
       {"t1_force", over_time(path, "T1: force on the hand (fig. 13)", "force [mN]", milli_newton)});
   paper.figures.push_back(
       {"t1_torque", over_time(path, "T1: torque at the hand (fig. 13)", "torque [mN·m]",
-                              [&](std::size_t i, int a) { return 1e3 * felt[i].moment[a]; })});
+                              [&](std::size_t i, int a) { return 1e3 * wrenches[i].moment[a]; })});
   bool opposes = true;
   Vector3d cutting = Vector3d::Zero();
   Vector3d turning = Vector3d::Zero();
   double across = 0.0;
-  for (std::size_t i = 0; i < felt.size(); ++i) {
-    const double power = felt[i].force.dot(path.twist[i].linear);
+  for (std::size_t i = 0; i < wrenches.size(); ++i) {
+    const double power = wrenches[i].force.dot(path.twist[i].linear);
     opposes = opposes && power <= 0.0;
     if (path.time_s[i] < 0.9) {
-      cutting = cutting.cwiseMax(felt[i].force.cwiseAbs());
-      turning = turning.cwiseMax(felt[i].moment.cwiseAbs());
+      cutting = cutting.cwiseMax(wrenches[i].force.cwiseAbs());
+      turning = turning.cwiseMax(wrenches[i].moment.cwiseAbs());
     } else {
-      across = std::max(across, std::abs(felt[i].force.x()));
+      across = std::max(across, std::abs(wrenches[i].force.x()));
     }
   }
   paper.add("While cutting along y the most important effort is along y, against the velocity",
@@ -130,9 +130,9 @@ void cut_and_push(Reproduction& paper) {
 void turn(Reproduction& paper) {
   const Path path = sampled(scalpel_t2());
   const auto about_z = [](const models::Wrench& w) { return 1e6 * w.moment.z(); };
-  const auto of_paper = series(feel(path, {BladeFidelity::Kind::paper, 16}), about_z);
-  const auto of_strips = series(feel(path, {BladeFidelity::Kind::strips, 16}), about_z);
-  const auto of_exact = series(feel(path, {BladeFidelity::Kind::exact}), about_z);
+  const auto of_paper = series(wrenches_along(path, {BladeFidelity::Kind::paper, 16}), about_z);
+  const auto of_strips = series(wrenches_along(path, {BladeFidelity::Kind::strips, 16}), about_z);
+  const auto of_exact = series(wrenches_along(path, {BladeFidelity::Kind::exact}), about_z);
   Chart chart{
       .title = "T2: torque about the main axis (fig. 16)", .x_label = "time [s]", .y_label = "torque [uN·m]"};
   chart.curves.push_back(
@@ -196,9 +196,9 @@ struct Errors {
 Errors errors_of(const std::vector<Draw>& draws, BladeFidelity fidelity) {
   std::vector<double> force, moment;
   for (const Draw& draw : draws) {
-    const auto felt = models::blade_wrench(scalpel, friction, fidelity, draw.pose, draw.twist);
-    force.push_back((felt.force - draw.exact.force).norm() / draw.exact.force.norm());
-    moment.push_back((felt.moment - draw.exact.moment).norm() / draw.exact.moment.norm());
+    const auto wrenches = models::blade_wrench(scalpel, friction, fidelity, draw.pose, draw.twist);
+    force.push_back((wrenches.force - draw.exact.force).norm() / draw.exact.force.norm());
+    moment.push_back((wrenches.moment - draw.exact.moment).norm() / draw.exact.moment.norm());
   }
   return {spread_of(force), spread_of(moment)};
 }

@@ -21,13 +21,13 @@ namespace {
 
 constexpr double period_s = 1e-3;
 constexpr double contact_rad = 40.0 * degree;  // where the blades meet whatever is cut
-constexpr double force_jnd = 0.07;             // Weber fraction, Pang, Tan and Durlach 1991
+constexpr double force_jnd = 0.07;             // Weber fraction, [Pang1991]
 constexpr double felt_n = 0.1;                 // a step of the force that a hand feels
 constexpr double least_force_n = 0.2;          // below it a JND is no share of the force
 constexpr Colour colours[] = {Colour::blue, Colour::vermillion, Colour::green, Colour::purple};
 
-/// A tissue between the blades: force of closing over the angle travelled, with the shapes of 004's figs. 4
-/// and 6. Made for this bench, not measured.
+/// A tissue between the blades: force of closing over the angle travelled, with the shapes of [Okamura2003]'s
+/// figs. 4 and 6. Made for this bench, not measured.
 struct Tissue {
   std::string name;
   std::vector<double> closing_n;  ///< at 0, 4, 8, ... 36 degrees past contact
@@ -129,7 +129,7 @@ LawFile fitted(const schema::Recording& recording, const std::string& model) {
   return fit.laws.front().file;
 }
 
-/// A segmented model of the averaged closing alone, as 004 draws it.
+/// A segmented model of the averaged closing alone, as [Okamura2003] draws it.
 models::Law segmented(const Averaged& mean, std::size_t segments) {
   std::vector<double> time_s, velocity;
   for (std::size_t i = 0; i < mean.force_n.size(); ++i) time_s.push_back(period_s * static_cast<double>(i));
@@ -204,7 +204,7 @@ void scaling(Reproduction& paper, const schema::Recording& recording) {
   Chart chart{.title = "A reversal: pure recording and scaled (fig. 5)",
               .x_label = "time [s]",
               .y_label = "force at the handle [N]"};
-  const auto walk = [&](const models::Law& law, Curve curve) {
+  const auto rendered = [&](const models::Law& law, Curve curve) {
     auto state = law.initial_state();
     double worst = 0.0;
     double before = 0.0;
@@ -221,9 +221,9 @@ void scaling(Reproduction& paper, const schema::Recording& recording) {
     chart.curves.push_back(std::move(curve));
     return worst;
   };
-  const double jump = walk(pure, {.label = "pure recording", .colour = Colour::vermillion});
+  const double jump = rendered(pure, {.label = "pure recording", .colour = Colour::vermillion});
   const double scaled =
-      walk(file.law, {.label = "scaled after each reversal, ramp band", .colour = Colour::blue});
+      rendered(file.law, {.label = "scaled after each reversal, ramp band", .colour = Colour::blue});
   paper.figures.push_back({"scaling", std::move(chart)});
   paper.add("The discontinuities of a pure recording are removed by the scaling", "3.1, fig. 5",
             fmt::format("largest step from tick to tick: {:.2f} N pure, {:.3f} N scaled", jump, scaled),

@@ -25,7 +25,7 @@ constexpr double surface_height_m = 0.09;
 constexpr double yield_energy_j = 0.0153846120769;  // stored at 2 N by the in vivo law
 constexpr double toughness_j_m2 = 2000.0;
 constexpr double slow_m_s = 1e-3;  // so slow that the viscosity adds 20 mN at most
-constexpr double width_m = 1e-3;   // with it Jc w = 2 N; 001 gives the product alone
+constexpr double width_m = 1e-3;   // with it Jc w = 2 N; [Sepulveda2008] gives the product alone
 
 /// A closed loop of the simulated Premium, a hand that follows waypoints, and the law.
 struct Experiment {
@@ -73,11 +73,11 @@ class Script {
 
   drivers::Sample at(double now_s) {
     const auto leg = std::min(static_cast<std::size_t>(now_s / leg_s), path_.size() - 2);
-    const Vector3d way = path_[leg + 1] - path_[leg];
+    const Vector3d chord = path_[leg + 1] - path_[leg];
     const auto stroke = drivers::MinimumJerk::at((now_s - leg_s * static_cast<double>(leg)) / stroke_s);
-    const auto q = mechanisms::Premium::joint_angles(path_[leg] + stroke.place * way);
+    const auto q = mechanisms::Premium::joint_angles(path_[leg] + stroke.position * chord);
     if (!q) throw std::runtime_error("a waypoint is out of the arm's reach");
-    const Vector3d qd = mechanisms::Premium::jacobian(*q).inverse() * (stroke.speed / stroke_s * way);
+    const Vector3d qd = mechanisms::Premium::jacobian(*q).inverse() * (stroke.speed / stroke_s * chord);
     drivers::Sample sample;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       sample.position[static_cast<std::size_t>(axis)] = (*q)[axis];
@@ -85,7 +85,7 @@ class Script {
     }
     return sample;
   }
-  void feel(const drivers::Axes&) {}
+  void apply(const drivers::Axes&) {}
 
  private:
   Waypoints path_;
@@ -108,7 +108,7 @@ class Hand {
     (void)device_->read(now_s, sample);
     return sample;
   }
-  void feel(const drivers::Axes& torque) { (void)device_->write(torque); }
+  void apply(const drivers::Axes& torque) { (void)device_->write(torque); }
 
  private:
   std::unique_ptr<drivers::Device> device_;
@@ -128,7 +128,7 @@ Experiment run(Mover&& mover, bool cutting, double b1, double seconds) {
       motion.velocity[axis] = sample.velocity[axis];
     }
     const models::AxisValues torque = law.step(state, motion, period_s);
-    mover.feel({torque[0], torque[1], torque[2]});
+    mover.apply({torque[0], torque[1], torque[2]});
     const Vector3d q(sample.position[0], sample.position[1], sample.position[2]);
     const Vector3d qd(sample.velocity[0], sample.velocity[1], sample.velocity[2]);
     const auto at = law.device.dynamics(q, qd);

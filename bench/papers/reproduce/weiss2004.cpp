@@ -62,7 +62,7 @@ void one_cut(Reproduction& paper) {
     }
   }
   Chart mesh{.title = "The slab after the cut, its banks drawn apart",
-             .x_label = "x, way of the cut [mm]",
+             .x_label = "x, along the cut [mm]",
              .y_label = "y [mm]"};
   Curve points{.colour = Colour::blue, .mark = Mark::points, .width = 0.8};
   for (int node = 0; node < state.slab.node_limit(); ++node) {
@@ -127,7 +127,7 @@ void update_rate(Reproduction& paper) {
   chart.curves.push_back(std::move(marks));
   chart.y_range = {200.0, 1e6};
   chart.horizontal.push_back({.at = 1000.0, .label = "1 kHz"});
-  chart.horizontal.push_back({.at = 333.0, .label = "003"});
+  chart.horizontal.push_back({.at = 333.0, .label = "[Weiss2004]"});
   paper.figures.push_back({"update_rate", std::move(chart)});
   paper.answer("How many nodes at what rate? (333 Hz, number of nodes not given)", "3",
                fmt::format("99 % of ticks within 1 ms up to {:.0f} nodes, of 131,044 tried, with {} "

@@ -102,7 +102,7 @@ void keep(const HostFloor& floor) {
 
 }  // namespace
 
-double HostFloor::most_expected(std::uint64_t of_ticks) const {
+double HostFloor::max_expected(std::uint64_t of_ticks) const {
   if (ticks == 0) return 0.0;
   const double upper = boost::math::gamma_q_inv(static_cast<double>(missed) + 1.0, 0.05);
   const double mean = upper / static_cast<double>(ticks) * static_cast<double>(of_ticks);

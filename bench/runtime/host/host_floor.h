@@ -23,7 +23,7 @@ struct HostFloor {
 
   /// So many missed deadlines of `ticks` may be the machine's own: the upper 95 % bound of its rate, and
   /// three standard deviations of the count.
-  [[nodiscard]] double most_expected(std::uint64_t ticks) const;
+  [[nodiscard]] double max_expected(std::uint64_t ticks) const;
 };
 
 [[nodiscard]] nlohmann::ordered_json to_json(const HostFloor& floor);

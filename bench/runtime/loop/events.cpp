@@ -18,7 +18,7 @@ std::string text_of(const schema::FlagInfo& flag, std::uint64_t missing) {
 
 }  // namespace
 
-void EventFinder::look_at_flags(const schema::Row& row, std::vector<schema::Event>& events) {
+void EventFinder::process_flags(const schema::Row& row, std::vector<schema::Event>& events) {
   const std::uint64_t missing = row.tick > last_tick_ ? row.tick - last_tick_ - 1 : 0;
   for (std::size_t i = 0; i < schema::flag_table.size(); ++i) {
     const schema::FlagInfo& flag = schema::flag_table[i];

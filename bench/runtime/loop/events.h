@@ -15,13 +15,13 @@ namespace kerf::bench {
 class EventFinder {
  public:
   /// Rows in their order. Appends what begins with this one.
-  void look_at(const schema::Row& row, std::vector<schema::Event>& events) {
-    if (row.flags != 0) look_at_flags(row, events);
+  void process(const schema::Row& row, std::vector<schema::Event>& events) {
+    if (row.flags != 0) process_flags(row, events);
     last_tick_ = row.tick;
   }
 
  private:
-  void look_at_flags(const schema::Row& row, std::vector<schema::Event>& events);
+  void process_flags(const schema::Row& row, std::vector<schema::Event>& events);
 
   static constexpr double never = -std::numeric_limits<double>::infinity();
   std::uint64_t last_tick_ = 0;

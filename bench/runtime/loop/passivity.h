@@ -10,7 +10,7 @@
 namespace kerf::bench {
 
 /// Energy that the rendering has taken out of the hand, by the force held over each tick and the travel in it
-/// (Hannaford and Ryu 2002). A rendering is passive while it never has given more than it took.
+/// [HannafordRyu2002]. A rendering is passive while it never has given more than it took.
 class PassivityObserver {
  public:
   explicit PassivityObserver(const std::vector<drivers::AxisInfo>& axes) noexcept : count_(axes.size()) {
@@ -39,8 +39,8 @@ class PassivityObserver {
   ///
   /// over the speeds v of all axes in the period behind, their travel over its length: the velocity of a
   /// driver lags by its filter, and braking on it may push (docs/where-methods-fail.md). At less than 0.1
-  /// mm/s the quotient means nothing and there is none. Returns whether it acted. Source: Hannaford and Ryu
-  /// 2002, eq. 6 to 9.
+  /// mm/s the quotient means nothing and there is none. Returns whether it acted. Source: [HannafordRyu2002],
+  /// eq. 6 to 9.
   bool control(const drivers::Axes& velocity, double period_s, drivers::Axes& force) const noexcept {
     constexpr double least_speed_m_s = 1e-4;
     if (energy_j_ >= 0.0) return false;

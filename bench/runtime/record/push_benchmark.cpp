@@ -22,7 +22,7 @@ int main() {
   bench::RowRing ring(8192);
   std::atomic<bool> done{false};
   std::jthread writer([&] {
-    std::vector<schema::Row> chunk(bench::RowRing::most_popped);
+    std::vector<schema::Row> chunk(bench::RowRing::max_popped);
     while (!done) {
       ring.pop(chunk.data());
       std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -24,7 +24,7 @@ Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
       tap_(options.ring_rows),
       lossless_(options.lossless),
       on_failure_(options.on_failure),
-      chunk_(RowRing::most_popped) {
+      chunk_(RowRing::max_popped) {
   thread_ = std::jthread([this](const std::stop_token& stop) { write_until_stopped(stop); });
 }
 
@@ -61,7 +61,7 @@ std::size_t Recorder::write_chunk() {
   if (!rows.empty()) last_time_s_ = rows.back().time_s;
   std::vector<schema::Event> found = marked(last_time_s_);
   if (rows.empty() && found.empty()) return 0;
-  for (const schema::Row& row : rows) finder_.look_at(row, found);
+  for (const schema::Row& row : rows) finder_.process(row, found);
   std::stable_sort(found.begin(), found.end(), [](const schema::Event& first, const schema::Event& second) {
     return first.time_s < second.time_s;
   });

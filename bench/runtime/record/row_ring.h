@@ -17,7 +17,7 @@ namespace kerf::bench {
 /// takes the 99th percentile of a push from 390 ns to less than 100 ns.
 class RowRing {
  public:
-  explicit RowRing(std::size_t rows) : queue_(rows), slots_(rows + most_popped + 2) {}
+  explicit RowRing(std::size_t rows) : queue_(rows), slots_(rows + max_popped + 2) {}
 
   /// Returns whether there was room.
   bool push(const schema::Row& row) noexcept {
@@ -31,15 +31,15 @@ class RowRing {
   /// Of the pushing thread.
   [[nodiscard]] bool has_room() const noexcept { return queue_.write_available() > 0; }
 
-  /// Takes up to `most_popped` rows out, in their order; returns how many. The slots of rows that are being
+  /// Takes up to `max_popped` rows out, in their order; returns how many. The slots of rows that are being
   /// copied are not given to push() again: there are so many more of them than the queue can hold.
   std::size_t pop(schema::Row* rows) noexcept {
-    const std::size_t count = queue_.pop(popped_.data(), most_popped);
+    const std::size_t count = queue_.pop(popped_.data(), max_popped);
     for (std::size_t i = 0; i < count; ++i) rows[i] = slots_[popped_[i]];
     return count;
   }
 
-  static constexpr std::size_t most_popped = 1000;
+  static constexpr std::size_t max_popped = 1000;
 
  private:
   static void prefetch(const schema::Row& slot) noexcept {
@@ -51,7 +51,7 @@ class RowRing {
 
   boost::lockfree::spsc_queue<std::uint32_t> queue_;
   std::vector<schema::Row> slots_;  // value-initialised: every page is touched
-  std::vector<std::uint32_t> popped_ = std::vector<std::uint32_t>(most_popped);
+  std::vector<std::uint32_t> popped_ = std::vector<std::uint32_t>(max_popped);
   std::uint32_t next_ = 0;  ///< of the pushing thread
 };
 

@@ -24,7 +24,7 @@ class RowTap {
   /// Whether the next row finds room; of the pushing thread.
   [[nodiscard]] bool has_room() const noexcept { return ring_.has_room(); }
 
-  /// Takes up to RowRing::most_popped rows out, in their order; returns how many.
+  /// Takes up to RowRing::max_popped rows out, in their order; returns how many.
   std::size_t pop(schema::Row* rows) noexcept { return ring_.pop(rows); }
 
   /// Rows that found no room.

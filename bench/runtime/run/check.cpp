@@ -74,7 +74,7 @@ std::string beside_the_floor(const LoopReport& report, const HostFloor& floor) {
     return fmt::format("no deadline was missed in this run, but {}: expect {:.3g} in a minute", empty,
                        share * floor.rate_hz * 60.0);
   }
-  if (static_cast<double>(report.missed()) <= floor.most_expected(report.ticks())) {
+  if (static_cast<double>(report.missed()) <= floor.max_expected(report.ticks())) {
     return empty + ": these may all be the machine's own";
   }
   if (missed_by(report, Stage::wake) == report.missed()) {

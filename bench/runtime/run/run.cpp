@@ -79,12 +79,12 @@ class Run {
     (void)laws();  // before anything is written or moves
     if (!options.rendering) return;
     other_ = options.rendering(result_.device);
-    if (other_.most_ticks > 0) loop_.ticks = std::min(loop_.ticks, other_.most_ticks);
+    if (other_.max_ticks > 0) loop_.ticks = std::min(loop_.ticks, other_.max_ticks);
   }
 
   RunResult run() {
     const auto recorder = open_recorder();
-    if (!options_.virtual_time) know_the_machine();
+    if (!options_.virtual_time) measure_host();
     options_.progress(recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
                       static_cast<std::size_t>(loop_.ticks), [&](std::atomic<std::size_t>& done) {
                         run_counted({.stop = stop_, .done = done, .heartbeat = heartbeat_}, recorder.get());
@@ -148,7 +148,7 @@ class Run {
     return all;
   }
 
-  void know_the_machine() {
+  void measure_host() {
     if (options_.floor_s > 0.0)
       result_.floor = host_floor(options_.rate_hz, options_.floor_s, options_.floor_anew);
     const auto known = result_.floor ? result_.floor : cached_host_floor(options_.rate_hz);

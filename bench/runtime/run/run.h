@@ -30,7 +30,7 @@ struct LawChange {
 struct OtherRendering {
   std::function<Command(const drivers::Sample&, double elapsed_s)> step;
   std::function<bool()> finished;  ///< ends the run before its time; empty: nothing does
-  std::uint64_t most_ticks = 0;    ///< after which it has finished at the latest; 0: not known
+  std::uint64_t max_ticks = 0;     ///< after which it has finished at the latest; 0: not known
 };
 
 /// What to run on a device, for how long, and where to record it.

@@ -58,7 +58,7 @@ struct Scene {
 /// fits, with hand and trajectory as options. @throws std::invalid_argument if no device fits the tissue.
 [[nodiscard]] std::string device_of(const Scene& scene);
 
-/// The tool's way by script alone, one entry a tick from t = 0 on: where the hand would have the tool if
+/// The tool's path by script alone, one entry a tick from t = 0 on: where the hand would have the tool if
 /// nothing resisted, and how fast. Strokes are taken without their variation.
 struct ToolPath {
   double period_s = 0.0;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::array subject_colours{Colour::blue,   Colour::vermillion, Colour::green, Colour::purple,
                                      Colour::orange, Colour::sky,        Colour::grey,  Colour::yellow};
-constexpr std::size_t most_tracks = 12;
+constexpr std::size_t max_tracks = 12;
 
 /// Rows of a forest plot from the top down: names at the left, a bar and a point each.
 class Forest {
@@ -317,7 +317,7 @@ std::vector<Figure> analysis_figures(const Study& study, const Analysis& analysi
   if (analysis.trials == 0) return figures;
   if (analysis.levels && analysis.levels->pooled.points.size() > 1)
     figures.push_back({"psychometric", psychometric_chart(analysis)});
-  for (std::size_t i = 0; i < std::min(analysis.tracks.size(), most_tracks); ++i)
+  for (std::size_t i = 0; i < std::min(analysis.tracks.size(), max_tracks); ++i)
     figures.push_back({fmt::format("track-{}", i + 1), track_chart(analysis.tracks[i], analysis)});
   for (std::size_t i = 0; i < analysis.rankings.size(); ++i) {
     if (analysis.rankings[i].bradley_terry)

@@ -87,7 +87,7 @@ json spread_as_json(const SubjectSpread& spread) {
               {"equal",
                {{"test", "Fisher-Freeman-Halton"},
                 {"chi_squared", json_number(spread.equal.statistic)},
-                {"freedom", spread.equal.freedom},
+                {"freedom", spread.equal.degrees_of_freedom},
                 {"p_value", json_number(spread.equal.p)},
                 {"exact", spread.equal.is_exact}}},
               {"mean", nullptr},
@@ -131,11 +131,11 @@ json scale_as_json(const psychophysics::Ranking& ranking) {
           {"std_error", json_numbers(ranking.standard_error)},
           {"all_equal",
            {{"ratio", json_number(ranking.ratio)},
-            {"freedom", ranking.ratio_freedom},
+            {"freedom", ranking.ratio_degrees_of_freedom},
             {"p_value", json_number(ranking.ratio_p)}}},
           {"one_scale",
            {{"deviance", json_number(ranking.deviance)},
-            {"freedom", ranking.deviance_freedom},
+            {"freedom", ranking.deviance_degrees_of_freedom},
             {"p_value", json_number(ranking.deviance_p)}}}};
 }
 

@@ -15,7 +15,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_unbroken = 24;  ///< characters of a cell that stay on one line
+constexpr std::size_t max_unbroken = 24;  ///< characters of a cell that stay on one line
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -40,7 +40,7 @@ std::string table_of(const Rows& rows) {
     if (is_empty) continue;
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const std::string& whole = rows[row][column];
-      const bool is_short = row > 0 && whole.size() < most_unbroken;
+      const bool is_short = row > 0 && whole.size() < max_unbroken;
       std::string cell;
       for (const char c : whole) cell += is_short && c == ' ' ? std::string("\u00a0") : std::string(1, c);
       kept[row].push_back(std::move(cell));
@@ -167,14 +167,15 @@ std::string bias_table(const SlotBias& bias, Design design) {
     rows.push_back({std::string(label_of(design, slot)), fmt::format("{} times", bias.answers[slot]),
                     fmt::format("{} of {}", k, n)});
   }
-  std::string text = fmt::format("Without a lean to a slot the shares are equal: {}.", p_text(bias.test.p));
+  std::string text = fmt::format("Without a response bias the shares are equal: {}.", p_text(bias.test.p));
   if (bias.detection) {
     text += fmt::format(
-        " With the lean taken out d' is {} ({}), criterion {:+.2f} +- {:.2f} (below 0: to the first).",
+        " With the response bias taken out d' is {} ({}), criterion {:+.2f} +- {:.2f} (below 0: to the "
+        "first).",
         d_prime_text(bias.detection->d_prime), d_prime_text(bias.detection->interval),
         bias.detection->criterion, bias.detection->criterion_standard_error);
   }
-  return "<h2>Lean to a slot</h2>\n" + html_table(rows) +
+  return "<h2>Response bias</h2>\n" + html_table(rows) +
          fmt::format("<p class=\"soft\">{}</p>\n", escaped(text));
 }
 

@@ -230,7 +230,7 @@ class Findings {
   void write_bias() {
     const SlotBias& bias = analysis_.bias;
     if (!bias.note.empty()) {
-      warn(fmt::format("no test of answers that lean to one slot: {}", bias.note));
+      warn(fmt::format("no test of a response bias to one slot: {}", bias.note));
       return;
     }
     if (!is_alarm(bias.test.p)) return;
@@ -239,7 +239,7 @@ class Findings {
       counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ", label_of(analysis_.design, slot),
                             bias.answers[slot]);
     }
-    warn(fmt::format("answers lean to one slot ({}; {}){}", counts, p_text(bias.test.p),
+    warn(fmt::format("the answers have a response bias to one slot ({}; {}){}", counts, p_text(bias.test.p),
                      is_preference() ? ": a preference is seen less clearly for it"
                                      : ": the count makes the difference look smaller than it is"));
   }

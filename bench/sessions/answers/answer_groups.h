@@ -47,7 +47,7 @@ struct AnswerGroup {
   std::string note;                                       ///< why something is missing
 };
 
-/// Answers that lean to a slot.
+/// A response bias: answers that prefer a slot.
 struct SlotBias {
   std::vector<int> answers;                    ///< by slot
   std::vector<psychophysics::Count> right_in;  ///< right answers of the trials in which each slot was right

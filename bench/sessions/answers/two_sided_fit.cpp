@@ -22,15 +22,15 @@ psychophysics::Estimate standard(double value, double degrees_of_freedom) {
 }
 
 /// Twice the loss of log-likelihood that an interval of this confidence allows.
-double loss_of(double confidence, double freedom) {
+double loss_of(double confidence, double degrees_of_freedom) {
   const auto quantile = psychophysics::equivalent_estimate(
-      standard(0.0, freedom), {.lower = -1.0, .upper = 1.0}, 0.5 * (1.0 - confidence));
+      standard(0.0, degrees_of_freedom), {.lower = -1.0, .upper = 1.0}, 0.5 * (1.0 - confidence));
   return quantile.interval.upper * quantile.interval.upper;
 }
 
 /// The other way.
-double confidence_of(double loss, double freedom) {
-  const auto tail = psychophysics::equivalent_estimate(standard(std::sqrt(loss), freedom),
+double confidence_of(double loss, double degrees_of_freedom) {
+  const auto tail = psychophysics::equivalent_estimate(standard(std::sqrt(loss), degrees_of_freedom),
                                                        {.lower = 0.0, .upper = HUGE_VAL}, 0.05);
   return 1.0 - 2.0 * tail.p;
 }
@@ -62,13 +62,13 @@ PsychometricFit fit_with_equal_lapses(std::span<const psychophysics::Level> leve
                                fits.begin());
   PsychometricFit result = fits[best];
   result.degrees_of_freedom -= 1;  // the lapse rate
-  const double freedom = options.overdispersed ? std::max(0, fits[best].degrees_of_freedom) : 0;
-  const double allowed = loss_of(options.confidence, freedom);
+  const double degrees_of_freedom = options.overdispersed ? std::max(0, fits[best].degrees_of_freedom) : 0;
+  const double allowed = loss_of(options.confidence, degrees_of_freedom);
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const double left = allowed - 2.0 * (result.log_likelihood - fits[i].log_likelihood);
     if (i == best || left < 1e-4) continue;
     FitOptions narrower = with_lapse(options, lapses[i]);
-    narrower.confidence = confidence_of(left, freedom);
+    narrower.confidence = confidence_of(left, degrees_of_freedom);
     const PsychometricFit fit = psychophysics::fit_psychometric(levels, narrower);
     result.threshold.interval = both(result.threshold.interval, fit.threshold.interval);
     result.slope_interval = both(result.slope_interval, fit.slope_interval);

@@ -38,8 +38,8 @@ Study simulated_study(const Protocol& protocol, const Sensation& sensation, cons
   for (std::size_t subject = 0; subject < plans.size(); ++subject) {
     const std::string code = fmt::format("S{:02}", subject + 1);
     const double sensitivity = sensitivity_of_one(participants, random);
-    Course course(protocol, std::move(plans[subject]));
-    while (const std::optional<TrialPlan> trial = course.next()) {
+    TrialSequence sequence(protocol, std::move(plans[subject]));
+    while (const std::optional<TrialPlan> trial = sequence.next()) {
       const FeltTrial felt{.judging = judging,
                            .slots = slots,
                            .plays = trial->slots,
@@ -52,7 +52,7 @@ Study simulated_study(const Protocol& protocol, const Sensation& sensation, cons
                                   .right = trial->right(protocol),
                                   .answer = answer,
                                   .practice = trial->practice});
-      course.answer(answer);
+      sequence.answer(answer);
     }
   }
   return study;

@@ -15,7 +15,7 @@ namespace {
 using psychophysics::Decision;
 using psychophysics::Random;
 using std::numbers::sqrt2;
-using Places = std::array<double, most_slots>;
+using Places = std::array<double, max_slots>;
 
 void require(bool holds, const char* what, double found, const char* expected) {
   if (holds) return;

@@ -19,11 +19,11 @@ namespace kerf::bench {
 ///     u(F) = integral from 0 to F of df / j(f),   j(f) = max(f ln(1 + w), f0)
 ///          = F / f0 up to f0 / ln(1 + w), and from there on 1 / ln(1 + w) more for every factor of e,
 ///
-/// so that u(F + w F) - u(F) = 1 exactly (Luce and Edwards 1958; Fechner's own 1 / (w f) is that for small
+/// so that u(F + w F) - u(F) = 1 exactly ([LuceEdwards1958]; Fechner's own 1 / (w f) is that for small
 /// w). On the axis of a decision everything lies d' = c u apart, c = sqrt2 z(criterion), with a noise of
 /// N(0, 1) every time that it is felt.
 struct Observer {
-  double jnd = 0.07;          ///< w, Weber fraction, above 0; Pang, Tan and Durlach 1991
+  double jnd = 0.07;          ///< w, Weber fraction, above 0; [Pang1991]
   double least_jnd_n = 0.05;  ///< f0 [N], above 0: the JND of weak forces
   /// Share of right answers in two intervals that lie one JND apart, in (0.5, 1): the JND belongs to it.
   double criterion = 0.75;
@@ -48,7 +48,7 @@ enum class Judging : std::uint8_t {
   strongest,         ///< the slot that has most of what is asked for: forced choices, levels
   abx_independent,   ///< which of A and B is the further one, and on which side of their middle X lies
   abx_differencing,  ///< which of the two X is closer to
-  odd_one_out,       ///< the slot that is furthest from the middle of the others (Frijters 1979)
+  odd_one_out,       ///< the slot that is furthest from the middle of the others [Frijters1979]
   /// A difference that is felt, in a share 2 P(d' / sqrt2) - 1 of the trials (what is not guessed of two
   /// intervals), makes the second sample better liked by `preference`; otherwise by chance.
   preference,
@@ -59,7 +59,7 @@ enum class Judging : std::uint8_t {
 struct FeltTrial {
   Judging judging = Judging::strongest;
   std::size_t slots = 2;
-  std::array<std::uint8_t, most_slots> plays{};  ///< which of the pair a slot plays
+  std::array<std::uint8_t, max_slots> plays{};  ///< which of the pair a slot plays
   double d_prime = 0.0;  ///< from the first of the pair to the second; below 0 only of the strongest
 };
 

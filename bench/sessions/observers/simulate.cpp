@@ -19,7 +19,7 @@ namespace {
 /// What a seed is for: experiments of different kinds share none.
 enum SeedKind : std::uint64_t { of_experiments = 1, of_nulls = 2, of_confirmation = 3, of_curve = 100 };
 
-constexpr std::size_t most_needed = 100000;
+constexpr std::size_t max_needed = 100000;
 
 /// Calls `work(i)` for every i, on so many threads; what one of them throws is thrown here.
 void for_each(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work) {
@@ -138,7 +138,7 @@ class Simulator {
     }
     const std::size_t cells = cells_of(protocol_) * options_.subjects;
     const std::size_t each = (result.needed_total + cells - 1) / cells;
-    if (result.needed_total <= most_needed / 10)
+    if (result.needed_total <= max_needed / 10)
       result.confirmed = point_of(each, of_confirmation, options_.experiments);
   }
 

@@ -11,7 +11,7 @@ Protocol with_trials(Protocol protocol, std::size_t trials) {
   if (trials == 0) throw std::invalid_argument("a session needs a trial at least");
   protocol.trials = trials;
   protocol.scale.quest_trials = trials;
-  protocol.scale.staircase.most_trials = static_cast<int>(trials);
+  protocol.scale.staircase.max_trials = static_cast<int>(trials);
   return protocol;
 }
 

@@ -28,7 +28,7 @@ std::vector<double> sensitivities_of(double spread) {
 }
 
 /// The ways to fill the slots that an answer may depend on.
-std::vector<std::array<std::uint8_t, most_slots>> unlike_arrangements(Judging judging, std::size_t slots) {
+std::vector<std::array<std::uint8_t, max_slots>> unlike_arrangements(Judging judging, std::size_t slots) {
   switch (judging) {
     case Judging::abx_independent:
     case Judging::abx_differencing:

@@ -44,7 +44,7 @@ std::string observer_line(const SimulationOptions& options) {
       "Observers with a JND of {} of the force ({} right in two intervals) but at least {:g} N, "
       "who lapse in {}",
       percent(observer.jnd), percent(observer.criterion), observer.least_jnd_n, percent(observer.lapse));
-  if (observer.bias != 0.0) line += fmt::format(", lean to the first by d' = {:g}", observer.bias);
+  if (observer.bias != 0.0) line += fmt::format(", response bias to the first slot d' = {:g}", observer.bias);
   if (observer.preference != 0.0)
     line += fmt::format(", like the second of a pair better by d' = {:g}", observer.preference);
   if (observer.spread > 0.0)

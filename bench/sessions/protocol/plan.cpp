@@ -12,7 +12,7 @@ namespace kerf::bench {
 namespace {
 
 using psychophysics::Random;
-using Slots = std::array<std::uint8_t, most_slots>;
+using Slots = std::array<std::uint8_t, max_slots>;
 
 /// What is asked again and again: a pair, at a level where there are any.
 struct PlanCell {
@@ -147,10 +147,10 @@ std::size_t TrialPlan::right(const Protocol& protocol) const noexcept {
 }
 
 std::vector<Plan> make_plans(const Protocol& protocol, std::size_t subjects, std::uint64_t seed) {
-  constexpr std::size_t most_subjects = 1000;
-  if (subjects == 0 || subjects > most_subjects) {
+  constexpr std::size_t max_subjects = 1000;
+  if (subjects == 0 || subjects > max_subjects) {
     throw std::invalid_argument(
-        fmt::format("a study of {} subjects cannot be planned; expected 1 to {}", subjects, most_subjects));
+        fmt::format("a study of {} subjects cannot be planned; expected 1 to {}", subjects, max_subjects));
   }
   Random random(seed);
   std::vector<std::vector<PlanCell>> cells;

@@ -12,13 +12,13 @@
 
 namespace kerf::bench {
 
-inline constexpr std::size_t most_slots = 3;
+inline constexpr std::size_t max_slots = 3;
 
 /// One trial, with what the subject must not know.
 struct TrialPlan {
   std::size_t tissue = 0;
-  std::array<std::size_t, 2> pair{};             ///< samples: the standard (or first) and the other
-  std::array<std::uint8_t, most_slots> slots{};  ///< which of the pair each slot plays
+  std::array<std::size_t, 2> pair{};            ///< samples: the standard (or first) and the other
+  std::array<std::uint8_t, max_slots> slots{};  ///< which of the pair each slot plays
   double level =
       std::numeric_limits<double>::quiet_NaN();  ///< of the comparison; NaN: none, or not chosen yet
   bool practice = false;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double most_trials = 10000.0;
+constexpr double max_trials = 10000.0;
 constexpr double longest_session_part_s = 3600.0;
 
 double read_seconds(const Place& place, const toml::table& table, std::string_view key, double standard,
@@ -56,7 +56,7 @@ double standard_trials(Design design) {
 
 void read_trials(const Place& place, const toml::table& root, Protocol& protocol) {
   const auto count = [&](std::string_view key, double standard, double lower) {
-    return read_count(place, root, {.key = key, .standard = standard, .lower = lower, .upper = most_trials});
+    return read_count(place, root, {.key = key, .standard = standard, .lower = lower, .upper = max_trials});
   };
   protocol.trials = count("trials", standard_trials(protocol.design), 1.0);
   protocol.practice = count("practice", 0.0, 0.0);
@@ -72,7 +72,7 @@ void read_trials(const Place& place, const toml::table& root, Protocol& protocol
   const toml::table& pause = place.table(root, "break");
   place.allow_only(pause, {"every", "at_least"}, "[break]");
   if (!pause.contains("every")) place.refuse(pause, "[break] needs 'every', a number of trials");
-  protocol.break_every = read_count(place, pause, {.key = "every", .lower = 1.0, .upper = most_trials});
+  protocol.break_every = read_count(place, pause, {.key = "every", .lower = 1.0, .upper = max_trials});
   protocol.break_s = read_seconds(place, pause, "at_least", protocol.break_s, 0.0, longest_session_part_s);
 }
 
@@ -171,10 +171,10 @@ void require_sense(const Place& place, const toml::table& root, const Protocol& 
   for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue)
     trials += static_cast<double>(pairs_of(protocol, tissue).size() * protocol.trials);
   if (protocol.design == Design::constant) trials *= static_cast<double>(protocol.scale.levels.size());
-  if (trials > most_trials) {
+  if (trials > max_trials) {
     place.refuse(node_or_table(root, "trials"),
                  "all pairs and levels together are {:.0f} trials a subject, expected at most {:.0f}", trials,
-                 most_trials);
+                 max_trials);
   }
 }
 

@@ -20,7 +20,7 @@ namespace kerf::bench {
 
 /// What a trial asks.
 enum class Design : std::uint8_t {
-  preference,      ///< two samples: which is more like ... (004); no answer is right
+  preference,      ///< two samples: which is more like ... [Okamura2003]; no answer is right
   abx,             ///< A, B and X, which is one of them: which one?
   two_interval,    ///< two samples, one of them the signal: which one has more of ...?
   three_interval,  ///< three, one of them the signal (or the odd one)

@@ -7,7 +7,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_samples = 100;
+constexpr std::size_t max_samples = 100;
 
 const toml::array& array_of_tables(const Place& place, const toml::node& node, std::string_view key) {
   const toml::array* all = node.as_array();
@@ -113,8 +113,8 @@ void read_samples(const Place& place, const toml::table& root,
                   const std::function<std::string(const std::string&)>& law_text, Protocol& protocol) {
   if (!root.contains("sample")) place.refuse(root, "a protocol needs its samples, one [[sample]] each");
   const toml::array& all = array_of_tables(place, *root.get("sample"), "sample");
-  if (all.size() > most_samples)
-    place.refuse(all, "there are {} samples, expected at most {}", all.size(), most_samples);
+  if (all.size() > max_samples)
+    place.refuse(all, "there are {} samples, expected at most {}", all.size(), max_samples);
   for (const toml::node& node : all) {
     SessionSample sample = read_sample(place, *node.as_table(), law_text);
     for (const SessionSample& other : protocol.samples) {

@@ -11,8 +11,8 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_levels = 200;
-constexpr double most_trials = 10000;
+constexpr std::size_t max_levels = 200;
+constexpr double max_trials = 10000;
 constexpr double largest_level = 100.0;
 
 void read_varied(const Place& place, const toml::table& table, Protocol& protocol) {
@@ -51,8 +51,8 @@ void require_playable(const Place& place, const toml::node& node, const Protocol
 
 void read_levels(const Place& place, const toml::node& node, Protocol& protocol) {
   const toml::array* all = node.as_array();
-  if (all == nullptr || all->empty() || all->size() > most_levels)
-    place.refuse(node, "'levels' must be an array of 1 to {} numbers, such as [0.1, 0.2]", most_levels);
+  if (all == nullptr || all->empty() || all->size() > max_levels)
+    place.refuse(node, "'levels' must be an array of 1 to {} numbers, such as [0.1, 0.2]", max_levels);
   std::vector<double>& levels = protocol.scale.levels;
   for (const toml::node& each : *all) {
     const double level = place.number(each, "a level");
@@ -82,7 +82,7 @@ std::vector<double> read_steps(const Place& place, const toml::table& table) {
   const toml::node* node = table.get("steps");
   if (node == nullptr) return standard.steps;
   const toml::array* all = node->as_array();
-  if (all == nullptr || all->empty() || all->size() > most_levels)
+  if (all == nullptr || all->empty() || all->size() > max_levels)
     place.refuse(*node, "'steps' must be an array of numbers, such as [0.4, 0.2, 0.1]");
   std::vector<double> steps;
   for (const toml::node& each : *all) {
@@ -106,8 +106,8 @@ void read_staircase(const Place& place, const toml::table& scale, Protocol& prot
   };
   options.up = count("up", options.up, 1, 20);
   options.down = count("down", options.down, 1, 20);
-  options.reversals = count("reversals", options.reversals, 2, most_trials);
-  options.dropped = count("dropped", std::min(options.dropped, options.reversals - 2), 0, most_trials);
+  options.reversals = count("reversals", options.reversals, 2, max_trials);
+  options.dropped = count("dropped", std::min(options.dropped, options.reversals - 2), 0, max_trials);
   options.steps = read_steps(place, table);
   options.step_ratio =
       read_plain_number(place, table, {.key = "step_ratio", .standard = 1.0, .lower = 0.01, .upper = 100.0});
@@ -123,7 +123,7 @@ void read_staircase(const Place& place, const toml::table& scale, Protocol& prot
   options.start = level("start", 0.0);
   options.least = level("least", 1e-3 * options.start);
   options.most = level("most", 4.0 * options.start);
-  options.most_trials = static_cast<int>(protocol.trials);
+  options.max_trials = static_cast<int>(protocol.trials);
   try {
     (void)psychophysics::Staircase(options);
   } catch (const std::exception& error) {
@@ -152,7 +152,7 @@ void read_quest(const Place& place, const toml::table& root, const toml::table& 
       if (root.contains("trials"))
         place.refuse(*table.get("trials"),
                      "'trials' stands here and at the top of the file; leave out either");
-      protocol.trials = read_count(place, table, {.key = "trials", .lower = 1, .upper = most_trials});
+      protocol.trials = read_count(place, table, {.key = "trials", .lower = 1, .upper = max_trials});
     }
     protocol.scale.expected_jnd = read_plain_number(
         place, table,

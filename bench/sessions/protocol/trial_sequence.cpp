@@ -19,13 +19,14 @@ psychophysics::QuestPlusOptions quest_options_of(const IntensityScale& scale, do
       .trials = static_cast<int>(scale.quest_trials)};
 }
 
-Course::Course(Protocol protocol, Plan plan) : protocol_(std::move(protocol)), plan_(std::move(plan)) {
+TrialSequence::TrialSequence(Protocol protocol, Plan plan)
+    : protocol_(std::move(protocol)), plan_(std::move(plan)) {
   if (protocol_.design == Design::staircase) staircase_.emplace(protocol_.scale.staircase);
   if (protocol_.design == Design::quest_plus)
     quest_.emplace(quest_options_of(protocol_.scale, psychophysics::chance_of(task_of(protocol_))));
 }
 
-std::optional<TrialPlan> Course::next() const {
+std::optional<TrialPlan> TrialSequence::next() const {
   if (answered_ >= plan_.size()) return std::nullopt;
   TrialPlan trial = plan_[answered_];
   if (staircase_) {
@@ -38,7 +39,7 @@ std::optional<TrialPlan> Course::next() const {
   return trial;
 }
 
-void Course::answer(std::size_t slot) {
+void TrialSequence::answer(std::size_t slot) {
   const std::optional<TrialPlan> trial = next();
   if (!trial) throw std::invalid_argument("the session is over and takes no further answers");
   if (slot >= answers_of(protocol_.design)) {
@@ -51,7 +52,7 @@ void Course::answer(std::size_t slot) {
   ++answered_;
 }
 
-bool Course::break_due() const noexcept {
+bool TrialSequence::break_due() const noexcept {
   if (protocol_.break_every == 0 || !next()) return false;
   const auto practice = static_cast<std::size_t>(std::ranges::count_if(plan_, &TrialPlan::practice));
   return answered_ > practice && (answered_ - practice) % protocol_.break_every == 0;

@@ -17,10 +17,10 @@ namespace kerf::bench {
 
 /// How a session goes on from the answers so far: which trial is next, at which level. A value without clock
 /// or chance, so that a session is resumed by giving it the recorded answers again.
-class Course {
+class TrialSequence {
  public:
   /// @throws std::invalid_argument: an adaptive design whose scale cannot be.
-  Course(Protocol protocol, Plan plan);
+  TrialSequence(Protocol protocol, Plan plan);
 
   /// The trial to be given now, its level filled in (of practice one that is easy to tell); nothing once the
   /// session is over.

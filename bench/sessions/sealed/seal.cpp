@@ -23,8 +23,8 @@ constexpr std::size_t tag_bytes = crypto_aead_xchacha20poly1305_ietf_ABYTES;
 constexpr std::size_t least_key_file = 32;
 constexpr std::size_t largest_key_file = std::size_t{1} << 20U;
 constexpr std::size_t shortest_passphrase = 8;
-constexpr std::uint64_t most_operations = 16;
-constexpr std::uint64_t most_memory_bytes = std::uint64_t{1} << 30U;
+constexpr std::uint64_t max_operations = 16;
+constexpr std::uint64_t max_memory_bytes = std::uint64_t{1} << 30U;
 static_assert(key_bytes == 32);
 static_assert(crypto_pwhash_SALTBYTES == std::tuple_size_v<decltype(schema::KeyDerivation::salt)>);
 
@@ -88,14 +88,14 @@ void require_kind(const schema::KeyDerivation& derivation, const char* kind) {
 }
 
 void require_sane_costs(const schema::KeyDerivation& derivation) {
-  if (derivation.operations >= crypto_pwhash_OPSLIMIT_MIN && derivation.operations <= most_operations &&
-      derivation.memory_bytes >= crypto_pwhash_MEMLIMIT_MIN && derivation.memory_bytes <= most_memory_bytes) {
+  if (derivation.operations >= crypto_pwhash_OPSLIMIT_MIN && derivation.operations <= max_operations &&
+      derivation.memory_bytes >= crypto_pwhash_MEMLIMIT_MIN && derivation.memory_bytes <= max_memory_bytes) {
     return;
   }
   throw std::invalid_argument(fmt::format(
       "the session asks for {} passes over {} bytes to make its key of the passphrase; expected at most {} "
       "over {} (1 GiB): the file was changed",
-      derivation.operations, derivation.memory_bytes, most_operations, most_memory_bytes));
+      derivation.operations, derivation.memory_bytes, max_operations, max_memory_bytes));
 }
 
 }  // namespace

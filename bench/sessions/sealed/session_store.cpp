@@ -72,7 +72,7 @@ struct SessionStore::State {
       : file(std::move(path)),
         entries(file, key, purpose == Purpose::run ? SealedEntries::For::run : SealedEntries::For::read,
                 [this](std::size_t number, const schema::SessionEntry& entry,
-                       std::span<const std::uint8_t> content) { look_at(number, entry, content); }) {
+                       std::span<const std::uint8_t> content) { process(number, entry, content); }) {
     protocol = parse_protocol(entries.session().protocol, fmt::format("{} (its protocol)", file.string()),
                               [this](const std::string& name) { return law_called(name); });
     if (gains.size() != protocol.samples.size()) {
@@ -88,7 +88,7 @@ struct SessionStore::State {
     }
   }
 
-  void look_at(std::size_t number, const schema::SessionEntry& entry, std::span<const std::uint8_t> content) {
+  void process(std::size_t number, const schema::SessionEntry& entry, std::span<const std::uint8_t> content) {
     try {
       if (entry.kind == "plan") read_plan(content);
       if (entry.kind == "trial") take(trial_from(content, TraceToo::no), number);

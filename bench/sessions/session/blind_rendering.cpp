@@ -33,7 +33,7 @@ void BlindRendering::move(double period_s) noexcept {
   const bool through_zero = switching_ == SwitchKind::through_zero;
   const double old_share = through_zero ? std::max(0.0, 1.0 - 2.0 * share_) : 1.0 - share_;
   const double new_share = through_zero ? std::max(0.0, 2.0 * share_ - 1.0) : share_;
-  for (std::size_t slot = 0; slot < most_slots; ++slot) {
+  for (std::size_t slot = 0; slot < max_slots; ++slot) {
     weights_[slot] = old_share * from_[slot] + (slot == towards_ ? new_share : 0.0);
   }
 }

@@ -21,8 +21,8 @@ struct TrialRendering {
   std::vector<LawRendering> laws;  ///< every law of the trial once, in the order of the pair
   std::vector<double> gains;
   std::size_t slots = 0;
-  std::array<std::uint8_t, most_slots> law_of{};  ///< which of the laws a slot plays
-  std::vector<TraceRow> trace;                    ///< its memory is taken ahead: rows past it are not kept
+  std::array<std::uint8_t, max_slots> law_of{};  ///< which of the laws a slot plays
+  std::vector<TraceRow> trace;                   ///< its memory is taken ahead: rows past it are not kept
   std::size_t rows = 0;
 };
 
@@ -31,7 +31,7 @@ struct TrialRendering {
 ///     F = sum over slots of w_s g F_law(s),   from w to the slot wanted linearly in ramp_s
 ///
 /// Every law of the trial is computed in every tick, whichever is felt, so that a tick costs the same and a
-/// law knows the way of the tool when it is switched to. All weights go along the same ramp: a switch begins
+/// law knows the path of the tool when it is switched to. All weights go along the same ramp: a switch begins
 /// at any moment, from whatever the weights are then, and takes as long for every slot. A law that fails
 /// makes the force zero for all of them alike.
 ///
@@ -52,7 +52,7 @@ class BlindRendering {
   void record(const schema::Row& row) noexcept;
 
  private:
-  using Weights = std::array<double, most_slots>;
+  using Weights = std::array<double, max_slots>;
   static constexpr std::uint8_t nothing = 255;
 
   void move(double period_s) noexcept;

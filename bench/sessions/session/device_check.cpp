@@ -151,9 +151,9 @@ std::vector<std::string> check_samples(const Protocol& protocol, const std::stri
   std::vector<std::string> remarks;
   for (const NamedSample& sample : samples) {
     if (device.simulated) require_rendered(sample, protocol, device_uri, stop);
-    if (const auto hum = hum_in_hand(sample.played.law, device, protocol.rate_hz, grip_named(grip),
-                                     deepest(protocol, sample.played.law)))
-      remarks.push_back(fmt::format("sample '{}': {}", sample.name, *hum));
+    if (const auto limit_cycle = limit_cycle_in_hand(sample.played.law, device, protocol.rate_hz,
+                                                     grip_named(grip), deepest(protocol, sample.played.law)))
+      remarks.push_back(fmt::format("sample '{}': {}", sample.name, *limit_cycle));
   }
   return remarks;
 }

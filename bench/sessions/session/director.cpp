@@ -20,10 +20,10 @@ bool was_agreed(const schema::Session& session) {
   return std::ranges::any_of(session.entries, [](const auto& entry) { return entry.kind == "consent"; });
 }
 
-Course resumed(const SessionStore& store) {
-  Course course(store.protocol(), store.plan());
-  for (const RecordedTrial& trial : store.trials()) course.answer(trial.answer);
-  return course;
+TrialSequence resumed(const SessionStore& store) {
+  TrialSequence sequence(store.protocol(), store.plan());
+  for (const RecordedTrial& trial : store.trials()) sequence.answer(trial.answer);
+  return sequence;
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ Director::Director(SessionStore& store, BlindRendering& rendering, Subject& subj
       subject_(subject),
       device_(std::move(device)),
       options_(std::move(options)),
-      course_(resumed(store)),
+      sequence_(resumed(store)),
       slots_(slots_of(store.protocol().design)) {
   const double longest_s = store.protocol().longest_s + trace_margin_s;
   trial_.trace.resize(static_cast<std::size_t>(std::ceil(longest_s / options_.period_s)));
@@ -112,7 +112,7 @@ void Director::go_on() {
 }
 
 void Director::start_trial() {
-  const auto next = course_.next();
+  const auto next = sequence_.next();
   if (!next) return finish(SessionEnd::finished, "finished", "");
   planned_ = *next;
   trial_.laws.clear();
@@ -204,8 +204,8 @@ void Director::end_trial() {
       .axes = axes_of(device_),
       .trace = {trial_.trace.begin(), trial_.trace.begin() + static_cast<std::ptrdiff_t>(trial_.rows)}};
   store_.append(recorded);
-  course_.answer(answer_);
-  if (options_.progress) options_.progress(course_.answered(), course_.at_most());
+  sequence_.answer(answer_);
+  if (options_.progress) options_.progress(sequence_.answered(), sequence_.at_most());
   since_s_ = now_s_;
   if (planned_.practice && store_.protocol().feedback && store_.protocol().design != Design::preference) {
     phase_ = Phase::feedback;
@@ -215,7 +215,7 @@ void Director::end_trial() {
 }
 
 void Director::after_trial() {
-  if (course_.next() && course_.break_due()) {
+  if (sequence_.next() && sequence_.break_due()) {
     phase_ = Phase::pause;
   } else {
     start_trial();

@@ -41,7 +41,7 @@ class Director {
   void quit(const std::string& why);
   [[nodiscard]] bool over() const noexcept { return phase_ == Phase::over; }
   [[nodiscard]] SessionEnd end() const noexcept { return end_; }
-  [[nodiscard]] const Course& course() const noexcept { return course_; }
+  [[nodiscard]] const TrialSequence& sequence() const noexcept { return sequence_; }
 
  private:
   enum class Phase : std::uint8_t {
@@ -76,7 +76,7 @@ class Director {
   Subject& subject_;
   drivers::DeviceInfo device_;
   Options options_;
-  Course course_;
+  TrialSequence sequence_;
   std::size_t slots_;
 
   Phase phase_ = Phase::welcome;
@@ -92,7 +92,7 @@ class Director {
   std::optional<std::size_t> playing_;
   double playing_since_s_ = 0.0;
   std::optional<double> first_felt_s_;
-  std::array<double, most_slots> felt_s_{};
+  std::array<double, max_slots> felt_s_{};
   std::size_t switches_ = 0;
   std::size_t intervals_begun_ = 0;
   std::size_t answer_ = 0;

@@ -23,15 +23,15 @@ void Director::view_of_trial(SubjectView& view) const {
 SubjectView Director::view() const {
   const Protocol& protocol = store_.protocol();
   SubjectView view{.study = protocol.name,
-                   .trial = std::min(course_.answered() + 1, course_.at_most()),
-                   .at_most = course_.at_most(),
+                   .trial = std::min(sequence_.answered() + 1, sequence_.at_most()),
+                   .at_most = sequence_.at_most(),
                    .may_be_fewer = is_adaptive(protocol.design),
                    .notice = notice_};
   switch (phase_) {
     case Phase::welcome:
       view.stage = SessionStage::welcome;
-      if (course_.answered() > 0)
-        view.text = fmt::format("The session goes on: {} trials are done.", course_.answered());
+      if (sequence_.answered() > 0)
+        view.text = fmt::format("The session goes on: {} trials are done.", sequence_.answered());
       view.may_go_on = true;
       break;
     case Phase::consent:
@@ -53,7 +53,7 @@ SubjectView Director::view() const {
       view.stage = SessionStage::feedback;
       view.text = fmt::format("{} It was {}.", answer_ == right ? "Right." : "Not right.",
                               label_of(protocol.design, right));
-      view.trial = course_.answered();
+      view.trial = sequence_.answered();
       view.practice = true;
       view.may_go_on = true;
       break;

@@ -44,8 +44,8 @@ class SessionRun {
     if (failure_) std::rethrow_exception(failure_);
     if (!director_->over()) store_.note("quit", "by a signal");
     result.end = director_->over() ? director_->end() : SessionEnd::quit;
-    result.answered = director_->course().answered();
-    result.at_most = director_->course().at_most();
+    result.answered = director_->sequence().answered();
+    result.at_most = director_->sequence().at_most();
     return result;
   }
 

@@ -42,7 +42,7 @@ void ButtonSubject::show(const SubjectView& view) {
 std::optional<SubjectAction> ButtonSubject::next() {
   const std::uint32_t mask = mask_.load(std::memory_order_relaxed);
   const double now_s = now_s_();
-  for (std::size_t index = 0; index < most_buttons; ++index) {
+  for (std::size_t index = 0; index < max_buttons; ++index) {
     Button& button = buttons_[index];
     const bool contact = ((mask >> index) & 1U) != 0;
     if (contact != button.contact) {

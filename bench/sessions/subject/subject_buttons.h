@@ -41,7 +41,7 @@ class ButtonSubject final : public Subject {
 
  private:
   static double steady_s();
-  static constexpr std::size_t most_buttons = 8;
+  static constexpr std::size_t max_buttons = 8;
   struct Button {
     bool contact = false;     ///< as it was at the last poll
     double contact_s = -1e9;  ///< since when
@@ -56,7 +56,7 @@ class ButtonSubject final : public Subject {
 
   std::function<double()> now_s_;
   std::atomic<std::uint32_t> mask_{0};
-  std::array<Button, most_buttons> buttons_{};
+  std::array<Button, max_buttons> buttons_{};
   std::deque<SubjectAction> actions_;
   SubjectView view_;
   TrialManner manner_;

@@ -16,7 +16,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_actions = 16;  // that wait to be taken
+constexpr std::size_t max_actions = 16;  // that wait to be taken
 
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -82,8 +82,8 @@ HttpResponse refused(int status, std::string_view why) {
 
 }  // namespace
 
-PageSubject::PageSubject(Gate gate, std::function<void()> wake)
-    : gate_(std::move(gate)), wake_(std::move(wake)) {}
+PageSubject::PageSubject(AccessControl access, std::function<void()> wake)
+    : access_(std::move(access)), wake_(std::move(wake)) {}
 
 std::optional<SessionStage> PageSubject::stage() {
   const std::lock_guard lock(mutex_);
@@ -116,14 +116,14 @@ std::optional<SubjectAction> PageSubject::next() {
 }
 
 std::optional<HttpResponse> PageSubject::respond(const HttpRequest& request, bool overdue) {
-  if (!gate_.admits(request)) {
+  if (!access_.admits(request)) {
     return HttpResponse{.status = 403,
                         .body = "This address is not valid. Open the one that was shown for this session.\n"};
   }
   if (request.path == "/action") return request.method == "POST" ? take_action(request) : refusal(405);
   if (request.method != "GET") return refusal(405);
   if (request.path == "/view") return view_after(request, overdue);
-  return page_file(session_page(), request.path, gate_.token());
+  return page_file(session_page(), request.path, access_.token());
 }
 
 std::optional<HttpResponse> PageSubject::view_after(const HttpRequest& request, bool overdue) {
@@ -151,13 +151,13 @@ HttpResponse PageSubject::take_action(const HttpRequest& request) {
     return refused(409, "That came too late: something else is shown now.");
   }
   if (!permits(view_, asked->action)) return refused(409, "Not now.");
-  if (actions_.size() >= most_actions) return refusal(503);
+  if (actions_.size() >= max_actions) return refusal(503);
   actions_.push_back(asked->action);
   return as_json(200, "{}");
 }
 
 ServedSubject::ServedSubject(std::uint16_t port)
-    : server_(port), page_(Gate(server_.hosts()), [this] { server_.wake(); }) {
+    : server_(port), page_(AccessControl(server_.hosts()), [this] { server_.wake(); }) {
   server_.start([this](const HttpRequest& request, bool overdue) { return page_.respond(request, overdue); });
 }
 

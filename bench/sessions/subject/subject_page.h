@@ -22,17 +22,17 @@ namespace kerf::bench {
 ///     POST /action                 {"kind", "slot", "stage", "trial"}: 200; 409 if the view was of another
 ///                                  stage or trial, or does not permit it
 ///
-/// Several pages may be open: all show the view, and the action of either counts. Whoever the gate does not
-/// admit gets 403, whatever was asked for.
+/// Several pages may be open: all show the view, and the action of either counts. Whoever the access control
+/// does not admit gets 403, whatever was asked for.
 class PageSubject final : public Subject {
  public:
   /// `wake` is HttpServer's. Both are called until this ends.
-  PageSubject(Gate gate, std::function<void()> wake);
+  PageSubject(AccessControl access, std::function<void()> wake);
   PageSubject(const PageSubject&) = delete;
   PageSubject& operator=(const PageSubject&) = delete;
   ~PageSubject() override = default;
 
-  [[nodiscard]] const Gate& gate() const noexcept { return gate_; }
+  [[nodiscard]] const AccessControl& access() const noexcept { return access_; }
   /// As HttpServer::Handler, with the folder taken off the path.
   [[nodiscard]] std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue);
   /// Of the view that is shown; nothing before the first.
@@ -47,7 +47,7 @@ class PageSubject final : public Subject {
   std::optional<HttpResponse> view_after(const HttpRequest& request, bool overdue);
   HttpResponse take_action(const HttpRequest& request);
 
-  Gate gate_;
+  AccessControl access_;
   std::function<void()> wake_;
   std::mutex mutex_;  ///< of all that follows, between the session's thread and the server's
   SubjectView view_;
@@ -68,7 +68,7 @@ class ServedSubject final : public Subject {
   ~ServedSubject() override;  ///< PageSubject::wait_until_fetched()
 
   /// Where the page is, with its token.
-  [[nodiscard]] std::string url() const { return page_.gate().url("/"); }
+  [[nodiscard]] std::string url() const { return page_.access().url("/"); }
   void show(const SubjectView& view) override { page_.show(view); }
   [[nodiscard]] std::optional<SubjectAction> next() override { return page_.next(); }
 

@@ -35,13 +35,13 @@ nlohmann::ordered_json law_error_as_json(const LawError& error) {
 }
 
 Knots knots_in(const nlohmann::json& object, const std::string& name) {
-  constexpr std::size_t most_numbers = 64;  // check_knots() says how many there may be
+  constexpr std::size_t max_numbers = 64;  // check_knots() says how many there may be
   const auto found = object.find(name);
   if (found == object.end() || !found->is_object())
     throw RequestError(400, "'" + name + "' is not an object with the breakpoints of a law");
-  Knots knots{.penetration = numbers_in(*found, "penetration", most_numbers),
-              .closing = numbers_in(*found, "closing", most_numbers),
-              .opening = numbers_in(*found, "opening", most_numbers)};
+  Knots knots{.penetration = numbers_in(*found, "penetration", max_numbers),
+              .closing = numbers_in(*found, "closing", max_numbers),
+              .opening = numbers_in(*found, "opening", max_numbers)};
   check_knots(knots);
   return knots;
 }

@@ -83,7 +83,7 @@ HttpResponse saved(Workspace& workspace, const KeptCurve& kept, const nlohmann::
 
 }  // namespace
 
-void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(const LawFile&)> feel) {
+void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(const LawFile&)> render) {
   const auto curves = std::make_shared<KeptCurves>(workspace);
   constexpr auto slow = Routes::Pace::slow;
   routes.get("/api/editor/curve", slow, [curves](const HttpRequest& request) {
@@ -100,8 +100,8 @@ void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(
   });
   routes.post("/api/editor/best", slow, [curves](const HttpRequest& request) {
     const nlohmann::json asked = json_in(request);
-    constexpr double most_segments = 16.0;
-    const auto segments = static_cast<std::size_t>(number_in(asked, "segments", 1.0, most_segments));
+    constexpr double max_segments = 16.0;
+    const auto segments = static_cast<std::size_t>(number_in(asked, "segments", 1.0, max_segments));
     const bool loop = flag_in(asked, "loop", false);
     const KeptCurve& kept = curves->of(asked);
     return knots_with_error(kept, best_knots(kept.curve, segments, loop));
@@ -115,12 +115,12 @@ void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(
     const nlohmann::json asked = json_in(request);
     return saved(workspace, curves->of(asked), asked);
   });
-  routes.post("/api/editor/feel", slow, [curves, feel = std::move(feel)](const HttpRequest& request) {
+  routes.post("/api/editor/feel", slow, [curves, render = std::move(render)](const HttpRequest& request) {
     const nlohmann::json asked = json_in(request);
     const KeptCurve& kept = curves->of(asked);
     const LawFile law = drawn_law(kept.curve, knots_in(asked, "knots"), kept.source);
-    if (!feel) throw RequestError(409, "no loop is running to feel the law on");
-    feel(law);
+    if (!render) throw RequestError(409, "no loop is running to feel the law on");
+    render(law);
     return json_response(Json::object());
   });
 }

@@ -19,9 +19,9 @@ namespace kerf::bench {
 ///     POST /api/editor/save    DrawnLaw: writes NAME.law.toml      {id, name, error}
 ///     POST /api/editor/feel    {recording, axis, knots}            {}
 ///
-/// The curves of the last few recordings are kept, by id and time of the file. `feel` renders a law from now
-/// on, or throws RequestError 409 where no loop runs; it is called from the slow thread. The routes live no
-/// longer than the workspace.
-void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(const LawFile&)> feel);
+/// The curves of the last few recordings are kept, by id and time of the file. `render` renders a law from
+/// now on, or throws RequestError 409 where no loop runs; it is called from the slow thread. The routes live
+/// no longer than the workspace.
+void add_editor_routes(Routes& routes, Workspace& workspace, std::function<void(const LawFile&)> render);
 
 }  // namespace kerf::bench

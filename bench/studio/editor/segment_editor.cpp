@@ -17,7 +17,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_knots = models::Piecewise<double>::max_segments + 1;
+constexpr std::size_t max_knots = models::Piecewise<double>::max_segments + 1;
 constexpr double bound = 1e6;  // of the law's parameters
 
 models::Piecewise<double> law_of(const Knots& knots) {
@@ -103,9 +103,9 @@ void check_bounds(const std::vector<double>& values, std::string_view what) {
 
 void check_knots(const Knots& knots) {
   const std::size_t count = knots.penetration.size();
-  if (count < 2 || count > most_knots) {
+  if (count < 2 || count > max_knots) {
     throw std::invalid_argument(
-        fmt::format("a law takes 2 to {} breakpoints, and here are {}", most_knots, count));
+        fmt::format("a law takes 2 to {} breakpoints, and here are {}", max_knots, count));
   }
   check_forces(knots, knots.closing, "closing");
   if (!knots.opening.empty()) check_forces(knots, knots.opening, "opening");
@@ -147,12 +147,12 @@ LawError law_error(const EditorCurve& curve, const Knots& knots) {
 }
 
 Knots best_knots(const EditorCurve& curve, std::size_t segments, bool loop) {
-  if (segments < 1 || segments >= most_knots) {
+  if (segments < 1 || segments >= max_knots) {
     throw std::invalid_argument(
-        fmt::format("a law takes 1 to {} segments, and {} were asked for", most_knots - 1, segments));
+        fmt::format("a law takes 1 to {} segments, and {} were asked for", max_knots - 1, segments));
   }
   const CurvePoints points = points_to_fit(curve, loop);
-  const auto curves = fitting::fit_segments(points.view(loop), {.most_segments = segments});
+  const auto curves = fitting::fit_segments(points.view(loop), {.max_segments = segments});
   if (curves.empty() || curves.back().segments() != segments) {
     throw std::invalid_argument(
         fmt::format("the averaged cycle has too few points for {} segments; {} are the most", segments,
@@ -168,7 +168,7 @@ Knots best_forces(const EditorCurve& curve, const Knots& knots) {
   // Before its first knot the law goes on with the force there, as if those points were at the knot.
   for (double& penetration : points.penetration)
     penetration = std::max(penetration, knots.penetration.front());
-  fitting::SegmentedOptions options{.most_segments = 1};
+  fitting::SegmentedOptions options{.max_segments = 1};
   options.breakpoints.assign(knots.penetration.begin() + 1, knots.penetration.end() - 1);
   const auto curves = fitting::fit_segments(points.view(loop), options);
   if (curves.empty()) throw std::invalid_argument("the averaged cycle has too few points for a line");

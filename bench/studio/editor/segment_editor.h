@@ -12,11 +12,11 @@
 
 namespace kerf::bench {
 
-/// The averaged cycle of an axis, as a law of segments is drawn over it (004, section 3.2).
+/// The averaged cycle of an axis, as a law of segments is drawn over it ([Okamura2003], section 3.2).
 ///
 /// Penetration grows along the contact's direction from its position, both as `kerf fit` takes them
 /// (contact_of()); a positive force resists growing penetration, so an opening that resists opening is
-/// negative. Closing is the way on which the penetration grows.
+/// negative. Closing is the direction in which the penetration grows.
 struct EditorCurve {
   std::string axis;
   std::string position_unit;  ///< "m" or "rad"

@@ -80,7 +80,7 @@ void run_live(double seconds, bool is_viewed) {
     wakes.notify_all();
   });
   loop.start({.device_uri = "sim:scissors"});
-  loop.feel(kelvin(), "kelvin");
+  loop.render(kelvin(), "kelvin");
   std::jthread viewer;
   std::atomic<std::size_t> bytes{0};
   if (is_viewed) {

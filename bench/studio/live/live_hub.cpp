@@ -26,7 +26,7 @@ LiveHub::LiveHub(LiveRendering& rendering, drivers::DeviceInfo device, std::opti
       rate_hz_(rate_hz),
       tap_(tap_rows),
       history_(device_, 1.0 / rate_hz),
-      chunk_(RowRing::most_popped) {}
+      chunk_(RowRing::max_popped) {}
 
 void LiveHub::drain() {
   while (const std::size_t count = tap_.pop(chunk_.data())) {

@@ -146,14 +146,14 @@ std::shared_ptr<LiveHub> LiveLoop::running_hub() const {
   return hub_;
 }
 
-void LiveLoop::feel(const LawFile& law, const std::string& name) {
+void LiveLoop::render(const LawFile& law, const std::string& name) {
   const std::lock_guard lock(mutex_);  // no other loop begins meanwhile
   require_running();
   const std::vector<std::size_t> axes = axes_for(law, hub_->device());
   hub_->offer(std::make_unique<LawRendering>(law.law, law.contact, axes), name);
 }
 
-void LiveLoop::feel_nothing() {
+void LiveLoop::render_nothing() {
   const std::lock_guard lock(mutex_);
   require_running();
   hub_->offer(nullptr, "");

@@ -69,9 +69,9 @@ class LiveLoop {
   }
 
   /// Goes softly over to a law. @throws std::invalid_argument: no loop runs, or the device has no such axis.
-  void feel(const LawFile& law, const std::string& name);
+  void render(const LawFile& law, const std::string& name);
   /// Goes softly over to no force. @throws std::invalid_argument: no loop runs.
-  void feel_nothing();
+  void render_nothing();
 
   /// Zero force from the next tick on, held until resume(), also over a new start. Never blocks, and needs no
   /// running loop.

@@ -31,7 +31,7 @@ struct LiveChange {
 /// during a blend waits for its end, and gives way to what is offered after it. release() makes the force
 /// zero from the next tick on and holds it there, past slew limit and ramp (Safety does that); after resume()
 /// it comes back along Safety's soft start. The laws are computed meanwhile as if they were felt, so that
-/// they know the way of the tool.
+/// they know the path of the tool.
 ///
 /// operator() and record() are the tick's: they allocate, lock and free nothing. Renderings that are no
 /// longer used wait in a list, to be freed by collect(). offer(), collect() and take_change() are for one
@@ -108,7 +108,7 @@ class LiveRendering {
     std::uint64_t number = 0;
     Offer* next_retired = nullptr;
   };
-  static constexpr std::size_t most_changes = 256;
+  static constexpr std::size_t max_changes = 256;
 
   [[nodiscard]] static std::uint64_t number_of(const Offer* offer) noexcept {
     return offer != nullptr && offer->rendering ? offer->number : 0;
@@ -157,7 +157,7 @@ class LiveRendering {
   std::atomic<bool> released_{false};
   std::atomic<bool> blending_{false};
   static_assert(std::atomic<Offer*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
-  boost::lockfree::spsc_queue<LiveChange, boost::lockfree::capacity<most_changes>> changes_;
+  boost::lockfree::spsc_queue<LiveChange, boost::lockfree::capacity<max_changes>> changes_;
   std::uint64_t offers_ = 0;  ///< of the offering thread
   // The tick's own.
   double ramp_s_;

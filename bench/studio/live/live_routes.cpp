@@ -84,17 +84,17 @@ class LiveAnswers {
     return status();
   }
 
-  [[nodiscard]] HttpResponse feel(const HttpRequest& request) const {
+  [[nodiscard]] HttpResponse render(const HttpRequest& request) const {
     const nlohmann::json body = json_in(request);
     require_running();
     if (body.contains("law")) {
       const std::string id = text_in(body, "law");
-      loop_.feel(hooks_.law_of(id), hooks_.law_name_of ? hooks_.law_name_of(id) : id);
+      loop_.render(hooks_.law_of(id), hooks_.law_name_of ? hooks_.law_name_of(id) : id);
     } else if (body.contains("toml")) {
       const LawFile law = parse_law_file(text_in(body, "toml"), "the law");
-      loop_.feel(law, std::string(law.law.model()));
+      loop_.render(law, std::string(law.law.model()));
     } else {
-      loop_.feel_nothing();
+      loop_.render_nothing();
     }
     return status();
   }
@@ -161,7 +161,7 @@ void add_live_routes(Routes& routes, LiveLoop& loop, const LiveHooks& hooks) {
   // A device may wait for a person (homing) while it is opened: stopping must not stand in line behind that.
   post("/api/live/start", Pace::action, [answers](Request it) { return answers->start(it); });
   post("/api/live/stop", Pace::at_once, [answers](Request) { return answers->stop(); });
-  post("/api/live/feel", Pace::action, [answers](Request it) { return answers->feel(it); });
+  post("/api/live/feel", Pace::action, [answers](Request it) { return answers->render(it); });
   post("/api/live/resume", Pace::at_once, [answers](Request) { return answers->resume(); });
   post("/api/live/record", Pace::action, [answers](Request it) { return answers->record(it); });
   post("/api/live/record/stop", Pace::action, [answers](Request) { return answers->stop_recording(); });

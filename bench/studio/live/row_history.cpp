@@ -13,7 +13,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t most_events = 10'000;
+constexpr std::size_t max_events = 10'000;
 
 /// The smallest and the largest of many numbers, those that are not finite passed over: four at a time beside
 /// each other, as one alone waits for the one before it.
@@ -47,7 +47,7 @@ float rounded_down(double value) noexcept {
 float rounded_up(double value) noexcept { return -rounded_down(-value); }
 
 std::size_t rows_kept(double period_s) {
-  return std::min(RowHistory::most_rows,
+  return std::min(RowHistory::max_rows,
                   static_cast<std::size_t>(std::llround(RowHistory::longest_s / period_s)));
 }
 
@@ -92,14 +92,14 @@ void RowHistory::append(std::span<const schema::Row> rows, const std::vector<Liv
   for (const schema::Row& row : rows) {
     put(row);
     found.clear();
-    finder_.look_at(row, found);
+    finder_.process(row, found);
     for (schema::Event& event : found) events_.push_back({.tick = row.tick, .event = std::move(event)});
   }
   events_.insert(events_.end(), events.begin(), events.end());
   std::stable_sort(events_.begin() + before, events_.end(),
                    [](const LiveEvent& left, const LiveEvent& right) { return left.tick < right.tick; });
   while (!events_.empty() &&
-         (events_.size() > most_events || events_.front().tick < tick_[slot_of(oldest())])) {
+         (events_.size() > max_events || events_.front().tick < tick_[slot_of(oldest())])) {
     events_.pop_front();
   }
 }
@@ -155,14 +155,14 @@ std::uint64_t RowHistory::whole_columns(std::uint64_t ticks_per_column) const no
 }
 
 LiveFrame RowHistory::frame_since(std::uint64_t first_tick, std::uint64_t ticks_per_column,
-                                  std::size_t most_columns) const {
+                                  std::size_t max_columns) const {
   const std::uint64_t ticks = std::max<std::uint64_t>(ticks_per_column, 1);
   LiveFrame frame{.from = first_tick, .ticks_per_column = ticks, .next = first_tick};
   const std::lock_guard lock(mutex_);
   if (rows_ == 0) return frame;
   std::uint64_t column = first_tick / ticks;
   if (oldest() > 0) column = std::max(column, (tick_[slot_of(oldest())] + ticks - 1) / ticks);
-  const std::uint64_t end = std::min<std::uint64_t>(whole_columns(ticks), column + most_columns);
+  const std::uint64_t end = std::min<std::uint64_t>(whole_columns(ticks), column + max_columns);
   if (end <= column) return frame;
   frame.from = column * ticks;
   frame.columns = static_cast<std::size_t>(end - column);

@@ -43,7 +43,7 @@ struct LiveFrame {
 class RowHistory {
  public:
   static constexpr double longest_s = 60.0;
-  static constexpr std::size_t most_rows = 120'000;
+  static constexpr std::size_t max_rows = 120'000;
 
   /// @throws std::bad_alloc
   RowHistory(const drivers::DeviceInfo& device, double period_s);
@@ -57,11 +57,11 @@ class RowHistory {
   /// No row will come after the last one: its column is whole.
   void finish();
 
-  /// Up to `most_columns` columns from that of `first_tick` on, with the events from `first_tick` on. Begins
+  /// Up to `max_columns` columns from that of `first_tick` on, with the events from `first_tick` on. Begins
   /// later where rows have been forgotten since, and is empty where no column is whole yet. Each of a row's
   /// values is in the column of its tick: whatever the frames are cut into, none is lost.
   [[nodiscard]] LiveFrame frame_since(std::uint64_t first_tick, std::uint64_t ticks_per_column,
-                                      std::size_t most_columns) const;
+                                      std::size_t max_columns) const;
 
   /// The rows from `from_s` to `to_s` of loop time, in at most `columns` columns of as many rows each.
   /// @throws std::invalid_argument: no such trace, or no column.

@@ -11,8 +11,8 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::ptrdiff_t most_waiting = 20;
-constexpr std::ptrdiff_t most_remembered = 50;
+constexpr std::ptrdiff_t max_waiting = 20;
+constexpr std::ptrdiff_t max_remembered = 50;
 
 }  // namespace
 
@@ -69,8 +69,8 @@ std::size_t Jobs::add(JobOrder order) {
   const std::scoped_lock lock(mutex_);
   const auto waiting = std::ranges::count_if(
       entries_, [](const auto& entry) { return entry->state == Entry::State::waiting; });
-  if (waiting >= most_waiting)
-    throw RequestError(503, fmt::format("{} jobs are waiting already; stop some, or wait", most_waiting));
+  if (waiting >= max_waiting)
+    throw RequestError(503, fmt::format("{} jobs are waiting already; stop some, or wait", max_waiting));
   auto entry = std::make_shared<Entry>();
   entry->number = ++last_;
   entry->progress.steps = order.steps;
@@ -108,7 +108,7 @@ nlohmann::ordered_json Jobs::list() const {
 
 void Jobs::forget_oldest() {
   auto ended = std::ranges::count_if(entries_, [](const auto& entry) { return entry->has_ended(); });
-  for (auto entry = entries_.begin(); entry != entries_.end() && ended > most_remembered;) {
+  for (auto entry = entries_.begin(); entry != entries_.end() && ended > max_remembered;) {
     if (!(*entry)->has_ended()) {
       ++entry;
       continue;

@@ -14,12 +14,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int most_names = 1000;
+constexpr int max_names = 1000;
 constexpr std::size_t longest_stem = 60;
 
 /// The first of the names that is free. @throws RequestError.
 fs::path free_name(const Workspace& workspace, const std::string& stem, std::string_view ending) {
-  for (int i = 1; i < most_names; ++i) {
+  for (int i = 1; i < max_names; ++i) {
     const std::string name = i == 1 ? stem : fmt::format("{}-{}", stem, i);
     try {
       return workspace.new_file(name, ending);
@@ -27,8 +27,8 @@ fs::path free_name(const Workspace& workspace, const std::string& stem, std::str
       if (taken.status != 409) throw;
     }
   }
-  throw RequestError(
-      409, fmt::format("{}{} and {} more are there; remove some of them", stem, ending, most_names));
+  throw RequestError(409,
+                     fmt::format("{}{} and {} more are there; remove some of them", stem, ending, max_names));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::string run_choice(Workspace& workspace, const ChoiceRequest& request, JobPr
   DeviceChoiceOptions options{
       .loop = {.rate_hz = request.rate_hz}, .tried_by = TriedBy::virtual_time, .begins = {}};
   options.choose.axis = find_cut_axis(recording, request.axis);
-  options.choose.candidates.most_segments = request.most_segments;
+  options.choose.candidates.max_segments = request.max_segments;
   options.choose.threads = usable_processors();
   options.choose.done = &progress.done;
   options.choose.of = &progress.steps;

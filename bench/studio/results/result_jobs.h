@@ -40,7 +40,7 @@ struct ChoiceRequest {
   WorkspaceEntry recording;
   std::string axis;  ///< empty: that of the cycles, or the first
   double rate_hz = 1000.0;
-  std::size_t most_segments = CandidateOptions{}.most_segments;  ///< of the piecewise law, 1 to 16
+  std::size_t max_segments = CandidateOptions{}.max_segments;  ///< of the piecewise law, 1 to 16
 };
 [[nodiscard]] JobOrder choice_job(Workspace& workspace, ChoiceRequest request);
 

@@ -22,8 +22,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::uintmax_t largest_result = 64U << 20U;
-constexpr std::size_t most_models = 40;
-constexpr std::size_t most_columns = 4000;
+constexpr std::size_t max_models = 40;
+constexpr std::size_t max_columns = 4000;
 
 std::size_t whole_number_in(const nlohmann::json& object, const std::string& name, double lower,
                             double upper) {
@@ -36,8 +36,8 @@ std::vector<std::string> models_in(const nlohmann::json& object) {
   std::vector<std::string> models;
   if (!object.contains("models")) return models;
   const nlohmann::json& list = object.at("models");
-  if (!list.is_array() || list.size() > most_models)
-    throw RequestError(400, fmt::format("'models' is not a list of at most {} laws", most_models));
+  if (!list.is_array() || list.size() > max_models)
+    throw RequestError(400, fmt::format("'models' is not a list of at most {} laws", max_models));
   for (const nlohmann::json& one : list) {
     if (!one.is_string()) throw RequestError(400, "'models' is not a list of names");
     models.push_back(one.get<std::string>());
@@ -75,7 +75,7 @@ HttpResponse order_choice(const HttpRequest& request, Workspace& workspace, Jobs
                        .axis = text_or(given, "axis", ""),
                        .rate_hz = number_or(given, "rate_hz", 1000.0, 100.0, 10000.0)};
   if (given.contains("most_segments"))
-    choice.most_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
+    choice.max_segments = whole_number_in(given, "most_segments", 1.0, 16.0);
   return order(jobs, choice_job(workspace, std::move(choice)));
 }
 
@@ -93,7 +93,7 @@ HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, J
   study.on.rate_hz = number_in(given, "rate_hz", 20.0, 20000.0);
   study.on.grip = text_or(given, "grip", "none");
   (void)grip_named(study.on.grip);
-  study.cells = whole_number_in(given, "cells", 2.0, static_cast<double>(most_law_cells));
+  study.cells = whole_number_in(given, "cells", 2.0, static_cast<double>(max_law_cells));
   study.range.depth_m = number_or(given, "depth_m", study.range.depth_m, 1e-5, 0.5);
   study.range.speed_m_s = number_or(given, "speed_m_s", study.range.speed_m_s, 1e-4, 10.0);
   const std::string law = text_or(given, "law", "");
@@ -142,7 +142,7 @@ HttpResponse law(const HttpRequest& request, Workspace& workspace) {
 HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   const WorkspaceEntry file = workspace.find(text_in_query(request, "id"), FileKind::recording);
   const WorkspaceEntry law_file = workspace.find(text_in_query(request, "law"), FileKind::law);
-  const std::size_t columns = count_in_query(request, "columns", most_columns);
+  const std::size_t columns = count_in_query(request, "columns", max_columns);
   const schema::Recording recording = schema::read_recording(file.path);
   const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
   return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));

@@ -81,10 +81,10 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
   }
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
-  page_ = std::make_shared<PageSubject>(Gate(hosts_), wake_);
+  page_ = std::make_shared<PageSubject>(AccessControl(hosts_), wake_);
   progress_ = {.running = true,
                .name = order.name,
-               .subject_url = page_->gate().url("/subject/"),
+               .subject_url = page_->access().url("/subject/"),
                .answered = running->store_.trials().size(),
                .at_most = running->store_.plan().size(),
                .adaptive = is_adaptive(running->store_.protocol().design),

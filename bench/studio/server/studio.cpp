@@ -24,7 +24,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_body = 1 << 20;
+constexpr std::size_t max_body = 1 << 20;
 constexpr std::string_view subject_folder = "/subject";
 
 }  // namespace
@@ -33,8 +33,8 @@ class Studio::State {
  public:
   explicit State(const StudioOptions& options)
       : workspace_(options.folder),
-        server_({.address = options.address, .port = options.port, .most_body = most_body}),
-        gate_(server_.hosts()),
+        server_({.address = options.address, .port = options.port, .max_body = max_body}),
+        access_(server_.hosts()),
         sessions_(server_.hosts(), [this] { server_.wake(); }) {
     routes_.on_ready([this] { server_.wake(); });
     loop_.on_rows([this] { server_.wake(); });
@@ -42,7 +42,7 @@ class Studio::State {
     add_live_routes(routes_, loop_, live_hooks());
     add_recording_routes(routes_, views_,
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
-    add_editor_routes(routes_, workspace_, [this](const LawFile& law) { feel(law); });
+    add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
     add_session_routes(routes_, workspace_, sessions_, options.key_file, [this] { leave_the_device(); });
     server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
@@ -58,7 +58,7 @@ class Studio::State {
     server_.stop();
   }
 
-  [[nodiscard]] std::string url() const { return gate_.url("/"); }
+  [[nodiscard]] std::string url() const { return access_.url("/"); }
   [[nodiscard]] bool is_loopback() const noexcept { return server_.is_loopback(); }
 
  private:
@@ -82,10 +82,10 @@ class Studio::State {
   }
 
   /// A drawn law, which has no name yet.
-  void feel(const LawFile& law) {
+  void render(const LawFile& law) {
     if (sessions_.is_running()) throw RequestError(409, "A session is running.");
     if (!loop_.status().is_running) throw RequestError(409, "No loop is running: start it on the scope.");
-    loop_.feel(law, "a drawn law");
+    loop_.render(law, "a drawn law");
   }
 
   std::optional<HttpResponse> respond(const HttpRequest& request, bool overdue) {
@@ -94,7 +94,7 @@ class Studio::State {
       below.path.erase(0, subject_folder.size());
       return sessions_.respond(below, overdue);
     }
-    if (!gate_.admits(request)) {
+    if (!access_.admits(request)) {
       return HttpResponse{.status = 403,
                           .body = "This address is not valid. Open the one that kerf studio shows.\n"};
     }
@@ -105,13 +105,13 @@ class Studio::State {
     }
     if (request.path.starts_with("/api/")) return routes_.respond(request, overdue);
     if (request.method != "GET") return refusal(405);
-    return page_file(studio_page(), request.path, gate_.token());
+    return page_file(studio_page(), request.path, access_.token());
   }
 
   // In the order in which they may go, the last one first, once the server has stopped.
   Workspace workspace_;
   HttpServer server_;
-  Gate gate_;
+  AccessControl access_;
   RecordingViews views_;
   LiveLoop loop_;
   SessionHost sessions_;

@@ -17,8 +17,8 @@ namespace {
 
 using schema::Column;
 
-constexpr std::uint64_t most_rows_segmented = 5'000'000;
-constexpr std::size_t most_points = 600;
+constexpr std::uint64_t max_rows_segmented = 5'000'000;
+constexpr std::size_t max_points = 600;
 
 bool is_measured(const schema::RecordingFile& file) { return file.width(Column::force_measured) > 0; }
 
@@ -45,7 +45,7 @@ std::vector<double> axis_of(const schema::RecordingFile& file, Column column, st
   return values;
 }
 
-/// Which way the tissue lies; a scene that cannot be read does not say.
+/// On which side the tissue lies; a scene that cannot be read does not say.
 models::Contact contact_along(const schema::RecordingFile& file, std::size_t axis,
                               const std::optional<schema::Cycles>& cycles) {
   schema::Recording known;
@@ -106,7 +106,7 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
     cycles.why_none = "the recording holds no force";
     return cycles;
   }
-  if (!found && file.rows() > most_rows_segmented) {
+  if (!found && file.rows() > max_rows_segmented) {
     cycles.why_none =
         fmt::format("{} rows are too many to look for cycles here; 'kerf segment' finds them", file.rows());
     return cycles;
@@ -136,7 +136,7 @@ std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_
     const auto position = axis_of(file, Column::position, axis, shown[i].begin, shown[i].end);
     const auto force = axis_of(file, force_of(file), axis, shown[i].begin, shown[i].end);
     ForceLoop loop{.cycle = shown[i].cycle, .position = {}, .force = {}};
-    for (const std::size_t at : decimated_rows({position, force}, most_points)) {
+    for (const std::size_t at : decimated_rows({position, force}, max_points)) {
       loop.position.push_back(position[at]);
       loop.force.push_back(resisting(force[at], is_measured(file), cycles.contact));
     }

@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t most_events = 2000;
-constexpr std::size_t most_spans = 20'000;
+constexpr std::size_t max_events = 2000;
+constexpr std::size_t max_spans = 20'000;
 
 /// Texts of a damaged file may be no UTF-8.
 std::string dumped(const ordered_json& json) {
@@ -49,7 +49,7 @@ ordered_json traces_of(const RecordingView& recording) {
 
 ordered_json events_of(const schema::Recording& about) {
   ordered_json events = ordered_json::array();
-  for (std::size_t i = 0; i < std::min(about.events.size(), most_events); ++i) {
+  for (std::size_t i = 0; i < std::min(about.events.size(), max_events); ++i) {
     const schema::Event& event = about.events[i];
     events.push_back({{"time_s", json_number(event.time_s)}, {"kind", event.kind}, {"text", event.text}});
   }
@@ -92,7 +92,7 @@ ordered_json cycles_of(const RecordingView& recording) {
   TimesInOrder times(recording.file());
   for (const schema::PhaseSpan& span : cycles->phases) {
     if (span.begin >= span.end || span.end > recording.file().rows()) continue;
-    if (spans.size() == most_spans) break;
+    if (spans.size() == max_spans) break;
     spans.push_back({{"cycle", span.cycle},
                      {"phase", name_of(span.phase)},
                      {"from_s", json_number(times.at(span.begin))},

@@ -10,8 +10,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_view_columns = 4000;
-constexpr std::size_t most_traces = 32;
-constexpr std::size_t most_loops = 200;
+constexpr std::size_t max_traces = 32;
+constexpr std::size_t max_loops = 200;
 constexpr double farthest_s = 1e12;  // thirty thousand years
 
 HttpResponse json_text(std::string text) { return {.type = "application/json", .body = std::move(text)}; }
@@ -20,9 +20,9 @@ HttpResponse stretch(const HttpRequest& request, RecordingView& recording) {
   const std::size_t count = recording.traces().size();
   if (count == 0) throw RequestError(400, "the recording has no traces");
   const auto traces = counts_in_query(request, "traces", count - 1);
-  if (traces.size() > most_traces) {
+  if (traces.size() > max_traces) {
     throw RequestError(400, fmt::format("parameter 'traces' names {} traces, at most {} are shown at once",
-                                        traces.size(), most_traces));
+                                        traces.size(), max_traces));
   }
   const double from_s = number_in_query(request, "from", -farthest_s, farthest_s);
   const double to_s = number_in_query(request, "to", -farthest_s, farthest_s);
@@ -34,7 +34,7 @@ HttpResponse loops(const HttpRequest& request, RecordingView& recording) {
   const std::size_t axis =
       count_in_query(request, "axis", recording.file().about().axes.size() - 1);  // it has at least one
   const std::size_t first = count_in_query(request, "first", 1'000'000'000);
-  return json_text(loops_json(recording, axis, first, count_in_query(request, "count", most_loops)));
+  return json_text(loops_json(recording, axis, first, count_in_query(request, "count", max_loops)));
 }
 
 }  // namespace

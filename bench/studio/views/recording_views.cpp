@@ -5,8 +5,8 @@
 
 namespace kerf::bench {
 
-RecordingViews::RecordingViews(ViewCache cache, std::size_t most_bytes)
-    : cache_(std::move(cache)), most_bytes_(most_bytes) {}
+RecordingViews::RecordingViews(ViewCache cache, std::size_t max_bytes)
+    : cache_(std::move(cache)), max_bytes_(max_bytes) {}
 
 std::shared_ptr<RecordingView> RecordingViews::current(const std::filesystem::path& file) {
   return find(file, false);
@@ -40,7 +40,7 @@ void RecordingViews::close_oldest() {
   std::size_t count = 0;
   for (auto it = open_.begin(); it != open_.end(); ++it) {
     bytes += it->view->bytes();
-    if (++count == 1 || (count <= most_open && bytes <= most_bytes_)) continue;
+    if (++count == 1 || (count <= max_open && bytes <= max_bytes_)) continue;
     open_.erase(it, open_.end());
     return;
   }

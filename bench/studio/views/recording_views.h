@@ -14,10 +14,10 @@ namespace kerf::bench {
 /// was not asked for for longest goes. May be used by several threads.
 class RecordingViews {
  public:
-  static constexpr std::size_t most_open = 8;
+  static constexpr std::size_t max_open = 8;
 
   explicit RecordingViews(ViewCache cache = ViewCache(ViewCache::usual_folder()),
-                          std::size_t most_bytes = std::size_t{256} << 20U);
+                          std::size_t max_bytes = std::size_t{256} << 20U);
 
   /// As the file is now: opened again if it has changed. @throws as RecordingView.
   [[nodiscard]] std::shared_ptr<RecordingView> current(const std::filesystem::path& file);
@@ -35,7 +35,7 @@ class RecordingViews {
   void close_oldest();
 
   ViewCache cache_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::mutex mutex_;
   std::list<Open> open_;  ///< the one asked for last comes first
 };

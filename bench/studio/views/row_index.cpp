@@ -51,13 +51,13 @@ class GapFinder {
 
  private:
   void add_gap(double from_s, double to_s) {
-    const bool has_room = in_all_ <= RowIndex::most_gaps;
+    const bool has_room = in_all_ <= RowIndex::max_gaps;
     if (was_gap_) {
       if (has_room) ends_.back() = to_s;
       return;
     }
     ++in_all_;
-    if (in_all_ > RowIndex::most_gaps) return;
+    if (in_all_ > RowIndex::max_gaps) return;
     ends_.push_back(from_s);
     ends_.push_back(to_s);
   }
@@ -98,7 +98,7 @@ RowIndex::RowIndex(std::uint64_t rows, std::span<const double> numbers, std::sha
     : rows_(rows), numbers_(numbers), owner_(std::move(owner)) {
   const std::size_t buckets = buckets_of(rows);
   const std::size_t ends = numbers.size() - std::min(numbers.size(), 2 * buckets + 1);
-  if (numbers.size() < 2 * buckets + 1 || ends % 2 != 0 || ends > 2 * most_gaps ||
+  if (numbers.size() < 2 * buckets + 1 || ends % 2 != 0 || ends > 2 * max_gaps ||
       !(numbers[2 * buckets] >= static_cast<double>(ends / 2) && numbers[2 * buckets] <= 1e18)) {
     throw std::invalid_argument("an index of rows whose parts do not fit together");
   }

@@ -17,7 +17,7 @@ namespace kerf::bench {
 /// rows are missing.
 class RowIndex {
  public:
-  static constexpr std::size_t most_gaps = 2000;
+  static constexpr std::size_t max_gaps = 2000;
   /// Gives the times of the rows from `first_row` on, as many as there is room for.
   using ReadTimes = std::function<void(std::uint64_t first_row, std::span<double> time_s)>;
 

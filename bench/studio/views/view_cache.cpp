@@ -71,8 +71,8 @@ std::filesystem::path ViewCache::usual_folder() {
   return std::filesystem::path(home) / ".cache" / "kerf" / "pyramids";
 }
 
-ViewCache::ViewCache(std::filesystem::path folder, std::uintmax_t most_bytes)
-    : folder_(std::move(folder)), most_bytes_(most_bytes) {}
+ViewCache::ViewCache(std::filesystem::path folder, std::uintmax_t max_bytes)
+    : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
 std::filesystem::path ViewCache::file_of(const FileFacts& recording, std::string_view name) const {
   // A channel may be called whatever it likes; its part is told by the head as well.
@@ -140,7 +140,7 @@ void ViewCache::remove_oldest() const {
   }
   std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
   for (const Kept& oldest : kept) {
-    if (total <= most_bytes_) return;
+    if (total <= max_bytes_) return;
     std::error_code ignored;
     std::filesystem::remove(oldest.file, ignored);
     total -= oldest.bytes;

@@ -33,7 +33,7 @@ class ViewCache {
   [[nodiscard]] static std::filesystem::path usual_folder();
 
   /// An empty folder: nothing is kept.
-  explicit ViewCache(std::filesystem::path folder, std::uintmax_t most_bytes = usual_most_bytes);
+  explicit ViewCache(std::filesystem::path folder, std::uintmax_t max_bytes = usual_most_bytes);
 
   /// A part as it was kept; its bytes lie aligned for any number.
   struct Part {
@@ -50,7 +50,7 @@ class ViewCache {
   void remove_oldest() const;
 
   std::filesystem::path folder_;
-  std::uintmax_t most_bytes_;
+  std::uintmax_t max_bytes_;
 };
 
 }  // namespace kerf::bench

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int deepest = 4;
-constexpr std::size_t most_files = 10'000;
+constexpr std::size_t max_files = 10'000;
 constexpr std::size_t longest_name = 80;
 
 struct Ending {
@@ -97,7 +97,7 @@ std::vector<WorkspaceEntry> Workspace::scan() {
   std::error_code error;
   fs::recursive_directory_iterator at(folder_, fs::directory_options::skip_permission_denied, error);
   const auto known = known_files();
-  for (; !error && at != fs::recursive_directory_iterator() && all.size() < most_files; at.increment(error)) {
+  for (; !error && at != fs::recursive_directory_iterator() && all.size() < max_files; at.increment(error)) {
     const bool is_hidden = at->path().filename().string().starts_with('.');
     if (at->is_symlink(error) || is_hidden || at.depth() >= deepest) at.disable_recursion_pending();
     if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;

@@ -47,7 +47,7 @@ int status_of(const boost::system::error_code& error) noexcept {
   return error.category() == http::make_error_code(http::error::bad_target).category() ? 400 : 0;
 }
 
-std::optional<HttpRequest> taken_apart(const http::request<http::string_body>& request) {
+std::optional<HttpRequest> parse_http_request(const http::request<http::string_body>& request) {
   HttpRequest taken{.method = std::string(view_of(request.method_string())), .body = request.body()};
   for (const auto& field : request) {
     const auto [place, is_new] =
@@ -65,7 +65,7 @@ std::optional<HttpRequest> taken_apart(const http::request<http::string_body>& r
   return taken;
 }
 
-http::response<http::string_body> on_the_wire(const HttpResponse& response) {
+http::response<http::string_body> serialise_response(const HttpResponse& response) {
   http::response<http::string_body> message(static_cast<http::status>(response.status), 11);
   message.set(http::field::connection, "close");
   message.set(http::field::cache_control, "no-store");

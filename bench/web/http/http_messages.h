@@ -16,11 +16,11 @@ namespace kerf::bench {
 
 /// Nothing for a request that no browser sends: a header or a part of the query that comes twice, a target
 /// that is no path.
-[[nodiscard]] std::optional<HttpRequest> taken_apart(
+[[nodiscard]] std::optional<HttpRequest> parse_http_request(
     const boost::beast::http::request<boost::beast::http::string_body>& request);
 
 /// With the headers of every answer.
-[[nodiscard]] boost::beast::http::response<boost::beast::http::string_body> on_the_wire(
+[[nodiscard]] boost::beast::http::response<boost::beast::http::string_body> serialise_response(
     const HttpResponse& response);
 
 }  // namespace kerf::bench

@@ -28,9 +28,9 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using namespace std::chrono_literals;
 
-constexpr std::size_t most_connections = 256;
-constexpr int most_waiting_to_be_accepted = 4096;  // a refused one tries again a second later
-constexpr std::uint32_t most_head = 8192;
+constexpr std::size_t max_connections = 256;
+constexpr int max_waiting_to_be_accepted = 4096;  // a refused one tries again a second later
+constexpr std::uint32_t max_head = 8192;
 constexpr auto time_to_send = 5s;           // of a browser, for a request or for taking an answer
 constexpr auto time_to_wait = 20s;          // of a request that was put off
 constexpr auto time_to_hang_up = 1s;        // of a browser, after the answer
@@ -41,7 +41,7 @@ constexpr auto time_without_files = 100ms;  // before accepting again when the p
 class HttpServer::State {
  public:
   explicit State(const ServerOptions& options)
-      : most_body_(options.most_body), acceptor_(io_), pause_(io_), end_(io_) {
+      : max_body_(options.max_body), acceptor_(io_), pause_(io_), end_(io_) {
     error_code error;
     const tcp::endpoint address(asio::ip::make_address(options.address, error), options.port);
     if (!error && address.address().is_unspecified())
@@ -51,7 +51,7 @@ class HttpServer::State {
     if (!error) acceptor_.open(address.protocol(), error);
     if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor_.bind(address, error);
-    if (!error) acceptor_.listen(most_waiting_to_be_accepted, error);
+    if (!error) acceptor_.listen(max_waiting_to_be_accepted, error);
     if (error) {
       throw std::invalid_argument(
           fmt::format("port {} of {}: {}; give another one, or 0 for any that is free", options.port,
@@ -97,7 +97,7 @@ class HttpServer::State {
   void stop();
   void forget(const Connection& connection);
 
-  std::size_t most_body_;
+  std::size_t max_body_;
   asio::io_context io_{1};
   tcp::acceptor acceptor_;
   asio::steady_timer pause_;
@@ -117,8 +117,8 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
 
   Connection(State& server, tcp::socket socket)
       : server_(server), stream_(std::move(socket)), overdue_(stream_.get_executor()) {
-    parser_.header_limit(most_head);
-    parser_.body_limit(server.most_body_);
+    parser_.header_limit(max_head);
+    parser_.body_limit(server.max_body_);
   }
 
   [[nodiscard]] Step step() const noexcept { return step_; }
@@ -173,7 +173,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   void take(error_code error) {
     if (const int status = status_of(error)) return write(refusal(status));
     if (error) return done();
-    auto request = taken_apart(parser_.get());
+    auto request = parse_http_request(parser_.get());
     if (!request) return write(refusal(400));
     request_ = std::move(*request);
     request_.number = ++server_.requests_;
@@ -195,7 +195,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     const bool is_listening = step_ == Step::waiting;
     step_ = Step::writing;
     overdue_.cancel();
-    response_ = on_the_wire(response);
+    response_ = serialise_response(response);
     more_ = response.more;
     stream_.expires_after(time_to_send);
     http::async_write(stream_, response_,
@@ -265,7 +265,7 @@ void HttpServer::State::accept() {
         if (!stopping_) accept();
       });
     }
-    if (connections_.size() >= most_connections) make_room();
+    if (connections_.size() >= max_connections) make_room();
     connections_.push_back(std::make_shared<Connection>(*this, std::move(socket)));
     connections_.back()->read();
     accept();

@@ -12,7 +12,7 @@
 
 namespace kerf::bench {
 
-/// One request, taken apart. Nothing is decoded: what needs a %-sequence is not for us.
+/// One request, parsed. Percent-sequences stay as they are: no address of ours needs one.
 struct HttpRequest {
   std::uint64_t number = 0;                    ///< of this request, from 1; the same when it is asked again
   std::string method;                          ///< "GET"
@@ -44,7 +44,7 @@ struct HttpResponse {
 struct ServerOptions {
   std::string address = "127.0.0.1";  ///< to listen on
   std::uint16_t port = 0;             ///< 0: any that is free
-  std::size_t most_body = 4096;       ///< of a request [bytes]
+  std::size_t max_body = 4096;        ///< of a request [bytes]
 };
 
 /// An HTTP server for browsers (Boost.Beast), one thread for all connections. A connection that sends nothing

@@ -12,7 +12,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t most_waiting = 64;
+constexpr std::size_t max_waiting = 64;
 
 /// What an answer says, or why there is none.
 HttpResponse guarded(const Routes::Answer& answer, const HttpRequest& request) {
@@ -75,7 +75,7 @@ std::optional<HttpResponse> Routes::respond(const HttpRequest& request, bool ove
 
   const std::lock_guard lock(mutex_);
   forget_the_abandoned();
-  if (waiting_.size() >= most_waiting) return json_error(503, "too much to do; try again");
+  if (waiting_.size() >= max_waiting) return json_error(503, "too much to do; try again");
   waiting_.emplace(request.number,
                    Waiting{.request = request, .answer = &route->answer, .pace = route->pace});
   changed_.notify_all();

@@ -23,17 +23,18 @@ bool is_same_secret(std::string_view given, std::string_view secret) noexcept {
 
 }  // namespace
 
-Gate::Gate(std::vector<std::string> hosts) : hosts_(std::move(hosts)), token_(new_token()) {}
+AccessControl::AccessControl(std::vector<std::string> hosts)
+    : hosts_(std::move(hosts)), token_(new_token()) {}
 
-std::string Gate::url(std::string_view path) const {
+std::string AccessControl::url(std::string_view path) const {
   return fmt::format("http://{}{}?token={}", hosts_.front(), path, token_);
 }
 
-bool Gate::is_ours(std::string_view host) const {
+bool AccessControl::is_ours(std::string_view host) const {
   return std::find(hosts_.begin(), hosts_.end(), host) != hosts_.end();
 }
 
-bool Gate::admits(const HttpRequest& request) const {
+bool AccessControl::admits(const HttpRequest& request) const {
   if (!is_ours(request.header("host"))) return false;
   if (request.headers.contains("origin")) {
     constexpr std::string_view scheme = "http://";

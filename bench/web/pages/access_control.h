@@ -12,10 +12,10 @@ namespace kerf::bench {
 /// compared in constant time), to have called the server by one of its own names, and not to come from
 /// another site. The token is in the address and then in a header that no other site can send, not in a
 /// cookie, which a browser would show to every server of this machine.
-class Gate {
+class AccessControl {
  public:
   /// With a new token; `hosts` as HttpServer::hosts().
-  explicit Gate(std::vector<std::string> hosts);
+  explicit AccessControl(std::vector<std::string> hosts);
 
   [[nodiscard]] const std::string& token() const noexcept { return token_; }
   /// The address to open: "http://127.0.0.1:8000/?token=..." for the path "/".

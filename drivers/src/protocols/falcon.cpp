@@ -9,7 +9,7 @@ constexpr std::uint8_t begin_mark = 0x3C;
 constexpr std::uint8_t end_mark = 0x3E;
 constexpr std::uint8_t zero = 0x41;
 constexpr std::size_t bits_at = 13;
-constexpr unsigned most_bits = 0x7F;
+constexpr unsigned max_bits = 0x7F;
 
 void put_number(Frame& frame, std::size_t at, int number) noexcept {
   const auto bits = static_cast<std::uint16_t>(number);
@@ -29,7 +29,7 @@ int number_at(const Frame& frame, std::size_t at) noexcept {
 bool belongs(std::size_t place, std::uint8_t byte) noexcept {
   if (place == 0) return byte == begin_mark;
   if (place == frame_size - 1) return byte == end_mark;
-  if (place == bits_at) return byte >= zero && byte <= zero + most_bits;
+  if (place == bits_at) return byte >= zero && byte <= zero + max_bits;
   if (place == bits_at + 1) return byte != begin_mark && byte != end_mark;  // its meaning is not known
   return byte >= zero && byte <= zero + 0xF;
 }
@@ -54,7 +54,7 @@ Frame with_numbers(const std::array<int, 3>& numbers, unsigned bits) noexcept {
 
 Frame encode(const Command& command) noexcept {
   std::array<int, 3> motor;
-  for (std::size_t i = 0; i < 3; ++i) motor[i] = std::clamp(command.motor[i], -most_motor, most_motor);
+  for (std::size_t i = 0; i < 3; ++i) motor[i] = std::clamp(command.motor[i], -max_motor, max_motor);
   const unsigned bits = (command.homing ? 1U : 0U) | (command.green ? 2U : 0U) | (command.blue ? 4U : 0U) |
                         (command.red ? 8U : 0U);
   return with_numbers(motor, bits);
@@ -94,8 +94,8 @@ Motors motors_for(const std::array<double, 3>& torque_n_m, double units_per_n_m)
     if (!std::isfinite(torque * units_per_n_m)) return {.value = {}, .limited = true};
     largest = std::max(largest, std::abs(torque * units_per_n_m));
   }
-  Motors motors{.value = {}, .limited = largest > most_motor};
-  const double scale = motors.limited ? most_motor / largest : 1.0;
+  Motors motors{.value = {}, .limited = largest > max_motor};
+  const double scale = motors.limited ? max_motor / largest : 1.0;
   for (std::size_t i = 0; i < 3; ++i) {
     motors.value[i] = static_cast<int>(std::lround(-units_per_n_m * torque_n_m[i] * scale));
   }

@@ -12,7 +12,7 @@ constexpr std::uint8_t stream_config_command = 0x11;
 constexpr std::size_t samples_at = 12;
 constexpr std::size_t around_samples = 14;  // bytes of a stream packet beside its samples
 constexpr double clock_hz = 4e6;
-constexpr double most_samples_per_s = 50e3;
+constexpr double max_samples_per_s = 50e3;
 
 std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
   return static_cast<std::uint16_t>(bytes[at] | (bytes[at + 1] << 8U));
@@ -49,8 +49,8 @@ bool is_sealed(std::span<const std::uint8_t> packet) noexcept {
 std::optional<Message> stream_config(std::span<const Channel> channels, double rate_hz) noexcept {
   const std::size_t count = channels.size();
   const double interval = std::round(clock_hz / rate_hz);
-  if (count < 1 || count > most_channels || !(interval >= 1.0 && interval <= 65535.0) ||
-      rate_hz * static_cast<double>(count) > most_samples_per_s) {
+  if (count < 1 || count > max_scan_channels || !(interval >= 1.0 && interval <= 65535.0) ||
+      rate_hz * static_cast<double>(count) > max_samples_per_s) {
     return std::nullopt;
   }
   Message message;
@@ -72,7 +72,7 @@ std::optional<Message> stream_config(std::span<const Channel> channels, double r
 }
 
 std::optional<StreamPacket> parse_stream(std::span<const std::uint8_t> bytes) noexcept {
-  if (bytes.size() < around_samples + 2 || bytes.size() > most_packet || bytes[1] != stream_data ||
+  if (bytes.size() < around_samples + 2 || bytes.size() > max_packet || bytes[1] != stream_data ||
       bytes[3] != stream_mark || !is_sealed(bytes)) {
     return std::nullopt;
   }

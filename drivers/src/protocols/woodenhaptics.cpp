@@ -73,7 +73,7 @@ Output set_currents(const std::array<int, 3>& current_ma, Generation generation)
   output.size = report_size(generation) + 1;
   const auto words = std::span(output.bytes).subspan(1);
   for (std::size_t i = 0; i < 3; ++i) {
-    put_number(words, i, std::clamp(current_ma[i], -most_current_ma, most_current_ma));
+    put_number(words, i, std::clamp(current_ma[i], -max_current_ma, max_current_ma));
   }
   return output;
 }

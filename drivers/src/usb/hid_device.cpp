@@ -78,10 +78,10 @@ HidDevice::HidDevice(const Identity& identity, std::size_t index, std::uint16_t 
 
 HidDevice::~HidDevice() { close(descriptor_); }
 
-HidDevice::Ready HidDevice::wait(std::int64_t most_ns, int wake_descriptor) noexcept {
+HidDevice::Ready HidDevice::wait(std::int64_t max_ns, int wake_descriptor) noexcept {
   std::array<pollfd, 2> waited{{{.fd = descriptor_, .events = POLLIN, .revents = 0},
                                 {.fd = wake_descriptor, .events = POLLIN, .revents = 0}}};
-  const std::int64_t wait_ns = std::max<std::int64_t>(most_ns, 0);
+  const std::int64_t wait_ns = std::max<std::int64_t>(max_ns, 0);
   const timespec most{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
   if (ppoll(waited.data(), waited.size(), &most, nullptr) <= 0) return {};
   return {.report = waited[0].revents != 0, .woken = waited[1].revents != 0};
@@ -114,7 +114,7 @@ HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexce
   constexpr unsigned report_number = 0x84;
   constexpr unsigned report_count = 0x94;
   constexpr std::uint8_t long_item = 0xFE;
-  constexpr std::uint32_t most_bits = 1U << 16U;  // far above what any report has
+  constexpr std::uint32_t max_bits = 1U << 16U;  // far above what any report has
   std::uint32_t bits_each = 0;
   std::uint32_t count = 0;
   std::uint32_t input_bits = 0;
@@ -137,7 +137,7 @@ HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexce
     for (std::size_t i = 0; i < length; ++i) value |= std::uint32_t{descriptor[1 + i]} << (8U * i);
     descriptor = descriptor.subspan(1 + length);
     const std::uint32_t bits =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t{bits_each} * count, most_bits));
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(std::uint64_t{bits_each} * count, max_bits));
     switch (prefix & 0xFCU) {
       case report_size:
         bits_each = value;
@@ -150,10 +150,10 @@ HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexce
         input_bits = output_bits = 0;
         break;
       case input:
-        input_bits = std::min(input_bits + bits, most_bits);
+        input_bits = std::min(input_bits + bits, max_bits);
         break;
       case output:
-        output_bits = std::min(output_bits + bits, most_bits);
+        output_bits = std::min(output_bits + bits, max_bits);
         break;
       default:
         break;

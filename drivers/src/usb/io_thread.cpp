@@ -66,9 +66,9 @@ void IoThread::take_wakes() noexcept {
   [[maybe_unused]] const auto got = read(wake_descriptor_, &count, sizeof count);
 }
 
-bool IoThread::wait(std::int64_t most_ns) noexcept {
+bool IoThread::wait(std::int64_t max_ns) noexcept {
   pollfd descriptor{.fd = wake_descriptor_, .events = POLLIN, .revents = 0};
-  const timespec most{.tv_sec = most_ns / 1'000'000'000, .tv_nsec = most_ns % 1'000'000'000};
+  const timespec most{.tv_sec = max_ns / 1'000'000'000, .tv_nsec = max_ns % 1'000'000'000};
   if (ppoll(&descriptor, 1, &most, nullptr) <= 0) return false;
   take_wakes();
   return true;

@@ -170,7 +170,7 @@ std::size_t UsbDevice::bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> bu
   return static_cast<std::size_t>(received);
 }
 
-bool UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcept {
+bool UsbDevice::handle_events(std::int64_t max_ns, int wake_descriptor) noexcept {
   std::array<pollfd, 8> waited{};
   std::size_t count = 0;
   for (const Waited& one : waited_) {
@@ -179,7 +179,7 @@ bool UsbDevice::handle_events(std::int64_t most_ns, int wake_descriptor) noexcep
   }
   const std::size_t of_usb = count;
   if (wake_descriptor >= 0) waited[count++] = {.fd = wake_descriptor, .events = POLLIN, .revents = 0};
-  const timespec most{.tv_sec = most_ns / 1'000'000'000, .tv_nsec = most_ns % 1'000'000'000};
+  const timespec most{.tv_sec = max_ns / 1'000'000'000, .tv_nsec = max_ns % 1'000'000'000};
   if (ppoll(waited.data(), count, &most, nullptr) <= 0) return false;
   const auto ready = [](const pollfd& one) { return one.revents != 0; };
   if (std::any_of(waited.begin(), waited.begin() + static_cast<std::ptrdiff_t>(of_usb), ready)) {

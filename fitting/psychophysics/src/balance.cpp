@@ -9,8 +9,8 @@
 namespace kerf::psychophysics {
 namespace {
 
-constexpr std::size_t most_conditions = 1000;
-constexpr std::size_t most_cells = 10'000'000;
+constexpr std::size_t max_conditions = 1000;
+constexpr std::size_t max_cells = 10'000'000;
 
 using Table = std::vector<std::vector<char>>;
 
@@ -32,9 +32,9 @@ void append_shuffled_square(Orders& orders, std::size_t conditions, Random& rand
 }
 
 Orders dealt(std::size_t subjects, std::size_t conditions, Random& random) {
-  require(subjects >= 1 && conditions >= 1 && conditions <= most_conditions &&
-              subjects <= most_cells / conditions,
-          "a plan needs at least one subject and one condition, and at most 10 million places");
+  require(
+      subjects >= 1 && conditions >= 1 && conditions <= max_conditions && subjects <= max_cells / conditions,
+      "a plan needs at least one subject and one condition, and at most 10 million places");
   Orders orders;
   while (orders.size() < subjects) append_shuffled_square(orders, conditions, random);
   orders.resize(subjects);
@@ -66,7 +66,7 @@ Table balanced_table(std::size_t rows, std::size_t columns, Random& random) {
 }  // namespace
 
 Orders williams_square(std::size_t conditions) {
-  require(conditions >= 1 && conditions <= most_conditions, "a square has 1 to 1,000 conditions");
+  require(conditions >= 1 && conditions <= max_conditions, "a square has 1 to 1,000 conditions");
   // 0, n - 1, 1, n - 2, ...: its steps are all different, so that shifting it by one gives each follower
   // once.
   std::vector<std::size_t> first;
@@ -104,7 +104,7 @@ std::vector<std::vector<Comparison>> counterbalanced_comparisons(std::size_t sub
 
 std::vector<std::size_t> balanced_sequence(std::size_t trials, std::size_t kinds, std::uint64_t seed,
                                            std::size_t block) {
-  require(kinds >= 1 && kinds <= most_conditions && trials <= most_cells, "a sequence has 1 to 1,000 kinds");
+  require(kinds >= 1 && kinds <= max_conditions && trials <= max_cells, "a sequence has 1 to 1,000 kinds");
   require(block % kinds == 0,
           "a block must hold every kind equally often: its length is a multiple of the kinds");
   Random random(seed);

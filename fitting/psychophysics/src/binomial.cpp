@@ -13,7 +13,7 @@ namespace kerf::psychophysics {
 namespace {
 
 constexpr double as_likely = 1.0 + 1e-7;
-constexpr int most_trials = 100000;
+constexpr int max_trials = 100000;
 
 double at_most(int k, int trials, double p) {
   if (k < 0) return 0.0;
@@ -130,7 +130,7 @@ int trials_for_power(const BinomialDesign& design, double power) {
   const double root = normal_quantile(1.0 - tail) * std::sqrt(design.chance * (1.0 - design.chance)) +
                       normal_quantile(power) * std::sqrt(design.truth * (1.0 - design.truth));
   const double approximate = std::max(root, 1.0) * std::max(root, 1.0) / (difference * difference);
-  require(approximate < most_trials,
+  require(approximate < max_trials,
           "the difference is so small that it takes more than 100,000 trials to show it");
   int trials = static_cast<int>(1.2 * approximate) + 60;
   while (binomial_power(design, trials) < power) trials *= 2;

@@ -10,7 +10,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-constexpr double most_tables = 200'000.0;
+constexpr double max_tables = 200'000.0;
 constexpr double as_likely = 1e-7;  ///< of log probabilities
 
 double log_choose(int n, int k) {
@@ -93,7 +93,7 @@ Homogeneity equal_proportions(std::span<const Count> groups, const HomogeneityOp
     all.successes += group.successes;
     all.trials += group.trials;
   }
-  Homogeneity result{.freedom = std::max(0, static_cast<int>(filled.size()) - 1)};
+  Homogeneity result{.degrees_of_freedom = std::max(0, static_cast<int>(filled.size()) - 1)};
   if (filled.size() < 2 || all.successes == 0 || all.successes == all.trials) return result;
   const double p = static_cast<double>(all.successes) / all.trials;
   for (const Count& group : filled) {
@@ -101,7 +101,7 @@ Homogeneity equal_proportions(std::span<const Count> groups, const HomogeneityOp
     result.statistic += apart * apart / (group.trials * p * (1.0 - p));
   }
   const Tables tables(filled, all);
-  result.is_exact = tables.count() <= most_tables;
+  result.is_exact = tables.count() <= max_tables;
   result.p = result.is_exact ? tables.exact() : tables.drawn(options);
   return result;
 }

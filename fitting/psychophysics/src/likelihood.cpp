@@ -180,7 +180,7 @@ Score score(const Problem& problem, const Point& point) {
 }
 
 Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
-  constexpr int most_rounds = 300;
+  constexpr int max_rounds = 300;
   constexpr double least_gain = 1e-11;
   const double rounding = 1e-14 * std::abs(log_likelihood(problem, start));
   Point at = start;
@@ -189,7 +189,7 @@ Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
   Score now = score(problem, at);
   double damping = 1e-3;
   int calm = 0;
-  for (int round = 0; round < most_rounds && damping < 1e12 && calm < 2; ++round) {
+  for (int round = 0; round < max_rounds && damping < 1e12 && calm < 2; ++round) {
     const Held fixed = fixed_at(problem, at, now.gradient, held);
     Point step{};
     if (!solve(now, fixed, damping, step)) {

@@ -19,7 +19,7 @@ namespace kerf::psychophysics {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double most_dispersion = 9.0;  ///< rho = 0.9
+constexpr double max_dispersion = 9.0;  ///< rho = 0.9
 
 /// Twice the loss of log-likelihood at the ends of an interval. A dispersion that is itself estimated makes
 /// it a quantile of F rather than of chi-squared.
@@ -100,7 +100,7 @@ ScaledProblem scaled_problem(std::span<const Level> levels, const FitOptions& op
   result.axis = {.axis = options.axis, .first = least, .span = most - least};
   for (Cell& cell : problem.cells) cell.at = (cell.at - least) / (most - least);
   problem.lower = {-5.0, std::log(0.05), options.lapse.value_or(0.0), 0.0};
-  problem.upper = {6.0, std::log(1000.0), lapse, options.overdispersed ? most_dispersion : 0.0};
+  problem.upper = {6.0, std::log(1000.0), lapse, options.overdispersed ? max_dispersion : 0.0};
   return result;
 }
 

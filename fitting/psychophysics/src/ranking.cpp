@@ -149,10 +149,10 @@ void maximise(const Wins& wins, Scale scale, std::vector<double>& worth) {
   }
 }
 
-double upper_tail(double statistic, int freedom) {
-  if (freedom <= 0) return 1.0;
+double upper_tail(double statistic, int degrees_of_freedom) {
+  if (degrees_of_freedom <= 0) return 1.0;
   return boost::math::cdf(
-      boost::math::complement(boost::math::chi_squared(freedom), std::max(0.0, statistic)));
+      boost::math::complement(boost::math::chi_squared(degrees_of_freedom), std::max(0.0, statistic)));
 }
 
 }  // namespace
@@ -181,11 +181,11 @@ Ranking rank(const Wins& wins, Scale scale) {
     }
   }
   result.ratio = std::max(0.0, 2.0 * (result.log_likelihood - equal));
-  result.ratio_freedom = static_cast<int>(n) - 1;
-  result.ratio_p = upper_tail(result.ratio, result.ratio_freedom);
+  result.ratio_degrees_of_freedom = static_cast<int>(n) - 1;
+  result.ratio_p = upper_tail(result.ratio, result.ratio_degrees_of_freedom);
   result.deviance = std::max(0.0, 2.0 * (saturated - result.log_likelihood));
-  result.deviance_freedom = pairs - result.ratio_freedom;
-  result.deviance_p = upper_tail(result.deviance, result.deviance_freedom);
+  result.deviance_degrees_of_freedom = pairs - result.ratio_degrees_of_freedom;
+  result.deviance_p = upper_tail(result.deviance, result.deviance_degrees_of_freedom);
   return result;
 }
 

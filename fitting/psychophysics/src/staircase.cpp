@@ -51,7 +51,7 @@ Staircase::Staircase(StaircaseOptions options) : options_(std::move(options)), a
       "a staircase must start between its least and its largest intensity, above zero on a logarithmic axis");
   require(options_.dropped >= 0 && options_.reversals >= options_.dropped + 2,
           "a staircase needs at least two reversals more than it drops");
-  require(options_.most_trials > 0, "a staircase needs trials");
+  require(options_.max_trials > 0, "a staircase needs trials");
   at_ = on_axis(options_.axis, options_.start);
 }
 
@@ -60,7 +60,7 @@ double Staircase::next() const {
 }
 
 bool Staircase::finished() const {
-  return static_cast<int>(reversals_.size()) >= options_.reversals || trials_ >= options_.most_trials;
+  return static_cast<int>(reversals_.size()) >= options_.reversals || trials_ >= options_.max_trials;
 }
 
 void Staircase::answer(bool is_right) {

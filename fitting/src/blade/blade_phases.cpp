@@ -7,10 +7,10 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr std::size_t most_iterations = 30;
+constexpr std::size_t max_iterations = 30;
 constexpr std::size_t splitting_iterations = 10;
 constexpr double significant = 50.0;  // twice the logarithm of a likelihood ratio, before phases are changed
-constexpr double most_shift = 1.5;    // rows
+constexpr double max_shift = 1.5;     // rows
 constexpr std::size_t shortest = 4;   // rows of a part
 constexpr std::size_t coarse_cuts = 40;
 
@@ -34,7 +34,7 @@ class Fitter {
     guess_releases();
     fit_fields();
     if (!both_known()) try_other_kind();
-    for (fit_.iterations = 1; fit_.iterations < most_iterations && !fit_.settled; ++fit_.iterations) {
+    for (fit_.iterations = 1; fit_.iterations < max_iterations && !fit_.settled; ++fit_.iterations) {
       const Eigen::Vector3d viscous = fit_.viscous.value;
       const Eigen::Vector3d elastic = fit_.elastic.value;
       bool changed = assign();
@@ -159,7 +159,7 @@ class Fitter {
       along += by_shift.squaredNorm();
     }
     if (!(along > 0.0)) return squares;
-    const double shift = std::clamp(phase.shift - cross / along, -most_shift, most_shift);
+    const double shift = std::clamp(phase.shift - cross / along, -max_shift, max_shift);
     const double change = shift - phase.shift;
     phase.shift = shift;
     return squares + 2.0 * change * cross + change * change * along;
@@ -302,7 +302,7 @@ class Fitter {
   void add_held(FieldRows& all, const BladePhase& phase) const {
     const Anchor anchor = anchor_of(phase);
     const std::size_t first = all.size();
-    const bool free = phase.anchor_may_shift && std::abs(phase.shift) < most_shift;
+    const bool free = phase.anchor_may_shift && std::abs(phase.shift) < max_shift;
     const Vector6d weight = deviation_.cwiseAbs2().cwiseInverse();
     std::vector<Vector6d> by_shift;
     Eigen::RowVector3d of_columns = Eigen::RowVector3d::Zero();

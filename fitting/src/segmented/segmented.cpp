@@ -20,7 +20,7 @@ void check(const SegmentedOptions& options, const Points& points) {
   const auto outside = [](std::size_t value, std::size_t least, std::size_t most) {
     return value < least || value > most;
   };
-  if (outside(options.most_segments, 1, segmented::max_segments)) {
+  if (outside(options.max_segments, 1, segmented::max_segments)) {
     segmented::refuse("the number of segments must be from 1 to " + std::to_string(segmented::max_segments));
   }
   if (outside(options.cells, 4, 1024)) segmented::refuse("the grid must have 4 to 1,024 cells");

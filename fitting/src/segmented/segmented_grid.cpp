@@ -78,10 +78,10 @@ class Search {
         branches_(points.branches.size()),
         end_(grid.places.size() - 1),
         lines_(points, grid),
-        layers_(grid.most_segments + 1, std::vector<std::vector<Path>>(grid.places.size())),
-        lost_(grid.most_segments + 1, infinite),
+        layers_(grid.max_segments + 1, std::vector<std::vector<Path>>(grid.places.size())),
+        lost_(grid.max_segments + 1, infinite),
         slack_(rounding * points.weight) {
-    reachable_.assign(grid.most_segments + 1, lines_.error(0, end_));
+    reachable_.assign(grid.max_segments + 1, lines_.error(0, end_));
     for (std::size_t s = 1; s < std::min(reachable_.size(), grid.reachable.size()); ++s) {
       reachable_[s] = std::min(reachable_[s], grid.reachable[s]);
     }
@@ -91,9 +91,9 @@ class Search {
   std::vector<GridPath> run() {
     layers_[0][0].push_back({});
     std::vector<GridPath> best;
-    for (std::size_t s = 1; s <= grid_.most_segments; ++s) {
-      if (!windowed() || s == grid_.most_segments) best.push_back(arrive(s));
-      if (s == grid_.most_segments) break;
+    for (std::size_t s = 1; s <= grid_.max_segments; ++s) {
+      if (!windowed() || s == grid_.max_segments) best.push_back(arrive(s));
+      if (s == grid_.max_segments) break;
       const auto [first, last] = window(s);
       for (std::size_t place = std::max<std::size_t>(first, 1); place <= std::min(last, end_ - 1); ++place) {
         advance(s, place);
@@ -112,7 +112,7 @@ class Search {
 
   /// rest_[r][place]: least error of what comes after a place in r segments that need not join.
   void bound_the_rest() {
-    const std::size_t most = grid_.most_segments;
+    const std::size_t most = grid_.max_segments;
     rest_.assign(most + 1, std::vector<double>(end_ + 1, infinite));
     rest_[0][end_] = 0.0;
     for (std::size_t r = 1; r < most; ++r) {
@@ -131,8 +131,8 @@ class Search {
   /// A path with more error than this can be part of no best curve.
   [[nodiscard]] double ceiling(std::size_t s, std::size_t place) const {
     double highest = -infinite;
-    const std::size_t least_total = windowed() ? grid_.most_segments : s + 1;
-    for (std::size_t total = least_total; total <= grid_.most_segments; ++total) {
+    const std::size_t least_total = windowed() ? grid_.max_segments : s + 1;
+    for (std::size_t total = least_total; total <= grid_.max_segments; ++total) {
       if (rest_[total - s][place] == infinite) continue;
       highest = std::max(highest, reachable_[total] - rest_[total - s][place]);
     }
@@ -168,7 +168,7 @@ class Search {
     }
     double lost = infinite;
     layers_[s][place] = undominated(gathered_, most, grid_.beam, lost);
-    for (std::size_t total = s + 1; total <= grid_.most_segments && lost < infinite; ++total) {
+    for (std::size_t total = s + 1; total <= grid_.max_segments && lost < infinite; ++total) {
       lost_[total] = std::min(lost_[total], lost + rest_[total - s][place]);
     }
   }

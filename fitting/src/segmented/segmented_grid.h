@@ -11,13 +11,13 @@ namespace kerf::fitting::segmented {
 /// Where knots may be, and what is known beforehand.
 struct Grid {
   std::vector<double> places;  ///< increasing scaled positions from 0 to 1
-  std::size_t most_segments = 1;
+  std::size_t max_segments = 1;
   std::size_t fewest_points = 1;  ///< in a segment, on each branch
   std::size_t beam = 64;          ///< paths kept at a place, where there are two branches or windows
   /// For each number of segments an error that can be reached on this grid, or infinity; index 0 unused.
   std::vector<double> reachable;
-  /// If not empty: the first and last place that each of the most_segments - 1 inner knots may take, and only
-  /// most_segments are searched.
+  /// If not empty: the first and last place that each of the max_segments - 1 inner knots may take, and only
+  /// max_segments are searched.
   std::vector<std::pair<std::size_t, std::size_t>> windows;
 };
 
@@ -28,8 +28,8 @@ struct GridPath {
   bool optimal = false;  ///< proven
 };
 
-/// The best path for every number of segments from 1 to most_segments, at index number - 1; with windows, for
-/// most_segments alone.
+/// The best path for every number of segments from 1 to max_segments, at index number - 1; with windows, for
+/// max_segments alone.
 [[nodiscard]] std::vector<GridPath> search_grid(const Points& points, const Grid& grid);
 
 }  // namespace kerf::fitting::segmented

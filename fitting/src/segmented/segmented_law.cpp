@@ -16,7 +16,7 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr int most_reweighings = 20;  ///< of a robust loss
+constexpr int max_reweighings = 20;  ///< of a robust loss
 constexpr double settled = 1e-9;
 
 std::vector<double> positions(const Samples& samples) {
@@ -43,8 +43,8 @@ std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& sam
 /// The curves up to so many segments, remembered ones where there are.
 std::vector<SegmentedCurve> curves_of(const Problem& problem, const Curve& points, std::size_t segments) {
   if (!problem.breakpoints.empty() || !problem.segmented_memory ||
-      problem.segmented_memory->most_segments() < segments) {
-    return fit_segments(points, {.most_segments = segments, .breakpoints = problem.breakpoints});
+      problem.segmented_memory->max_segments() < segments) {
+    return fit_segments(points, {.max_segments = segments, .breakpoints = problem.breakpoints});
   }
   std::vector<SegmentedCurve> curves = problem.segmented_memory->curves(points);
   std::erase_if(curves, [&](const SegmentedCurve& curve) { return curve.segments() > segments; });
@@ -115,7 +115,7 @@ Solution solve_segments(const Problem& problem, const Samples& samples, const We
   const auto position = positions(samples);
   Weights robust(weights);
   Solution solution;
-  for (int round = 0; round < most_reweighings; ++round) {
+  for (int round = 0; round < max_reweighings; ++round) {
     std::vector<SegmentedCurve> curves;
     try {
       const Curve points{

@@ -25,12 +25,12 @@ SegmentedMemory::Entry& SegmentedMemory::entry_of(const Curve& points) {
 
 std::vector<SegmentedCurve> SegmentedMemory::curves(const Curve& points) {
   Entry& entry = entry_of(points);
-  std::call_once(entry.once, [&] { entry.curves = fit_segments(points, {.most_segments = most_segments_}); });
+  std::call_once(entry.once, [&] { entry.curves = fit_segments(points, {.max_segments = max_segments_}); });
   return entry.curves;
 }
 
-std::shared_ptr<SegmentedMemory> remember_segments(std::size_t most_segments) {
-  return std::make_shared<SegmentedMemory>(most_segments);
+std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments) {
+  return std::make_shared<SegmentedMemory>(max_segments);
 }
 
 }  // namespace kerf::fitting

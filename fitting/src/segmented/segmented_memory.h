@@ -13,9 +13,9 @@ namespace kerf::fitting {
 /// wait for the one that came first.
 class SegmentedMemory {
  public:
-  explicit SegmentedMemory(std::size_t most_segments) : most_segments_(most_segments) {}
+  explicit SegmentedMemory(std::size_t max_segments) : max_segments_(max_segments) {}
 
-  [[nodiscard]] std::size_t most_segments() const noexcept { return most_segments_; }
+  [[nodiscard]] std::size_t max_segments() const noexcept { return max_segments_; }
   /// @throws std::invalid_argument as fit_segments() does.
   [[nodiscard]] std::vector<SegmentedCurve> curves(const Curve& points);
 
@@ -33,7 +33,7 @@ class SegmentedMemory {
   };
   Entry& entry_of(const Curve& points);
 
-  std::size_t most_segments_;
+  std::size_t max_segments_;
   std::mutex mutex_;
   std::list<Entry> entries_;
 };

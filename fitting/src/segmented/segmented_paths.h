@@ -9,7 +9,7 @@
 
 namespace kerf::fitting::segmented {
 
-/// A way to a knot: knots behind it, and the least squared error of all points before it, as a function of
+/// A path to a knot: knots behind it, and the least squared error of all points before it, as a function of
 /// the forces y at it, one a branch: least + sum of curvature (y - best)^2.
 struct Path {
   std::array<double, 2> curvature{};

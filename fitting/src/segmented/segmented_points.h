@@ -19,7 +19,7 @@ struct Moments {
   double y = 0.0;  ///< mean
   double xx = 0.0, xy = 0.0, yy = 0.0;
 
-  /// Joined with those of other points (Chan, Golub and LeVeque 1983).
+  /// Joined with those of other points [Chan1983].
   void join(const Moments& other) noexcept {
     if (other.weight == 0.0) return;
     if (weight == 0.0) {

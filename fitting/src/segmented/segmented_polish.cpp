@@ -103,10 +103,10 @@ std::vector<double> neighbourhood(const Points& points, double knot, double cell
 Polished among_neighbours(const Points& points, const Polished& start, std::size_t fewest_points, double cell,
                           bool near, double bound) {
   Grid grid;
-  grid.most_segments = start.knots.size() - 1;
+  grid.max_segments = start.knots.size() - 1;
   grid.fewest_points = fewest_points;
   grid.beam = 8;
-  grid.reachable.assign(grid.most_segments + 1, std::min(start.error, bound));
+  grid.reachable.assign(grid.max_segments + 1, std::min(start.error, bound));
   std::vector<std::vector<double>> around;
   grid.places = {0.0, 1.0};
   for (std::size_t i = 1; i + 1 < start.knots.size(); ++i) {

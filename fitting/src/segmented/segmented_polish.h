@@ -27,6 +27,6 @@ struct Polished {
 
 /// Between any two neighbouring points there may be a least error of its own: tries the nearest such
 /// intervals for each knot, with a few Gauss-Newton steps of all knots from there. Never worse.
-[[nodiscard]] Polished hop(const Points& points, const Polished& start, std::size_t fewest_points);
+[[nodiscard]] Polished relocate(const Points& points, const Polished& start, std::size_t fewest_points);
 
 }  // namespace kerf::fitting::segmented

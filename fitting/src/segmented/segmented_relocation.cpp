@@ -13,8 +13,8 @@ namespace {
 
 constexpr double hop_gain = 1e-12;           ///< share of the error below which a gain is rounding
 constexpr std::ptrdiff_t reach_of_one = 16;  ///< intervals to each side
-constexpr std::ptrdiff_t reach_of_two = 3;   ///< the same if two neighbouring knots hop at once
-constexpr std::size_t most_places_for_pairs = 2000;
+constexpr std::ptrdiff_t reach_of_two = 3;   ///< the same if two neighbouring knots move at once
+constexpr std::size_t max_places_for_pairs = 2000;
 constexpr int steps = 8;
 constexpr double least_share = 0.05;  ///< of a step
 constexpr int sweeps = 8;
@@ -84,23 +84,23 @@ Polished stepped(const Points& points, const std::vector<double>& start, const H
 }
 
 /// Where a knot may sit: in the middle of an interval between points, from where it may move, or at a point.
-struct Seat {
+struct KnotPlace {
   double position;
   bool held;
 };
 
-class Hopper {
+class Relocation {
  public:
-  Hopper(const Points& points, const Polished& start, std::size_t fewest_points)
+  Relocation(const Points& points, const Polished& start, std::size_t fewest_points)
       : points_(points), fewest_points_(fewest_points), best_(start) {}
 
   Polished run() {
-    const bool pairs = points_.places.size() <= most_places_for_pairs;
+    const bool pairs = points_.places.size() <= max_places_for_pairs;
     bool moved = true;
     for (int sweep = 0; sweep < sweeps && moved; ++sweep) {
       const double before = best_.error;
-      for (std::size_t knot = 1; knot + 1 < best_.knots.size(); ++knot) hop_one(knot);
-      for (std::size_t knot = 1; pairs && knot + 2 < best_.knots.size(); ++knot) hop_two(knot);
+      for (std::size_t knot = 1; knot + 1 < best_.knots.size(); ++knot) relocate_one(knot);
+      for (std::size_t knot = 1; pairs && knot + 2 < best_.knots.size(); ++knot) relocate_two(knot);
       moved = best_.error < before - hop_gain * before;
       ++best_.iterations;
     }
@@ -108,10 +108,10 @@ class Hopper {
   }
 
  private:
-  [[nodiscard]] std::vector<Seat> seats(double knot, std::ptrdiff_t reach) const {
+  [[nodiscard]] std::vector<KnotPlace> places_around(double knot, std::ptrdiff_t reach) const {
     const auto& places = points_.places;
     const auto at = std::upper_bound(places.begin(), places.end(), knot) - places.begin();
-    std::vector<Seat> all;
+    std::vector<KnotPlace> all;
     for (auto i = std::max<std::ptrdiff_t>(at - reach, 1);
          i <= std::min<std::ptrdiff_t>(at + reach, std::ssize(places) - 1); ++i) {
       const auto place = places.begin() + i;
@@ -121,32 +121,32 @@ class Hopper {
     return all;
   }
 
-  void hop_one(std::size_t knot) {
+  void relocate_one(std::size_t knot) {
     const auto from = best_.knots;
     const Held held = at_points(points_, from);
-    for (const Seat& seat : seats(from[knot], reach_of_one)) {
+    for (const KnotPlace& place : places_around(from[knot], reach_of_one)) {
       auto knots = from;
-      knots[knot] = seat.position;
+      knots[knot] = place.position;
       Held now{};
-      now[knot] = seat.held;
+      now[knot] = place.held;
       take(knots, now);
       now = held;
-      now[knot] = seat.held;
+      now[knot] = place.held;
       take(knots, now);
     }
   }
 
-  void hop_two(std::size_t knot) {
+  void relocate_two(std::size_t knot) {
     const auto from = best_.knots;
-    const auto others = seats(from[knot + 1], reach_of_two);
-    for (const Seat& seat : seats(from[knot], reach_of_two)) {
-      for (const Seat& other : others) {
-        if (!(seat.position < other.position)) continue;
+    const auto others = places_around(from[knot + 1], reach_of_two);
+    for (const KnotPlace& place : places_around(from[knot], reach_of_two)) {
+      for (const KnotPlace& other : others) {
+        if (!(place.position < other.position)) continue;
         auto knots = from;
-        knots[knot] = seat.position;
+        knots[knot] = place.position;
         knots[knot + 1] = other.position;
         Held now{};
-        now[knot] = seat.held;
+        now[knot] = place.held;
         now[knot + 1] = other.held;
         take(knots, now);
       }
@@ -167,8 +167,8 @@ class Hopper {
 
 }  // namespace
 
-Polished hop(const Points& points, const Polished& start, std::size_t fewest_points) {
-  return Hopper(points, start, fewest_points).run();
+Polished relocate(const Points& points, const Polished& start, std::size_t fewest_points) {
+  return Relocation(points, start, fewest_points).run();
 }
 
 }  // namespace kerf::fitting::segmented

@@ -11,8 +11,8 @@
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr double search_gain = 1e-12;                 ///< share of an error below which a gain is rounding
-constexpr std::size_t most_places_for_hops = 50'000;  ///< with more the kinks are too small to matter
+constexpr double search_gain = 1e-12;  ///< share of an error below which a gain is rounding
+constexpr std::size_t max_places_for_relocation = 50'000;  ///< with more the kinks are too small to matter
 constexpr double hopeless = 1.5;    ///< times the best error: not worth more than a first descent
 constexpr double promising = 1.02;  ///< times the best error: within reach of it
 
@@ -105,7 +105,7 @@ class Climb {
 
   [[nodiscard]] Polished slide(const std::vector<double>& knots) const {
     Polished best{.knots = knots, .error = best_forces(points_, knots).error};
-    Grid grid{.places = places_, .most_segments = knots.size() - 1, .fewest_points = fewest_, .beam = 8};
+    Grid grid{.places = places_, .max_segments = knots.size() - 1, .fewest_points = fewest_, .beam = 8};
     constexpr std::size_t reach = 4;
     for (bool moved = knots.size() > 2; moved;) {
       grid.windows.clear();
@@ -157,15 +157,15 @@ OnGrid search_on(const Points& points, const SegmentedOptions& options, const st
   const Climb climb(points, options, places, true);
   OnGrid curves;
   std::vector<double> knots{0.0, 1.0};
-  for (std::size_t s = 1; s <= options.most_segments && !knots.empty(); ++s) {
+  for (std::size_t s = 1; s <= options.max_segments && !knots.empty(); ++s) {
     climb.offer(curves.good.emplace_back(), knots);
     knots = climb.with_one_more(curves.good.back().knots);
   }
   exchange(climb, curves.good, 2);
   Grid grid{.places = places,
-            .most_segments = options.most_segments,
+            .max_segments = options.max_segments,
             .fewest_points = options.fewest_points,
-            .reachable = std::vector<double>(options.most_segments + 1, infinite)};
+            .reachable = std::vector<double>(options.max_segments + 1, infinite)};
   for (std::size_t i = 0; i < curves.good.size(); ++i) grid.reachable[i + 1] = curves.good[i].error;
   curves.best = search_grid(points, grid);
   return curves;
@@ -187,8 +187,8 @@ void polish(const Points& points, const SegmentedOptions& options, const OnGrid&
     }
   }
   exchange(climb, best, 3);
-  if (points.places.size() > most_places_for_hops) return;
-  for (Polished& each : best) each = hop(points, each, options.fewest_points);
+  if (points.places.size() > max_places_for_relocation) return;
+  for (Polished& each : best) each = relocate(points, each, options.fewest_points);
 }
 
 }  // namespace

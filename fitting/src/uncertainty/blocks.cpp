@@ -11,9 +11,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double null_eigenvalue = 1e-13;  // of the largest, of J^T J with columns of length one
-constexpr double most_lost = 1e-3;
-constexpr double most_lost_of_many = 3e-2;  // while there are more blocks than `many`
-constexpr Index many = 8192;                // for six directions or fewer
+constexpr double max_lost = 1e-3;
+constexpr double max_lost_of_many = 3e-2;  // while there are more blocks than `many`
+constexpr Index many = 8192;               // for six directions or fewer
 constexpr Index fewest_blocks = 128;
 
 std::vector<Rows> halved(const std::vector<Rows>& runs) {
@@ -99,8 +99,7 @@ Blocks coarsen(const Linearisation& linearisation, const Eigen::MatrixXd& normal
     const Eigen::MatrixXd lost = basis.transpose() * (normal - gram(next.leftCols(p))) * basis;
     // Work grows with the directions, and so does what the norm of all says of the worst of them.
     const double share = r <= 6 ? 1.0 : static_cast<double>(r) / 3.0;
-    const double bearable =
-        static_cast<double>(runs.back().end) * share > many ? most_lost_of_many : most_lost;
+    const double bearable = static_cast<double>(runs.back().end) * share > many ? max_lost_of_many : max_lost;
     if (lost.norm() > bearable * std::sqrt(share)) break;  // no eigenvalue is larger than the norm
     blocks.lost = lost;
     blocks.size *= 2;

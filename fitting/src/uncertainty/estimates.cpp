@@ -111,18 +111,18 @@ Uncertainty as_of_white_noise(const LawObjective& objective, const Eigen::Vector
   if (!known) known = objective.evaluate(at, sums);
   const auto counted =
       static_cast<double>(std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.0; }));
-  const double freedom = std::max(1.0, counted - static_cast<double>(p));
+  const double degrees_of_freedom = std::max(1.0, counted - static_cast<double>(p));
   Uncertainty result;
   result.covariance.setZero(p, p);
   result.correlation = Eigen::MatrixXd::Identity(p, p);
   for (Eigen::Index k = 0; k < p && known; ++k) {
     result.covariance.col(k) =
-        sums.squares / freedom * solve_normal(sums.normal, Eigen::VectorXd::Unit(p, k));
+        sums.squares / degrees_of_freedom * solve_normal(sums.normal, Eigen::VectorXd::Unit(p, k));
   }
   const Eigen::VectorXd error = result.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   for (Eigen::Index k = 0; k < p; ++k) {
     result.determined.push_back(known && sums.normal(k, k) > 0.0);
-    result.quantile.push_back(student_t(confidence, freedom));
+    result.quantile.push_back(student_t(confidence, degrees_of_freedom));
     for (Eigen::Index j = 0; j < p; ++j) {
       if (j != k && error[j] * error[k] > 0.0)
         result.correlation(j, k) = result.covariance(j, k) / (error[j] * error[k]);
@@ -199,8 +199,8 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
     result.correlation.assign(uncertainty.correlation.data(),
                               uncertainty.correlation.data() + uncertainty.correlation.size());
     result.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples.size()));
-    for (const Indistinct& indistinct : uncertainty.indistinct)
-      result.warnings.push_back(describe(indistinct, result.searched, logarithmic));
+    for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable)
+      result.warnings.push_back(describe(unidentifiable, result.searched, logarithmic));
     if (options.profile) {
       result.profiles =
           profiles_of(inner, samples, weights, solution.values, loss, uncertainty, result.searched);

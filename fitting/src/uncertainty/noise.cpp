@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index most_order = 32;
+constexpr Index max_order = 32;
 constexpr Index patience = 8;  // orders without an improvement before the search ends
 constexpr double near_one = 1.0 - 1e-9;
 
@@ -162,9 +162,9 @@ Autoregression autoregression_of(const Eigen::MatrixXd& rows, const std::vector<
   constexpr int free_passes = 3;       // in which the order may still change
   constexpr double settled = 1e-3;
   const Index r = rows.rows() - 1;
-  const int most_passes = r <= 6 ? 20 : r <= 12 ? 8 : 2;  // each costs with the square of the parameters
+  const int max_passes = r <= 6 ? 20 : r <= 12 ? 8 : 2;  // each costs with the square of the parameters
   const auto count = static_cast<double>(rows.cols());
-  const Index most = std::min(most_order, rows.cols() / 8);
+  const Index most = std::min(max_order, rows.cols() / 8);
   Autoregression noise = burg(rows.bottomRows(1), runs, most, false, known_variance);
   if (!(noise.innovation_variance > 0.0)) return noise;
   if (noise.innovation_variance != known_variance) {
@@ -175,7 +175,7 @@ Autoregression autoregression_of(const Eigen::MatrixXd& rows, const std::vector<
   };
   double level = level_of(noise);
   if (static_cast<double>(r) / count * std::max(1.0, level / noise.variance()) < negligible) return noise;
-  for (int pass = 0; pass < most_passes; ++pass) {
+  for (int pass = 0; pass < max_passes; ++pass) {
     const Eigen::MatrixXd white = whitened(rows, runs, noise);
     const Eigen::MatrixXd filled = expectation(white, noise.innovation_variance) * rows;
     const bool fixed = pass >= free_passes;

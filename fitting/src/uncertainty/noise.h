@@ -52,8 +52,8 @@ struct Noise {
 ///
 /// so that Burg's sums run over 1 + r series. Without it residuals look whiter than the noise. The order is
 /// that of least AICc.
-/// Source: Burg 1967, for segments as by de Waele and Broersen, IEEE Trans. Signal Processing 48 (2000) 2876;
-/// Laird, Lange and Stram 1987 for the expectation.
+/// Source: [Burg1967], for segments as by [WaeleBroersen2000];
+/// [Laird1987] for the expectation.
 [[nodiscard]] Noise noise_of(const Blocks& blocks);
 
 }  // namespace kerf::fitting

@@ -8,8 +8,8 @@
 namespace kerf::fitting {
 namespace {
 
-constexpr double step = 0.5;    ///< [standard errors]
-constexpr int most_steps = 20;  ///< outwards, doubling after the first few
+constexpr double step = 0.5;   ///< [standard errors]
+constexpr int max_steps = 20;  ///< outwards, doubling after the first few
 
 /// An objective with one coordinate held.
 class Held final : public Objective {
@@ -89,7 +89,7 @@ std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
     for (const double side : {-1.0, 1.0}) {
       Eigen::VectorXd rest = without(at, k);
       double away = 0.0;
-      for (int i = 0; i < most_steps && at.size() > 1; ++i) {
+      for (int i = 0; i < max_steps && at.size() > 1; ++i) {
         away += i < 8 ? step : step * std::ldexp(1.0, i - 8);
         const double value = at[k] + side * away * error;
         if (value < bounds.lower[k] || value > bounds.upper[k]) break;

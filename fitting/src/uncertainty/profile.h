@@ -12,7 +12,7 @@ namespace kerf::fitting {
 ///     deviation = sign sqrt((S - S_best) / c),   c such that near the best one standard error gives 1,
 ///
 /// so that the profile allows for the residuals' correlation as the interval does, but not for a parabola.
-/// Source: Bates and Watts, Nonlinear Regression Analysis (1988), section 6.1.
+/// Source: [BatesWatts1988], section 6.1.
 [[nodiscard]] std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
                                                const Weights& weights, const Values& best,
                                                const RobustLoss& loss, const Uncertainty& uncertainty,

@@ -244,8 +244,9 @@ Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence
         linearisation.scale.empty()
             ? Eigen::VectorXd::Ones(p)
             : Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(linearisation.scale.data(), p));
-    result.indistinct = indistinct_of(normal, noise_of_normal, basis.null, scale,
-                                      *std::max_element(result.quantile.begin(), result.quantile.end()));
+    result.unidentifiable =
+        unidentifiable_directions(normal, noise_of_normal, basis.null, scale,
+                                  *std::max_element(result.quantile.begin(), result.quantile.end()));
   }
   return result;
 }

@@ -17,9 +17,9 @@ struct Uncertainty {
   std::vector<bool> determined;   ///< by the rows at all; how well, the covariance says
   double correlation_time = 1.0;  ///< of the residuals [rows]
   double effective_samples = 0.0;
-  int noise_order = 0;                 ///< of the autoregression
-  int rows_a_block = 1;                ///< of the time grid on which it stands
-  std::vector<Indistinct> indistinct;  ///< what the data cannot tell apart
+  int noise_order = 0;                                  ///< of the autoregression
+  int rows_a_block = 1;                                 ///< of the time grid on which it stands
+  std::vector<UnidentifiableDirection> unidentifiable;  ///< what the data cannot tell apart
 };
 
 /// Uncertainty of ordinary (weighted) least squares whose residuals are not independent. The estimate stays

@@ -41,11 +41,11 @@ Eigen::MatrixXd simplest(Eigen::MatrixXd basis) {
   return basis;
 }
 
-Indistinct told(Eigen::VectorXd direction, double error) {
+UnidentifiableDirection told(Eigen::VectorXd direction, double error) {
   Index first = 0;
   const double largest = direction.cwiseAbs().maxCoeff(&first);
   direction /= direction[first];
-  Indistinct result{.relative_error = error * largest};
+  UnidentifiableDirection result{.relative_error = error * largest};
   for (Index k = 0; k < direction.size(); ++k) {
     if (std::abs(direction[k]) >= small_share) {
       result.parts.emplace_back(static_cast<std::size_t>(k), direction[k]);
@@ -58,11 +58,11 @@ Indistinct told(Eigen::VectorXd direction, double error) {
 
 std::string quoted(const std::string& name) { return '\'' + name + '\''; }
 
-std::string listed(const Indistinct& indistinct, const std::vector<std::string>& names) {
+std::string listed(const UnidentifiableDirection& unidentifiable, const std::vector<std::string>& names) {
   std::string list;
-  for (std::size_t i = 0; i < indistinct.parts.size(); ++i) {
-    if (i > 0) list += i + 1 == indistinct.parts.size() ? " and " : ", ";
-    list += quoted(names[indistinct.parts[i].first]);
+  for (std::size_t i = 0; i < unidentifiable.parts.size(); ++i) {
+    if (i > 0) list += i + 1 == unidentifiable.parts.size() ? " and " : ", ";
+    list += quoted(names[unidentifiable.parts[i].first]);
   }
   return list;
 }
@@ -75,9 +75,11 @@ std::string percent(double share) {
 
 }  // namespace
 
-std::vector<Indistinct> indistinct_of(const Eigen::MatrixXd& normal, const Eigen::MatrixXd& noise,
-                                      const Eigen::MatrixXd& null, const Eigen::VectorXd& scale,
-                                      double quantile) {
+std::vector<UnidentifiableDirection> unidentifiable_directions(const Eigen::MatrixXd& normal,
+                                                               const Eigen::MatrixXd& noise,
+                                                               const Eigen::MatrixXd& null,
+                                                               const Eigen::VectorXd& scale,
+                                                               double quantile) {
   const Index p = normal.rows();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   const Eigen::MatrixXd scaled_noise = scale.asDiagonal() * noise * scale.asDiagonal();
@@ -101,7 +103,7 @@ std::vector<Indistinct> indistinct_of(const Eigen::MatrixXd& normal, const Eigen
     weak.conservativeResize(Eigen::NoChange, weak.cols() + 1);
     weak.rightCols(1) = direction;
   }
-  std::vector<Indistinct> result;
+  std::vector<UnidentifiableDirection> result;
   if (weak.cols() == 0) return result;
   weak = simplest(weak);
   for (Index i = 0; i < weak.cols(); ++i) {
@@ -115,26 +117,26 @@ std::vector<Indistinct> indistinct_of(const Eigen::MatrixXd& normal, const Eigen
   return result;
 }
 
-std::string describe(const Indistinct& indistinct, const std::vector<std::string>& names,
+std::string describe(const UnidentifiableDirection& unidentifiable, const std::vector<std::string>& names,
                      const std::vector<bool>& logarithmic) {
-  const auto& parts = indistinct.parts;
+  const auto& parts = unidentifiable.parts;
   if (parts.size() == 1) {
-    return (std::isinf(indistinct.relative_error) ? "the data say nothing about "
-                                                  : "the data hardly say anything about ") +
+    return (std::isinf(unidentifiable.relative_error) ? "the data say nothing about "
+                                                      : "the data hardly say anything about ") +
            quoted(names[parts[0].first]);
   }
   const bool all_logarithmic =
       std::all_of(parts.begin(), parts.end(), [&](const auto& part) { return logarithmic[part.first]; });
   if (parts.size() == 2 && all_logarithmic && std::abs(std::abs(parts[1].second) - 1.0) < 0.02) {
     return std::string("the data determine the ") + (parts[1].second < 0.0 ? "product" : "quotient") +
-           " of " + listed(indistinct, names) + ", but neither of them";
+           " of " + listed(unidentifiable, names) + ", but neither of them";
   }
   std::string changes;
   for (const auto& [index, share] : parts) {
     if (!changes.empty()) changes += ", ";
     changes += percent(share) + " of " + quoted(names[index]);
   }
-  return "the data cannot tell " + listed(indistinct, names) + " apart: " + changes +
+  return "the data cannot tell " + listed(unidentifiable, names) + " apart: " + changes +
          " together leave the forces as they are";
 }
 

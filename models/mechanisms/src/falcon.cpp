@@ -20,7 +20,7 @@ constexpr double f = -0.025;
 constexpr double r = 0.0400;
 constexpr double s = -0.02309;
 
-constexpr int most_steps = 30;
+constexpr int max_steps = 30;
 constexpr double close_enough_rad = 1e-12;
 
 /// Angles of one leg; false where it does not reach.
@@ -68,14 +68,14 @@ Falcon::Matrix Falcon::angle_rates(const Angles& at) noexcept {
 
 std::optional<Falcon::Vector> Falcon::knob(const Vector& shoulder_rad, const Vector& nearby) noexcept {
   Vector p = nearby;
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const auto at = angles(p);
     if (!at) return std::nullopt;
     const Vector error = shoulder_rad - at->shoulder;
     if (error.cwiseAbs().maxCoeff() < close_enough_rad) return p;
     Vector move = angle_rates(*at).inverse() * error;
     // Half of a step that would leave the workspace, again and again.
-    for (int half = 0; half < most_steps && !angles(p + move); ++half) move *= 0.5;
+    for (int half = 0; half < max_steps && !angles(p + move); ++half) move *= 0.5;
     p += move;
   }
   return std::nullopt;

@@ -137,9 +137,9 @@ WoodenHaptics::Currents WoodenHaptics::currents(const Vector& force_n,
                     made_.body_m[i] / made_.torque_constant[i];
     largest = std::max(largest, std::abs(all.ampere[i]));
   }
-  all.limited = largest > made_.most_current_a;
+  all.limited = largest > made_.max_current_a;
   if (all.limited) {
-    for (double& current : all.ampere) current *= made_.most_current_a / largest;
+    for (double& current : all.ampere) current *= made_.max_current_a / largest;
   }
   return all;
 }

@@ -18,8 +18,9 @@
 
 #include "least_squares.h"
 
-// The eight nonlinear regressions of higher difficulty of NIST StRD: data, starts and certified values from
-// the files beside this one, models as they are written there. For the test and for fitting/benchmarks.
+// The eight nonlinear regressions of higher difficulty of NIST StRD [NistStRD]: data, starts and certified
+// values from the files beside this one, models as they are written there. For the test and for
+// fitting/benchmarks.
 
 namespace kerf::test {
 

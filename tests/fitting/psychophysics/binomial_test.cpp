@@ -7,7 +7,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-// Conover (1971), p. 97, as in R's help on binom.test.
+// Conover [Conover1971], p. 97, as in R's help on binom.test.
 TEST(BinomialTest, AgreesWithConoversPeas) {
   EXPECT_NEAR(binomial_test({682, 925}, 0.75), 0.3824915595, 1e-9);
   const Interval interval = clopper_pearson({682, 925});
@@ -31,7 +31,7 @@ TEST(BinomialTest, SumsSmallProbabilitiesOnBothSidesOfASkewedNull) {
   EXPECT_NEAR(binomial_test({0, 3}, 1.0 / 3.0), 15.0 / 27.0, 1e-14);
 }
 
-// Newcombe (1998), table I: the same four counts by several methods.
+// Newcombe [Newcombe1998], table I: the same four counts by several methods.
 struct Published {
   Count count;
   Interval exact, score;

@@ -10,7 +10,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-// Agresti, Categorical Data Analysis: American League 1987, 13 games a pair. Milwaukee, Detroit, Toronto, New
+// [Agresti], American League 1987, 13 games a pair. Milwaukee, Detroit, Toronto, New
 // York, Boston, Cleveland, Baltimore.
 const Wins& baseball() {
   static const Wins wins{{0, 7, 9, 7, 7, 9, 11}, {6, 0, 7, 5, 11, 9, 9}, {4, 6, 0, 7, 7, 8, 12},
@@ -29,8 +29,8 @@ TEST(BradleyTerry, AgreesWithAgrestisBaseball) {
     EXPECT_NEAR(over_baltimore.standard_error, error[i], 1e-3);
   }
   EXPECT_NEAR(found.deviance, 15.737, 1e-3);
-  EXPECT_EQ(found.deviance_freedom, 15);
-  EXPECT_EQ(found.ratio_freedom, 6);
+  EXPECT_EQ(found.deviance_degrees_of_freedom, 15);
+  EXPECT_EQ(found.ratio_degrees_of_freedom, 6);
 }
 
 TEST(BradleyTerry, OfTwoItemsIsTheLogOfTheOdds) {
@@ -85,8 +85,8 @@ TEST(ManyComparisons, AreCorrectedStepByStep) {
   }
 }
 
-// Benjamini and Hochberg (1995), section 3.2: fifteen hypotheses, of which their procedure rejects four at
-// 0.05 and Bonferroni's three.
+// Benjamini and Hochberg [BenjaminiHochberg1995], section 3.2: fifteen hypotheses, of which their procedure
+// rejects four at 0.05 and Bonferroni's three.
 TEST(ManyComparisons, RejectWhatBenjaminiAndHochbergReject) {
   const std::vector<double> p{0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344,
                               0.0459, 0.3240, 0.4262, 0.5719, 0.6528, 0.7590, 1.0};

@@ -20,7 +20,8 @@ std::vector<Task> every_task() {
 
 TEST(DPrime, OfForcedChoiceAgreesWithTheTables) {
   EXPECT_NEAR(d_prime({Decision::forced_choice, 2}, 0.75), 0.954, 5e-4);
-  // Hacker and Ratcliff (1979); the values for d' = 1 also in Frijters, Kooistra and Vereijken (1980).
+  // Hacker and Ratcliff [HackerRatcliff1979]; the values for d' = 1 also in Frijters, Kooistra and Vereijken
+  // [Frijters1980].
   EXPECT_NEAR(proportion_correct({Decision::forced_choice, 2}, 1.0), 0.760, 5e-4);
   EXPECT_NEAR(proportion_correct({Decision::forced_choice, 3}, 1.0), 0.634, 5e-4);
   EXPECT_NEAR(proportion_correct({Decision::forced_choice, 4}, 1.0), 0.552, 5e-4);
@@ -41,8 +42,8 @@ TEST(DPrime, OfForcedChoiceBeginsWithTheSlopeOfTheLargestOfMany) {
   EXPECT_NEAR(slope(3), 1.5 * inverse_root_of_pi / 3.0, 1e-9);
 }
 
-// Kaplan, Macmillan and Creelman (1978) tabulate what these equations give: at d' = 1 the observers of ABX
-// are right in 60.0 % (independent) and 58.2 % (differencing).
+// Kaplan, Macmillan and Creelman [Kaplan1978] tabulate what these equations give: at d' = 1 the observers of
+// ABX are right in 60.0 % (independent) and 58.2 % (differencing).
 TEST(DPrime, OfAbxIsLessForDifferencing) {
   const auto normal = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
   const double a = normal(1.0 / std::sqrt(2.0));
@@ -94,8 +95,8 @@ TEST(DPrime, OfACountWithoutErrorsIsFiniteAndOpenAbove) {
   EXPECT_TRUE(std::isinf(estimate_d_prime({Decision::abx_differencing}, {5, 10}).standard_error));
 }
 
-// Macmillan and Creelman (2005), chapter 1: hits 0.8 and false alarms 0.4 give 1.095; 0.99 and 0.01
-// give 4.65.
+// Macmillan and Creelman [MacmillanCreelman2005], chapter 1: hits 0.8 and false alarms 0.4 give 1.095; 0.99
+// and 0.01 give 4.65.
 TEST(YesNo, AgreesWithMacmillanAndCreelman) {
   const Detection found = yes_no({80, 100}, {40, 100});
   EXPECT_NEAR(found.d_prime, 1.095, 5e-4);

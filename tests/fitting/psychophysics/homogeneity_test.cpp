@@ -9,12 +9,13 @@
 namespace kerf::psychophysics {
 namespace {
 
-// Fisher (1935): the lady who tastes tea, three of four cups right on each side. R: fisher.test, two-sided.
+// Fisher [Fisher1935]: the lady who tastes tea, three of four cups right on each side. R: fisher.test,
+// two-sided.
 TEST(EqualProportions, AgreeWithTheLadyTastingTea) {
   EXPECT_NEAR(equal_proportions(std::vector<Count>{{3, 4}, {1, 4}}).p, 0.4857, 5e-5);
 }
 
-// Fisher (1962): convictions of like-sex twins of criminals, 2 of 17 and 10 of 13. R: p = 0.0005367.
+// Fisher [Fisher1962]: convictions of like-sex twins of criminals, 2 of 17 and 10 of 13. R: p = 0.0005367.
 TEST(EqualProportions, AgreeWithFishersTwins) {
   EXPECT_NEAR(equal_proportions(std::vector<Count>{{2, 17}, {10, 13}}).p, 0.0005367, 5e-8);
 }
@@ -25,7 +26,7 @@ TEST(EqualProportions, AddUpAllTablesOfThreeGroups) {
   const Homogeneity found = equal_proportions(std::vector<Count>{{3, 4}, {1, 4}, {2, 4}});
   EXPECT_NEAR(found.p, 708.0 / 924.0, 1e-12);
   EXPECT_TRUE(found.is_exact);
-  EXPECT_EQ(found.freedom, 2);
+  EXPECT_EQ(found.degrees_of_freedom, 2);
   EXPECT_NEAR(found.statistic, 2.0, 1e-12);
 }
 

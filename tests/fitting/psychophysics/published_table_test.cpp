@@ -9,8 +9,9 @@
 #include <kerf/psychophysics/comparisons.h>
 #include <kerf/psychophysics/equivalence.h>
 
-// 004, Table 1: three blindfolded subjects, four tissues, "which felt more like cutting the real tissue".
-// What the twelve answers can support, and what they cannot. docs/psychophysics.md discusses these numbers.
+// [Okamura2003], Table 1: three blindfolded subjects, four tissues, "which felt more like cutting the real
+// tissue". What the twelve answers can support, and what they cannot. docs/psychophysics.md discusses these
+// numbers.
 
 namespace kerf::psychophysics {
 namespace {

@@ -9,7 +9,7 @@
 namespace kerf::psychophysics {
 namespace {
 
-// Levitt (1971), table I.
+// Levitt [Levitt1971], table I.
 TEST(Staircase, SettlesWhereLevittSays) {
   EXPECT_NEAR(convergence_point(1, 1), 0.5, 1e-12);
   EXPECT_NEAR(convergence_point(1, 2), std::sqrt(0.5), 1e-12);
@@ -20,7 +20,7 @@ TEST(Staircase, SettlesWhereLevittSays) {
 }
 
 TEST(Staircase, SettlesElsewhereWithUnequalSteps) {
-  // Kaernbach (1991): one up by three, one down by one settles at 75 %.
+  // Kaernbach [Kaernbach1991]: one up by three, one down by one settles at 75 %.
   EXPECT_NEAR(convergence_point(1, 1, 1.0 / 3.0), 0.75, 1e-12);
 }
 
@@ -49,7 +49,7 @@ TEST(Staircase, GoesDownAfterSoManyRightAnswersAndUpAfterAWrongOne) {
 }
 
 TEST(Staircase, StaysWithinItsBounds) {
-  Staircase stairs({.start = 1.0, .steps = {1.0}, .least = 0.5, .most = 2.0, .most_trials = 20});
+  Staircase stairs({.start = 1.0, .steps = {1.0}, .least = 0.5, .most = 2.0, .max_trials = 20});
   for (int i = 0; i < 10; ++i) {
     stairs.answer(true);
     EXPECT_GE(stairs.next(), 0.5);
@@ -74,7 +74,7 @@ TEST(Staircase, FindsTheThresholdOfAnObserverAtItsCriterion) {
                         .steps = {0.3, 0.1, 0.05},
                         .reversals = 30,
                         .dropped = 6,
-                        .most_trials = 2000});
+                        .max_trials = 2000});
       while (!stairs.finished()) stairs.answer(random.chance(observer.probability(stairs.next())));
       sum += std::log(stairs.estimate().threshold) / runs;
       probability = stairs.estimate().probability;

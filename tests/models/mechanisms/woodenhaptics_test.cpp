@@ -12,16 +12,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-const WoodenHaptics woody(*WoodenHaptics::find("woody-2016"));
+const WoodenHaptics arm(*WoodenHaptics::find("woody-2016"));
 
 TEST(WoodenHaptics, StandsAtItsMakersPlaceAtZeroCounts) {
-  EXPECT_LE((woody.tip(woody.angles({0, 0, 0})) - Vector3d(0.025, 0.0, 0.205)).norm(), 1e-15);
+  EXPECT_LE((arm.tip(arm.angles({0, 0, 0})) - Vector3d(0.025, 0.0, 0.205)).norm(), 1e-15);
 }
 
 TEST(WoodenHaptics, NeedsTheCurrentsOfTheDocumentedCheckForOneNewton) {
-  const Vector3d zero = woody.angles({0, 0, 0});
+  const Vector3d zero = arm.angles({0, 0, 0});
   const auto expect = [&](const Vector3d& force, const Vector3d& ampere) {
-    const auto currents = woody.currents(force, zero).ampere;
+    const auto currents = arm.currents(force, zero).ampere;
     EXPECT_LE((Vector3d(currents[0], currents[1], currents[2]) - ampere).norm(), 6e-4) << force.transpose();
   };
   expect(Vector3d::UnitX(), {0.0, -0.660, 0.0});
@@ -30,10 +30,8 @@ TEST(WoodenHaptics, NeedsTheCurrentsOfTheDocumentedCheckForOneNewton) {
 }
 
 TEST(WoodenHaptics, MovesByTheDocumentedStepPerCount) {
-  const Vector3d zero = woody.tip(woody.angles({0, 0, 0}));
-  const auto step = [&](std::array<int, 3> counts) {
-    return (woody.tip(woody.angles(counts)) - zero).norm();
-  };
+  const Vector3d zero = arm.tip(arm.angles({0, 0, 0}));
+  const auto step = [&](std::array<int, 3> counts) { return (arm.tip(arm.angles(counts)) - zero).norm(); };
   EXPECT_NEAR(step({1, 0, 0}), 0.048e-3, 5e-7);
   EXPECT_NEAR(step({0, 1, 0}), 0.054e-3, 5e-7);
   EXPECT_NEAR(step({0, 0, 1}), 0.064e-3, 5e-7);
@@ -101,13 +99,13 @@ TEST(WoodenHaptics, MakesTheForceWhoseCurrentsItIsGiven) {
     }
   }
   // The other way round from the documented check: 0.591 A in motor A is 1 N along y.
-  EXPECT_LE((woody.force({0.591, 0.0, 0.0}, woody.angles({0, 0, 0})) - Vector3d::UnitY()).norm(), 1e-3);
+  EXPECT_LE((arm.force({0.591, 0.0, 0.0}, arm.angles({0, 0, 0})) - Vector3d::UnitY()).norm(), 1e-3);
 }
 
 TEST(WoodenHaptics, CutsAForceWithoutTurningIt) {
-  const Vector3d zero = woody.angles({100, -200, 300});
-  const auto small = woody.currents(Vector3d(0.1, 0.2, -0.3), zero);
-  const auto large = woody.currents(Vector3d(10.0, 20.0, -30.0), zero);
+  const Vector3d zero = arm.angles({100, -200, 300});
+  const auto small = arm.currents(Vector3d(0.1, 0.2, -0.3), zero);
+  const auto large = arm.currents(Vector3d(10.0, 20.0, -30.0), zero);
   EXPECT_FALSE(small.limited);
   EXPECT_TRUE(large.limited);
   double most = 0.0;
@@ -116,7 +114,7 @@ TEST(WoodenHaptics, CutsAForceWithoutTurningIt) {
     EXPECT_NEAR(large.ampere[i] * small.ampere[0], small.ampere[i] * large.ampere[0], 1e-12);
   }
   EXPECT_DOUBLE_EQ(most, 3.0);
-  EXPECT_THAT(woody.currents(Vector3d(std::nan(""), 0.0, 0.0), zero).ampere,
+  EXPECT_THAT(arm.currents(Vector3d(std::nan(""), 0.0, 0.0), zero).ampere,
               testing::ElementsAre(0.0, 0.0, 0.0));
 }
 

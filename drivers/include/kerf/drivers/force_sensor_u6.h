@@ -11,10 +11,10 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/force_calibration.h>
-#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/protocols/labjack_u6.h>
 #include <kerf/drivers/protocols/labjack_u6_commands.h>
 #include <kerf/drivers/scan_clock.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
@@ -115,7 +115,7 @@ class ForceSensorU6 final : public Device {
   bool was_recovering_ = false;
 
   // Between the threads.
-  Latest<Scan> latest_;
+  TripleBuffer<Scan> latest_;
   std::atomic<bool> lost_{false};
   std::atomic<std::uint64_t> scans_{0};
   std::atomic<std::uint64_t> scans_lost_{0};

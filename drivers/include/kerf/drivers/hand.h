@@ -10,9 +10,9 @@ namespace kerf::drivers {
 ///
 ///     x = 10 s^3 - 15 s^4 + 6 s^5,   held at 0 before and at 1 after; the peak speed is 1.875 at s = 1/2
 ///
-/// Source: Flash and Hogan 1985.
+/// Source: [FlashHogan1985].
 struct MinimumJerk {
-  double place = 0.0;
+  double position = 0.0;
   double speed = 0.0;
   static MinimumJerk at(double s) noexcept;
 };
@@ -24,8 +24,8 @@ struct HandImpedance {
   double stiffness_n_per_m = 0.0;
 };
 
-/// A stylus held as usual: within what Fu and Cavusoglu (2012) give, 0.1 to 0.2 kg, 2 to 8 N·s/m, 200 to 600
-/// N/m.
+/// A stylus held as usual: within what Fu and Cavusoglu [FuCavusoglu2012] give, 0.1 to 0.2 kg, 2 to 8 N·s/m,
+/// 200 to 600 N/m.
 inline constexpr HandImpedance usual_grip{
     .mass_kg = 0.15, .damping_n_s_per_m = 5.0, .stiffness_n_per_m = 500.0};
 

@@ -14,7 +14,7 @@ struct PoseKeyframe {
   Axes position{};
 };
 
-/// The way of a tool through keyframes of all its axes, at rest in each of them, with minimum jerk from one
+/// The path of a tool through keyframes of all its axes, at rest in each of them, with minimum jerk from one
 /// to the next: with s = (t - t_i) / (t_{i+1} - t_i) and every axis by itself,
 ///
 ///     x = x_i + (x_{i+1} - x_i) (10 s^3 - 15 s^4 + 6 s^5)

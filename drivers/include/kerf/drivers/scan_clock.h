@@ -15,7 +15,7 @@ namespace kerf::drivers {
 /// lies below all arrivals, as high as it can. Of each block of 250 scans the one that came least late is
 /// kept, for 256 blocks (64 s at 1 kHz); of all lines below them the one with the least sum of distances is
 /// an edge of their lower convex hull, the one above their mean number. A packet that came late, or a whole
-/// second of them, does not move it. Source of the criterion: Moon, Skelly and Towsley 1999.
+/// second of them, does not move it. Source of the criterion: [Moon1999].
 ///
 /// For the first second the period is taken for the nominal one, or that from before a restart.
 ///
@@ -42,7 +42,7 @@ class ScanClock {
 
  private:
   static constexpr std::uint64_t block_scans = 250;
-  static constexpr std::size_t most_blocks = 256;
+  static constexpr std::size_t max_blocks = 256;
   /// On the host's clock from the first scan, with the nominal period taken out.
   struct Point {
     double nominal_s = 0.0;
@@ -53,7 +53,7 @@ class ScanClock {
     return point.late_s - offset_s_ - slope_ * point.nominal_s;
   }
   [[nodiscard]] const Point& kept(std::size_t at) const noexcept {
-    return blocks_[(first_block_ + at) % most_blocks];
+    return blocks_[(first_block_ + at) % max_blocks];
   }
   void end_block() noexcept;
   void fit_line() noexcept;
@@ -68,7 +68,7 @@ class ScanClock {
   std::uint64_t block_ = 0;  ///< number of the block that is being filled
   Point least_;              ///< of that block
   bool has_least_ = false;
-  std::array<Point, most_blocks> blocks_{};
+  std::array<Point, max_blocks> blocks_{};
   std::size_t first_block_ = 0;
   std::size_t block_count_ = 0;
 };

@@ -9,14 +9,14 @@
 
 namespace kerf::drivers {
 
-/// `sim:scissors`: the haptic scissors of 003 and 004 with a hand on them.
+/// `sim:scissors`: the haptic scissors of [Weiss2004] and [Okamura2003] with a hand on them.
 ///
 /// Axis 0 is `theta`, the angle between the blades [rad]; closing makes it smaller, and its force [N] acts at
 /// the handle, positive where it opens the blades. Axis 1 is `x_s`, the translation of the scissors [m],
-/// force [N]. Resolution and limits as printed in 004: 0.056 deg and 280 mN·m, which is 7.58 N at the handle
-/// (lever 36.9 mm); 0.0152 mm and 159 N. The paper gives neither inertia nor friction: handle inertia 2e-5
-/// kg·m^2, carriage 0.4 kg, viscous friction 0.2 N·s/m and Coulomb friction 0.1 N at the handle are assumed
-/// here. The hand's mass, damping and stiffness are those of a stylus grip (HandOptions).
+/// force [N]. Resolution and limits as printed in [Okamura2003]: 0.056 deg and 280 mN·m, which is 7.58 N at
+/// the handle (lever 36.9 mm); 0.0152 mm and 159 N. The paper gives neither inertia nor friction: handle
+/// inertia 2e-5 kg·m^2, carriage 0.4 kg, viscous friction 0.2 N·s/m and Coulomb friction 0.1 N at the handle
+/// are assumed here. The hand's mass, damping and stiffness are those of a stylus grip (HandOptions).
 ///
 /// Encoders, sensor, physics and truth are those of SimulatedMechanism.
 class SimulatedScissors final : public Device {

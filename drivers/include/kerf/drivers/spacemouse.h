@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <kerf/drivers/device.h>
-#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/protocols/spacemouse.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/hid_device.h>
 #include <kerf/drivers/usb/io_thread.h>
@@ -59,7 +59,7 @@ class SpaceMouse final : public Device {
   DeviceInfo info_;
   Options options_;
   usb::HidDevice device_;
-  Latest<Report> latest_;
+  TripleBuffer<Report> latest_;
   Report report_;
   std::atomic<bool> lost_{false};
   std::atomic<std::uint64_t> reports_{0};

@@ -8,7 +8,7 @@
 
 namespace kerf::drivers {
 
-/// The way of a hand from waypoint to waypoint: it rests at each for a pause and goes straight to the next
+/// The path of a hand from waypoint to waypoint: it rests at each for a pause and goes straight to the next
 /// along a stroke of minimum jerk, after the last one back to the first. A function of time alone.
 class TipPath {
  public:
@@ -18,7 +18,7 @@ class TipPath {
     double pause_s = 0.25;                     ///< >= 0
   };
   struct Equilibrium {
-    Eigen::Vector3d place_m;
+    Eigen::Vector3d position_m;
     Eigen::Vector3d speed_m_s;
   };
 

@@ -11,7 +11,7 @@ namespace kerf::drivers {
 /// put() and take() wait for nobody, allocate nothing, and never let a half-written value through. One thread
 /// puts, one takes.
 template <typename T>
-class Latest {
+class TripleBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:

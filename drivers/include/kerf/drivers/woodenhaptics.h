@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <kerf/drivers/device.h>
-#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/protocols/woodenhaptics.h>
+#include <kerf/drivers/triple_buffer.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/hid_device.h>
 #include <kerf/drivers/usb/io_thread.h>
@@ -52,9 +52,9 @@ class WoodenHaptics final : public Device {
   struct Options {
     std::size_t index = 0;  ///< which of several
     const mechanisms::WoodenHaptics::Configuration* model = nullptr;
-    double most_current_a = 0.0;  ///< of a motor; at most the model's
-    bool calibrate = false;       ///< the tip is at home now: count from here
-    bool preset = false;          ///< the same, and the device shall count so too (V2, V3)
+    double max_current_a = 0.0;  ///< of a motor; at most the model's
+    bool calibrate = false;      ///< the tip is at home now: count from here
+    bool preset = false;         ///< the same, and the device shall count so too (V2, V3)
   };
   /// Reads index, model, most_current, calibrate (on, off) and preset (home). @throws DeviceError
   static Options parse_options(Uri uri, const Product& product);
@@ -98,7 +98,7 @@ class WoodenHaptics final : public Device {
   bool hear() noexcept;
   void hear(const woodenhaptics::Report& report) noexcept;
   void speak(std::int64_t now_ns) noexcept;
-  void say_goodbye() noexcept;
+  void send_final_zero() noexcept;
   void send(const Currents& current_ma) noexcept;
   [[nodiscard]] Currents wanted(std::int64_t now_ns) const noexcept;
   [[nodiscard]] std::int64_t next_turn_ns(std::int64_t now_ns) const noexcept;
@@ -110,13 +110,13 @@ class WoodenHaptics final : public Device {
   woodenhaptics::Generation generation_;
   DeviceInfo info_;
   std::array<int, 3> home_count_{};
-  double most_count_rate_ = 0.0;  ///< no hand is faster [1/s]
-  int most_count_step_ = 0;       ///< nor is the workspace larger
+  double max_count_rate_ = 0.0;  ///< no hand is faster [1/s]
+  int max_count_step_ = 0;       ///< nor is the workspace larger
 
   // Between the two threads.
-  Latest<Heard> heard_;
-  Latest<Command> commanded_;
-  Latest<Currents> sent_;
+  TripleBuffer<Heard> heard_;
+  TripleBuffer<Command> commanded_;
+  TripleBuffer<Currents> sent_;
   std::atomic<std::uint32_t> releases_{0};
   std::atomic<bool> lost_{false};
   std::atomic<bool> refuses_{false};  ///< the last orders did not reach it

@@ -23,7 +23,7 @@ struct Series {
 };
 
 /// What a person can feel: the larger of a Weber fraction of the force and an absolute threshold.
-/// Source of the defaults: Pang, Tan and Durlach 1991 (7 %); order of magnitude at the fingertips (0.05 N).
+/// Source of the defaults: [Pang1991] (7 %); order of magnitude at the fingertips (0.05 N).
 struct ForceJnd {
   double weber_fraction = 0.07;
   double threshold_n = 0.05;
@@ -55,7 +55,7 @@ enum class Intervals : std::uint8_t {
 /// Piecewise curves that were found for every number of segments up to a limit, so that fits of the same
 /// samples with other numbers of segments find them again. Fits on several threads may share one.
 class SegmentedMemory;
-[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t most_segments);
+[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments);
 
 struct FitOptions {
   models::Options

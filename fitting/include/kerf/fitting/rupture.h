@@ -19,7 +19,7 @@ struct RuptureSamples {
 /// How the premises (centre and width of each membership) and consequents (p, q, r of each rule) are learned.
 enum class Learning : std::uint8_t {
   variable_projection,  ///< Ceres on the premises; the consequents follow by least squares at every step
-  back_propagation      ///< gradient descent on everything, step size after Jang (1993)
+  back_propagation      ///< gradient descent on everything, step size after Jang [Jang1993]
 };
 
 struct RuptureOptions {
@@ -47,7 +47,7 @@ struct RuptureFit {
 ///
 ///     r(premises) = Phi c - F,  c = argmin |Phi c - F|^2 + e |c|^2,   dr = (I - Phi Phi+) dPhi c   (Kaufman)
 ///
-/// Source: 002, section 2.2 (hybrid learning of ANFIS); Golub and Pereyra 1973; Kaufman 1975.
+/// Source: [FuzzyKelvin], section 2.2 (hybrid learning of ANFIS); [GolubPereyra1973]; [Kaufman1975].
 /// @throws std::invalid_argument for samples that are not finite, a negative depth or speed, a constant depth
 /// or
 ///         speed, or fewer samples than parameters.

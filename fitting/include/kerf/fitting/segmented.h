@@ -17,7 +17,7 @@ struct Curve {
 };
 
 struct SegmentedOptions {
-  std::size_t most_segments = 12;   ///< 1 to 16
+  std::size_t max_segments = 12;    ///< 1 to 16
   std::size_t cells = 256;          ///< of the grid of the dynamic programming, 4 to 1024
   std::size_t fewest_points = 4;    ///< in a segment, on each branch, its ends included; at least 1
   std::vector<double> breakpoints;  ///< inner knots by hand: then these alone, and no search
@@ -70,8 +70,8 @@ struct SegmentedCurve {
 /// Only sums over stretches of the sorted points are used, so that beyond the sorting hardly anything depends
 /// on their number. Numbers of segments that the points cannot carry are left out at the end.
 ///
-/// Source: Maidstone, Fearnhead and Letchford 2019 (functional pruning for changes in slope); Golub and
-/// Pereyra 1973 (variable projection); Hudson 1966 (kinks and joins between points).
+/// Source: [Maidstone2019] (functional pruning for changes in slope); [GolubPereyra1973] (variable
+/// projection); [Hudson1966] (kinks and joins between points).
 /// @throws std::invalid_argument for spans of different lengths, numbers that are not finite, negative
 /// weights,
 ///         a constant position, too few points on a branch, or breakpoints that do not lie in order inside.

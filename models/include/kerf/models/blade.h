@@ -35,7 +35,7 @@ struct Pose {
 ///
 ///     dF = -ke v dl,      dF = -(kn n n^T + kt (I - n n^T)) v ds
 ///
-/// With displacements in place of velocities, the same field is elastic (000, eq. 5).
+/// With displacements in place of velocities, the same field is elastic ([Henry2004], eq. 5).
 struct BladeField {
   double edge = 0.0;        ///< ke [N·s/m² or N/m²]
   double normal = 0.0;      ///< kn [N·s/m³ or N/m³]
@@ -53,7 +53,7 @@ struct BladeShape {
     std::size_t corners = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d across =
-        Eigen::Vector3d::Zero();  ///< along the first side: strips lie side by side that way
+        Eigen::Vector3d::Zero();  ///< along the first side: strips lie side by side in that direction
   };
   std::array<Polygon, max_polygons> polygon{};
   std::size_t polygons = 0;
@@ -69,8 +69,8 @@ struct BladeShape {
 /// How the integrals over the blade are taken.
 struct BladeFidelity {
   enum class Kind : std::uint8_t {
-    paper,  ///< strips that all move with the velocity of the hand point (000, eqs. 6-9): no torque about the
-            ///< long axis
+    paper,  ///< strips that all move with the velocity of the hand point ([Henry2004], eqs. 6-9): no torque
+            ///< about the long axis
     strips,  ///< each strip moves with the velocity of the middle of its submerged length
     exact    ///< closed form in area, centroid and second moments of the submerged polygon
   };
@@ -98,13 +98,14 @@ struct BladeFidelity {
 ///     cutting:  the viscous field, until |F| < F0 < F1
 ///
 /// Without the option `thresholds` the blade always cuts. Displacements are those of the rigid motion since
-/// then: R R_0^T as a rotation vector, and the way of the hand point. Axes: x, y, z [m] of the hand point,
+/// then: R R_0^T as a rotation vector, and the path of the hand point. Axes: x, y, z [m] of the hand point,
 /// rx, ry, rz the rotation vector of the tool's frame [rad]; its rates become the angular velocity by the
 /// left Jacobian of the rotation, and the moment becomes the generalised torque of these axes by its
 /// transpose, so that force times velocity is the power.
 ///
-/// Source: 000, eqs. 3-9 and section 2.3; differs from the paper in the fidelities `strips` and `exact`, and
-/// in the split of K'v into Kn and Kt, which the paper gives as a function of direction without numbers.
+/// Source: [Henry2004], eqs. 3-9 and section 3.5; differs from the paper in the fidelities `strips` and
+/// `exact`, and in the split of K'v into Kn and Kt, which the paper gives as a function of direction without
+/// numbers.
 struct Blade {
   static constexpr std::string_view name = "blade";
   static constexpr std::string_view equation = "dF = -Kv v dl - (Kn n n^T + Kt (I - n n^T)) v ds, z < 0";

@@ -9,19 +9,20 @@
 
 namespace kerf::models {
 
-/// Which branch of a closing-and-opening loop is felt, and how much of it (004, section 2.2 and eqs. 4-5).
+/// Which branch of a closing-and-opening loop is felt, and how much of it ([Okamura2003], section 2.2 and
+/// eqs. 4-5).
 ///
 /// The penetration passes a first-order filter with the corner `velocity_corner` before it is differenced;
 /// the sign of that velocity selects the branch. Two factors keep the force continuous in the hand:
 ///
 ///     s = min(1, reversal_scale |x - x_switch|) min(1, |v| / ramp_band)
 ///
-/// with x_switch the penetration of the last reversal. Source: 004; the paper gives neither k_s nor the width
-/// of the band. Zero switches each of the three off: the given velocity is then taken as it is, and at zero
-/// velocity the last branch goes on, which is how a table is judged against a recording.
+/// with x_switch the penetration of the last reversal. Source: [Okamura2003]; the paper gives neither k_s nor
+/// the width of the band. Zero switches each of the three off: the given velocity is then taken as it is, and
+/// at zero velocity the last branch goes on, which is how a table is judged against a recording.
 struct BranchSelector {
   double velocity_corner =
-      0.0;                      ///< corner of the velocity filter [rad/s], 10 in 004; 0: take motion.velocity
+      0.0;  ///< corner of the velocity filter [rad/s], 10 in [Okamura2003]; 0: take motion.velocity
   double ramp_band = 0.0;       ///< |v| below which the force fades to zero [position/s]; 0: no band
   double reversal_scale = 0.0;  ///< k_s [1/position]; 0: the full force at once after a reversal
 

@@ -22,8 +22,8 @@ namespace kerf::models {
 /// times the exponential part, grows with the force: past some depth no sampled loop renders it passively.
 /// Passive for B0 >= 0; the offset gives back over a closed path what it took.
 ///
-/// Source: 001, eqs. 11-13, whose B0 enters the closed loop as an acceleration term; here it is N·s/m. The
-/// offset is not in the paper.
+/// Source: [Sepulveda2008], eqs. 11-13, whose B0 enters the closed loop as an acceleration term; here it is
+/// N·s/m. The offset is not in the paper.
 template <typename T>
 struct Exponential {
   static constexpr std::string_view name = "exponential";
@@ -86,7 +86,7 @@ struct Exponential {
     return amplitude * exponent / thickness * exp(exponent * (penetration / thickness));
   }
   /// Penetration at which the tissue is as stiff as this, >= 0 [m]. A sampled loop on a device of damping b
-  /// renders springs passively up to 2 b / T (Colgate and Schenkel 1994): so deep this law may go there.
+  /// renders springs passively up to 2 b / T [ColgateSchenkel1997]: so deep this law may go there.
   [[nodiscard]] T depth_at_stiffness(double stiffness_n_per_m) const {
     using std::log;
     const T depth = thickness / exponent * log(stiffness_n_per_m * thickness / (amplitude * exponent));

@@ -29,8 +29,8 @@ namespace kerf::models {
 ///
 /// The books are kept from the path itself, so that external work = stored + spent on crack at any tick.
 ///
-/// Source: 001, section 4.3 and fig. 7, after Mahvash and Hayward; differs from the paper in where the tip
-/// stands after the fracture, which the paper does not say.
+/// Source: [Sepulveda2008], section 4.3 and fig. 7, after [MahvashHayward2001]; differs from the paper in
+/// where the tip stands after the fracture, which the paper does not say.
 template <typename T>
 struct Fracture {
   static constexpr std::string_view name = "fracture";

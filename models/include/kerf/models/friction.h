@@ -28,8 +28,7 @@ namespace kerf::models {
 /// and X a cycle takes 4 Fc (X - xd tanh(X / xd)), at any speed. Passive for b >= 0; a spring and an offset
 /// give back what they took, over a closed path, whatever their sign.
 ///
-/// Source: Dahl, A Solid Friction Model (1968), with the exponent 1; Karnopp, Journal of Dynamic Systems,
-/// Measurement, and Control 107 (1985), is the alternative not taken.
+/// Source: [Dahl1968], with the exponent 1; [Karnopp1985] is the alternative not taken.
 template <typename T>
 struct Friction {
   static constexpr std::string_view name = "friction";

@@ -22,7 +22,7 @@ namespace kerf::models {
 /// result is never below zero. Far from every centre the nearest rule alone counts: the weights are scaled by
 /// the largest, so that their sum never vanishes.
 ///
-/// Source: 002, section 2.2, figs. 2-3 (first-order consequents, as ANFIS has them).
+/// Source: [FuzzyKelvin], section 2.2, figs. 2-3 (first-order consequents, as ANFIS has them).
 template <typename T>
 struct FuzzySurface {
   static constexpr std::size_t max_memberships = 5;

@@ -21,8 +21,8 @@ namespace kerf::models {
 /// x is the travel in the direction of the cut, d the depth of the blade (an option: it is constant along the
 /// cut), F_rupture a FuzzySurface. What was cut stays cut: behind x_r there is no force.
 ///
-/// Source: 002, section 2.3, figs. 4-6; differs from the paper, where the force drops to "nearly" zero, in
-/// that it drops to zero for the tick of the rupture.
+/// Source: [FuzzyKelvin], section 2.3, figs. 4-6; differs from the paper, where the force drops to "nearly"
+/// zero, in that it drops to zero for the tick of the rupture.
 template <typename T>
 struct FuzzyKelvin {
   static constexpr std::string_view name = "fuzzy_kelvin";

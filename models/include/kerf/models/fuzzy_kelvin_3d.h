@@ -21,11 +21,12 @@ namespace kerf::models {
 ///     (1 + c d) kelvin_x >= F_rupture(d, |v|):  the tissue ruptures, p_r = p
 ///
 /// The tissue is z < 0, the cut runs along +x, d = max(0, -z) is the depth. The elements of x and y act both
-/// ways while the blade is in the tissue; that of z resists going deeper. c lets all three stiffen with
+/// directions while the blade is in the tissue; that of z resists going deeper. c lets all three stiffen with
 /// depth. The threshold is that of fuzzy_kelvin, met by the force against the cut alone. Above the surface
 /// there is no force, and the reference goes with the blade.
 ///
-/// Source: 002, section 2.3, whose three elements have no numbers of their own; figs. 4-6 are of the x axis.
+/// Source: [FuzzyKelvin], section 2.3, whose three elements have no numbers of their own; figs. 4-6 are of
+/// the x axis.
 struct FuzzyKelvin3d {
   static constexpr std::string_view name = "fuzzy_kelvin_3d";
   static constexpr std::string_view equation =

@@ -16,7 +16,7 @@ namespace kerf::models {
 ///
 ///     F = F_rupture(x, |v|)   for x > 0, else 0
 ///
-/// Source: 002, section 2.2.
+/// Source: [FuzzyKelvin], section 2.2.
 template <typename T>
 struct FuzzyRupture {
   static constexpr std::string_view name = "fuzzy_rupture";

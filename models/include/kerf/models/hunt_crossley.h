@@ -24,7 +24,7 @@ namespace kerf::models {
 /// energy is lost. Passive for B1 >= 0. The force depends on depth and speed alone, so that the period does
 /// not enter.
 ///
-/// Source: Hunt and Crossley, Journal of Applied Mechanics 42 (1975).
+/// Source: [HuntCrossley1975].
 template <typename T>
 struct HuntCrossley {
   static constexpr std::string_view name = "hunt_crossley";

@@ -27,7 +27,8 @@ namespace kerf::models {
 /// zero while the arm keeps relaxing. The first tick takes the arm as relaxed. With `precision = "float"` the
 /// forces are single, and only the travel of a tick is still a difference of doubles.
 ///
-/// Source: 002, fig. 2 and section 2.1; differs from the paper in that b, printed without a unit, is N·s/m.
+/// Source: [FuzzyKelvin], fig. 2 and section 2.1; differs from the paper in that b, printed without a unit,
+/// is N·s/m.
 template <typename T>
 struct Kelvin {
   static constexpr std::string_view name = "kelvin";

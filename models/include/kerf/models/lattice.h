@@ -59,8 +59,8 @@ struct Coupling {
   std::array<double, 2> force_n{};           ///< result: on the tool, mean over the tick's sub-steps
 };
 
-/// A plane lattice of springs, dampers and point masses that can be cut (the mesh of trussed squares of 003),
-/// for small displacements u about a grid of points:
+/// A plane lattice of springs, dampers and point masses that can be cut (the mesh of trussed squares of
+/// [Weiss2004]), for small displacements u about a grid of points:
 ///
 ///     m v' = f(u + tau_d v) - kb (u + tau_b v),   u' = v
 ///

@@ -34,7 +34,7 @@ namespace kerf::models {
 /// Contact is unilateral as in Kelvin: no force below zero, while the arms keep relaxing, and the first tick
 /// takes them as relaxed. Exact, it is passive at every period: springs and dashpots, all positive.
 ///
-/// Source: Maxwell's arms in parallel as in Ferry, Viscoelastic Properties of Polymers (1980), chapter 1; 002
+/// Source: Maxwell's arms in parallel as in [Ferry1980], chapter 1; [FuzzyKelvin]
 /// uses one of them.
 template <typename T>
 struct Maxwell {

@@ -26,7 +26,7 @@ struct SpatialMotion {
   AxisValues velocity{};  ///< its derivative [m/s or rad/s]
 };
 
-/// Where along a device's axis the tissue begins, and which way leads into it.
+/// Where along a device's axis the tissue begins, and which direction leads into it.
 ///
 ///     x = direction (position - contact)
 ///

@@ -57,8 +57,8 @@ template <ImplicitSurface S>
 /// With `consistent` these hold exactly, whatever the hand does along the tangent: J H^-1 N^T = 0. With
 /// `paper` Q H^-1 J^T is not zero in general, and each loop pushes the other.
 ///
-/// Source: 001, eqs. 4-10, with the dot on J that eq. 5 omits; `consistent` is the inertia-weighted projector
-/// of Khatib (1987).
+/// Source: [Sepulveda2008], eqs. 4-10, with the dot on J that eq. 5 omits; `consistent` is the
+/// inertia-weighted projector of Khatib [Khatib1987].
 /// @param lambda_d force of the normal loop; -lambda_d pushes out of the object [N]
 /// @param tangential_damping b1 [N·m·s/rad]
 [[nodiscard]] Eigen::Vector3d orthogonal_torque(const SurfaceContact& contact,
@@ -76,9 +76,9 @@ template <ImplicitSurface S>
 /// Outside the object (phi >= 0) only weight and inertia forces are compensated; without `compensate` they
 /// are not, there or in contact, and the normal and tangential parts are all that is rendered.
 ///
-/// Axes: q1, q2, q3 [rad, N·m] of mechanisms::Premium. Source: 001, eqs. 4-15; differs from the paper in the
-/// sign of F in eq. 12 (as printed the tissue would pull), in B0, which multiplies a speed there and acts as
-/// N·s/m here, and in offering both projections.
+/// Axes: q1, q2, q3 [rad, N·m] of mechanisms::Premium. Source: [Sepulveda2008], eqs. 4-15; differs from the
+/// paper in the sign of F in eq. 12 (as printed the tissue would pull), in B0, which multiplies a speed there
+/// and acts as N·s/m here, and in offering both projections.
 struct Orthogonal {
   static constexpr std::string_view name = "orthogonal";
   static constexpr std::string_view equation = "tau = C q' + g - J^T L J' q' - J^T lambda_d - N^T zeta_d";

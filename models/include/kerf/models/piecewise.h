@@ -23,7 +23,7 @@ namespace kerf::models {
 /// chooses between them; a positive force resists closing, so an opening branch that resists opening is
 /// negative. Before the first knot the first force holds; past the last one the last trend goes on.
 ///
-/// Source: 004, section 3.2 (2 to 7 segments were enough for the hand).
+/// Source: [Okamura2003], section 3.2 (2 to 7 segments were enough for the hand).
 template <typename T>
 struct Piecewise {
   static constexpr std::string_view name = "piecewise";
@@ -90,7 +90,7 @@ struct Piecewise {
   }
 
   /// This law with an opening branch made from the closing of empty scissors, by default -1/2 of it: opening
-  /// meets friction alone, and less of it (004, section 3.2).
+  /// meets friction alone, and less of it ([Okamura2003], section 3.2).
   [[nodiscard]] Piecewise with_opening_from(
       const Piecewise& empty, double factor = -0.5) const noexcept requires std::is_floating_point_v<T> {
     Piecewise both = *this;

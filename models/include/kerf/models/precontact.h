@@ -20,7 +20,7 @@ namespace kerf::models {
 /// force before the threshold. Both are continuous; the form that the paper prints drops its slope from 2 K
 /// to K at the surface, `smooth` is also continuous in slope and the default.
 ///
-/// Source: 000, eq. 2, with x0 = -w, xm = 0, Kemax = K; differs from the paper in the default form.
+/// Source: [Henry2004], eq. 2, with x0 = -w, xm = 0, Kemax = K; differs from the paper in the default form.
 template <typename T>
 struct Precontact {
   static constexpr std::string_view name = "precontact";

@@ -21,9 +21,9 @@ namespace kerf::models {
 ///
 /// Two tables on one uniform grid, linear in between; a BranchSelector chooses the table and the factor s.
 /// Before the first grid point the first value holds; past the last one the last trend goes on, to the
-/// fully closed scissors. Without the option `loop` there is one table for both ways.
+/// fully closed scissors. Without the option `loop` there is one table for both directions.
 ///
-/// Source: 004, section 3.1, eqs. 4-5.
+/// Source: [Okamura2003], section 3.1, eqs. 4-5.
 template <typename T>
 struct Recording {
   static constexpr std::string_view name = "recording";

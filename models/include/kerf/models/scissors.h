@@ -17,7 +17,7 @@ namespace kerf::models {
 /// at which the tips have met, theta = 2 atan(t_min / l_t), and the one at which they lose contact at the
 /// wide end.
 ///
-/// Source: 004, eqs. 1-2, fig. 3; the limits follow from its section 3.3.
+/// Source: [Okamura2003], eqs. 1-2, fig. 3; the limits follow from its section 3.3.
 struct ScissorsGeometry {
   double pivot_half_width_m = 4e-3;  ///< t_max, > tip_half_width_m
   double tip_half_width_m = 1e-3;    ///< t_min, > 0

@@ -23,7 +23,7 @@ namespace kerf::models {
 /// factor of a BranchSelector. The material is met at x = 0. Zero outside the angles at which the blades
 /// cut. Linear in all three parameters.
 ///
-/// Source: 004, eqs. 6-9; the lever 0.28 N·m / 7.58 N from its section 3.
+/// Source: [Okamura2003], eqs. 6-9; the lever 0.28 N·m / 7.58 N from its section 3.
 template <typename T>
 struct ScissorsAnalytic {
   static constexpr std::string_view name = "scissors_analytic";

@@ -21,7 +21,7 @@ namespace kerf::models {
 /// x_c is the distance of the cutting point from the pivot, x_s the translation of the scissors, x_m where
 /// the material begins. What gave way was cut: the edge never comes back.
 ///
-/// Source: 004, section 2.3 and fig. 5.
+/// Source: [Okamura2003], section 2.3 and fig. 5.
 struct MaterialEdge {
   double stiffness_n_per_m = 1000.0;  ///< k_t, > 0
   double largest_force_n = 2.0;       ///< f_max, >= 0
@@ -52,7 +52,7 @@ struct MaterialEdge {
 /// Axes: theta [rad], force in N at the handle, and x_s [m]. s = -1 for closing, since closing makes theta
 /// smaller and friction pushes it up. Where the blades do not cut there is neither force.
 ///
-/// Source: 004, eqs. 1-3 and 6-9, section 2.3.
+/// Source: [Okamura2003], eqs. 1-3 and 6-9, section 2.3.
 struct ScissorsFree {
   static constexpr std::string_view name = "scissors";
   static constexpr std::string_view equation =

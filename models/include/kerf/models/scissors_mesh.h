@@ -16,7 +16,7 @@ namespace kerf::models {
 
 /// Scissors in a slab of tissue, by two lattices.
 ///
-/// The slab lies in the plane of x (the way of the cut) and y, its near border at x_m, its other three
+/// The slab lies in the plane of x (the direction of the cut) and y, its near border at x_m, its other three
 /// borders held. Its front node is the one on the middle line where the slab is still whole. Where the
 /// cutting point x_s + x_c(theta) pushes against it, a virtual coupling (spring kc, damper bc) moves the node
 /// and gives the force on x_s; it never pulls the scissors forward.
@@ -39,8 +39,8 @@ namespace kerf::models {
 /// Both lattices take semi-implicit Euler steps, as many a tick as their stiffest spring and their couplings
 /// need (stable_step()).
 ///
-/// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: 003, section 2; differs from the paper
-/// in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
+/// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: [Weiss2004], section 2; differs from the
+/// paper in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
 struct ScissorsMesh {
   static constexpr std::string_view name = "scissors_mesh";
   static constexpr std::string_view equation = "slab and strip of springs, cut node by node";

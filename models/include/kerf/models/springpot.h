@@ -39,8 +39,8 @@ namespace kerf::models {
 /// Contact is unilateral as in Kelvin: no force below zero, while the element keeps relaxing, and the first
 /// tick takes it as relaxed. Passive at every period: springs and dashpots, all positive.
 ///
-/// Source: Scott Blair's element with the derivative of Caputo (1967); the quadrature is that of Beylkin and
-/// Monzon, Applied and Computational Harmonic Analysis 28 (2010), for powers, its ends closed as above.
+/// Source: Scott Blair's element with the derivative of Caputo [Caputo1967]; the quadrature is that of
+/// [BeylkinMonzon2010], for powers, its ends closed as above.
 template <typename T>
 struct Springpot {
   static constexpr std::string_view name = "springpot";

@@ -9,7 +9,7 @@ namespace kerf::models {
 ///     elastic until |F| > F1, cutting until |F| < F0,  F0 < F1
 ///
 /// Between the two the state stays as it is, so noise smaller than F1 - F0 never makes it chatter: one
-/// crossing, one transition. With equal thresholds any noise does. Source: 000, section 2.3.
+/// crossing, one transition. With equal thresholds any noise does. Source: [Henry2004], section 3.5.
 struct TwoThresholds {
   double release_n = 0.0;  ///< F0 [N], the tissue holds again below it
   double rupture_n = 0.0;  ///< F1 [N], it gives way above it; > F0

@@ -35,7 +35,7 @@ ScriptedPath strokes_along(const std::string& axis, double depth) {
   return path;
 }
 
-/// A vertical blade that turns about its own axis in the tissue, and goes nowhere: T2 of 000.
+/// A vertical blade that turns about its own axis in the tissue, and goes nowhere: T2 of [Henry2004].
 ScriptedPath turning_blade() {
   ScriptedPath path;
   for (const auto* name : {"x", "y", "z", "rx", "ry", "rz"}) {
@@ -78,7 +78,7 @@ TEST(SpeedAccuracy, StripsOfABladeConvergeWithTheSquareOfTheirNumber) {
   }
   EXPECT_NEAR(point(chart, "blade", "exact").error_jnd, 0.0, 1e-9);
   EXPECT_EQ(point(chart, "blade", "paper 64").axis, "rz") << "the paper's blade turns without a torque";
-  // Kn w^3 l / 12 w_z = 4e-3 N·m (models.md, T2 with 100 times the Kn), at the fingers 10 mm from the axis.
+  // Kn w^3 l / 12 w_z = 4e-3 N·m (T2 with 100 times the Kn), at the fingers 10 mm from the axis.
   EXPECT_NEAR(point(chart, "blade", "paper 64").error_n, 4e-3 / fingers_m, 1e-9);
 }
 
@@ -137,12 +137,12 @@ TEST(SpeedAccuracy, AsksWhetherTheClosedLoopIsStable) {
     const auto precision = law.law.options().find("precision");
     const bool single =
         precision != law.law.options().end() && std::get<std::string>(precision->second) == "float";
-    return single ? std::optional<std::string>("it hums") : std::nullopt;
+    return single ? std::optional<std::string>("it has a limit cycle") : std::nullopt;
   };
   const SpeedAccuracy chart = chart_scene(tissue, strokes_along("x", 0.01), options);
   EXPECT_TRUE(point(chart, "kelvin", "exact").stable);
   EXPECT_FALSE(point(chart, "kelvin", "exact, float").stable);
-  EXPECT_THAT(point(chart, "kelvin", "exact, float").why, HasSubstr("it hums"));
+  EXPECT_THAT(point(chart, "kelvin", "exact, float").why, HasSubstr("it has a limit cycle"));
 }
 
 TEST(SpeedAccuracy, RefusesAPathThatNeverMeetsTheTissue) {

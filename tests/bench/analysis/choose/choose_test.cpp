@@ -29,7 +29,7 @@ const std::atomic<bool> go_on{false};
 
 ChooseOptions small() {
   ChooseOptions options;
-  options.candidates = {.most_segments = 2, .most_arms = 2};
+  options.candidates = {.max_segments = 2, .max_arms = 2};
   return options;
 }
 
@@ -105,7 +105,7 @@ TEST(Choose, GoesByFewestParametersFirst) {
 
 TEST(Choose, PassesOverALawThatMissesItsDeadlines) {
   ChooseOptions options = small();
-  options.walk.deadline = [](const LawFile& law) {
+  options.search.deadline = [](const LawFile& law) {
     const bool slow = law.law.model() == "kelvin";
     return Deadline{.held = !slow, .why = slow ? "your law is too slow" : ""};
   };
@@ -118,7 +118,7 @@ TEST(Choose, PassesOverALawThatMissesItsDeadlines) {
 
 TEST(Choose, PassesOverALawThatIsNotStable) {
   ChooseOptions options = small();
-  options.walk.stability = [](const LawFile& law, const schema::Recording&) {
+  options.search.stability = [](const LawFile& law, const schema::Recording&) {
     return law.law.model() == "kelvin" ? std::optional<std::string>("it chatters") : std::nullopt;
   };
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
@@ -130,7 +130,7 @@ TEST(Choose, PassesOverALawThatIsNotStable) {
 
 TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
   ChooseOptions options = small();
-  options.walk.deadline = [](const LawFile&) {
+  options.search.deadline = [](const LawFile&) {
     return Deadline{.held = false, .machine_late = true, .why = "700 of 2000 deadlines missed"};
   };
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
@@ -142,7 +142,7 @@ TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
 
 TEST(Choose, NamesNoneWhereNoneOfThoseWithinTheJndIsStable) {
   ChooseOptions options = small();
-  options.walk.stability = [](const LawFile&, const schema::Recording&) {
+  options.search.stability = [](const LawFile&, const schema::Recording&) {
     return std::optional<std::string>("no");
   };
   const LawChoice choice = choose(cut_of(known_line()), options);

@@ -54,7 +54,7 @@ inline schema::Recording cut_of(const models::Law& law, const KnownCut& cut = {}
     const auto rows = static_cast<std::size_t>(duration_s * cut.rate_hz);
     for (std::size_t i = 0; i < rows; ++i) {
       const auto at = drivers::MinimumJerk::at(static_cast<double>(i) / static_cast<double>(rows));
-      add(from + (to - from) * at.place, (to - from) * at.speed / duration_s);
+      add(from + (to - from) * at.position, (to - from) * at.speed / duration_s);
     }
     cycles.phases.push_back({.cycle = cycle, .phase = phase, .begin = begin, .end = recording.rows()});
   };

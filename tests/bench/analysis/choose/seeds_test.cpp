@@ -18,7 +18,7 @@ const std::atomic<bool> go_on{false};
 
 ChooseOptions quick() {
   ChooseOptions options;
-  options.candidates.most_segments = 4;
+  options.candidates.max_segments = 4;
   options.richer_too = false;
   return options;
 }
@@ -40,7 +40,7 @@ TEST(ChooseOverSeeds, ExplainsAKnownLawByNoneThatIsRicher) {
 
 TEST(ChooseOverSeeds, ExplainsRelaxationByNoElasticLaw) {
   ChooseOptions options = quick();
-  options.candidates.most_segments = 3;
+  options.candidates.max_segments = 3;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const bool one_arm = seed % 2 == 0;
     const models::Law law =

@@ -79,7 +79,8 @@ TEST_F(RealFit, OfATendonNeedsMoreThanOneRelaxationTime) {
   EXPECT_LT(of(power, "order").upper, 0.4);
 }
 
-// Stretched to four times its length it is not linear on the way there, so the way counts by its ends alone.
+// Stretched to four times its length it is not linear on the stroke there, so the stroke counts by its ends
+// alone.
 TEST_F(RealFit, OfAPolymerRelaxesAsAPowerOfTime) {
   const auto polymer = imported("vhb/relaxation_4d0.csv", "time=时间,position=位移,force=3");
   constexpr std::size_t hold = 255;
@@ -200,8 +201,8 @@ TEST_F(RealGrasper, IsNotViscous) {
   }
 }
 
-// Whether a force that depends on the way of moving (two straight lines closing, two opening) or one that
-// remembers where the punch was a moment ago foretells the cycles that were left out.
+// Whether a force that depends on the direction of motion (two straight lines closing, two opening) or one
+// that remembers where the punch was a moment ago foretells the cycles that were left out.
 TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
   const std::map<std::string, std::string> preferred{{"7_blank_slow_1819", "piecewise"},
                                                      {"8_blank_fast_1821", "kelvin"},

@@ -17,10 +17,12 @@ LawFile spring_between_the_blades(double stiffness_n_per_rad) {
 
 TEST(InHand, ATissueThatIsTooStiffForTheDeviceHumsAndSaysHow) {
   const drivers::DeviceInfo scissors = drivers::open_device("sim:scissors")->info();
-  EXPECT_EQ(hum_in_hand(spring_between_the_blades(5.0), scissors, 1000.0, light_grip, 0.3), std::nullopt);
-  const auto hum = hum_in_hand(spring_between_the_blades(1e5), scissors, 1000.0, firm_grip, 0.01);
-  ASSERT_TRUE(hum);
-  EXPECT_NE(hum->find("rms"), std::string::npos);
+  EXPECT_EQ(limit_cycle_in_hand(spring_between_the_blades(5.0), scissors, 1000.0, light_grip, 0.3),
+            std::nullopt);
+  const auto limit_cycle =
+      limit_cycle_in_hand(spring_between_the_blades(1e5), scissors, 1000.0, firm_grip, 0.01);
+  ASSERT_TRUE(limit_cycle);
+  EXPECT_NE(limit_cycle->find("rms"), std::string::npos);
 }
 
 TEST(InHand, WhatNobodyKnowsOrPressesIsNotJudged) {
@@ -28,9 +30,10 @@ TEST(InHand, WhatNobodyKnowsOrPressesIsNotJudged) {
   LawFile law = spring_between_the_blades(1e5);
   law.axis = "q1";
   law.force_unit = "N·m";
-  EXPECT_EQ(hum_in_hand(law, premium, 1000.0, firm_grip, 0.01), std::nullopt);
+  EXPECT_EQ(limit_cycle_in_hand(law, premium, 1000.0, firm_grip, 0.01), std::nullopt);
   const drivers::DeviceInfo scissors = drivers::open_device("sim:scissors")->info();
-  EXPECT_EQ(hum_in_hand(spring_between_the_blades(1e5), scissors, 1000.0, firm_grip, 0.0), std::nullopt);
+  EXPECT_EQ(limit_cycle_in_hand(spring_between_the_blades(1e5), scissors, 1000.0, firm_grip, 0.0),
+            std::nullopt);
 }
 
 TEST(InHand, GripsHaveNames) {

@@ -19,7 +19,7 @@ struct Element {
   double stiffness = 0.0;
   double damping = 0.0;
   double operator()(const AxisReading& at) const noexcept {
-    return -stiffness * at.place_m - damping * at.speed_m_s;
+    return -stiffness * at.position_m - damping * at.speed_m_s;
   }
 };
 
@@ -105,7 +105,7 @@ TEST(LawLimits, ADamperIsPassiveUpToTheDevicesFriction) {
 }
 
 TEST(LawLimits, AKelvinTissueIsPassiveAtAnyRate) {
-  // Liver (002): far softer than the friction of any handle.
+  // Liver [FuzzyKelvin]: far softer than the friction of any handle.
   const double values[] = {8.0, 7.0, 130.0};
   const LawLimits limits =
       limits_of(handle, {models::Law::make("kelvin", values)}, {.depth_m = 0.02, .speed_m_s = 0.3}, 0.1);
@@ -135,9 +135,9 @@ TEST(Press, OnATissueThatIsTooStiffForTheDeviceHums) {
   const double soft[] = {500.0, 1e-9, 1e-9};
   const double stiff[] = {20000.0, 1e-9, 1e-9};
   EXPECT_TRUE(press(held, {models::Law::make("kelvin", soft)}, {.depth_m = 0.005}).stable);
-  const PressVerdict hum = press(held, {models::Law::make("kelvin", stiff)}, {.depth_m = 0.0005});
-  EXPECT_FALSE(hum.stable);
-  EXPECT_GT(hum.ripple_n, 0.05);
+  const PressVerdict limit_cycle = press(held, {models::Law::make("kelvin", stiff)}, {.depth_m = 0.0005});
+  EXPECT_FALSE(limit_cycle.stable);
+  EXPECT_GT(limit_cycle.ripple_n, 0.05);
 }
 
 TEST(WallMap, IsTheSameForAnyNumberOfThreads) {

@@ -35,9 +35,9 @@ struct Cutting {
       const double t = 1e-3 * row - pause_s;
       const int stroke = std::clamp(static_cast<int>(std::floor(t / cycle_s)), 0, strokes - 1);
       const double phase = std::clamp((t - stroke * cycle_s) / stroke_s, 0.0, 1.0);
-      const double way = 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
+      const double share = 0.5 * (1.0 - std::cos(std::numbers::pi * phase));
       const bool closing = stroke % 2 == 0;
-      const double closed = closing ? way : 1.0 - way;
+      const double closed = closing ? share : 1.0 - share;
       const bool moving = phase > 0.0 && phase < 1.0;
       recording.time.push_back(1e-3 * row);
       recording.position.push_back(direction * 0.5 * closed + normal(random) * 0.5);
@@ -70,7 +70,7 @@ TEST(Segment, TakesForClosingTheWayThatCostsMore) {
   const auto cycles = find_cycles(Cutting{.direction = -1.0}.recording(), {});
   EXPECT_EQ(cycles.closing_direction, -1.0);
   EXPECT_EQ(count(cycles, schema::Phase::closing), 4);
-  EXPECT_LT(cycles.grid.front(), cycles.grid.back()) << "the grid increases whichever way closing is";
+  EXPECT_LT(cycles.grid.front(), cycles.grid.back()) << "the grid increases whichever direction closing has";
   const auto told = find_cycles(Cutting{.direction = -1.0}.recording(), {.closing_direction = 1.0});
   EXPECT_EQ(told.closing_direction, 1.0);
 }

@@ -90,8 +90,8 @@ double ripple_with_band(double band_rad_s) {
   device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = 10.0;
   return ripple_n(run_loop(device, LawForce(law, device.period_s), {}, 2.0, [](double time_s) {
-    return HandPush{.place_m = 8e-3 * drivers::MinimumJerk::at(time_s / 0.6).place -
-                               2e-3 * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).place};
+    return HandPush{.position_m = 8e-3 * drivers::MinimumJerk::at(time_s / 0.6).position -
+                                  2e-3 * drivers::MinimumJerk::at((time_s - 0.7) / 0.3).position};
   }));
 }
 
@@ -164,7 +164,7 @@ TEST(Delay, AHandOnAWallVibratesFromTheEigenvaluesBoundaryOn) {
   const double boundary = eigenvalue_boundary(late, 0.0, 1.0, 1e6);
   const auto growth = [&](double stiffness) {
     const CaseTrace trace = run_loop(late, WallForce{{.stiffness_n_per_m = stiffness}, false}, {}, 2.0,
-                                     [](double) { return HandPush{.place_m = 1e-4}; });
+                                     [](double) { return HandPush{.position_m = 1e-4}; });
     return ripple_n(trace, 0.25) / ripple_n(trace, 0.75);
   };
   EXPECT_LT(growth(0.97 * boundary), 0.9);
@@ -177,10 +177,10 @@ double mean_gain(const SampledDevice& device, double speed) {
   double sum = 0.0;
   for (int i = 0; i < phases; ++i) {
     SampledLoop loop(device, WallForce{{.stiffness_n_per_m = 1000.0}},
-                     {.place_m = -speed * device.period_s * i / phases, .speed_m_s = speed});
+                     {.position_m = -speed * device.period_s * i / phases, .speed_m_s = speed});
     do {
       loop.step();
-    } while (loop.motion().place_m > 0.0 || loop.motion().speed_m_s > 0.0);
+    } while (loop.motion().position_m > 0.0 || loop.motion().speed_m_s > 0.0);
     sum += 0.5 * device.moving_mass_kg() * (std::pow(loop.motion().speed_m_s, 2) - speed * speed);
   }
   return sum / phases;

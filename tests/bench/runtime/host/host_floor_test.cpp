@@ -12,12 +12,12 @@ namespace {
 TEST(HostFloor, BoundsTheMissesThatMayBeTheMachines) {
   // No miss in 3000 ticks: the rate is below 3 in 3000 with 95 % confidence ("rule of three": -ln 0.05).
   const HostFloor none{.ticks = 3000, .missed = 0};
-  EXPECT_NEAR(none.most_expected(3000), 2.9957 + 3.0 * std::sqrt(2.9957), 1e-3);
+  EXPECT_NEAR(none.max_expected(3000), 2.9957 + 3.0 * std::sqrt(2.9957), 1e-3);
   // 10 in 3000: the upper bound of a Poisson mean at 95 % is 16.962 (chi-square of 22 degrees of freedom, /
   // 2).
   const HostFloor ten{.ticks = 3000, .missed = 10};
-  EXPECT_NEAR(ten.most_expected(3000), 16.962 + 3.0 * std::sqrt(16.962), 1e-3);
-  EXPECT_EQ(HostFloor{}.most_expected(1000), 0.0);
+  EXPECT_NEAR(ten.max_expected(3000), 16.962 + 3.0 * std::sqrt(16.962), 1e-3);
+  EXPECT_EQ(HostFloor{}.max_expected(1000), 0.0);
 }
 
 TEST(HostFloor, IsThatOfAnEmptyLoopOnThisMachine) {

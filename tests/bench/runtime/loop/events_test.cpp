@@ -8,7 +8,7 @@ namespace {
 std::vector<schema::Event> events_of(const std::vector<schema::Row>& rows) {
   EventFinder finder;
   std::vector<schema::Event> events;
-  for (const schema::Row& row : rows) finder.look_at(row, events);
+  for (const schema::Row& row : rows) finder.process(row, events);
   return events;
 }
 

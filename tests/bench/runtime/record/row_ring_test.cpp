@@ -11,7 +11,7 @@ TEST(RowRing, RefusesARowWhenItIsFullAndTakesOneAgainWhenItIsNot) {
   RowRing ring(3);
   for (std::uint64_t tick = 0; tick < 3; ++tick) EXPECT_TRUE(ring.push({.tick = tick}));
   EXPECT_FALSE(ring.push({.tick = 3}));
-  std::vector<schema::Row> rows(RowRing::most_popped);
+  std::vector<schema::Row> rows(RowRing::max_popped);
   ASSERT_EQ(ring.pop(rows.data()), 3U);
   for (std::uint64_t tick = 0; tick < 3; ++tick) EXPECT_EQ(rows[tick].tick, tick);
   EXPECT_EQ(ring.pop(rows.data()), 0U);
@@ -31,7 +31,7 @@ TEST(RowRing, HandsEveryRowFromThreadToThreadUnchanged) {
       }
     }
   });
-  std::vector<schema::Row> rows(RowRing::most_popped);
+  std::vector<schema::Row> rows(RowRing::max_popped);
   for (std::uint64_t next = 0; next < count;) {
     const std::size_t popped = ring.pop(rows.data());
     for (std::size_t i = 0; i < popped; ++i, ++next) {

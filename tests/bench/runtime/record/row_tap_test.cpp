@@ -8,7 +8,7 @@ namespace kerf::bench {
 namespace {
 
 std::vector<schema::Row> popped(RowTap& tap) {
-  std::vector<schema::Row> rows(RowRing::most_popped);
+  std::vector<schema::Row> rows(RowRing::max_popped);
   rows.resize(tap.pop(rows.data()));
   return rows;
 }

@@ -22,7 +22,9 @@ using testing::study_with;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 
-Study table_of_004() { return read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv"); }
+Study table_of_okamura() {
+  return read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
+}
 
 // P(X >= 12 | 16, 1/2) = 2517 / 65536; the interval and the power as R's binom.test and pbinom give them.
 TEST(AnAbxSession, OfTwelveInSixteenIsRightOneSided) {
@@ -138,7 +140,7 @@ TEST(Subjects, WhoAreAllAlikeGiveStudentNoWidth) {
 }
 
 // Right 18 of 20 when it is the first, 6 of 20 when the second. R: fisher.test gives p = 0.00024.
-TEST(Answers, ThatLeanToASlotAreWarnedOf) {
+TEST(Answers, WithAResponseBiasAreWarnedOf) {
   Study study = study_with(Design::two_interval);
   for (std::size_t i = 0; i < 40; ++i) {
     const std::size_t right = i % 2;
@@ -153,18 +155,18 @@ TEST(Answers, ThatLeanToASlotAreWarnedOf) {
   // z(0.9) - z(0.7) = 1.2816 - 0.5244, over the root of two.
   EXPECT_NEAR(found.bias.detection->d_prime, (1.2815516 - 0.5244005) / std::sqrt(2.0), 1e-6);
   EXPECT_LT(found.bias.detection->criterion, 0.0);
-  EXPECT_THAT(found.warnings, Contains(HasSubstr("lean to one slot")));
+  EXPECT_THAT(found.warnings, Contains(HasSubstr("response bias to one slot")));
 }
 
-TEST(Answers, WithAnEqualShareInEachSlotLeanToNone) {
+TEST(Answers, WithAnEqualShareInEachSlotHaveNoBias) {
   Study study = study_with(Design::two_interval);
   add_answers(study, "P1", "", 20, 20);
   EXPECT_NEAR(analyse(study, quick()).bias.test.p, 1.0, 1e-12);
 }
 
-// docs/psychophysics.md, "004's Table 1, in numbers".
+// docs/psychophysics.md, "Table 1 of [Okamura2003], in numbers".
 TEST(TheTableOf004, GivesTheNumbersOfTheDocs) {
-  const Analysis found = analyse(table_of_004(), quick());
+  const Analysis found = analyse(table_of_okamura(), quick());
   ASSERT_TRUE(found.all);
   EXPECT_EQ(found.all->count.successes, 6);
   EXPECT_EQ(found.all->count.trials, 12);
@@ -191,13 +193,13 @@ TEST(TheTableOf004, GivesTheNumbersOfTheDocs) {
 TEST(TheTableOf004, JustFailsAMarginOfAQuarter) {
   AnalysisOptions options = quick();
   options.margin = 0.25;
-  const Analysis found = analyse(table_of_004(), options);
+  const Analysis found = analyse(table_of_okamura(), options);
   EXPECT_NEAR(found.all->equivalence->p, 0.054, 5e-4);
   EXPECT_FALSE(found.all->equivalence->is_shown);
 }
 
 TEST(TheTableOf004, SaysWhatItCannotSupport) {
-  const Analysis found = analyse(table_of_004(), quick());
+  const Analysis found = analyse(table_of_okamura(), quick());
   EXPECT_THAT(found.shows, Contains(HasSubstr("No sign of a preference")));
   EXPECT_THAT(found.shows_not, Contains(HasSubstr("39 % to notice 75 %")));
   EXPECT_THAT(found.shows_not, Contains(HasSubstr("cannot be told apart")));
@@ -210,7 +212,7 @@ TEST(TheTableOf004, SaysWhatItCannotSupport) {
   EXPECT_EQ(json.at("preferred").at("recording"), 6);
 }
 
-// Agresti, Categorical Data Analysis: American League 1987; worth over Baltimore.
+// [Agresti], American League 1987; worth over Baltimore.
 TEST(Preferences, AmongManyAreRankedAsAgrestisBaseball) {
   const std::vector<std::vector<int>> wins{
       {0, 7, 9, 7, 7, 9, 11}, {6, 0, 7, 5, 11, 9, 9}, {4, 6, 0, 7, 7, 8, 12}, {6, 8, 6, 0, 6, 7, 10},
@@ -238,7 +240,7 @@ TEST(Preferences, AmongManyAreRankedAsAgrestisBaseball) {
   EXPECT_EQ(analysis_as_json(found).at("preferred").at("Milwaukee"), 50);
 }
 
-// Ford 1957: an item that never lost has no finite worth.
+// [Ford1957]: an item that never lost has no finite worth.
 TEST(Preferences, OfASampleThatNeverLostHaveNoRankingAndSayWhy) {
   Study study = study_with(Design::preference);
   study.samples = {"a", "b", "c"};

@@ -234,7 +234,7 @@ TEST(SessionPlan, OfAnAdaptiveDesignIsEvenInEveryTenTrials) {
 TEST(SessionPlan, BeginsWithPracticeThatDoesNotCount) {
   const Protocol protocol = of_tissues("abx", 8, "practice = 5");
   auto plans = make_plans(protocol, subjects, seed);
-  std::set<std::array<std::uint8_t, most_slots>> kinds;
+  std::set<std::array<std::uint8_t, max_slots>> kinds;
   for (Plan& plan : plans) {
     ASSERT_EQ(plan.size(), 5U + 4U * 8U);
     for (std::size_t i = 0; i < plan.size(); ++i) EXPECT_EQ(plan[i].practice, i < 5);
@@ -273,7 +273,7 @@ TEST(SessionPlan, IsAnotherForEverySubjectAndSeed) {
 }
 
 TEST(SessionPlan, KnowsWhichAnswerIsRight) {
-  const auto right = [](const Protocol& protocol, std::array<std::uint8_t, most_slots> slots) {
+  const auto right = [](const Protocol& protocol, std::array<std::uint8_t, max_slots> slots) {
     return TrialPlan{.pair = {0, 1}, .slots = slots}.right(protocol);
   };
   Protocol protocol;

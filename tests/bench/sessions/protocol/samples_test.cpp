@@ -100,12 +100,12 @@ TEST(SampleForces, AreThoseThatTheLoopRenders) {
     const double time_s = 1e-3 * static_cast<double>(tick);
     const bool back = time_s >= half;
     const double t = (back ? time_s - half : time_s) - 0.05;
-    const drivers::MinimumJerk way = drivers::MinimumJerk::at(std::clamp(t / 0.2, 0.0, 1.0));
+    const drivers::MinimumJerk progress = drivers::MinimumJerk::at(std::clamp(t / 0.2, 0.0, 1.0));
     drivers::Sample sample;
     const double from = back ? 0.2 : 0.55;
     const double to = back ? 0.55 : 0.2;
-    sample.position[0] = from + (to - from) * way.place;
-    sample.velocity[0] = t > 0.0 ? (to - from) * way.speed / 0.2 : 0.0;
+    sample.position[0] = from + (to - from) * progress.position;
+    sample.velocity[0] = t > 0.0 ? (to - from) * progress.speed / 0.2 : 0.0;
     EXPECT_NEAR(forces[tick], loop(sample, 1e-3).force[0], 1e-9) << tick;
   }
 }

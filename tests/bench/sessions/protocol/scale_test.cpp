@@ -55,7 +55,7 @@ TEST(SessionScale, ReadsAStaircase) {
   EXPECT_EQ(options.most, 0.6);
   EXPECT_EQ(options.reversals, 8);
   EXPECT_EQ(options.dropped, 2);
-  EXPECT_EQ(options.most_trials, 50);
+  EXPECT_EQ(options.max_trials, 50);
 }
 
 TEST(SessionScale, HoldsAStaircaseWithinFourTimesItsStart) {

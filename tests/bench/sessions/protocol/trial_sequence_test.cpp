@@ -19,7 +19,7 @@ using test::protocol_text;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-Course course_of(const Protocol& protocol) { return {protocol, make_plans(protocol, 1, 5).front()}; }
+TrialSequence sequence_of(const Protocol& protocol) { return {protocol, make_plans(protocol, 1, 5).front()}; }
 
 /// Right where a level is felt.
 std::size_t answer_of(const Protocol& protocol, const TrialPlan& trial, bool is_right) {
@@ -41,78 +41,81 @@ TEST(SessionCourse, OfAFixedDesignIsItsPlan) {
   const Protocol protocol = protocol_from(
       level_text("design = \"constant\"\ntrials = 3\npractice = 2", "vary = \"force\"\nlevels = [0.1, 0.2]"));
   const Plan plan = make_plans(protocol, 1, 5).front();
-  Course course(protocol, plan);
-  EXPECT_EQ(course.at_most(), 8U);
+  TrialSequence sequence(protocol, plan);
+  EXPECT_EQ(sequence.at_most(), 8U);
   for (const TrialPlan& trial : plan) {
-    ASSERT_TRUE(course.next());
-    EXPECT_EQ(course.next()->slots, trial.slots);
-    EXPECT_EQ(course.next()->level, trial.level);
-    course.answer(1);
+    ASSERT_TRUE(sequence.next());
+    EXPECT_EQ(sequence.next()->slots, trial.slots);
+    EXPECT_EQ(sequence.next()->level, trial.level);
+    sequence.answer(1);
   }
-  EXPECT_EQ(course.answered(), 8U);
-  EXPECT_FALSE(course.next());
-  EXPECT_THAT([&] { course.answer(0); }, ThrowsMessage<std::invalid_argument>(HasSubstr("is over")));
+  EXPECT_EQ(sequence.answered(), 8U);
+  EXPECT_FALSE(sequence.next());
+  EXPECT_THAT([&] { sequence.answer(0); }, ThrowsMessage<std::invalid_argument>(HasSubstr("is over")));
 }
 
 TEST(SessionCourse, TakesOnlyWhatIsAnAnswer) {
-  Course course = course_of(protocol_from(protocol_text("design = \"abx\"")));
-  EXPECT_THAT([&] { course.answer(2); },
+  TrialSequence sequence = sequence_of(protocol_from(protocol_text("design = \"abx\"")));
+  EXPECT_THAT([&] { sequence.answer(2); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("slot 2 is no answer")));
-  EXPECT_EQ(course.answered(), 0U);
+  EXPECT_EQ(sequence.answered(), 0U);
 }
 
 TEST(SessionCourse, OfAStaircaseGoesDownAfterTwoRightAndUpAfterOneWrong) {
   const Protocol protocol = staircase();
-  Course course = course_of(protocol);
-  const auto answer = [&](bool is_right) { course.answer(answer_of(protocol, *course.next(), is_right)); };
-  EXPECT_DOUBLE_EQ(course.next()->level, 0.4);
+  TrialSequence sequence = sequence_of(protocol);
+  const auto answer = [&](bool is_right) {
+    sequence.answer(answer_of(protocol, *sequence.next(), is_right));
+  };
+  EXPECT_DOUBLE_EQ(sequence.next()->level, 0.4);
   answer(true);
-  EXPECT_DOUBLE_EQ(course.next()->level, 0.4);
+  EXPECT_DOUBLE_EQ(sequence.next()->level, 0.4);
   answer(true);
-  EXPECT_NEAR(course.next()->level, 0.4 * std::exp(-0.5), 1e-12);
+  EXPECT_NEAR(sequence.next()->level, 0.4 * std::exp(-0.5), 1e-12);
   answer(false);
-  EXPECT_NEAR(course.next()->level, 0.4 * std::exp(-0.25), 1e-12) << "the smaller step after a reversal";
+  EXPECT_NEAR(sequence.next()->level, 0.4 * std::exp(-0.25), 1e-12) << "the smaller step after a reversal";
 }
 
 TEST(SessionCourse, OfAStaircaseEndsWithItsReversals) {
   const Protocol protocol = staircase("trials = 60", ", reversals = 6, dropped = 2");
-  Course course = course_of(protocol);
-  while (const auto trial = course.next()) course.answer(answer_of(protocol, *trial, trial->level > 0.15));
-  EXPECT_GT(course.answered(), 8U);
-  EXPECT_LT(course.answered(), 40U);
-  EXPECT_EQ(course.at_most(), 60U);
+  TrialSequence sequence = sequence_of(protocol);
+  while (const auto trial = sequence.next())
+    sequence.answer(answer_of(protocol, *trial, trial->level > 0.15));
+  EXPECT_GT(sequence.answered(), 8U);
+  EXPECT_LT(sequence.answered(), 40U);
+  EXPECT_EQ(sequence.at_most(), 60U);
 }
 
 TEST(SessionCourse, OfAStaircaseEndsAtTheMostTrials) {
   const Protocol protocol = staircase("trials = 7\npractice = 2");
-  Course course = course_of(protocol);
-  while (const auto trial = course.next()) course.answer(answer_of(protocol, *trial, true));
-  EXPECT_EQ(course.answered(), 9U);
+  TrialSequence sequence = sequence_of(protocol);
+  while (const auto trial = sequence.next()) sequence.answer(answer_of(protocol, *trial, true));
+  EXPECT_EQ(sequence.answered(), 9U);
 }
 
 TEST(SessionCourse, PractisesAtALevelThatIsEasyWithoutLearningFromIt) {
   const Protocol protocol = staircase("practice = 3");
-  Course course = course_of(protocol);
+  TrialSequence sequence = sequence_of(protocol);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_TRUE(course.next()->practice);
-    EXPECT_EQ(course.next()->level, 0.4);
-    course.answer(answer_of(protocol, *course.next(), i == 0));
+    EXPECT_TRUE(sequence.next()->practice);
+    EXPECT_EQ(sequence.next()->level, 0.4);
+    sequence.answer(answer_of(protocol, *sequence.next(), i == 0));
   }
-  EXPECT_FALSE(course.next()->practice);
-  EXPECT_DOUBLE_EQ(course.next()->level, 0.4);
-  EXPECT_EQ(course_of(quest("practice = 1")).next()->level, 1.0) << "the largest level there is";
+  EXPECT_FALSE(sequence.next()->practice);
+  EXPECT_DOUBLE_EQ(sequence.next()->level, 0.4);
+  EXPECT_EQ(sequence_of(quest("practice = 1")).next()->level, 1.0) << "the largest level there is";
 }
 
 TEST(SessionCourse, OfQuestComesToTheLevelThatTheSubjectFeels) {
   const Protocol protocol = quest();
-  Course course = course_of(protocol);
+  TrialSequence sequence = sequence_of(protocol);
   double last = 0.0;
-  while (const auto trial = course.next()) {
+  while (const auto trial = sequence.next()) {
     EXPECT_EQ(std::ranges::count(protocol.scale.levels, trial->level), 1);
     last = trial->level;
-    course.answer(answer_of(protocol, *trial, trial->level >= 0.2 || course.answered() % 2 == 0));
+    sequence.answer(answer_of(protocol, *trial, trial->level >= 0.2 || sequence.answered() % 2 == 0));
   }
-  EXPECT_EQ(course.answered(), 40U);
+  EXPECT_EQ(sequence.answered(), 40U);
   EXPECT_GT(last, 0.1);
   EXPECT_LT(last, 0.3);
 }
@@ -122,36 +125,36 @@ TEST(SessionCourse, IsResumedByTheRecordedAnswers) {
        {staircase("trials = 40\npractice = 2"), quest("trials = 25\npractice = 2")}) {
     psychophysics::Random random(11);
     const Plan plan = make_plans(protocol, 1, 5).front();
-    Course course(protocol, plan);
+    TrialSequence sequence(protocol, plan);
     std::vector<std::size_t> answers;
-    while (const auto trial = course.next()) {
-      Course resumed(protocol, plan);
+    while (const auto trial = sequence.next()) {
+      TrialSequence resumed(protocol, plan);
       for (const std::size_t answer : answers) resumed.answer(answer);
       ASSERT_TRUE(resumed.next());
       EXPECT_EQ(resumed.next()->level, trial->level);
       EXPECT_EQ(resumed.next()->slots, trial->slots);
       answers.push_back(random.below(2));
-      course.answer(answers.back());
+      sequence.answer(answers.back());
     }
     EXPECT_GT(answers.size(), 10U);
   }
 }
 
 TEST(SessionCourse, BreaksAfterEverySoManyTrialsThatCount) {
-  Course course =
-      course_of(protocol_from(protocol_text("design = \"abx\"\ntrials = 6\npractice = 2\nbreak = { every = "
-                                            "2, at_least = { value = 1, unit = \"s\" } }")));
+  TrialSequence sequence =
+      sequence_of(protocol_from(protocol_text("design = \"abx\"\ntrials = 6\npractice = 2\nbreak = { every = "
+                                              "2, at_least = { value = 1, unit = \"s\" } }")));
   std::vector<std::size_t> before;
-  for (; course.next(); course.answer(0)) {
-    if (course.break_due()) before.push_back(course.answered());
+  for (; sequence.next(); sequence.answer(0)) {
+    if (sequence.break_due()) before.push_back(sequence.answered());
   }
   EXPECT_THAT(before, testing::ElementsAre(4, 6)) << "after two and four of six, past two of practice";
-  EXPECT_FALSE(course.break_due());
+  EXPECT_FALSE(sequence.break_due());
 }
 
 TEST(SessionCourse, GoesOnWithoutBreaksWhereNoneAreAskedFor) {
-  Course course = course_of(protocol_from(protocol_text("design = \"abx\"\ntrials = 6")));
-  for (; course.next(); course.answer(0)) EXPECT_FALSE(course.break_due());
+  TrialSequence sequence = sequence_of(protocol_from(protocol_text("design = \"abx\"\ntrials = 6")));
+  for (; sequence.next(); sequence.answer(0)) EXPECT_FALSE(sequence.break_due());
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ TEST(SessionStore, KeepsAnswersAndTracesThroughACrashAndToTheEnd) {
 
 // Experimenter and subject may look at the file as much as they like.
 TEST(SessionStore, ShowsTheSameSizesAndTextsForEveryOrderAndAnswer) {
-  const auto look = [](const std::array<std::uint8_t, most_slots>& slots, std::size_t answer, double level,
+  const auto look = [](const std::array<std::uint8_t, max_slots>& slots, std::size_t answer, double level,
                        double force) {
     SessionSetUp up = test::set_up();
     for (TrialPlan& trial : up.plan) trial.slots = slots;

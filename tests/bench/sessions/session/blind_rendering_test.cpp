@@ -31,7 +31,7 @@ drivers::Sample at(double penetration) {
   return sample;
 }
 
-TrialRendering trial_of(std::vector<LawRendering> laws, std::array<std::uint8_t, most_slots> law_of,
+TrialRendering trial_of(std::vector<LawRendering> laws, std::array<std::uint8_t, max_slots> law_of,
                         std::size_t slots = 2) {
   TrialRendering trial{.laws = std::move(laws), .gains = {1.0, 1.0}, .slots = slots, .law_of = law_of};
   trial.trace.resize(20'000);
@@ -87,7 +87,7 @@ TEST(BlindRendering, SwitchesAlikeToEitherSample) {
 
 TEST(BlindRendering, FlagsASwitchToTheSameLawLikeAnyOther) {
   // X is A: the force stays as it is, and everything else of the switch is there.
-  for (const auto& law_of : {std::array<std::uint8_t, most_slots>{0, 1, 0}, {0, 1, 1}}) {
+  for (const auto& law_of : {std::array<std::uint8_t, max_slots>{0, 1, 0}, {0, 1, 1}}) {
     BlindRendering rendering(0.05, SwitchKind::blend);
     TrialRendering trial = trial_of({spring(10.0), spring(30.0)}, law_of, 3);
     rendering.begin(trial);
@@ -133,7 +133,7 @@ TEST(BlindRendering, HasNoStepWhereverItIsSwitched) {
 }
 
 TEST(BlindRendering, ComputesEveryLawWhicheverPlays) {
-  // A law that was not felt knows the way nevertheless: its arm has relaxed as if it had been.
+  // A law that was not felt knows the path nevertheless: its arm has relaxed as if it had been.
   const auto last_of = [](std::size_t first) {
     BlindRendering rendering(0.0, SwitchKind::blend);
     TrialRendering trial = trial_of({spring(10.0, 5.0), spring(20.0, 7.0)}, {0, 1});

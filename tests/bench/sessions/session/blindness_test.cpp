@@ -98,7 +98,7 @@ double files_in(const fs::path& folder) {
 class Onlooker : public test::WatchingSubject {
  public:
   struct Trial {
-    std::array<std::vector<double>, most_slots> tick_s;
+    std::array<std::vector<double>, max_slots> tick_s;
     double storing_s = 0.0;
     double shown = 0.0;  ///< characters
     double open_files = 0.0;

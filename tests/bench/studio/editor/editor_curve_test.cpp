@@ -190,7 +190,7 @@ TEST(DrawnLaw, OfAMeniscusIsCloserTheMoreSegmentsItHas) {
       }
     }
     const auto fitted = fitting::fit_segments(
-        {.position = place, .force = force, .weight = {}, .branch = branch}, {.most_segments = segments});
+        {.position = place, .force = force, .weight = {}, .branch = branch}, {.max_segments = segments});
     EXPECT_NEAR(error.rmse_n, fitted.back().rmse, 1e-9 * fitted.back().rmse) << "as the fit has it";
   }
   EXPECT_LT(last, 0.3) << "of up to 6 N";

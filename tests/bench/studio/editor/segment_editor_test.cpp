@@ -130,7 +130,7 @@ TEST(BestKnots, LeaveTheErrorThatTheFitSays) {
     curve.closing[i] += 0.3 * std::sin(0.4 * static_cast<double>(i));
   const auto fitted = fitting::fit_segments(
       {.position = curve.penetration, .force = curve.closing, .weight = {}, .branch = {}},
-      {.most_segments = 4});
+      {.max_segments = 4});
   EXPECT_NEAR(law_error(curve, best_knots(curve, 4, false)).rmse_n, fitted.back().rmse,
               1e-9 * fitted.back().rmse);
 }

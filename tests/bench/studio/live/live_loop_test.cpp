@@ -78,7 +78,7 @@ TEST(LiveLoop, TellsWhoStartsItWhyItCannotAndCanBeStartedAfterwards) {
   EXPECT_THROW(loop.start({.device_uri = "sim:spoon"}), drivers::DeviceError);
   EXPECT_THROW(loop.start({.rate_hz = 20.0}), std::invalid_argument);
   EXPECT_FALSE(loop.status().is_running);
-  EXPECT_THROW(loop.feel(kelvin(), "kelvin"), std::invalid_argument);
+  EXPECT_THROW(loop.render(kelvin(), "kelvin"), std::invalid_argument);
   EXPECT_THROW(loop.start_recording("nowhere.h5"), std::invalid_argument);
   for (int run = 0; run < 2; ++run) {
     loop.start({});
@@ -94,15 +94,15 @@ TEST(LiveLoop, LetsALawBeFeltAndTakesItsForceAway) {
   const test::TemporaryFolder folder;
   LiveLoop loop;
   loop.start({.device_uri = "sim:scissors?seed=3", .ramp_s = 0.05});
-  EXPECT_THROW(loop.feel(kelvin("theta", "m"), "of other units"), std::invalid_argument);
+  EXPECT_THROW(loop.render(kelvin("theta", "m"), "of other units"), std::invalid_argument);
   loop.start_recording(folder / "r.h5");
-  loop.feel(kelvin(), "kelvin");
+  loop.render(kelvin(), "kelvin");
   ASSERT_TRUE(comes_true([&] { return loop.status().law == "kelvin"; }));
   ASSERT_TRUE(passes(loop, 300));
   loop.release_force();
   ASSERT_TRUE(passes(loop, 100));
   EXPECT_TRUE(loop.status().is_released);
-  loop.feel_nothing();
+  loop.render_nothing();
   ASSERT_TRUE(comes_true([&] { return loop.status().law.empty(); }));
   loop.resume();
   ASSERT_TRUE(passes(loop, 50));
@@ -160,7 +160,7 @@ TEST(LiveLoop, KeepsZeroForceThatWasAskedForBeforeTheStart) {
   LiveLoop loop;
   loop.release_force();
   loop.start({.ramp_s = 0.0});
-  loop.feel(kelvin(), "kelvin");
+  loop.render(kelvin(), "kelvin");
   ASSERT_TRUE(passes(loop, 200));
   EXPECT_TRUE(loop.status().is_released);
   const RowHistory& history = loop.watched().history();
@@ -181,7 +181,7 @@ TEST(LiveLoop, LeavesARecordingThatCanBeRepairedWhenItIsKilled) {
         LiveLoop loop;
         loop.start({});
         loop.start_recording(folder / "r.h5");
-        loop.feel(kelvin(), "kelvin");
+        loop.render(kelvin(), "kelvin");
         (void)comes_true([&] { return loop.status().recording->rows > 600; });
         (void)raise(SIGKILL);
       },

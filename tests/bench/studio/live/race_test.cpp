@@ -80,7 +80,7 @@ TEST(Race, IsNoneBetweenLoopDrainViewersAndWhoSteers) {
   Heartbeat heartbeat;
   LoopReport report;
   const auto drain = [&] {
-    std::vector<schema::Row> rows(RowRing::most_popped);
+    std::vector<schema::Row> rows(RowRing::max_popped);
     while (const std::size_t count = tap.pop(rows.data())) {
       history.append({rows.data(), count});
       drained += count;

@@ -96,7 +96,7 @@ async function testChoice(page, studio) {
   const written = await jsonIn(studio, "short.choice/choose.json");
   expect((await page.textContent("section.choice h2")).endsWith(written.choice.law), "the law that was taken");
   expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
-  expectEqual(await page.locator(".walk tbody tr").count(), written.candidates.length, "the walk");
+  expectEqual(await page.locator(".candidates tbody tr").count(), written.candidates.length, "the candidates");
   await page.getByRole("button", { name: `Open ${written.choice.law}` }).click();
   await until("the chosen law is open", async () => (await page.textContent(".law h2").catch(() => "")) === written.choice.law);
 }

@@ -92,7 +92,7 @@ TEST_F(StudioResults, AChartIsWhatTheVerbWritesWithALawForEveryPoint) {
 
 TEST_F(StudioResults, AChoiceIsWhatTheVerbWritesButForTheWallClock) {
   schema::write_recording(recording_, test::punch({.seconds = 0.4}));
-  const json job = run(choice_job(workspace_, {.recording = entry(), .most_segments = 2}));
+  const json job = run(choice_job(workspace_, {.recording = entry(), .max_segments = 2}));
   ASSERT_EQ(job["state"], "done") << job["error"];
   const json ours = file_of(folder_ / "punch.choice/choose.json");
   const json verbs =
@@ -100,12 +100,12 @@ TEST_F(StudioResults, AChoiceIsWhatTheVerbWritesButForTheWallClock) {
   EXPECT_EQ(ours["recording"], "punch.h5");
   EXPECT_EQ(ours["jnd"], verbs["jnd"]);
   ASSERT_EQ(ours["candidates"].size(), verbs["candidates"].size());
-  double most_parameters = 0.0;
+  double max_parameters = 0.0;
   for (const json& candidate : ours["candidates"]) {
     EXPECT_TRUE(candidate["deadline"].is_null());
-    most_parameters = std::max(most_parameters, candidate["parameters"].get<double>());
+    max_parameters = std::max(max_parameters, candidate["parameters"].get<double>());
   }
-  EXPECT_GT(most_parameters, 10.0);
+  EXPECT_GT(max_parameters, 10.0);
   const auto law = ours["choice"]["law"].get<std::string>();
   EXPECT_TRUE(fs::exists(folder_ / ("punch.choice/" + law + ".law.toml")));
   EXPECT_THAT(ours["warnings"].dump(), HasSubstr("no law was run by the wall clock"));

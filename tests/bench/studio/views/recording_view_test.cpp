@@ -207,7 +207,7 @@ TEST(RecordingView, TellsOfSoManyGapsAndCountsTheRest) {
   for (std::size_t i = 0; i < rows.rows(); i += 2) rows.flags[i] = schema::flag_rows_lost;
   schema::write_recording(folder / "r.h5", rows);
   const RecordingView recording(folder / "r.h5", ViewCache(folder / "cache"));
-  EXPECT_EQ(recording.rows().gaps().size(), RowIndex::most_gaps);
+  EXPECT_EQ(recording.rows().gaps().size(), RowIndex::max_gaps);
   EXPECT_EQ(recording.rows().gaps_in_all(), 4999U);
   EXPECT_EQ(recording.rows().gaps().back().second, rows.time[4000]);
   const RecordingView again(folder / "r.h5", ViewCache(folder / "cache"));

@@ -213,7 +213,7 @@ TEST(HttpServer, GoesOnWhereAHandlerThrows) {
 }
 
 TEST(HttpServer, TakesBodiesUpToItsLimit) {
-  HttpServer server({.most_body = 10});
+  HttpServer server({.max_body = 10});
   server.start([](const HttpRequest& request, bool) { return HttpResponse{.body = request.body}; });
   const auto post = [&](const std::string& body) {
     return answer_to(server.port(), "POST / HTTP/1.1\r\nHost: a\r\nContent-Length: " +

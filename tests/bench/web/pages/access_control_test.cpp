@@ -6,60 +6,60 @@
 namespace kerf::bench {
 namespace {
 
-class GateOfAServer : public testing::Test {
+class AccessControlOfAServer : public testing::Test {
  protected:
   [[nodiscard]] HttpRequest asking(const std::string& method = "GET") const {
-    return {.method = method, .headers = {{"host", "127.0.0.1:80"}, {"x-kerf-token", gate_.token()}}};
+    return {.method = method, .headers = {{"host", "127.0.0.1:80"}, {"x-kerf-token", access_.token()}}};
   }
 
-  Gate gate_{std::vector<std::string>{"127.0.0.1:80", "localhost:80"}};
+  AccessControl access_{std::vector<std::string>{"127.0.0.1:80", "localhost:80"}};
 };
 
-TEST_F(GateOfAServer, HasAnotherTokenOf128BitsEachTime) {
-  EXPECT_EQ(gate_.token().size(), 32U);
-  EXPECT_NE(gate_.token(), Gate({"a"}).token());
-  EXPECT_EQ(gate_.url("/x/"), "http://127.0.0.1:80/x/?token=" + gate_.token());
+TEST_F(AccessControlOfAServer, HasAnotherTokenOf128BitsEachTime) {
+  EXPECT_EQ(access_.token().size(), 32U);
+  EXPECT_NE(access_.token(), AccessControl({"a"}).token());
+  EXPECT_EQ(access_.url("/x/"), "http://127.0.0.1:80/x/?token=" + access_.token());
 }
 
-TEST_F(GateOfAServer, AdmitsWhoeverKnowsTheToken) {
-  EXPECT_TRUE(gate_.admits(asking()));
-  EXPECT_TRUE(gate_.admits(asking("POST")));
+TEST_F(AccessControlOfAServer, AdmitsWhoeverKnowsTheToken) {
+  EXPECT_TRUE(access_.admits(asking()));
+  EXPECT_TRUE(access_.admits(asking("POST")));
   HttpRequest by_name = asking();
   by_name.headers["host"] = "localhost:80";
   by_name.headers["origin"] = "http://localhost:80";
-  EXPECT_TRUE(gate_.admits(by_name));
+  EXPECT_TRUE(access_.admits(by_name));
 }
 
-TEST_F(GateOfAServer, RefusesAWrongOrMissingToken) {
+TEST_F(AccessControlOfAServer, RefusesAWrongOrMissingToken) {
   HttpRequest request = asking();
   request.headers["x-kerf-token"].back() ^= 1;
-  EXPECT_FALSE(gate_.admits(request));
+  EXPECT_FALSE(access_.admits(request));
   request.headers["x-kerf-token"] = "";
-  EXPECT_FALSE(gate_.admits(request));
+  EXPECT_FALSE(access_.admits(request));
   request.headers.erase("x-kerf-token");
-  EXPECT_FALSE(gate_.admits(request));
+  EXPECT_FALSE(access_.admits(request));
 }
 
-TEST_F(GateOfAServer, RefusesActionsByAnAddressAlone) {
+TEST_F(AccessControlOfAServer, RefusesActionsByAnAddressAlone) {
   HttpRequest request = asking();
   request.headers.erase("x-kerf-token");
-  request.query["token"] = gate_.token();
-  EXPECT_TRUE(gate_.admits(request));
+  request.query["token"] = access_.token();
+  EXPECT_TRUE(access_.admits(request));
   request.method = "POST";
-  EXPECT_FALSE(gate_.admits(request));
+  EXPECT_FALSE(access_.admits(request));
 }
 
-TEST_F(GateOfAServer, RefusesOtherSitesAndOtherNamesOfTheMachine) {
+TEST_F(AccessControlOfAServer, RefusesOtherSitesAndOtherNamesOfTheMachine) {
   for (const char* origin : {"http://evil.example", "https://127.0.0.1:80", "null", "http://127.0.0.1:81",
                              "http://127.0.0.1:80.evil.example"}) {
     HttpRequest request = asking();
     request.headers["origin"] = origin;
-    EXPECT_FALSE(gate_.admits(request)) << origin;
+    EXPECT_FALSE(access_.admits(request)) << origin;
   }
   for (const char* host : {"evil.example", "127.0.0.1", "127.0.0.1:81", ""}) {
     HttpRequest request = asking();
     request.headers["host"] = host;
-    EXPECT_FALSE(gate_.admits(request)) << host;
+    EXPECT_FALSE(access_.admits(request)) << host;
   }
 }
 

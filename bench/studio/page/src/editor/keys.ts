@@ -1,7 +1,7 @@
 import type { Canvas } from "./canvas";
 import type { Drawing } from "./drawing";
 import { Handles, nameOf } from "./handles";
-import { fewestKnots, forceAt, mostKnots, type Branch } from "./knots";
+import { fewestKnots, forceAt, maxKnots, type Branch } from "./knots";
 import { inUnits } from "./scale";
 
 const arrows: Record<string, { x: number; y: number }> = {
@@ -30,7 +30,7 @@ export function isUndo(event: KeyboardEvent): "undo" | "redo" | null {
 
 /** Everything that the pointer does, by keys: the cursor of the plot, and the breakpoint that has the focus. */
 export function takeKeys(drawing: Drawing, canvas: Canvas, told: Told): void {
-  const noRoom = `There is no room for another breakpoint: a law takes up to ${mostKnots}, apart from each other.`;
+  const noRoom = `There is no room for another breakpoint: a law takes up to ${maxKnots}, apart from each other.`;
 
   let stays = 0; // nudges of one stay at a breakpoint are one step back
 

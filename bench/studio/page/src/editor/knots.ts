@@ -5,7 +5,7 @@ import type { EditorCurve, Knots } from "../api";
 export type Branch = "closing" | "opening";
 
 export const fewestKnots = 2;
-export const mostKnots = 17;
+export const maxKnots = 17;
 
 function inserted(values: readonly number[], index: number, value: number): number[] {
   return [...values.slice(0, index), value, ...values.slice(index)];
@@ -72,7 +72,7 @@ export interface Spot {
  * none. Nothing where there are as many as a law takes.
  */
 export function added(knots: Knots, curve: EditorCurve, spot: Spot): { knots: Knots; index: number } | null {
-  if (knots.penetration.length >= mostKnots) return null;
+  if (knots.penetration.length >= maxKnots) return null;
   const gap = leastGap(curve);
   let penetration = spot.penetration;
   for (const other of knots.penetration) if (Math.abs(other - penetration) < gap) penetration = other + gap;
@@ -120,7 +120,7 @@ export function shifted(knots: Knots, by: number): Knots {
 /** What the server would refuse; empty if nothing. */
 export function faultOf(knots: Knots): string {
   const count = knots.penetration.length;
-  if (count < fewestKnots || count > mostKnots) return `A law takes ${fewestKnots} to ${mostKnots} breakpoints.`;
+  if (count < fewestKnots || count > maxKnots) return `A law takes ${fewestKnots} to ${maxKnots} breakpoints.`;
   for (const values of [knots.penetration, knots.closing, knots.opening]) {
     if (values.some((it) => !Number.isFinite(it) || Math.abs(it) > 1e6)) return "A number is missing or out of bounds.";
   }

@@ -1,7 +1,7 @@
 import type { Canvas } from "./canvas";
 import type { Drawing } from "./drawing";
 import { Handles } from "./handles";
-import { mostKnots } from "./knots";
+import { maxKnots } from "./knots";
 
 /** A press on the plot adds a breakpoint and holds it, one on a breakpoint holds that; a hold is one step back. */
 export function takePointer(drawing: Drawing, canvas: Canvas, dropped: () => void, refuse: (why: string) => void): void {
@@ -26,7 +26,7 @@ export function takePointer(drawing: Drawing, canvas: Canvas, dropped: () => voi
       };
     }
     const index = handle ? handle.index : drawing.add(canvas.spotAt(at), tag);
-    if (index < 0) return refuse(`There is no room for another breakpoint here: a law takes up to ${mostKnots}, apart from each other.`);
+    if (index < 0) return refuse(`There is no room for another breakpoint here: a law takes up to ${maxKnots}, apart from each other.`);
     canvas.handles.focus(index, drawing.branch);
     held = { pointer: event.pointerId, index, off };
     svg.setPointerCapture(event.pointerId);

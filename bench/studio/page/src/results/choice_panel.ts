@@ -5,7 +5,7 @@ import type { Context } from "../ui/view";
 import { feelButton } from "./law_panel";
 import { lawBeside } from "./names";
 
-function walk(of: readonly ChoiceCandidate[]): HTMLElement {
+function candidateTable(of: readonly ChoiceCandidate[]): HTMLElement {
   const rows = of.map((it) => [
     it.law,
     String(it.parameters),
@@ -14,8 +14,8 @@ function walk(of: readonly ChoiceCandidate[]): HTMLElement {
     `${plain(it.tick_us, 2)} µs`,
     it.passed_over || "taken",
   ]);
-  const all = table("The walk, simplest first", ["law", "free", "held out", "JND", "tick", "why passed over"], rows);
-  return element("div", { class: "scrolled walk", tabindex: 0, role: "region", "aria-label": "The walk" }, all);
+  const all = table("The candidates, simplest first", ["law", "free", "held out", "JND", "tick", "why passed over"], rows);
+  return element("div", { class: "scrolled candidates", tabindex: 0, role: "region", "aria-label": "The candidates" }, all);
 }
 
 /** A choice in words: what was taken, why, and what was passed over. */
@@ -30,7 +30,7 @@ export class ChoicePanel {
   ) {
     this.root.append(
       element("div", { class: "head" }, element("h2", {}, "The simplest law that serves"), ...this.again("Choose")),
-      element("p", { class: "quiet" }, "Nothing has been chosen yet for this recording. The walk goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable."),
+      element("p", { class: "quiet" }, "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable."),
     );
   }
 
@@ -59,7 +59,7 @@ export class ChoicePanel {
       element("p", { class: of.choice.serves ? "" : "wrong" }, of.choice.why),
       element("p", { class: "quiet" }, `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, "N")}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`),
       element("ul", { class: "effects" }, ...of.effects.map((it) => element("li", {}, element("strong", {}, `${it.effect} ${it.verdict}`), `: ${it.why}`))),
-      walk(of.candidates),
+      candidateTable(of.candidates),
       ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
     );
   }

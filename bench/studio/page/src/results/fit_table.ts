@@ -3,7 +3,7 @@ import { element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import { intervalBar, intervalOf, reachOf } from "./interval_bar";
 
-const most_shown = 40;
+const maxShown = 40;
 const entangled = 0.95; // correlations beyond it are told
 
 /** What a law errs by where it was not fitted; without folds, where it was. */
@@ -88,7 +88,7 @@ export function parameterTable(fit: LawFit): HTMLElement {
   const all = Object.entries(fit.parameters);
   const name = all[0] ? intervalOf(all[0][1]).name.replace("ci", "") : "95";
   const reach = reachOf(all.map(([, estimate]) => estimate));
-  const rows = all.slice(0, most_shown).map(([parameter, estimate]) => {
+  const rows = all.slice(0, maxShown).map(([parameter, estimate]) => {
     const { lower, upper } = intervalOf(estimate);
     const interval = lower === null || upper === null ? "not determined" : `${lower.toPrecision(4)} to ${upper.toPrecision(4)}`;
     return element(
@@ -101,7 +101,7 @@ export function parameterTable(fit: LawFit): HTMLElement {
       element("td", {}, intervalBar(estimate, reach)),
     );
   });
-  const more = all.length - most_shown;
+  const more = all.length - maxShown;
   return element(
     "div",
     { class: "scrolled", tabindex: 0, role: "region", "aria-label": `Parameters of ${fit.model}` },

@@ -4,7 +4,7 @@ import { plain, withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";
 import { XyPlot } from "../ui/xy_plot";
 
-const most_shown = 24;
+const maxShown = 24;
 
 /** Lets the running loop render a law; what came of it stands in the notice. */
 export async function feel(context: Context, id: string, name: string): Promise<void> {
@@ -28,12 +28,12 @@ function optionsInWords(law: LawView): string {
 }
 
 function parameterTable(law: LawView): HTMLElement {
-  const rows = law.parameters.slice(0, most_shown).map((it) => [
+  const rows = law.parameters.slice(0, maxShown).map((it) => [
     element("div", {}, it.name, element("p", { class: "quiet" }, it.meaning)),
     it.value.toPrecision(5) + (it.std_error === null ? "" : ` ± ${it.std_error.toPrecision(2)}`),
     it.unit === "1" ? "" : it.unit,
   ]);
-  const more = law.parameters.length - most_shown;
+  const more = law.parameters.length - maxShown;
   const of = table("Parameters", ["name", "value ± standard error", "unit"], rows);
   return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "Parameters of the law" }, of,
     more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the file`) : null);

@@ -1,7 +1,7 @@
 import type { TraceView } from "../api";
 import type { TimeRange } from "./time_range";
 
-const mostColumns = 4000; // that the server gives at once
+const maxColumns = 4000; // that the server gives at once
 
 type Fetch = (from: number, to: number, columns: number, signal: AbortSignal) => Promise<TraceView>;
 
@@ -50,10 +50,10 @@ export class StretchLoader {
     this.asked?.abort();
     const asked = (this.asked = new AbortController());
     const span = range.span;
-    const beside = screens * span * Math.min(1, Math.max(0, (mostColumns / columns - 1) / 2));
+    const beside = screens * span * Math.min(1, Math.max(0, (maxColumns / columns - 1) / 2));
     const from = Math.max(range.first, range.from - beside);
     const to = Math.min(range.last, range.to + beside);
-    const wanted = Math.min(mostColumns, Math.max(1, Math.round((columns * (to - from)) / span)));
+    const wanted = Math.min(maxColumns, Math.max(1, Math.round((columns * (to - from)) / span)));
     try {
       const view = await this.fetch(from, to, wanted, asked.signal);
       if (asked.signal.aborted) return;
@@ -71,7 +71,7 @@ export class StretchLoader {
     if (!have) return;
     const left = range.from <= range.first || have.from <= range.from - 0.2 * range.span;
     const right = range.to >= range.last || have.to >= range.to + 0.2 * range.span;
-    if ((left && right) || columns * 1.5 > mostColumns) return;
+    if ((left && right) || columns * 1.5 > maxColumns) return;
     this.idle = window.setTimeout(() => void this.load(range, columns, 1), 300);
   }
 }

@@ -16,7 +16,7 @@
 namespace kerf::drivers::falcon {
 
 inline constexpr std::size_t frame_size = 16;
-inline constexpr int most_motor = 4095;  ///< the SDK never exceeds it
+inline constexpr int max_motor = 4095;  ///< the SDK never exceeds it
 using Frame = std::array<std::uint8_t, frame_size>;
 
 /// What the host asks for. The homing bit must stand in every frame until the device is homed, and while it

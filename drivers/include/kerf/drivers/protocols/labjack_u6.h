@@ -13,9 +13,9 @@
 /// of exodriver (MIT).
 namespace kerf::drivers::labjack_u6 {
 
-inline constexpr std::size_t most_channels = 25;
-inline constexpr std::size_t most_samples = 25;  ///< in a packet
-inline constexpr std::size_t most_packet = 64;
+inline constexpr std::size_t max_scan_channels = 25;
+inline constexpr std::size_t max_samples = 25;  ///< in a packet
+inline constexpr std::size_t max_packet = 64;
 
 /// Sum of bytes, folded twice into 8 bits.
 [[nodiscard]] std::uint8_t checksum8(std::span<const std::uint8_t> bytes) noexcept;
@@ -27,7 +27,7 @@ void seal(std::span<std::uint8_t> command) noexcept;
 [[nodiscard]] bool is_sealed(std::span<const std::uint8_t> packet) noexcept;
 
 struct Message {
-  std::array<std::uint8_t, most_packet> bytes{};
+  std::array<std::uint8_t, max_packet> bytes{};
   std::size_t size = 0;
 
   [[nodiscard]] std::span<const std::uint8_t> view() const noexcept { return {bytes.data(), size}; }
@@ -58,7 +58,7 @@ struct StreamPacket {
   std::uint8_t error = 0;
   std::uint32_t time_stamp = 0;
   std::uint8_t backlog = 0;  ///< of 256
-  std::array<std::uint16_t, most_samples> sample{};
+  std::array<std::uint16_t, max_samples> sample{};
   std::size_t samples = 0;
 };
 /// Nothing unless length, marks and both checksums are right.
@@ -98,7 +98,7 @@ class ScanAssembler {
 
   std::size_t channels_;
   std::size_t samples_per_packet_;
-  std::array<std::uint16_t, most_channels> scan_{};
+  std::array<std::uint16_t, max_scan_channels> scan_{};
   std::uint64_t next_sample_ = 0;
   std::uint64_t scans_ = 0;
   std::uint8_t next_counter_ = 0;

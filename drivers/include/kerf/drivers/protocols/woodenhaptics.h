@@ -17,8 +17,8 @@ namespace kerf::drivers::woodenhaptics {
 
 enum class Generation : std::uint8_t { v1, v2, v3 };
 
-inline constexpr std::size_t most_report_size = 64;
-inline constexpr int most_current_ma = 5999;  ///< the makers' host never asks for more
+inline constexpr std::size_t max_report_size = 64;
+inline constexpr int max_current_ma = 5999;  ///< the makers' host never asks for more
 
 [[nodiscard]] constexpr std::size_t report_size(Generation generation) noexcept {
   return generation == Generation::v1 ? 8 : generation == Generation::v2 ? 14 : 64;
@@ -40,14 +40,14 @@ struct Report {
 
 /// A report as a device sends it; what a V3 fills with noise is zero.
 struct Input {
-  std::array<std::uint8_t, most_report_size> bytes{};
+  std::array<std::uint8_t, max_report_size> bytes{};
   std::size_t size = 0;
 };
 [[nodiscard]] Input encode(const Report& report, Generation generation) noexcept;
 
 /// A report to the device with hidapi's leading number 0, and how many of its bytes to write.
 struct Output {
-  std::array<std::uint8_t, most_report_size + 1> bytes{};
+  std::array<std::uint8_t, max_report_size + 1> bytes{};
   std::size_t size = 0;
 };
 /// Currents of the three motors [mA], cut to +-5999.
@@ -83,12 +83,12 @@ class Counters {
     raw_ = encoder;
     for (std::size_t i = 0; i < count_.size(); ++i) count_[i] = encoder[i];
   }
-  /// False, and no change, if one of them is more than `most_step` counts from where it was.
-  bool take(const std::array<int, 6>& encoder, int most_step) noexcept {
+  /// False, and no change, if one of them is more than `max_step` counts from where it was.
+  bool take(const std::array<int, 6>& encoder, int max_step) noexcept {
     std::array<int, 3> step{};
     for (std::size_t i = 0; i < step.size(); ++i) {
       step[i] = wrapped_difference(encoder[i], raw_[i]);
-      if (step[i] > most_step || step[i] < -most_step) return false;
+      if (step[i] > max_step || step[i] < -max_step) return false;
     }
     for (std::size_t i = 0; i < step.size(); ++i) count_[i] += step[i];
     raw_ = encoder;

@@ -42,7 +42,7 @@ class HidDevice {
     bool woken = false;   ///< the wake-up descriptor is readable
   };
   /// Waits until one of both is so, at most so long; without a wake-up descriptor if that is -1.
-  Ready wait(std::int64_t most_ns, int wake_descriptor) noexcept;
+  Ready wait(std::int64_t max_ns, int wake_descriptor) noexcept;
   /// Waits for a report, at most so long. @returns its length, 0 if none came, -1 if the device is gone.
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept;
   /// Sends a report whose first byte is its number, 0 if it has none. False if it could not.

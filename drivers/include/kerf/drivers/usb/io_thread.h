@@ -37,7 +37,7 @@ class IoThread {
   /// Forgets the wake-ups so far.
   void take_wakes() noexcept;
   /// Waits for wake(), at most so long. True if it came.
-  bool wait(std::int64_t most_ns) noexcept;
+  bool wait(std::int64_t max_ns) noexcept;
 
  private:
   int wake_descriptor_;

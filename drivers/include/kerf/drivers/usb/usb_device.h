@@ -62,7 +62,7 @@ class UsbDevice {
 
   /// Waits until a transfer has ended, `wake_descriptor` (if not -1) is readable or the time is over, and
   /// calls the handlers of what has ended. From one thread. @returns whether `wake_descriptor` is readable.
-  bool handle_events(std::int64_t most_ns, int wake_descriptor = -1) noexcept;
+  bool handle_events(std::int64_t max_ns, int wake_descriptor = -1) noexcept;
 
   /// Ends the halt of an endpoint that has stalled; false if that could not be done. Waits for the device.
   bool clear_halt(std::uint8_t endpoint) noexcept;

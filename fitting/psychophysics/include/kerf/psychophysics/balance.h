@@ -12,8 +12,8 @@ namespace kerf::psychophysics {
 /// orders[row][position]: what a subject gets at a position.
 using Orders = std::vector<std::vector<std::size_t>>;
 
-/// Latin square of Williams (1949): every condition once in each row, equally often at each position, and
-/// equally often directly after every other (first-order carry-over). `conditions` rows if even, twice as
+/// Latin square of Williams [Williams1949]: every condition once in each row, equally often at each position,
+/// and equally often directly after every other (first-order carry-over). `conditions` rows if even, twice as
 /// many if odd.
 [[nodiscard]] Orders williams_square(std::size_t conditions);
 

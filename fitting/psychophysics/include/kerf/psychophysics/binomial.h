@@ -26,14 +26,14 @@ enum class Alternative { two_sided, greater, less };
 [[nodiscard]] double binomial_test(Count count, double chance,
                                    Alternative alternative = Alternative::two_sided);
 
-/// Interval of Clopper and Pearson (1934): every probability that neither one-sided test at (1 - confidence)
-/// / 2 refuses. Covers the truth at least as often as it says, for any number of trials.
+/// Interval of Clopper and Pearson [ClopperPearson1934]: every probability that neither one-sided test at (1
+/// - confidence) / 2 refuses. Covers the truth at least as often as it says, for any number of trials.
 ///
 ///     lower = B(a / 2; k, n - k + 1),  upper = B(1 - a / 2; k + 1, n - k),  B the beta quantile, a = 1 -
 ///     confidence
 [[nodiscard]] Interval clopper_pearson(Count count, double confidence = 0.95);
 
-/// Score interval of Wilson (1927): shorter, and covers as often as it says on the average over
+/// Score interval of Wilson [Wilson1927]: shorter, and covers as often as it says on the average over
 /// probabilities.
 ///
 ///     (p + z^2 / 2n +- z sqrt(p (1 - p) / n + z^2 / 4n^2)) / (1 + z^2 / n)

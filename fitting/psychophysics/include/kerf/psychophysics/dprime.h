@@ -10,12 +10,12 @@ namespace kerf::psychophysics {
 /// How an unbiased observer decides in a trial that is either right or wrong. P is the normal distribution.
 enum class Decision {
   forced_choice,     ///< m intervals, one holds the other rendering and the largest is named:
-                     ///< pc = integral of phi(x - d') P(x)^(m - 1) dx (Hacker and Ratcliff 1979)
-  oddity,            ///< three intervals, which is the odd one (triangle), by distances (Frijters 1979):
+                     ///< pc = integral of phi(x - d') P(x)^(m - 1) dx [HackerRatcliff1979]
+  oddity,            ///< three intervals, which is the odd one (triangle), by distances [Frijters1979]:
                      ///< pc = 2 int_0^inf [P(-x sqrt3 + d' sqrt(2/3)) + P(-x sqrt3 - d' sqrt(2/3))] phi(x) dx
   abx_independent,   ///< pc = P(d'/sqrt2) P(d'/2) + P(-d'/sqrt2) P(-d'/2)
-  abx_differencing,  ///< pc = P(d'/sqrt2) P(d'/sqrt6) + P(-d'/sqrt2) P(-d'/sqrt6); both: Macmillan, Kaplan
-                     ///< and Creelman 1977. Differencing where stimuli rove, otherwise independent.
+  abx_differencing,  ///< pc = P(d'/sqrt2) P(d'/sqrt6) + P(-d'/sqrt2) P(-d'/sqrt6); both: [Macmillan1977].
+                     ///< Differencing where stimuli rove, otherwise independent.
   same_different,    ///< two intervals, independent observations: pc = P(d'/2)^2 + P(-d'/2)^2
 };
 
@@ -41,7 +41,7 @@ struct DPrime {
 };
 
 /// d' of a task from its count of right answers. Where all or none are right the proportion is (k + 1/2) / (n
-/// + 1) (log-linear, Hautus 1995), for value and standard error, not for the interval.
+/// + 1) (log-linear, [Hautus1995]), for value and standard error, not for the interval.
 [[nodiscard]] DPrime estimate_d_prime(const Task& task, Count correct, double confidence = 0.95);
 
 /// Which rates get the log-linear correction (k + 1/2) / (n + 1).
@@ -56,8 +56,9 @@ struct Detection {
   Interval interval;  ///< of d', by the likelihood ratio, without correction: may end at infinity
 };
 
-/// Yes/no: d' = z(H) - z(F), c = -(z(H) + z(F)) / 2, variances after Gourevitch and Galanter (1967):
-/// var z = p (1 - p) / (n phi(z)^2). With Correction::none rates of 0 and 1 are refused.
+/// Yes/no: d' = z(H) - z(F), c = -(z(H) + z(F)) / 2, variances after Gourevitch and Galanter
+/// [GourevitchGalanter1967]: var z = p (1 - p) / (n phi(z)^2). With Correction::none rates of 0 and 1 are
+/// refused.
 [[nodiscard]] Detection yes_no(Count hits, Count false_alarms, Correction correction = Correction::extremes,
                                double confidence = 0.95);
 
@@ -71,8 +72,8 @@ struct Detection {
 ///     F = 2 P(-k / sqrt2),   H = P((d' - k) / sqrt2) + P((-d' - k) / sqrt2)
 ///
 /// `hits` counts "different" when they were, `false_alarms` when they were not; criterion is k. H <= F gives
-/// d' = 0. Errors by the delta method, the interval is d' +- z times the error, not below 0. Macmillan and
-/// Creelman, chapter 9.
+/// d' = 0. Errors by the delta method, the interval is d' +- z times the error, not below 0.
+/// [MacmillanCreelman2005], chapter 9.
 [[nodiscard]] Detection same_different(Count hits, Count false_alarms,
                                        Correction correction = Correction::extremes,
                                        double confidence = 0.95);

@@ -4,8 +4,8 @@
 #include <kerf/psychophysics/dprime.h>
 
 // "No difference larger than this is likely": what a test that found nothing does not say. The two one-sided
-// tests of Schuirmann (1987), each at the level; the same as an interval of confidence 1 - 2 level that lies
-// within the margins.
+// tests of Schuirmann [Schuirmann1987], each at the level; the same as an interval of confidence 1 - 2 level
+// that lies within the margins.
 
 namespace kerf::psychophysics {
 

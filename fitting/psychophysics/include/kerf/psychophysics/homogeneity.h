@@ -13,14 +13,15 @@ struct HomogeneityOptions {
 };
 
 struct Homogeneity {
-  double statistic = 0.0;  ///< sum over groups of (k - n p)^2 / (n p (1 - p)), p of all: Pearson's
-  int freedom = 0;         ///< groups with trials, less one
+  double statistic = 0.0;      ///< sum over groups of (k - n p)^2 / (n p (1 - p)), p of all: Pearson's
+  int degrees_of_freedom = 0;  ///< groups with trials, less one
   double p = 1.0;
   bool is_exact = true;  ///< all tables were added up
 };
 
 /// Whether groups of answers (of subjects, of slots) share one probability of success: the exact test of
-/// Fisher, Freeman and Halton (1951). Given the trials of each group and all successes, tables have
+/// Fisher, Freeman and Halton [FreemanHalton1951]. Given the trials of each group and all successes, tables
+/// have
 ///
 ///     P(k_1 ... k_m) = product of C(n_i, k_i) / C(n, k)
 ///

@@ -16,7 +16,7 @@ namespace kerf::psychophysics {
 /// median, the interval central and credible; an end that lies at the end of the grid is 0 or infinity.
 ///
 /// An adaptive design shows few levels, near the threshold, and the largest likelihood is then often that of
-/// a curve too steep (Kaernbach 2001), about which profile likelihood is too sure. Over a range of slopes
+/// a curve too steep [Kaernbach2001], about which profile likelihood is too sure. Over a range of slopes
 /// that people have it is not. How the levels were chosen does not matter to a posterior.
 /// @throws std::invalid_argument: as fit_psychometric; a linear axis or overdispersion, which it does not
 ///         know.

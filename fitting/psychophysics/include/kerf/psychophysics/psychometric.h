@@ -17,7 +17,7 @@ enum class Axis { linear, logarithmic };
 ///
 /// The Weibull curve is that of 1 - exp(-(x / threshold)^slope): its axis is logarithmic. At the threshold F
 /// is 63.2 % (Weibull) or 50 %. The slope is per unit of x on a linear axis, and a pure number on a
-/// logarithmic one, where x = 0 is allowed and gives `guess`. Wichmann and Hill 2001, eq. 1; Strasburger 2001
+/// logarithmic one, where x = 0 is allowed and gives `guess`. [WichmannHill2001], eq. 1; [Strasburger2001]
 /// on the slopes.
 struct Psychometric {
   Shape shape = Shape::weibull;

@@ -24,7 +24,7 @@ struct FitOptions {
   Axis axis = Axis::logarithmic;
   double guess = 0.5;           ///< known: 1 / m in a forced choice, 0 where both ends are free of guessing
   std::optional<double> lapse;  ///< fixed at this; otherwise estimated in [0, largest_lapse]
-  double largest_lapse = 0.06;  ///< Wichmann and Hill 2001
+  double largest_lapse = 0.06;  ///< [WichmannHill2001]
   std::optional<double> criterion;  ///< psi at the threshold; standard: guess + (1 - guess) / 2
   double confidence = 0.95;
   bool overdispersed = false;  ///< beta-binomial: for answers pooled over subjects or sessions
@@ -79,7 +79,7 @@ struct Bootstrap {
 };
 
 /// Parametric: experiments drawn from the fitted curve (with its overdispersion) and fitted again. The p of
-/// the deviance holds for few trials a row, where chi-squared does not (Wichmann and Hill 2001).
+/// the deviance holds for few trials a row, where chi-squared does not [WichmannHill2001].
 [[nodiscard]] Bootstrap bootstrap(const PsychometricFit& fit, std::span<const Level> levels,
                                   const FitOptions& options, const BootstrapOptions& how = {});
 

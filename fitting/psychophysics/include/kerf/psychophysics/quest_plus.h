@@ -34,7 +34,7 @@ struct QuestPlusEstimate {
   Interval interval;  ///< central, of the threshold, credible; between grid points linear in the distribution
 };
 
-/// QUEST+ (Watson 2017): after every answer the posterior over threshold, slope and lapse rate, before every
+/// QUEST+ [Watson2017]: after every answer the posterior over threshold, slope and lapse rate, before every
 /// trial the intensity after which the expected entropy of the posterior is least,
 ///
 ///     x* = argmin_x sum_r P(r | x) H(posterior | x, r),   H = - sum p ln p

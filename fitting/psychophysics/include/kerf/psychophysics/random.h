@@ -30,7 +30,7 @@ class Random {
 
   [[nodiscard]] bool chance(double probability) { return uniform() < probability; }
 
-  /// Normal, of mean 0 and variance 1 (Box and Muller 1958). Two uniform numbers each, so that what follows
+  /// Normal, of mean 0 and variance 1 [BoxMuller1958]. Two uniform numbers each, so that what follows
   /// does not depend on whether one was left over; the last bit is that of the machine's log and cos.
   [[nodiscard]] double normal() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));

@@ -13,13 +13,13 @@ struct StaircaseOptions {
   /// Steps, each used until the next reversal, the last one from then on: differences of intensity on a
   /// linear axis, of its natural logarithm on a logarithmic one.
   std::vector<double> steps{0.4, 0.2, 0.1};
-  double step_ratio = 1.0;  ///< step down over step up (Kaernbach 1991; Garcia-Perez 1998)
+  double step_ratio = 1.0;  ///< step down over step up ([Kaernbach1991]; [GarciaPerez1998])
   Axis axis = Axis::logarithmic;
   double least = 0.0;  ///< intensities are held in least ... most
   double most = 1e9;
   int reversals = 12;  ///< ends after so many
   int dropped = 4;     ///< first reversals that do not count; what remains is even, or one more is dropped
-  int most_trials = 400;
+  int max_trials = 400;
 };
 
 /// Probability of a right answer where an up-down staircase settles: where the steps of a trial add up to
@@ -29,7 +29,7 @@ struct StaircaseOptions {
 ///     Pdown = p^(m-1) (1 - q^n) / (p^(m-1) + q^(n-1) - p^(m-1) q^(n-1)),   q = 1 - p, n up, m down
 ///
 /// Pdown: m right answers in a row before n wrong ones. For n = 1 and equal steps p^m = 1/2: 70.7 % for 1 up
-/// 2 down, 79.4 % for 1 up 3 down (Levitt 1971).
+/// 2 down, 79.4 % for 1 up 3 down [Levitt1971].
 [[nodiscard]] double convergence_point(int up, int down, double step_ratio = 1.0);
 
 struct StaircaseEstimate {
@@ -39,8 +39,8 @@ struct StaircaseEstimate {
   int reversals = 0;            ///< that count
 };
 
-/// Transformed up-down staircase of Levitt (1971). A value: it has no clock and no chance in it, so that a
-/// session is resumed by giving it the same answers again.
+/// Transformed up-down staircase of Levitt [Levitt1971]. A value: it has no clock and no chance in it, so
+/// that a session is resumed by giving it the same answers again.
 class Staircase {
  public:
   explicit Staircase(StaircaseOptions options);

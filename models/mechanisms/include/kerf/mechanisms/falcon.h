@@ -24,7 +24,7 @@ namespace kerf::mechanisms {
 ///
 /// and a force F of the knob needs the torques tau = (d theta / dp)^-T F.
 ///
-/// Source: Tsai 1999, Stamper 1997, with the dimensions and the encoder's scale that libnifalcon uses (BSD;
+/// Source: [Tsai1999], [Stamper1997], with the dimensions and the encoder's scale that libnifalcon uses (BSD;
 /// facts alone). The z column there has sin^2 th2 in place of sin th2 sin th3, and its matrix is transposed
 /// onto itself: its forces point up to 49 deg away from those asked for. The angle at zero counts is disputed
 /// (35, 40 or 50 deg).

@@ -28,8 +28,7 @@ namespace kerf::mechanisms {
 ///
 /// C is made of the Christoffel symbols of H, so that H' = C + C^T. Potential: g (Pu sin q2 - Pf cos q3).
 ///
-/// Source: Cavusoglu, Feygin, Tendick, "A critical study of the mechanical and electrical properties of the
-/// PHANToM haptic interface and improvements for high-performance control", Presence 11(6), 2002. Values as
+/// Source: [Cavusoglu2002]. Values as
 /// published; recalled from the paper's table, not re-checked. Bodies: a the forearm, c the rod that drives
 /// it beside the upper arm, be and df what turns with upper arm and forearm about the shoulder, motors
 /// included, g the base. Moments of a and c are about the mass centres, those of be and df about the

@@ -35,10 +35,10 @@ class WoodenHaptics {
     std::array<double, 3> length_m;         ///< Ln, Lb, Lc
     std::array<double, 3> origin_m;         ///< ox, oy, oz
     std::array<double, 3> torque_constant;  ///< [N·m/A]
-    double most_current_a;
+    double max_current_a;
     double counts_per_turn;
-    double most_force_n;
-    double most_stiffness_n_per_m;
+    double max_force_n;
+    double max_stiffness_n_per_m;
   };
   /// woody-2016, woody-2019, aluhaptics and polhem-v3.
   [[nodiscard]] static std::span<const Configuration> configurations() noexcept;
