@@ -1,5 +1,4 @@
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -7,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "support/measured_data.h"
 #include "support/program.h"
 
 // The whole path on measurements of other labs, through the program as a user runs it.
@@ -25,14 +25,9 @@ json parsed(const Outcome& outcome) {
 
 class RealRecording : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(KERF_SHARED_DATA))
-      GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
-  }
-
   json import(const std::string& data, const std::string& map) {
     return parsed(
-        run_kerf({"import", KERF_SHARED_DATA + ("/" + data), "--map", map, "-o", file(), "--json"}));
+        run_kerf({"import", test::measured_file(data).string(), "--map", map, "-o", file(), "--json"}));
   }
   json segment() { return parsed(run_kerf({"segment", file(), "--json"})); }
   json fit() { return parsed(run_kerf({"fit", file(), "-o", fits(), "--json"})); }
@@ -55,6 +50,7 @@ class RealRecording : public testing::Test {
 const std::string punch = "time=5[ms],position=4[deg],force=2[gf]";
 
 TEST_F(RealRecording, OfAMeniscusGoesFromTextToReport) {
+  KERF_NEEDS_DATA("meniscus/9_meniscus_slow_1824.txt");
   const json imported = import("meniscus/9_meniscus_slow_1824.txt", punch);
   EXPECT_EQ(imported.at("samples"), 17687);
   EXPECT_EQ(imported.at("bad_lines"), 1);
@@ -78,11 +74,13 @@ TEST_F(RealRecording, OfAMeniscusGoesFromTextToReport) {
 }
 
 TEST_F(RealRecording, OfAnEmptyPunchHasElevenClosings) {
+  KERF_NEEDS_DATA("meniscus/7_blank_slow_1819.txt");
   EXPECT_EQ(import("meniscus/7_blank_slow_1819.txt", punch).at("samples"), 17421);
   EXPECT_EQ(segment().at("closings"), 11);
 }
 
 TEST_F(RealRecording, OfATendonRelaxes) {
+  KERF_NEEDS_DATA("tendon/relaxation_fresh_1.csv");
   (void)import("tendon/relaxation_fresh_1.csv", "time=Time,position=Extension,force=Load");
   const json fits = fit();
   const json kelvin = fit_of(fits, "kelvin");
@@ -97,7 +95,8 @@ TEST_F(RealRecording, OfATendonRelaxes) {
 
 TEST_F(RealRecording, OfVhbIsReadInBothItsEncodings) {
   for (const auto* data : {"vhb/relaxation_4d0.csv", "vhb/cycle_0d03_1d5_gbk.csv"}) {
-    const json imported = parsed(run_kerf({"import", std::string(KERF_SHARED_DATA) + "/" + data, "--map",
+    KERF_NEEDS_DATA(data);
+    const json imported = parsed(run_kerf({"import", test::measured_file(data).string(), "--map",
                                            "time=1,position=2,force=3", "-o", file(), "--force", "--json"}));
     EXPECT_EQ(imported.at("channels").at("position").at("unit"), "m") << data;
     const json fits = parsed(run_kerf({"fit", file(), "-o", this->fits(), "--force", "--json"}));

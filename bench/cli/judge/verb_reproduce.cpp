@@ -33,7 +33,7 @@ void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   context.result = to_json(result);
   write_whole_file(folder / "claims.md", as_markdown(result));
   write_whole_file(folder / "claims.json", context.result.dump(2) + "\n");
-  say(fmt::format("{}: {}", result.paper, result.title));
+  say(fmt::format("[{}]: {}", result.key, result.title));
   for (const Claim& claim : result.claims) {
     say(fmt::format("  {:13}  {} ({})", name_of(claim.verdict), claim.claim, claim.where));
     say(fmt::format("                 {}", claim.measured));
@@ -47,12 +47,17 @@ void add_reproduce(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ReproduceVerbArguments>();
   Verb verb = add_verb(
       app, context, "reproduce", "Run the experiments of a paper, draw its figures and judge its claims",
-      "kerf reproduce 004 -o scissors\n\n"
-      "The papers: 000 blade and tissue, 001 orthogonal decomposition, 002 fuzzy-Kelvin hybrid, 003 two-\n"
-      "mesh scissors, 004 haptic scissors. Experiments run in virtual time on simulated devices and on\n"
-      "tissues made for this bench. A claim holds, does not hold, or answers what a paper left open.",
+      "kerf reproduce Okamura2003 -o scissors\n\n"
+      "The papers, by the keys of docs/bibliography.md or by their numbers:\n"
+      "  Henry2004      000  blade and tissue\n"
+      "  Sepulveda2008  001  orthogonal decomposition\n"
+      "  FuzzyKelvin    002  fuzzy-Kelvin hybrid\n"
+      "  Weiss2004      003  two-mesh scissors\n"
+      "  Okamura2003    004  haptic scissors\n"
+      "Experiments run in virtual time on simulated devices and on tissues made for this bench. A claim\n"
+      "holds, does not hold, or answers what a paper left open.",
       [arguments, &context] { run_reproduce(*arguments, context); });
-  verb.add_option("PAPER", arguments->paper, "000, 001, 002, 003 or 004").required();
+  verb.add_option("PAPER", arguments->paper, "Its key or its number").required();
   verb.add_option("-o,--output", arguments->output, "Folder for the figures, claims.md and claims.json")
       .required();
   verb.add_flag("--force", arguments->force, "Replace earlier results there");

@@ -72,9 +72,9 @@ void add_stability(CLI::App& app, Context& context) {
       "Without a law: virtual walls over stiffness and damping, simulated in virtual time, with the\n"
       "boundaries of the eigenvalues, of Colgate and Schenkel, and of Abbott and Okamura. With a law: the\n"
       "deepest penetration, the steepest approach and the lowest rate at which it is passive; exit\n"
-      "status 1 if it is not passive over --depth and --speed, or has a limit cycle in the hand that was "
-      "given. With\n"
-      "--cases: failures that the papers met, each of which must fail without its remedy and hold with it.\n"
+      "status 1 if it is not passive over --depth and --speed, or has a limit cycle in the hand that was\n"
+      "given. With --cases: failures that the papers met, each of which must fail without its remedy and\n"
+      "hold with it.\n"
       "docs/stability.md says what is simulated and what the lines mean.",
       [arguments, &context] { run_stability(*arguments, context); });
   AxisRequest& on = arguments->study.on;

@@ -128,8 +128,9 @@ void sweep(Reproduction& paper, const models::Law& threshold, const char* figure
 
 }  // namespace
 
-Reproduction reproduce_002(std::uint64_t) {
-  Reproduction paper{.paper = "002", .title = "Hybrid Kelvin and fuzzy model of tissue cutting"};
+Reproduction reproduce_fuzzy_kelvin(std::uint64_t) {
+  Reproduction paper{
+      .paper = "002", .key = "FuzzyKelvin", .title = "Hybrid Kelvin and fuzzy model of tissue cutting"};
   const fitting::RuptureSamples samples = liver_ruptures();
   const auto projected = fitting::train_rupture(samples);
   const auto descended = fitting::train_rupture(samples, {.learning = fitting::Learning::back_propagation});

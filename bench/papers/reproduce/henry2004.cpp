@@ -288,8 +288,9 @@ void contact_and_states(Reproduction& paper, std::uint64_t seed) {
 
 }  // namespace
 
-Reproduction reproduce_000(std::uint64_t seed) {
-  Reproduction paper{.paper = "000", .title = "Haptic interaction of a blade with soft tissue"};
+Reproduction reproduce_henry2004(std::uint64_t seed) {
+  Reproduction paper{
+      .paper = "000", .key = "Henry2004", .title = "Haptic interaction of a blade with soft tissue"};
   cut_and_push(paper);
   turn(paper);
   approximations(paper, seed);

@@ -338,8 +338,10 @@ void analytical(Reproduction& paper, const std::vector<schema::Recording>& recor
 
 }  // namespace
 
-Reproduction reproduce_004(std::uint64_t seed) {
-  Reproduction paper{.paper = "004", .title = "Haptic scissors: recordings, segmented and analytical models"};
+Reproduction reproduce_okamura2003(std::uint64_t seed) {
+  Reproduction paper{.paper = "004",
+                     .key = "Okamura2003",
+                     .title = "Haptic scissors: recordings, segmented and analytical models"};
   std::vector<schema::Recording> recordings;
   for (std::size_t t = 0; t < tissues.size(); ++t) recordings.push_back(record(tissues[t], seed + t, 20.0));
   loops_and_segments(paper, recordings);

@@ -1,18 +1,36 @@
 #include "reproduce/reproduce.h"
 
+#include <array>
 #include <stdexcept>
+#include <string_view>
 
 #include <fmt/core.h>
 
 namespace kerf::bench {
+namespace {
+
+struct Paper {
+  std::string_view number;
+  std::string_view key;
+  Reproduction (*run)(std::uint64_t seed);
+};
+
+constexpr std::array papers{
+    Paper{"000", "Henry2004", reproduce_henry2004}, Paper{"001", "Sepulveda2008", reproduce_sepulveda2008},
+    Paper{"002", "FuzzyKelvin", reproduce_fuzzy_kelvin}, Paper{"003", "Weiss2004", reproduce_weiss2004},
+    Paper{"004", "Okamura2003", reproduce_okamura2003}};
+
+}  // namespace
 
 Reproduction reproduce(const std::string& paper, std::uint64_t seed) {
-  if (paper == "000") return reproduce_000(seed);
-  if (paper == "001") return reproduce_001(seed);
-  if (paper == "002") return reproduce_002(seed);
-  if (paper == "003") return reproduce_003(seed);
-  if (paper == "004") return reproduce_004(seed);
-  throw std::invalid_argument(fmt::format("no paper '{}'; the papers are 000, 001, 002, 003 and 004", paper));
+  std::string_view name = paper;
+  if (name.starts_with('[') && name.ends_with(']')) name = name.substr(1, name.size() - 2);
+  std::string known;
+  for (const Paper& one : papers) {
+    if (name == one.number || name == one.key) return one.run(seed);
+    known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", one.key, one.number);
+  }
+  throw std::invalid_argument(fmt::format("no paper '{}'; the papers are {}", paper, known));
 }
 
 const char* name_of(ClaimVerdict verdict) {
@@ -37,13 +55,16 @@ nlohmann::ordered_json to_json(const Reproduction& reproduction) {
   }
   nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (const Figure& figure : reproduction.figures) figures.push_back(figure.name + ".svg");
-  return {
-      {"paper", reproduction.paper}, {"title", reproduction.title}, {"claims", claims}, {"figures", figures}};
+  return {{"paper", reproduction.paper},
+          {"key", reproduction.key},
+          {"title", reproduction.title},
+          {"claims", claims},
+          {"figures", figures}};
 }
 
 std::string as_markdown(const Reproduction& reproduction) {
-  std::string text = fmt::format("# {}: {}\n\n| claim | where | measured | verdict |\n|---|---|---|---|\n",
-                                 reproduction.paper, reproduction.title);
+  std::string text = fmt::format("# [{}]: {}\n\n| claim | where | measured | verdict |\n|---|---|---|---|\n",
+                                 reproduction.key, reproduction.title);
   for (const Claim& claim : reproduction.claims) {
     text += fmt::format("| {} | {} | {} | {} |\n", claim.claim, claim.where, claim.measured,
                         name_of(claim.verdict));

@@ -22,7 +22,8 @@ struct Claim {
 
 /// A paper's experiments, run in virtual time.
 struct Reproduction {
-  std::string paper;  ///< "000"
+  std::string paper;  ///< its number: "000"
+  std::string key;    ///< in docs/bibliography.md: "Henry2004"
   std::string title;
   std::vector<Claim> claims;
   std::vector<Figure> figures;
@@ -36,14 +37,15 @@ struct Reproduction {
   }
 };
 
-// One paper each. Deterministic for a seed, but for the times that 003 measures.
-[[nodiscard]] Reproduction reproduce_000(std::uint64_t seed);  ///< blade and tissue (Henry)
-[[nodiscard]] Reproduction reproduce_001(std::uint64_t seed);  ///< orthogonal decomposition (Sepulveda)
-[[nodiscard]] Reproduction reproduce_002(std::uint64_t seed);  ///< fuzzy-Kelvin hybrid
-[[nodiscard]] Reproduction reproduce_003(std::uint64_t seed);  ///< two-mesh scissors (Weiss)
-[[nodiscard]] Reproduction reproduce_004(std::uint64_t seed);  ///< the haptic scissors (Okamura)
+// One paper each. Deterministic for a seed, but for the times that [Weiss2004] is answered with.
+[[nodiscard]] Reproduction reproduce_henry2004(std::uint64_t seed);      ///< blade and tissue
+[[nodiscard]] Reproduction reproduce_sepulveda2008(std::uint64_t seed);  ///< orthogonal decomposition
+[[nodiscard]] Reproduction reproduce_fuzzy_kelvin(std::uint64_t seed);   ///< fuzzy-Kelvin hybrid
+[[nodiscard]] Reproduction reproduce_weiss2004(std::uint64_t seed);      ///< two-mesh scissors
+[[nodiscard]] Reproduction reproduce_okamura2003(std::uint64_t seed);    ///< the haptic scissors
 
-/// @throws std::invalid_argument for a paper that is none of 000 to 004.
+/// `paper`: its number or its key, the latter in brackets or not.
+/// @throws std::invalid_argument for any other.
 [[nodiscard]] Reproduction reproduce(const std::string& paper, std::uint64_t seed);
 
 [[nodiscard]] const char* name_of(ClaimVerdict verdict);

@@ -285,8 +285,9 @@ void cutting(Reproduction& paper, std::uint64_t seed) {
 
 }  // namespace
 
-Reproduction reproduce_001(std::uint64_t seed) {
-  Reproduction paper{.paper = "001", .title = "Orthogonal decomposition on a 3-DOF haptic device"};
+Reproduction reproduce_sepulveda2008(std::uint64_t seed) {
+  Reproduction paper{
+      .paper = "001", .key = "Sepulveda2008", .title = "Orthogonal decomposition on a 3-DOF haptic device"};
   deformation(paper, seed);
   cutting(paper, seed);
   return paper;

@@ -139,8 +139,8 @@ void update_rate(Reproduction& paper) {
 
 }  // namespace
 
-Reproduction reproduce_003(std::uint64_t) {
-  Reproduction paper{.paper = "003", .title = "Two-mesh model of cutting with scissors"};
+Reproduction reproduce_weiss2004(std::uint64_t) {
+  Reproduction paper{.paper = "003", .key = "Weiss2004", .title = "Two-mesh model of cutting with scissors"};
   one_cut(paper);
   update_rate(paper);
   return paper;

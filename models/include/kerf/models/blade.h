@@ -69,8 +69,8 @@ struct BladeShape {
 /// How the integrals over the blade are taken.
 struct BladeFidelity {
   enum class Kind : std::uint8_t {
-    paper,  ///< strips that all move with the velocity of the hand point ([Henry2004], eqs. 6-9): no torque
-            ///< about the long axis
+    paper,   ///< strips that all move with the velocity of the hand point ([Henry2004], eqs. 6-9): no torque
+             ///< about the long axis
     strips,  ///< each strip moves with the velocity of the middle of its submerged length
     exact    ///< closed form in area, centroid and second moments of the submerged polygon
   };

@@ -13,6 +13,7 @@
 
 #include "known_cuts.h"
 #include "known_laws.h"
+#include "support/measured_data.h"
 
 namespace kerf {
 namespace {
@@ -140,8 +141,9 @@ TEST_F(ProgramChoose, SaysThatARecordingIsNotSegmented) {
 }
 
 TEST_F(ProgramChoose, OfAMeniscusTakesFewSegmentsOrSaysWhyNot) {
-  const std::string data = std::string(KERF_SHARED_DATA) + "/meniscus/9_meniscus_slow_1824.txt";
-  if (!std::filesystem::exists(data)) GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
+  const std::string name = "meniscus/9_meniscus_slow_1824.txt";
+  KERF_NEEDS_DATA(name);
+  const std::string data = test::measured_file(name).string();
   ASSERT_EQ(run_kerf({"import", data, "--map", "time=5[ms],position=4[deg],force=2[gf]", "-o", path("m.h5")})
                 .exit_status,
             0);

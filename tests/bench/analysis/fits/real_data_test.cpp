@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <string>
@@ -13,6 +12,7 @@
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
+#include "support/measured_data.h"
 
 // What the laws say of measurements of other labs (docs/findings.md).
 
@@ -21,14 +21,8 @@ namespace {
 
 class RealFit : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(KERF_SHARED_DATA))
-      GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
-  }
-
   static schema::Recording imported(const std::string& data, const std::string& map, double rate_hz = 0.0) {
-    return import_text(KERF_SHARED_DATA + ("/" + data), {.map = parse_map(map), .rate_hz = rate_hz})
-        .recording;
+    return import_text(test::measured_file(data), {.map = parse_map(map), .rate_hz = rate_hz}).recording;
   }
   /// Every so many rows of a series, from one of them on; the first row, from which a law starts, stays.
   static AxisSeries thinned(const AxisSeries& all, std::size_t step, std::size_t from = 0) {
@@ -62,6 +56,7 @@ class RealFit : public testing::Test {
 };
 
 TEST_F(RealFit, OfATendonNeedsMoreThanOneRelaxationTime) {
+  KERF_NEEDS_DATA("tendon/relaxation_fresh_1.csv");
   const auto tendon = imported("tendon/relaxation_fresh_1.csv", "time=Time,position=Extension,force=Load");
   const AxisSeries series = axis_series(tendon, 0, {.position = 0.0, .direction = 1.0});
   const auto one = fitting::fit("kelvin", view(series));
@@ -82,6 +77,7 @@ TEST_F(RealFit, OfATendonNeedsMoreThanOneRelaxationTime) {
 // Stretched to four times its length it is not linear on the stroke there, so the stroke counts by its ends
 // alone.
 TEST_F(RealFit, OfAPolymerRelaxesAsAPowerOfTime) {
+  KERF_NEEDS_DATA("vhb/relaxation_4d0.csv");
   const auto polymer = imported("vhb/relaxation_4d0.csv", "time=时间,position=位移,force=3");
   constexpr std::size_t hold = 255;
   const AxisSeries series = thinned(axis_series(polymer, 0, {.position = 0.0, .direction = 1.0}), 15, hold);
@@ -103,6 +99,7 @@ struct Site {
 };
 
 TEST_F(RealFit, OfLiverStiffensExponentiallySiteBySite) {
+  KERF_NEEDS_DATA("liver/pig_liver_20150826_region1.csv");
   const auto liver = imported("liver/pig_liver_20150826_region1.csv",
                               "position=depth_mm,force=normal_force_N,site=site[1]", 1.0);
   std::map<double, Site> sites;
@@ -162,10 +159,15 @@ Work work_of(const models::Law& law, const AxisSeries& series) {
 
 class RealGrasper : public RealFit {
  protected:
+  void SetUp() override { KERF_NEEDS_DATA(file_of("00"), file_of("33")); }
+
+  static std::string file_of(const std::string& number) {
+    return "grasper/Tool_4_Maryland_L_2_" + number + ".TXT";
+  }
   // The sensor at the spindle reads negative where the spindle is turned forward.
   static AxisSeries spindle(const std::string& number, const std::string& torque_unit) {
-    const auto recording = imported("grasper/Tool_4_Maryland_L_2_" + number + ".TXT",
-                                    "time=1[s],position=2[0.0439453125 deg],force=3[" + torque_unit + "]");
+    const auto recording =
+        imported(file_of(number), "time=1[s],position=2[0.0439453125 deg],force=3[" + torque_unit + "]");
     return thinned(axis_series(recording, 0, {.position = 0.0, .direction = 1.0}), 10);
   }
   static constexpr auto resisting = "-3.9811e-5 Nm";
@@ -210,6 +212,7 @@ TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
                                                      {"11_meniscus_fast_1826", "kelvin"},
                                                      {"15_skin_knee_lateral_slow_1900", "kelvin"}};
   for (const auto& [name, law] : preferred) {
+    KERF_NEEDS_DATA("meniscus/" + name + ".txt");
     auto punch = imported("meniscus/" + name + ".txt", "time=5[ms],position=4[deg],force=2[gf]");
     punch.cycles = find_cycles(punch, {});
     const AxisSeries series = thinned(axis_series(punch, 0, contact_of(punch, 0)), 10);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -9,6 +8,7 @@
 
 #include "import/import.h"
 #include "prepare/prepare.h"
+#include "support/measured_data.h"
 
 // A robot peels a vegetable, with hand-made labels: 3 = the blade cuts, 18 strokes.
 
@@ -18,10 +18,9 @@ namespace {
 class Peeling : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(KERF_SHARED_DATA))
-      GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
+    KERF_NEEDS_DATA("peeling/demo4.csv");
     const auto columns = import_text(
-        KERF_SHARED_DATA "/peeling/demo4.csv",
+        test::measured_file("peeling/demo4.csv"),
         {.map = parse_map("time=t_s[s],position=z_m[m],x=x_m[m],y=y_m[m],z=z_m[m],qi=qi[1],qj=qj[1],qk=qk[1],"
                           "qw=qw[1],fx=fx_N[N],fy=fy_N[N],fz=fz_N[N],tx=tx_Nm[N·m],ty=ty_Nm[N·m],"
                           "tz=tz_Nm[N·m],label=label[1]")});

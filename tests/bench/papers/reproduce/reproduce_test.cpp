@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,14 +35,14 @@ void expect_drawable(const Reproduction& paper) {
 }
 
 TEST(Reproduce, BladeAndTissue) {
-  const Reproduction paper = reproduce_000(1);
+  const Reproduction paper = reproduce_henry2004(1);
   for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   EXPECT_EQ(paper.figures.size(), 6U);
   expect_drawable(paper);
 }
 
 TEST(Reproduce, OrthogonalDecomposition) {
-  const Reproduction paper = reproduce_001(1);
+  const Reproduction paper = reproduce_sepulveda2008(1);
   for (const Claim& claim : paper.claims) {
     const bool of_paper = claim.claim.find("`paper` projection") != std::string::npos;
     EXPECT_EQ(claim.verdict == ClaimVerdict::fails, of_paper) << claim.claim << ": " << claim.measured;
@@ -49,13 +51,13 @@ TEST(Reproduce, OrthogonalDecomposition) {
 }
 
 TEST(Reproduce, FuzzyKelvin) {
-  const Reproduction paper = reproduce_002(1);
+  const Reproduction paper = reproduce_fuzzy_kelvin(1);
   for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, TwoMeshScissors) {
-  const Reproduction paper = reproduce_003(1);
+  const Reproduction paper = reproduce_weiss2004(1);
   // The others measure this machine.
   EXPECT_EQ(paper.claims.at(0).verdict, ClaimVerdict::holds) << paper.claims.at(0).measured;
   EXPECT_EQ(paper.claims.at(1).verdict, ClaimVerdict::holds) << paper.claims.at(1).measured;
@@ -63,13 +65,13 @@ TEST(Reproduce, TwoMeshScissors) {
 }
 
 TEST(Reproduce, HapticScissors) {
-  const Reproduction paper = reproduce_004(1);
+  const Reproduction paper = reproduce_okamura2003(1);
   for (const Claim& claim : paper.claims) EXPECT_EQ(claim.verdict, ClaimVerdict::holds) << claim.claim;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, IsTheSameForOneSeed) {
-  for (const auto& run : {reproduce_000, reproduce_001})
+  for (const auto& run : {reproduce_henry2004, reproduce_sepulveda2008})
     EXPECT_EQ(to_json(run(7)).dump(), to_json(run(7)).dump());
 }
 
@@ -85,7 +87,27 @@ TEST(Reproduce, WritesFiguresAndClaimsAndReplacesNoneUnasked) {
   EXPECT_EQ(test::run({KERF_PROGRAM, "reproduce", "000", "-o", out}).exit_status, 2);
   const auto unknown = test::run({KERF_PROGRAM, "reproduce", "007", "-o", out, "--force"});
   EXPECT_EQ(unknown.exit_status, 2);
-  EXPECT_THAT(unknown.errors, HasSubstr("no paper '007'; the papers are 000, 001, 002, 003 and 004"));
+  EXPECT_THAT(unknown.errors,
+              HasSubstr("no paper '007'; the papers are Henry2004 (000), Sepulveda2008 (001)"));
+}
+
+TEST(Reproduce, KnowsAPaperByItsNumberAndByItsKeyInTheBibliography) {
+  const std::string by_number = to_json(reproduce("000", 1)).dump();
+  EXPECT_EQ(to_json(reproduce("Henry2004", 1)).dump(), by_number);
+  EXPECT_EQ(to_json(reproduce("[Henry2004]", 1)).dump(), by_number);
+  EXPECT_THROW((void)reproduce("Henry", 1), std::invalid_argument);
+  const std::string sources = test::read_text(KERF_SOURCE_DIR "/docs/bibliography.md");
+  const auto help = test::run({KERF_PROGRAM, "reproduce", "--help"});
+  const std::vector<std::pair<std::string, std::string>> papers{{"000", "Henry2004"},
+                                                                {"001", "Sepulveda2008"},
+                                                                {"002", "FuzzyKelvin"},
+                                                                {"003", "Weiss2004"},
+                                                                {"004", "Okamura2003"}};
+  for (const auto& [number, key] : papers) {
+    EXPECT_THAT(sources, HasSubstr("| [" + key + "] | " + number + " |"));
+    EXPECT_THAT(help.output, HasSubstr(key));
+    EXPECT_THAT(help.output, HasSubstr(number));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <filesystem>
 #include <numbers>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
+#include "support/measured_data.h"
 
 // From a recording to its curve, and from breakpoints to a law.
 
@@ -162,11 +163,11 @@ TEST(DrawnLaw, LiesWhereAFitDoesAndHasItsRenderingAids) {
 
 /// A punch through a meniscus: its averaged cycle is as the measured one, and takes a fit as `kerf fit` does.
 TEST(DrawnLaw, OfAMeniscusIsCloserTheMoreSegmentsItHas) {
-  const std::filesystem::path file =
-      std::filesystem::path(KERF_SHARED_DATA) / "meniscus/9_meniscus_slow_1824.txt";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no measured data at " << KERF_SHARED_DATA;
+  const std::string file = "meniscus/9_meniscus_slow_1824.txt";
+  KERF_NEEDS_DATA(file);
   const schema::Recording punch =
-      import_text(file, {.map = parse_map("time=5[ms],position=4[deg],force=2[gf]"), .rate_hz = 0.0})
+      import_text(kerf::test::measured_file(file),
+                  {.map = parse_map("time=5[ms],position=4[deg],force=2[gf]"), .rate_hz = 0.0})
           .recording;
   const EditorCurve curve = editor_curve(punch, 0);
   EXPECT_EQ(curve.cycles, 10U);
