@@ -7,8 +7,8 @@
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
 #include "chart/speed_accuracy.h"
-#include "fits/fit_series.h"
 #include "recordings/axes.h"
+#include "recordings/axis_series.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -73,7 +73,7 @@ class RecordingChart {
   RecordingChart(const FitSource& source, const ChartOptions& options)
       : source_(source),
         options_(options),
-        series_(fit_series(*source.recording, source.axis, source.contact).axis) {
+        series_(fit_series(*source.recording, source.axis, source.contact)) {
     if (series_.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
     period_s_ = median_period(series_.time_s);
     for (const double force : series_.force) peak_n_ = std::max(peak_n_, std::abs(force));

@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "fits/fit_series.h"
 #include "html/html.h"
 #include "recordings/axes.h"
+#include "recordings/axis_series.h"
 #include "report/charts.h"
 
 namespace kerf::bench {
@@ -70,7 +70,7 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
   const Candidate& taken = choice.candidates.at(*choice.taken);
   const schema::Axis& axis = recording.axes[axis_place];
   const DrawnUnit unit = drawn_position(axis);
-  const AxisSeries series = fit_series(recording, axis_place, choice.contact).axis;
+  const AxisSeries series = fit_series(recording, axis_place, choice.contact);
   std::vector<double> position = series.penetration;
   for (double& value : position) value *= unit.factor;
   const auto cloud = [&](const std::string& label, std::vector<double> force, Colour colour) {

@@ -31,12 +31,12 @@ double squares_left(const models::Law& law, const AxisSeries& series) {
 /// Recordings and their series, side by side.
 struct Sources {
   std::span<const FitSource> all;
-  std::vector<FitSeries> series;
+  std::vector<AxisSeries> series;
   AxisSeries pool;
 
   [[nodiscard]] std::vector<fitting::Series> views() const {
     std::vector<fitting::Series> views;
-    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(series[i].view(all[i].noise_n));
+    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(fitted_view(series[i], all[i].noise_n));
     return views;
   }
 };
@@ -81,7 +81,7 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   double squares = 0.0;
   for (std::size_t i = 0; i < sources.all.size(); ++i) {
     const LawFile& of = own && i > 0 ? fitted.others[i - 1] : fitted.file;
-    squares += squares_left(of.law, sources.series[i].axis);
+    squares += squares_left(of.law, sources.series[i]);
   }
   fitted.rmse_rendered = std::sqrt(squares / static_cast<double>(sources.pool.force.size()));
   return fitted;
@@ -229,10 +229,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     }
   }
   if (fit.laws.empty()) return fit;
-  const fitting::Series pool{.time_s = sources.pool.time_s,
-                             .penetration = sources.pool.penetration,
-                             .velocity = sources.pool.velocity,
-                             .force = sources.pool.force};
+  const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = jnd_of(sources.pool.force, options.fit.jnd);
   fit.choice = choose(results, pool, options.fit);
