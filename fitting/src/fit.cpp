@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include <boost/math/statistics/univariate_statistics.hpp>
+
 #include "least_squares.h"
 #include "samples.h"
 #include "starts/search.h"
@@ -104,9 +106,8 @@ double loss_scale(const std::vector<double>& residuals, const Weights& weights) 
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (weights[i] > 0.0) sizes.push_back(std::sqrt(weights[i]) * std::abs(residuals[i]));
   }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return std::max(robust_width * deviation_of_mad * *middle, std::numeric_limits<double>::min());
+  const double middle = boost::math::statistics::median(sizes);
+  return std::max(robust_width * deviation_of_mad * middle, std::numeric_limits<double>::min());
 }
 
 /// Each run weighed by what a first fit leaves in it.

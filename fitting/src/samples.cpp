@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <boost/math/statistics/univariate_statistics.hpp>
+
 namespace kerf::fitting {
 namespace {
 
@@ -48,10 +50,8 @@ std::vector<double> periods(std::span<const double> time_s, double& median_perio
     all.assign(all.size(), median_period_s);
     return all;
   }
-  std::vector<double> sorted(all);
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  median_period_s = *middle;
+  std::vector<double> between(all.begin() + 1, all.end());
+  median_period_s = boost::math::statistics::median(between);
   // Uniform sampling up to rounding is uniform: laws keep what they derive from the period.
   for (double& period : all) {
     if (std::abs(period - median_period_s) < 1e-6 * median_period_s) period = median_period_s;

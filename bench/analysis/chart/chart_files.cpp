@@ -11,6 +11,7 @@
 
 #include "files/whole_file.h"
 #include "html/html.h"
+#include "tables/csv.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {
@@ -132,12 +133,6 @@ const std::vector<std::string> head{
     "law",       "fidelity",    "parameters", "p50 [us]", "p99.9 [us]", "cold p50 [us]", "cold p99.9 [us]",
     "error [N]", "error [JND]", "worst [N]",  "axis",     "stable"};
 
-std::string csv_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 }  // namespace
 
 json chart_as_json(const SpeedAccuracy& chart) {
@@ -180,9 +175,9 @@ std::string chart_csv(const SpeedAccuracy& chart) {
       "stable,on_front\n";
   for (const ChartPoint& point : chart.points) {
     csv += fmt::format("{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{},{},{}\n", point.law,
-                       csv_text(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
+                       csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
                        point.cost.p999_ns, point.cost.cold_p50_ns, point.cost.cold_p999_ns, point.error_n,
-                       point.error_jnd, point.worst_n, csv_text(point.axis), point.stable ? 1 : 0,
+                       point.error_jnd, point.worst_n, csv_quoted(point.axis), point.stable ? 1 : 0,
                        point.on_front ? 1 : 0);
   }
   return csv;

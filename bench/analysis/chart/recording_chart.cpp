@@ -7,8 +7,9 @@
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
 #include "chart/speed_accuracy.h"
-#include "fits/fit_series.h"
 #include "recordings/axes.h"
+#include "recordings/axis_series.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -39,16 +40,6 @@ std::vector<drivers::Sample> timed_stretch(const AxisSeries& series, const FitSo
     samples[i].velocity[0] = contact.direction * series.velocity[begin + i];
   }
   return samples;
-}
-
-double median_period_s(const AxisSeries& series) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < series.time_s.size(); ++i)
-    periods.push_back(series.time_s[i] - series.time_s[i - 1]);
-  if (periods.empty()) throw std::invalid_argument("a recording of one row cannot be charted");
-  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2),
-                   periods.end());
-  return periods[periods.size() / 2];
 }
 
 FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options) {
@@ -82,8 +73,9 @@ class RecordingChart {
   RecordingChart(const FitSource& source, const ChartOptions& options)
       : source_(source),
         options_(options),
-        series_(fit_series(*source.recording, source.axis, source.contact).axis) {
-    period_s_ = median_period_s(series_);
+        series_(fit_series(*source.recording, source.axis, source.contact)) {
+    if (series_.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
+    period_s_ = median_period(series_.time_s);
     for (const double force : series_.force) peak_n_ = std::max(peak_n_, std::abs(force));
   }
 

@@ -11,6 +11,7 @@
 #include "chart/fit_plan.h"
 #include "chart/pareto_front.h"
 #include "chart/reference_forces.h"
+#include "fits/fit_series.h"
 #include "laws/placement.h"
 
 namespace kerf::bench {
@@ -38,32 +39,25 @@ class Samples {
 
 /// What the reference of a law along one axis looks like to a fit. A cycle begins where the tool turns
 /// inwards.
-struct ReferenceSeries {
-  std::vector<double> time_s, penetration, velocity, force;
-  std::vector<std::uint32_t> cycle;
-
-  ReferenceSeries(const LawFile& law, const ReferenceForces& reference,
-                  const std::vector<drivers::Sample>& samples, double rate_hz) {
-    const std::size_t axis = reference.axes().front();
-    const std::size_t step = samples.size() / max_fit_samples + 1;
-    std::uint32_t number = 0;
-    bool inwards = false;
-    for (std::size_t i = 0; i < samples.size(); i += step) {
-      const models::Motion motion = law.contact.motion(samples[i].position[axis], samples[i].velocity[axis]);
-      if (motion.velocity > 0.0 && !inwards) ++number;
-      if (motion.velocity != 0.0) inwards = motion.velocity > 0.0;
-      time_s.push_back(static_cast<double>(i) / rate_hz);
-      penetration.push_back(motion.penetration);
-      velocity.push_back(motion.velocity);
-      force.push_back(-law.contact.direction * reference.force_n(0, time_s.back()));
-      cycle.push_back(number);
-    }
+AxisSeries reference_series(const LawFile& law, const ReferenceForces& reference,
+                            const std::vector<drivers::Sample>& samples, double rate_hz) {
+  const std::size_t axis = reference.axes().front();
+  const std::size_t step = samples.size() / max_fit_samples + 1;
+  AxisSeries series;
+  std::uint32_t number = 0;
+  bool inwards = false;
+  for (std::size_t i = 0; i < samples.size(); i += step) {
+    const models::Motion motion = law.contact.motion(samples[i].position[axis], samples[i].velocity[axis]);
+    if (motion.velocity > 0.0 && !inwards) ++number;
+    if (motion.velocity != 0.0) inwards = motion.velocity > 0.0;
+    series.time_s.push_back(static_cast<double>(i) / rate_hz);
+    series.penetration.push_back(motion.penetration);
+    series.velocity.push_back(motion.velocity);
+    series.force.push_back(resisting(reference.force_n(0, series.time_s.back()), false, law.contact));
+    series.cycle.push_back(number);
   }
-  [[nodiscard]] fitting::Series view() const {
-    return {
-        .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = cycle};
-  }
-};
+  return series;
+}
 
 ChartPoint point_of(const Fidelity& fidelity) {
   return {.law = std::string(fidelity.law.law.model()),
@@ -97,7 +91,7 @@ void add_aids(LawFile& file, const std::vector<drivers::Sample>& samples, std::s
 }
 
 /// The other laws, as fitted to the reference of this one.
-void add_fitted(const LawFile& law, const ReferenceSeries& series, const ChartOptions& options,
+void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions& options,
                 SpeedAccuracy& chart) {
   for (const FitPlan& plan : fit_plans(options.models)) {
     if (stopped(options)) return;
@@ -105,7 +99,7 @@ void add_fitted(const LawFile& law, const ReferenceSeries& series, const ChartOp
     try {
       fitting::FitOptions fit{.law_options = plan.options, .jnd = options.jnd, .folds = 0};
       fit.intervals = fitting::Intervals::white;
-      const fitting::FitResult result = fitting::fit(plan.model, series.view(), fit);
+      const fitting::FitResult result = fitting::fit(plan.model, fitted_view(series), fit);
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
       ChartPoint point = point_of({plan.label, with_law(law, result.law()), options.rate_hz});
       point.parameters = result.free_parameters;
@@ -182,7 +176,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   Samples samples(path);
   for (const Fidelity& fidelity : fidelities.all) chart.points.push_back(point_of(fidelity));
   if (!law.law.is_spatial()) {
-    const ReferenceSeries series(law, reference, samples.at(options.rate_hz), options.rate_hz);
+    const AxisSeries series = reference_series(law, reference, samples.at(options.rate_hz), options.rate_hz);
     add_fitted(law, series, options, chart);
   } else if (!options.models.empty()) {
     chart.notes.push_back(

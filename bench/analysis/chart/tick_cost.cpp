@@ -13,6 +13,7 @@
 #endif
 
 #include "loop/clock.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -20,7 +21,6 @@ namespace {
 constexpr std::size_t warm_up_ticks = 32;
 constexpr std::size_t fewest_rounds = 2;
 constexpr double quiet_share = 0.1;  // of the rounds: a busy neighbour slows whole rounds, by half or more
-constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 
 /// A time stamp in units of its own, before which all is done and after which nothing has begun.
 std::uint64_t stamp() noexcept {
@@ -66,13 +66,6 @@ class CacheFlush {
   std::vector<std::uint64_t> words_;
 };
 
-double quantile(std::vector<std::uint64_t>& values, double share) {
-  if (values.empty()) return not_measured;
-  const auto at = static_cast<std::ptrdiff_t>(std::floor(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return static_cast<double>(values[static_cast<std::size_t>(at)]);
-}
-
 /// The smallest step that the stamps make: some processors count in units and tick in tens of them.
 std::uint64_t smallest_step() {
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
@@ -94,13 +87,12 @@ std::uint64_t smallest_step() {
 
 /// The median, finer than the step of the stamps. A duration between two steps is measured as one or the
 /// other as often as it is nearer to it, so that the mean of those around the median is right.
-double fine_median(std::vector<std::uint64_t>& values, std::uint64_t step) {
-  const double coarse = quantile(values, 0.5);
+double fine_median(const std::vector<double>& durations, std::uint64_t step) {
+  const double coarse = quantile(durations, 0.5);
   const double reach = 1.5 * static_cast<double>(step);
   double sum = 0.0;
   double count = 0.0;
-  for (const std::uint64_t value : values) {
-    const auto duration = static_cast<double>(value);
+  for (const double duration : durations) {
     if (std::abs(duration - coarse) > reach) continue;
     sum += duration;
     count += 1.0;
@@ -108,18 +100,10 @@ double fine_median(std::vector<std::uint64_t>& values, std::uint64_t step) {
   return count > 0.0 ? sum / count : coarse;
 }
 
-/// The value below which lies that share of them.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return not_measured;
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 /// Percentiles in units of the stamp, one of each a round.
 struct Rounds {
   std::vector<double> p50, p999;
-  void add(std::vector<std::uint64_t>& durations, std::uint64_t step, double overhead) {
+  void add(const std::vector<double>& durations, std::uint64_t step, double overhead) {
     p50.push_back(std::max(0.0, fine_median(durations, step) - overhead));
     p999.push_back(std::max(0.0, quantile(durations, 0.999) - overhead));
   }
@@ -142,7 +126,7 @@ class Subject {
     chosen_.clear();
     const bool ever = std::any_of(pushes_.begin(), pushes_.end(), [](auto pushes) { return pushes != 0; });
     for (std::size_t i = 0; i < duration_.size(); ++i) {
-      if (!ever || pushes_[i] != 0) chosen_.push_back(duration_[i]);
+      if (!ever || pushes_[i] != 0) chosen_.push_back(static_cast<double>(duration_[i]));
     }
     warm_.add(chosen_, step_of_stamps, overhead);
     longest_s_ = std::max(longest_s_, 1e-9 * static_cast<double>(WallClock::now_ns() - begin_ns));
@@ -165,7 +149,7 @@ class Subject {
       for (; tick < place; ++tick) step(tick);
       flush();
       time(tick++);
-      chosen_.push_back(duration_[place]);
+      chosen_.push_back(static_cast<double>(duration_[place]));
     }
     cold_.add(chosen_, step_of_stamps, overhead);
   }
@@ -196,20 +180,20 @@ class Subject {
   LawRendering rendering_;
   std::vector<std::uint64_t> duration_;
   std::vector<std::uint8_t> pushes_;
-  std::vector<std::uint64_t> chosen_;
+  std::vector<double> chosen_;
   Rounds warm_, cold_;
   double longest_s_ = 0.0;
 };
 
 /// What two stamps cost with an empty body between them.
 double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, CacheFlush* flush) {
-  std::vector<std::uint64_t> durations(times);
+  std::vector<double> durations(times);
   const drivers::Sample sample;
-  for (std::uint64_t& duration : durations) {
+  for (double& duration : durations) {
     if (flush != nullptr) (*flush)();
     const std::uint64_t begin = stamp();
     (void)NoForce{}(sample, 1e-3);
-    duration = stamp() - begin;
+    duration = static_cast<double>(stamp() - begin);
   }
   return fine_median(durations, step_of_stamps);
 }

@@ -7,14 +7,13 @@
 #include "choose/choice_page.h"
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
+#include "tables/csv.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-std::string text_of(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 json names_of(const Effects& effects) {
   json names = json::array();
@@ -76,15 +75,6 @@ json parameters_of(const Candidate& candidate) {
   return parameters;
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return result + "\"";
-}
-
 }  // namespace
 
 json choice_as_json(const LawChoice& choice) {
@@ -120,13 +110,13 @@ std::string choice_csv(const LawChoice& choice) {
   const auto yes = [](bool value) { return value ? "yes" : "no"; };
   for (const Candidate& one : choice.candidates) {
     text += fmt::format(
-        "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", one.law.name, one.law.model, one.law.parameters,
-        text_of(one.error_n), text_of(one.error_jnd), yes(one.within_jnd), one.tick_us,
-        one.deadline ? text_of(one.deadline->p999_us) : "",
+        "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_text(one.law.name), one.law.model, one.law.parameters,
+        csv_number(one.error_n), csv_number(one.error_jnd), yes(one.within_jnd), one.tick_us,
+        one.deadline ? csv_number(one.deadline->p999_us) : "",
         one.deadline ? fmt::format("{}", one.deadline->missed) : "",
         one.deadline ? fmt::format("{}", one.deadline->ticks) : "",
         one.deadline ? (one.deadline->machine_late ? "machine late" : yes(one.deadline->held)) : "",
-        one.stable ? yes(*one.stable) : "", quoted(one.why));
+        one.stable ? yes(*one.stable) : "", csv_quoted(one.why));
   }
   return text;
 }

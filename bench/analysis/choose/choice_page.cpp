@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "fits/fit_series.h"
 #include "html/html.h"
 #include "recordings/axes.h"
+#include "recordings/axis_series.h"
 #include "report/charts.h"
 
 namespace kerf::bench {
@@ -70,22 +70,24 @@ Chart law_chart(const schema::Recording& recording, std::size_t axis_place, cons
   const Candidate& taken = choice.candidates.at(*choice.taken);
   const schema::Axis& axis = recording.axes[axis_place];
   const DrawnUnit unit = drawn_position(axis);
-  const AxisSeries series = fit_series(recording, axis_place, choice.contact).axis;
-  const auto rendered = render(without_rendering_aids(taken.file->law), series);
-  Curve measured{.label = "recorded", .colour = Colour::grey, .mark = Mark::points, .width = 1.2};
-  Curve law{.label = taken.law.name, .colour = Colour::vermillion, .mark = Mark::points, .width = 1.2};
-  const std::size_t step = std::max<std::size_t>(1, series.force.size() / 4000);
-  for (std::size_t i = 0; i < series.force.size(); i += step) {
-    const double position = unit.factor * series.penetration[i];
-    measured.x.push_back(position);
-    measured.y.push_back(series.force[i]);
-    law.x.push_back(position);
-    law.y.push_back(rendered[i]);
-  }
+  const AxisSeries series = fit_series(recording, axis_place, choice.contact);
+  std::vector<double> position = series.penetration;
+  for (double& value : position) value *= unit.factor;
+  const auto cloud = [&](const std::string& label, std::vector<double> force, Colour colour) {
+    return thinned({.label = label,
+                    .x = position,
+                    .y = std::move(force),
+                    .colour = colour,
+                    .mark = Mark::points,
+                    .width = 1.2},
+                   4000);
+  };
   return {.title = "The law along the recorded path",
           .x_label = fmt::format("penetration [{}]", unit.unit),
           .y_label = fmt::format("force [{}]", axis.force_unit),
-          .curves = {std::move(measured), std::move(law)}};
+          .curves = {cloud("recorded", series.force, Colour::grey),
+                     cloud(taken.law.name, render(without_rendering_aids(taken.file->law), series),
+                           Colour::vermillion)}};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 #include "chart/tick_cost.h"
 #include "fits/choice.h"
-#include "fits/fit_series.h"
+#include "recordings/axis_series.h"
 
 namespace kerf::bench {
 namespace {
@@ -44,9 +44,9 @@ class LawSelection {
     choice_.settings = options.fit;
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
     if (options.richer_too) memory_ = fitting::remember_segments(options.candidates.max_segments);
-    const FitSeries series = fit_series(recording, options.axis, choice_.contact);
-    if (series.axis.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
-    measure(series.axis);
+    const AxisSeries series = fit_series(recording, options.axis, choice_.contact);
+    if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
+    measure(series);
     const std::size_t cycles = cycles_in(recording, options.axis);
     describe_folds(cycles);
     const schema::Axis& axis = recording.axes[options.axis];

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 
 #include <fmt/core.h>
 
 #include "fits/batch.h"
 #include "fits/fit_files.h"
+#include "tables/csv.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {
@@ -15,18 +15,6 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr std::size_t parameters_listed = 40;  ///< of a law; more are a table to be seen as a curve
-
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return result + "\"";
-}
-
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
 
 struct TableColumn {
   const char* name;
@@ -77,7 +65,8 @@ std::string parameter_cells(const FittedLaw& law, const std::vector<std::string>
     if (!is_listed(law) || found == all.end()) {
       cells += ",,,";
     } else {
-      cells += fmt::format(",{},{},{}", number(found->value), number(found->lower), number(found->upper));
+      cells += fmt::format(",{},{},{}", csv_number(found->value), csv_number(found->lower),
+                           csv_number(found->upper));
     }
   }
   return cells;
@@ -98,7 +87,7 @@ std::string law_row(const BatchEntry& entry, const FittedLaw& law, const std::ve
   std::string row = fmt::format("{},{},{},{},{},{},{}", csv_text(entry.recording), fit.model, status_of(law),
                                 entry.fit.choice.model == fit.model ? "yes" : "no", fit.samples,
                                 csv_text(law.file.position_unit), csv_text(law.file.force_unit));
-  for (const TableColumn& column : table_columns()) row += fmt::format(",{}", number(column.value(fit)));
+  for (const TableColumn& column : table_columns()) row += fmt::format(",{}", csv_number(column.value(fit)));
   return fmt::format("{}{},{}\n", row, parameter_cells(law, columns), csv_text(reason));
 }
 

@@ -205,10 +205,7 @@ nlohmann::ordered_json blade_fit_as_json(const BladeRecordingFit& all) {
         {"std_error", json_number(estimate.std_error)},
         {"interval", {json_number(estimate.lower), json_number(estimate.upper)}},
         {"unit", models::unit_of(estimate.info.quantity, "N", "m")}};
-    nlohmann::ordered_json row = nlohmann::ordered_json::array();
-    for (const double value : fit.correlation.row(static_cast<Eigen::Index>(i)))
-      row.push_back(json_number(value));
-    correlation.push_back(std::move(row));
+    correlation.push_back(json_numbers(fit.correlation.row(static_cast<Eigen::Index>(i))));
   }
   nlohmann::ordered_json json{{"model", "blade"},
                               {"recording", all.file.fit.recording_uuid},

@@ -4,6 +4,7 @@
 
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
+#include "tables/csv.h"
 
 namespace kerf::bench {
 namespace {
@@ -24,7 +25,7 @@ std::string as_csv(const RecordingFit& fit) {
           fmt::format("{},{},{},{},{},{},{},{}\n", law.result.model, estimate.info.name, estimate.value,
                       estimate.std_error, estimate.lower, estimate.upper,
                       models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit),
-                      shared ? "" : fit.recordings.at(estimate.recording).name);
+                      shared ? "" : csv_text(fit.recordings.at(estimate.recording).name));
     };
     for (const fitting::Estimate& estimate : law.result.parameters) add(estimate);
     for (const fitting::Estimate& estimate : law.result.others) add(estimate);

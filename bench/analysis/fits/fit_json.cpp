@@ -1,4 +1,5 @@
 #include <cmath>
+#include <span>
 #include <variant>
 
 #include "fits/fit_files.h"
@@ -8,13 +9,6 @@ namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-/// JSON knows no infinity: what the data do not determine is null.
-json numbers(const std::vector<double>& values) {
-  json list = json::array();
-  for (const double value : values) list.push_back(json_number(value));
-  return list;
-}
 
 const char* name_of(fitting::Loss loss) {
   switch (loss) {
@@ -50,7 +44,7 @@ json correlation_as_json(const fitting::FitResult& fit) {
   json matrix = json::array();
   for (std::size_t row = 0; row < count && fit.correlation.size() == count * count; ++row) {
     const auto begin = fit.correlation.begin() + static_cast<std::ptrdiff_t>(row * count);
-    matrix.push_back(numbers({begin, begin + static_cast<std::ptrdiff_t>(count)}));
+    matrix.push_back(json_numbers(std::span(begin, count)));
   }
   return {{"parameters", fit.searched}, {"matrix", matrix}};
 }
@@ -59,8 +53,8 @@ json profiles_as_json(const fitting::FitResult& fit) {
   json list = json::array();
   for (const fitting::Profile& profile : fit.profiles) {
     list.push_back({{"parameter", profile.parameter},
-                    {"value", numbers(profile.value)},
-                    {"deviation", numbers(profile.deviation)},
+                    {"value", json_numbers(profile.value)},
+                    {"deviation", json_numbers(profile.deviation)},
                     {"lower", json_number(profile.lower)},
                     {"upper", json_number(profile.upper)}});
   }

@@ -12,6 +12,7 @@
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
 #include "recordings/provenance.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -30,12 +31,12 @@ double squares_left(const models::Law& law, const AxisSeries& series) {
 /// Recordings and their series, side by side.
 struct Sources {
   std::span<const FitSource> all;
-  std::vector<FitSeries> series;
+  std::vector<AxisSeries> series;
   AxisSeries pool;
 
   [[nodiscard]] std::vector<fitting::Series> views() const {
     std::vector<fitting::Series> views;
-    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(series[i].view(all[i].noise_n));
+    for (std::size_t i = 0; i < all.size(); ++i) views.push_back(fitted_view(series[i], all[i].noise_n));
     return views;
   }
 };
@@ -80,7 +81,7 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   double squares = 0.0;
   for (std::size_t i = 0; i < sources.all.size(); ++i) {
     const LawFile& of = own && i > 0 ? fitted.others[i - 1] : fitted.file;
-    squares += squares_left(of.law, sources.series[i].axis);
+    squares += squares_left(of.law, sources.series[i]);
   }
   fitted.rmse_rendered = std::sqrt(squares / static_cast<double>(sources.pool.force.size()));
   return fitted;
@@ -163,11 +164,9 @@ models::Options with_rendering_aids(models::Options options, const AxisSeries& s
   if (loop == options.end() || !std::get<bool>(loop->second)) return options;
   std::vector<double> speeds;
   for (const double velocity : series.velocity) speeds.push_back(std::abs(velocity));
-  const auto high = speeds.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(speeds.size()));
-  std::nth_element(speeds.begin(), high, speeds.end());
   const auto [least, most] = std::minmax_element(series.penetration.begin(), series.penetration.end());
   options["velocity_corner"] = velocity_corner_rad_s;
-  options["ramp_band"] = ramp_share * *high;
+  options["ramp_band"] = ramp_share * quantile(std::move(speeds), 0.95);
   options["reversal_scale"] = 1.0 / (reversal_share * (*most - *least));
   return options;
 }
@@ -230,10 +229,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     }
   }
   if (fit.laws.empty()) return fit;
-  const fitting::Series pool{.time_s = sources.pool.time_s,
-                             .penetration = sources.pool.penetration,
-                             .velocity = sources.pool.velocity,
-                             .force = sources.pool.force};
+  const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = jnd_of(sources.pool.force, options.fit.jnd);
   fit.choice = choose(results, pool, options.fit);

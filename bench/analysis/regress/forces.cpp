@@ -8,6 +8,8 @@
 
 #include <time.h>
 
+#include "signal/quantiles.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -88,9 +90,7 @@ double tick_cost(const models::Law& law, const models::Contact& contact, const R
     spent_ns += law_ns;
   }
   [[maybe_unused]] const volatile double used = sum;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::ranges::nth_element(ratios, middle);
-  return *middle;
+  return median(std::move(ratios));
 }
 
 std::string build_kind() {

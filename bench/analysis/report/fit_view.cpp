@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "fits/fit_series.h"
+#include "recordings/axis_series.h"
 
 namespace kerf::bench {
 namespace {
@@ -64,7 +64,7 @@ FitView view_of_fits(const schema::Recording& recording, std::size_t axis, const
   });
   view.shown = std::min(max_shown, view.traces.size());
   if (view.traces.empty()) return view;
-  view.series = fit_series(recording, axis, view.traces.front().law.contact).axis;
+  view.series = fit_series(recording, axis, view.traces.front().law.contact);
   for (std::size_t i = 0; i < view.traces.size(); ++i) {
     FittedTrace& trace = view.traces[i];
     trace.colour = i < law_colours.size() ? law_colours[i] : Colour::black;

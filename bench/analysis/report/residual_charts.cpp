@@ -75,12 +75,9 @@ Chart scattered(const FitView& view, const FittedTrace& trace, const std::vector
   if (largest > 0.0) chart.y_range = {-largest, largest};
   std::vector<double> x(values);
   for (double& value : x) value *= view.position.factor;
-  Curve samples{.x = {}, .y = {}, .colour = Colour::grey, .mark = Mark::points, .width = 0.8};
-  const std::size_t step = std::max<std::size_t>(1, x.size() / samples_drawn);
-  for (std::size_t i = 0; i < x.size(); i += step) {
-    samples.x.push_back(x[i]);
-    samples.y.push_back(trace.residual[i]);
-  }
+  Curve samples =
+      thinned({.x = x, .y = trace.residual, .colour = Colour::grey, .mark = Mark::points, .width = 0.8},
+              samples_drawn);
   Binned in_bins = binned(x, trace.residual, trace.colour);
   chart.curves.push_back(std::move(samples));
   for (Curve* curve : {&in_bins.above, &in_bins.below, &in_bins.mean}) {

@@ -6,13 +6,12 @@
 #include <fmt/core.h>
 
 #include "html/html.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
 std::string text_of(const std::optional<double>& value, double factor, const char* unit,
                     const char* without) {
@@ -296,10 +295,10 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
                 {"device", as_json(study.device)},
                 {"range", {{"depth_m", study.range.depth_m}, {"speed_m_s", study.range.speed_m_s}}},
                 {"passive", study.passive},
-                {"deepest_m", or_null(limits.depth_m)},
-                {"deepest_by_local_stiffness_m", or_null(limits.local_depth_m)},
-                {"steepest_approach_m_s", or_null(limits.speed_m_s)},
-                {"lowest_rate_hz", or_null(limits.rate_hz)},
+                {"deepest_m", json_number(limits.depth_m)},
+                {"deepest_by_local_stiffness_m", json_number(limits.local_depth_m)},
+                {"steepest_approach_m_s", json_number(limits.speed_m_s)},
+                {"lowest_rate_hz", json_number(limits.rate_hz)},
                 {"local_stiffness_n_per_m", limits.local.stiffness_n_per_m},
                 {"local_damping_n_s_per_m", limits.local.damping_n_s_per_m},
                 {"passive_stiffness_n_per_m", limits.passive_stiffness_n_per_m}};

@@ -16,6 +16,7 @@
 #include "import/text_table.h"
 #include "import/time_order.h"
 #include "recordings/provenance.h"
+#include "signal/quantiles.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {

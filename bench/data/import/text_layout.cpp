@@ -227,8 +227,10 @@ std::vector<std::string_view> split_line(std::string_view line, char separator) 
     if (separator == ' ' && at >= line.size()) break;
     std::size_t end = at;
     if (at < line.size() && line[at] == '"') {
-      const auto close = line.find('"', at + 1);
-      end = close == std::string_view::npos ? line.size() : close;
+      auto close = line.find('"', at + 1);
+      while (close != std::string_view::npos && line.substr(close, 2) == "\"\"")
+        close = line.find('"', close + 2);
+      end = std::min(close, line.size());
       fields.push_back(line.substr(at + 1, end - at - 1));
       at = std::min(end + 1, line.size());
       skip_blanks();

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "signal/signal.h"
+#include "signal/quantiles.h"
 #include "signal/uniform_samples.h"
 
 namespace kerf::bench {

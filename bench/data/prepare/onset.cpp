@@ -9,6 +9,7 @@
 
 #include "prepare/free_level.h"
 #include "prepare/hinge.h"
+#include "signal/quantiles.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {
@@ -72,10 +73,8 @@ double scatter_of(std::vector<double> lengths, std::size_t components, bool robu
     for (const double length : lengths) squares += length * length;
     return std::sqrt(squares / static_cast<double>(lengths.size() * components));
   }
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
   // The median length of a normal vector of one, two, three components of unit variance.
-  return *middle / (components == 1 ? 0.6745 : components == 2 ? 1.1774 : 1.5382);
+  return median(std::move(lengths)) / (components == 1 ? 0.6745 : components == 2 ? 1.1774 : 1.5382);
 }
 
 void check(const ContactSignal& signal) {

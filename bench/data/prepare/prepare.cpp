@@ -10,6 +10,7 @@
 #include "prepare/rows.h"
 #include "recordings/axes.h"
 #include "recordings/provenance.h"
+#include "signal/quantiles.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {

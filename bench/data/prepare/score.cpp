@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "signal/quantiles.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -12,17 +14,8 @@ std::size_t shared_rows(const RowSpan& a, const RowSpan& b) {
   return end > begin ? end - begin : 0;
 }
 
-/// The value below which a share of the values lies, between two of them by distance.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
 ErrorOf summary_of(const std::vector<double>& errors) {
+  if (errors.empty()) return {};
   std::vector<double> sizes;
   for (const double error : errors) sizes.push_back(std::abs(error));
   return {.bias_s = quantile(errors, 0.5),

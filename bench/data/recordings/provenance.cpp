@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 
-#include <fmt/core.h>
-#include <openssl/evp.h>
+#include <fmt/format.h>
+#include <sodium.h>
 
 #include "files/mapped_file.h"
 
@@ -21,14 +20,9 @@ void add_history(schema::Header& header, std::string_view step) {
 }
 
 std::string sha256_of(std::string_view content) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int length = 0;
-  if (EVP_Digest(content.data(), content.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 is not available from OpenSSL");
-  }
-  std::string text;
-  for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
+  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
+  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(content.data()), content.size());
+  return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
 std::string sha256_of(const std::filesystem::path& file) { return sha256_of(MappedFile(file).text()); }

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "signal/signal.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {

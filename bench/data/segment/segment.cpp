@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "signal/quantiles.h"
 #include "signal/signal.h"
 #include "signal/uniform_samples.h"
 

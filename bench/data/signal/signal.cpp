@@ -154,18 +154,4 @@ std::vector<double> interpolate(std::span<const double> time_s, std::span<const 
   return result;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
-}
-
-double median_period(std::span<const double> time_s) {
-  std::vector<double> periods;
-  periods.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) periods.push_back(time_s[i] - time_s[i - 1]);
-  return periods.empty() ? 0.0 : median(std::move(periods));
-}
-
 }  // namespace kerf::bench

@@ -20,10 +20,4 @@ namespace kerf::bench {
 [[nodiscard]] std::vector<double> interpolate(std::span<const double> time_s, std::span<const double> values,
                                               std::span<const double> new_time_s);
 
-/// The middle value, or the mean of the two middle ones. Requires at least one value.
-[[nodiscard]] double median(std::vector<double> values);
-
-/// Median step between times that increase; 0 for less than two of them.
-[[nodiscard]] double median_period(std::span<const double> time_s);
-
 }  // namespace kerf::bench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "signal/quantiles.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {

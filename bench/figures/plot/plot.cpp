@@ -194,31 +194,54 @@ std::vector<std::string> draw_all(std::span<const Chart> charts) {
 
 std::string draw(const Chart& chart) { return draw_all(std::span(&chart, 1)).front(); }
 
-Curve decimated(const Curve& curve, std::size_t most) {
-  const std::size_t count = curve.x.size();
-  if (count <= most) return curve;
-  Curve fewer = curve;
-  fewer.x.clear();
-  fewer.y.clear();
-  const std::size_t stretches = std::max<std::size_t>(1, most / 4);
+std::vector<std::size_t> decimated_rows(std::initializer_list<std::span<const double>> columns,
+                                        std::size_t most) {
+  const std::size_t count = columns.begin()->size();
+  const std::size_t kept_of_each = 2 + 2 * columns.size();
+  const std::size_t stretches = count <= most ? count : std::max<std::size_t>(1, most / kept_of_each);
+  std::vector<std::size_t> rows;
+  std::vector<std::size_t> kept;
   for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
     const std::size_t begin = stretch * count / stretches;
     const std::size_t end = (stretch + 1) * count / stretches;
-    std::size_t smallest = begin;
-    std::size_t largest = begin;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (curve.y[i] < curve.y[smallest] || std::isnan(curve.y[smallest])) smallest = i;
-      if (curve.y[i] > curve.y[largest] || std::isnan(curve.y[largest])) largest = i;
+    kept.assign({begin, end - 1});
+    for (const std::span<const double> values : columns) {
+      std::size_t smallest = begin;
+      std::size_t largest = begin;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (values[i] < values[smallest] || std::isnan(values[smallest])) smallest = i;
+        if (values[i] > values[largest] || std::isnan(values[largest])) largest = i;
+      }
+      kept.insert(kept.end(), {smallest, largest});
     }
-    std::array kept{begin, smallest, largest, end - 1};
     std::sort(kept.begin(), kept.end());
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      if (k > 0 && kept[k] == kept[k - 1]) continue;
-      fewer.x.push_back(curve.x[kept[k]]);
-      fewer.y.push_back(curve.y[kept[k]]);
-    }
+    rows.insert(rows.end(), kept.begin(), std::unique(kept.begin(), kept.end()));
+  }
+  return rows;
+}
+
+Curve decimated(const Curve& curve, std::size_t most) {
+  if (curve.x.size() <= most) return curve;
+  Curve fewer = curve;
+  fewer.x.clear();
+  fewer.y.clear();
+  for (const std::size_t i : decimated_rows({curve.y}, most)) {
+    fewer.x.push_back(curve.x[i]);
+    fewer.y.push_back(curve.y[i]);
   }
   return fewer;
+}
+
+Curve thinned(Curve cloud, std::size_t most) {
+  const std::size_t step = std::max<std::size_t>(1, cloud.x.size() / most);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cloud.x.size(); i += step) {
+    cloud.x[kept] = cloud.x[i];
+    cloud.y[kept++] = cloud.y[i];
+  }
+  cloud.x.resize(kept);
+  cloud.y.resize(kept);
+  return cloud;
 }
 
 }  // namespace kerf::bench

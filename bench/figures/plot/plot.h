@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <span>
 #include <string>
@@ -103,8 +104,14 @@ struct Figure {
 /// Several, by one run of gnuplot, whose start takes longer than most charts.
 [[nodiscard]] std::vector<std::string> draw_all(std::span<const Chart> charts);
 
-/// Fewer points for a long curve: of every stretch the first, the smallest, the largest and the last in their
-/// order, so that no spike is lost. Curves of up to `most` points stay as they are.
+/// Rows to keep of many, in their order, so that at most `most` are left and no spike is lost: of every
+/// stretch the first, the last, and the smallest and largest of each column. All of them if they are so few.
+[[nodiscard]] std::vector<std::size_t> decimated_rows(std::initializer_list<std::span<const double>> columns,
+                                                      std::size_t most);
+/// The same of a long curve, by its y.
 [[nodiscard]] Curve decimated(const Curve& curve, std::size_t most = 4000);
+
+/// Every so many points of a cloud, so that `most` or up to twice as many are left.
+[[nodiscard]] Curve thinned(Curve cloud, std::size_t most);
 
 }  // namespace kerf::bench

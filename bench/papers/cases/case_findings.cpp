@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "html/html.h"
+#include "tables/csv.h"
 
 namespace kerf::bench {
 namespace {
@@ -41,9 +42,9 @@ Findings findings_of(const std::vector<NamedCase>& cases, const std::optional<Co
                                    {"theory", each.theory},
                                    {"without", as_json(each.without)},
                                    {"with", as_json(each.with)}});
-    found.csv += fmt::format("{},\"{}\",{},{:.8g},{:.8g},{:d},{:.8g},{:d}\n", each.name, each.quantity,
-                             each.with.unit, each.limit, each.without.measured, each.without.holds,
-                             each.with.measured, each.with.holds);
+    found.csv += fmt::format("{},{},{},{:.8g},{:.8g},{:d},{:.8g},{:d}\n", each.name,
+                             csv_quoted(each.quantity), each.with.unit, each.limit, each.without.measured,
+                             each.without.holds, each.with.measured, each.with.holds);
     found.lines.push_back(fmt::format("{}: without its remedy it {} ({}); with it, it {} ({})", each.name,
                                       each.without.holds ? "HOLDS" : "fails", each.without.figure,
                                       each.with.holds ? "holds" : "FAILS", each.with.figure));

@@ -11,6 +11,7 @@
 
 #include "reproduce/reproduce.h"
 #include "scene/scalpel_paths.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -158,12 +159,8 @@ void turn(Reproduction& paper) {
 struct Spread {
   double median, high;
 };
-Spread spread_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-  };
-  return {at(0.5), at(0.95)};
+Spread spread_of(const std::vector<double>& values) {
+  return {quantile(values, 0.5), quantile(values, 0.95)};
 }
 
 /// Poses in which the blade cuts the surface, with velocities up to 50 mm/s and turns up to a speed [rad/s].

@@ -10,10 +10,12 @@
 #include <kerf/models/piecewise.h>
 
 #include "fits/fit_recording.h"
+#include "fits/fit_series.h"
 #include "loop/command.h"
 #include "report/charts.h"
 #include "reproduce/reproduce.h"
 #include "segment/segment.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -85,7 +87,8 @@ schema::Recording record(const Tissue& tissue, std::uint64_t seed, double second
 
 /// The averaged closing and how a law follows it.
 struct Averaged {
-  std::vector<double> angle_deg, penetration, force_n;
+  std::vector<double> angle_deg;
+  AxisSeries series;  ///< at one row a tick
 };
 Averaged averaged(const schema::Recording& recording, const models::Contact& contact) {
   const schema::Cycles& cycles = *recording.cycles;
@@ -93,15 +96,17 @@ Averaged averaged(const schema::Recording& recording, const models::Contact& con
   for (std::size_t i = 0; i < cycles.grid.size(); ++i) {
     if (!std::isfinite(cycles.closing_mean[i])) continue;
     mean.angle_deg.push_back(cycles.grid[i] / degree);
-    mean.penetration.push_back(contact.motion(cycles.grid[i], 0.0).penetration);
-    mean.force_n.push_back(cycles.closing_mean[i]);
+    mean.series.time_s.push_back(period_s * static_cast<double>(mean.series.time_s.size()));
+    mean.series.penetration.push_back(contact.motion(cycles.grid[i], 0.0).penetration);
+    mean.series.velocity.push_back(1.0);
+    mean.series.force.push_back(cycles.closing_mean[i]);
   }
   return mean;
 }
 std::vector<double> closing_force(const models::Law& fitted, const Averaged& mean) {
   const models::Law law = without_rendering_aids(fitted);
   std::vector<double> force;
-  for (const double penetration : mean.penetration) {
+  for (const double penetration : mean.series.penetration) {
     auto state = law.initial_state();
     force.push_back(law.step(state, models::Motion{penetration, 1.0}, period_s).force);
   }
@@ -111,12 +116,10 @@ std::vector<double> closing_force(const models::Law& fitted, const Averaged& mea
 double relative_error(const std::vector<double>& force, const Averaged& mean) {
   std::vector<double> errors;
   for (std::size_t i = 0; i < force.size(); ++i) {
-    errors.push_back(std::abs(force[i] - mean.force_n[i]) /
-                     std::max(std::abs(mean.force_n[i]), least_force_n));
+    errors.push_back(std::abs(force[i] - mean.series.force[i]) /
+                     std::max(std::abs(mean.series.force[i]), least_force_n));
   }
-  const auto high = errors.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(errors.size()));
-  std::nth_element(errors.begin(), high, errors.end());
-  return *high;
+  return quantile(std::move(errors), 0.95);
 }
 
 LawFile fitted(const schema::Recording& recording, const std::string& model) {
@@ -132,13 +135,8 @@ LawFile fitted(const schema::Recording& recording, const std::string& model) {
 
 /// A segmented model of the averaged closing alone, as [Okamura2003] draws it.
 models::Law segmented(const Averaged& mean, std::size_t segments) {
-  std::vector<double> time_s, velocity;
-  for (std::size_t i = 0; i < mean.force_n.size(); ++i) time_s.push_back(period_s * static_cast<double>(i));
-  velocity.assign(time_s.size(), 1.0);
   // The grid runs over the angle, hence out of the tissue.
-  const fitting::Series series{
-      .time_s = time_s, .penetration = mean.penetration, .velocity = velocity, .force = mean.force_n};
-  return fitting::fit("piecewise", series,
+  return fitting::fit("piecewise", fitted_view(mean.series),
                       {.law_options = {{"segments", static_cast<double>(segments)}}, .folds = 2})
       .law();
 }
@@ -176,7 +174,7 @@ void loops_and_segments(Reproduction& paper, const std::vector<schema::Recording
       fewest = n;
       models_chart.curves.push_back({.label = tissues[t].name,
                                      .x = mean.angle_deg,
-                                     .y = mean.force_n,
+                                     .y = mean.series.force,
                                      .colour = Colour::grey,
                                      .mark = Mark::points,
                                      .width = 0.7});
@@ -328,8 +326,11 @@ void analytical(Reproduction& paper, const std::vector<schema::Recording>& recor
     best = std::min(best, error);
     worst = std::max(worst, error);
     text += fmt::format("{}{} {:.0f} %", t ? ", " : "", tissues[t].name, 100.0 * error);
-    chart.curves.push_back(
-        {.x = mean.angle_deg, .y = mean.force_n, .colour = colours[t], .mark = Mark::points, .width = 0.7});
+    chart.curves.push_back({.x = mean.angle_deg,
+                            .y = mean.series.force,
+                            .colour = colours[t],
+                            .mark = Mark::points,
+                            .width = 0.7});
     chart.curves.push_back({.label = tissues[t].name, .x = mean.angle_deg, .y = force, .colour = colours[t]});
   }
   paper.figures.push_back({"analytical", std::move(chart)});

@@ -8,6 +8,7 @@
 #include <kerf/models/scissors_mesh.h>
 
 #include "reproduce/reproduce.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -97,8 +98,7 @@ double tick_time(const models::ScissorsMesh& law) {
     (void)law.step(state, {{theta, 0.0}, {-rate, 0.0}}, period_s);
     times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   }
-  std::nth_element(times.begin(), times.begin() + 198, times.end());
-  return times[198];
+  return quantile(std::move(times), 0.99);
 }
 
 void update_rate(Reproduction& paper) {

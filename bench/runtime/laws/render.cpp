@@ -13,40 +13,6 @@
 
 namespace kerf::bench {
 
-double resisting(double force, bool is_measured, const models::Contact& contact) {
-  return is_measured ? force : -contact.direction * force;
-}
-
-AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, const models::Contact& contact) {
-  const std::size_t dimensions = recording.dimensions();
-  if (axis >= dimensions) throw std::invalid_argument("the recording has no such axis");
-  const bool measured = !recording.force_measured.empty();
-  const auto& force = measured ? recording.force_measured : recording.force_commanded;
-  if (force.empty()) throw std::invalid_argument("the recording holds no force");
-
-  AxisSeries series;
-  series.time_s = recording.time;
-  for (std::size_t row = 0; row < recording.rows(); ++row) {
-    const std::size_t at = row * dimensions + axis;
-    const models::Motion motion = contact.motion(recording.position[at], recording.velocity[at]);
-    series.penetration.push_back(motion.penetration);
-    series.velocity.push_back(motion.velocity);
-    series.force.push_back(resisting(force[at], measured, contact));
-  }
-  if (recording.cycles) {
-    series.cycle.assign(recording.rows(), 0);
-    for (const schema::PhaseSpan& phase : recording.cycles->phases) {
-      if (phase.begin > phase.end || phase.end > recording.rows())
-        throw schema::FormatError(
-            fmt::format("/cycles: a phase of cycle {} has rows {} to {} of {}; run 'kerf segment' again",
-                        phase.cycle, phase.begin, phase.end, recording.rows()));
-      std::fill(series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.begin),
-                series.cycle.begin() + static_cast<std::ptrdiff_t>(phase.end), phase.cycle);
-    }
-  }
-  return series;
-}
-
 models::Contact contact_of(const schema::Recording& recording, std::size_t axis) {
   if (!recording.header.scene_toml.empty()) {
     const toml::table scene = parse_toml(recording.header.scene_toml, "the recording's scene");

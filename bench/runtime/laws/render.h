@@ -5,25 +5,9 @@
 #include <kerf/models/law.h>
 #include <kerf/schema/recording.h>
 
+#include "recordings/axis_series.h"
+
 namespace kerf::bench {
-
-/// One axis of a recording as a law sees it: penetration, velocity and resisting force, one a row.
-struct AxisSeries {
-  std::vector<double> time_s;
-  std::vector<double> penetration;
-  std::vector<double> velocity;
-  std::vector<double> force;
-  std::vector<std::uint32_t> cycle;  ///< cycle of each row, 0 for none; empty if the recording has no cycles
-};
-
-/// A force as it resists engagement: a sensor gives it as it is, a command pushes against the direction of
-/// engagement.
-[[nodiscard]] double resisting(double force, bool is_measured, const models::Contact& contact);
-
-/// Takes the series of an axis out of a recording; the force is the measured one where there is a sensor,
-/// else the commanded one with its sign turned to resisting. @throws std::invalid_argument (no such axis).
-[[nodiscard]] AxisSeries axis_series(const schema::Recording& recording, std::size_t axis,
-                                     const models::Contact& contact);
 
 /// The contact of a recording: that of the tissue in its scene if it was simulated, else the onset that
 /// `kerf prepare` found, else from its cycles if it was segmented, else the smallest position with direction

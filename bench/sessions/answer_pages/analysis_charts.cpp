@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
@@ -288,10 +289,9 @@ Chart time_chart(const Study& study, const Analysis& analysis) {
                        Colour colour) {
     const std::vector<double> times = times_of(study, subject, right);
     if (times.empty()) return;
-    const psychophysics::Interval quartiles{.lower = quantile_of(times, 0.25),
-                                            .upper = quantile_of(times, 0.75)};
+    const psychophysics::Interval quartiles{.lower = quantile(times, 0.25), .upper = quantile(times, 0.75)};
     most = std::max(most, quartiles.upper);
-    forest.add(fmt::format("{} ({})", name, times.size()), quantile_of(times, 0.5), quartiles, colour);
+    forest.add(fmt::format("{} ({})", name, times.size()), quantile(times, 0.5), quartiles, colour);
   };
   const auto add_all = [&](const std::string& name, const std::string* subject) {
     if (apart) {

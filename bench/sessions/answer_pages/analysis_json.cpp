@@ -127,12 +127,8 @@ json bias_as_json(const SlotBias& bias, Design design) {
 }
 
 json scale_as_json(const psychophysics::Ranking& ranking) {
-  json worth = json::array();
-  json error = json::array();
-  for (const double value : ranking.worth) worth.push_back(json_number(value));
-  for (const double value : ranking.standard_error) error.push_back(json_number(value));
-  return {{"worth", std::move(worth)},
-          {"std_error", std::move(error)},
+  return {{"worth", json_numbers(ranking.worth)},
+          {"std_error", json_numbers(ranking.standard_error)},
           {"all_equal",
            {{"ratio", json_number(ranking.ratio)},
             {"freedom", ranking.ratio_degrees_of_freedom},

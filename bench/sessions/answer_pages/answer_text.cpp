@@ -8,6 +8,7 @@
 
 #include "import/decimal.h"
 #include "import/text_layout.h"
+#include "tables/csv.h"
 
 namespace kerf::bench {
 namespace {
@@ -19,7 +20,7 @@ void take_remark(std::string_view line, std::size_t number, AnswerText& text) {
   const auto trimmed = [](std::string_view part) {
     const auto begin = part.find_first_not_of(" \t#\"");
     if (begin == std::string_view::npos) return std::string();
-    return std::string(part.substr(begin, part.find_last_not_of(" \t\"") - begin + 1));
+    return csv_unquoted(part.substr(begin, part.find_last_not_of(" \t\"") - begin + 1));
   };
   const std::string key = trimmed(line.substr(0, equals));
   if (key == "design" || key == "task" || key == "name")
@@ -51,7 +52,8 @@ AnswerText split_answers(std::string_view content, const std::string& file) {
     }
     if (text.head.empty()) separator = separator_of(line);
     std::vector<std::string> fields;
-    for (const std::string_view field : split_line(line, separator)) fields.push_back(to_utf8(field));
+    for (const std::string_view field : split_line(line, separator))
+      fields.push_back(csv_unquoted(to_utf8(field)));
     if (text.head.empty()) {
       text.head_line = number;
       text.head = std::move(fields);

@@ -1,23 +1,11 @@
-#include <cmath>
-
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include "answers/answers_table.h"
+#include "tables/csv.h"
 
 namespace kerf::bench {
 namespace {
-
-std::string csv_field(std::string text) {
-  if (text.find_first_of(",;\"\t\n\r#") == std::string::npos) return text;
-  for (char& c : text) {
-    if (c == '"') c = '\'';
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return fmt::format("\"{}\"", text);
-}
-
-std::string field(double value) { return std::isfinite(value) ? fmt::format("{}", value) : std::string(); }
 
 const char* task_name(const psychophysics::Task& task) {
   using psychophysics::Decision;
@@ -38,7 +26,7 @@ const char* task_name(const psychophysics::Task& task) {
 
 std::string answers_csv(const Study& study) {
   std::string text =
-      fmt::format("# name = \"{}\"\n# design = \"{}\"\n", csv_field(study.name), name_of(study.design));
+      fmt::format("# name = {}\n# design = \"{}\"\n", csv_quoted(study.name), name_of(study.design));
   if (const char* task = study.task ? task_name(*study.task) : nullptr)
     text += fmt::format("# task = \"{}\"\n", task);
   const bool two_sided = study.scale.two_sided();
@@ -50,7 +38,7 @@ std::string answers_csv(const Study& study) {
   text += fmt::format("subject,number,practice,tissue,first,second,level,{},response_s,switches\n", answer);
   for (const Judgement& each : study.judgements) {
     const auto sample = [&](std::size_t at) {
-      return at < study.samples.size() ? csv_field(study.samples[at]) : std::string();
+      return at < study.samples.size() ? csv_text(study.samples[at]) : std::string();
     };
     std::string said = each.is_right() ? "1" : "0";
     if (study.slots_known) {
@@ -58,9 +46,10 @@ std::string answers_csv(const Study& study) {
     } else if (preference) {
       said = sample(each.pair[each.is_right() ? 1 : 0]);
     }
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(each.subject), each.session,
-                        each.practice ? 1 : 0, csv_field(each.tissue), sample(each.pair[0]),
-                        sample(each.pair[1]), field(each.level), said, field(each.response_s), each.switches);
+    text +=
+        fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_text(each.subject), each.session,
+                    each.practice ? 1 : 0, csv_text(each.tissue), sample(each.pair[0]), sample(each.pair[1]),
+                    csv_number(each.level), said, csv_number(each.response_s), each.switches);
   }
   return text;
 }

@@ -6,6 +6,8 @@
 #include <map>
 #include <numbers>
 
+#include "signal/quantiles.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -50,15 +52,6 @@ void compare(std::vector<RankedTime> times, ResponseTimes& result) {
 
 }  // namespace
 
-double quantile_of(std::vector<double> values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
 ResponseTimes response_times(const Study& study, const std::vector<const Judgement*>& judgements) {
   std::vector<double> all;
   std::vector<double> right;
@@ -72,9 +65,9 @@ ResponseTimes response_times(const Study& study, const std::vector<const Judgeme
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   ResponseTimes result{.trials = all.size(),
-                       .median_s = quantile_of(all, 0.5),
-                       .lower_quartile_s = quantile_of(all, 0.25),
-                       .upper_quartile_s = quantile_of(all, 0.75),
+                       .median_s = quantile(all, 0.5),
+                       .lower_quartile_s = quantile(all, 0.25),
+                       .upper_quartile_s = quantile(all, 0.75),
                        .median_right_s = none,
                        .median_wrong_s = none,
                        .right_is_faster = none,
@@ -87,12 +80,12 @@ ResponseTimes response_times(const Study& study, const std::vector<const Judgeme
     result.note = "no answer is right or wrong";
     return result;
   }
-  result.median_right_s = quantile_of(right, 0.5);
-  result.median_wrong_s = quantile_of(wrong, 0.5);
+  result.median_right_s = quantile(right, 0.5);
+  result.median_wrong_s = quantile(wrong, 0.5);
   std::vector<RankedTime> times;
   for (const Judgement* judgement : judgements) {
     if (!std::isfinite(judgement->response_s)) continue;
-    const double median = quantile_of(by_subject.at(judgement->subject), 0.5);
+    const double median = quantile(by_subject.at(judgement->subject), 0.5);
     times.push_back(
         {.time = judgement->response_s / (median > 0.0 ? median : 1.0), .is_right = judgement->is_right()});
   }

@@ -26,7 +26,4 @@ struct ResponseTimes {
 [[nodiscard]] ResponseTimes response_times(const Study& study,
                                            const std::vector<const Judgement*>& judgements);
 
-/// NaN of nothing.
-[[nodiscard]] double quantile_of(std::vector<double> values, double share);
-
 }  // namespace kerf::bench

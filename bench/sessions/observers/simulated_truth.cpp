@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 
+#include <boost/math/tools/roots.hpp>
 #include <fmt/core.h>
 
 #include <kerf/psychophysics/dprime.h>
@@ -117,11 +120,10 @@ double AnswerModel::level_at(double wanted, double from, double to, bool lapses)
     lower = level;
   }
   if (std::isnan(upper)) return not_a_number;
-  for (int halving = 0; halving < 60; ++halving) {
-    const double middle = 0.5 * (lower + upper);
-    (excess(middle) >= 0.0 ? upper : lower) = middle;
-  }
-  return upper;
+  if (excess(lower) >= 0.0) return lower;
+  std::uintmax_t rounds = 60;
+  const boost::math::tools::eps_tolerance<double> close;
+  return boost::math::tools::bisect(excess, lower, upper, close, rounds).second;
 }
 
 void AnswerModel::find_jnd(std::optional<double> criterion, SimulatedTruth& truth) const {

@@ -1,8 +1,7 @@
-#include <cmath>
-
 #include <fmt/core.h>
 
 #include "observers/simulation_report.h"
+#include "tables/csv.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {
@@ -112,7 +111,7 @@ std::string simulation_csv(const Simulation& simulation) {
   std::string csv =
       "trials,answers,experiments,power,power_lower,power_upper,power_by_theory,jnd_coverage,jnd_bias,"
       "jnd_spread,jnd_interval_ratio\n";
-  const auto cell = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; };
+  const auto cell = [](double value) { return csv_number(value, 6); };
   for (const PowerPoint& point : simulation.curve) {
     const SimulatedShare& power = point.found.significant;
     const bool has_test = power.count.trials > 0;

@@ -1,9 +1,10 @@
 #include "sealed/plan_json.h"
 
-#include <cmath>
 #include <stdexcept>
 
 #include <fmt/core.h>
+
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 
@@ -13,7 +14,7 @@ Json to_json(const TrialPlan& trial) {
   return {{"tissue", trial.tissue},
           {"pair", trial.pair},
           {"slots", trial.slots},
-          {"level", std::isnan(trial.level) ? Json(nullptr) : Json(trial.level)},
+          {"level", json_number(trial.level)},
           {"practice", trial.practice}};
 }
 

@@ -6,20 +6,12 @@
 
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
+#include "tables/csv.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n#") == std::string::npos) return text;
-  std::string cell = "\"";
-  for (const char letter : text) cell += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return cell + '"';
-}
-
-std::string number(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 /// "second/first": which of the pair each slot played.
 std::string slots_in_words(const Protocol& protocol, const TrialPlan& trial) {
@@ -35,13 +27,14 @@ std::string row_of(const SessionStore& store, std::size_t index, bool some_answe
   const RecordedTrial& trial = store.trials()[index];
   const std::size_t right = trial.what.right(protocol);
   const auto label = [&](std::size_t slot) { return label_of(protocol.design, slot); };
-  return fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject, store.session().number,
-      index + 1, trial.what.practice ? 1 : 0, quoted(protocol.tissues[trial.what.tissue].name),
-      quoted(protocol.samples[trial.what.pair[0]].name), quoted(protocol.samples[trial.what.pair[1]].name),
-      number(trial.what.level), slots_in_words(protocol, trial.what), label(right), label(trial.answer),
-      some_answer_is_right ? (trial.answer == right ? "1" : "0") : "", number(trial.response_s),
-      trial.switches, trial.at);
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
+                     store.session().number, index + 1, trial.what.practice ? 1 : 0,
+                     csv_text(protocol.tissues[trial.what.tissue].name),
+                     csv_text(protocol.samples[trial.what.pair[0]].name),
+                     csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
+                     slots_in_words(protocol, trial.what), label(right), label(trial.answer),
+                     some_answer_is_right ? (trial.answer == right ? "1" : "0") : "",
+                     csv_number(trial.response_s), trial.switches, trial.at);
 }
 
 /// What the design alone does not say of how d' is reckoned.
@@ -53,7 +46,7 @@ std::string task_line(const Protocol& protocol) {
 std::string table_of(const SessionStore& store) {
   const bool some_answer_is_right = study_of(store.protocol()).task.has_value();
   std::string table = fmt::format(
-      "# name = \"{}\"\n# design = \"{}\"\n{}"
+      "# name = {}\n# design = \"{}\"\n{}"
       "# level: the second is the first times 1 + level; slots: which of the two each slot played, in the "
       "order "
       "of their labels; right: of a preference the slot that played the second; response_s [s]: from the "
@@ -62,7 +55,7 @@ std::string table_of(const SessionStore& store) {
       "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
       "switches,"
       "at\n",
-      store.protocol().name, name_of(store.protocol().design), task_line(store.protocol()));
+      csv_quoted(store.protocol().name), name_of(store.protocol().design), task_line(store.protocol()));
   for (std::size_t i = 0; i < store.trials().size(); ++i) table += row_of(store, i, some_answer_is_right);
   return table;
 }

@@ -5,8 +5,8 @@
 #include "chart/speed_accuracy.h"
 #include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
-#include "fits/fit_series.h"
 #include "laws/render.h"
+#include "recordings/axis_series.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -64,10 +64,10 @@ EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
 }
 
 CurveSource curve_source(const schema::Recording& recording, std::size_t axis, const EditorCurve& curve) {
-  const FitSeries series = fit_series(recording, axis, curve.contact);
-  return {.recording_uuid = recording.header.uuid,
-          .recording_sha256 = {},
-          .rendering_aids = with_rendering_aids({{"loop", true}}, series.axis)};
+  return {
+      .recording_uuid = recording.header.uuid,
+      .recording_sha256 = {},
+      .rendering_aids = with_rendering_aids({{"loop", true}}, fit_series(recording, axis, curve.contact))};
 }
 
 }  // namespace kerf::bench

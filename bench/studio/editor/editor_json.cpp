@@ -1,25 +1,9 @@
 #include "editor/editor_json.h"
 
-#include <cmath>
-
 #include "http/routes.h"
+#include "tables/json_number.h"
 
 namespace kerf::bench {
-namespace {
-
-nlohmann::ordered_json with_gaps(const std::vector<double>& values) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const double value : values) {
-    if (std::isfinite(value)) {
-      json.push_back(value);
-    } else {
-      json.push_back(nullptr);
-    }
-  }
-  return json;
-}
-
-}  // namespace
 
 nlohmann::ordered_json curve_as_json(const EditorCurve& curve, const std::string& recording) {
   return {{"recording", recording},
@@ -31,8 +15,8 @@ nlohmann::ordered_json curve_as_json(const EditorCurve& curve, const std::string
           {"contact_position", curve.contact.position},
           {"closing_direction", curve.contact.direction},
           {"penetration", curve.penetration},
-          {"closing", with_gaps(curve.closing)},
-          {"opening", with_gaps(curve.opening)},
+          {"closing", json_numbers(curve.closing)},
+          {"opening", json_numbers(curve.opening)},
           {"jnd", {{"weber_fraction", curve.jnd.weber_fraction}, {"threshold_n", curve.jnd.threshold_n}}}};
 }
 

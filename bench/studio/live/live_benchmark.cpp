@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -14,6 +14,7 @@
 #include "live/live_loop.h"
 #include "loop/clock.h"
 #include "run/run.h"
+#include "signal/quantiles.h"
 #include "views/trace_view.h"
 
 // What watching costs a loop, and what it costs itself. Prints JSON.
@@ -100,14 +101,13 @@ void run_live(double seconds, bool is_viewed) {
 
 template <typename Action>
 double median_us(Action action) {
-  std::array<double, 201> times{};
+  std::vector<double> times(201);
   for (double& time : times) {
     const std::int64_t begin_ns = bench::WallClock::now_ns();
     action();
     time = 1e-3 * static_cast<double>(bench::WallClock::now_ns() - begin_ns);
   }
-  std::ranges::nth_element(times, times.begin() + times.size() / 2);
-  return times[times.size() / 2];
+  return bench::median(std::move(times));
 }
 
 /// 24 traces: three axes that are measured, and seven channels.

@@ -1,11 +1,12 @@
 #include "live/live_event.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <span>
 
 #include <fmt/format.h>
+
+#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -14,26 +15,13 @@ namespace {
 constexpr std::uint64_t max_columns = 600;
 constexpr std::uint64_t max_ticks = 6000;
 
-void append_number(fmt::memory_buffer& text, double value) {
-  if (std::isnan(value)) {
-    fmt::format_to(std::back_inserter(text), "null");
-  } else {
-    fmt::format_to(std::back_inserter(text), "{:.6g}", value);
-  }
-}
-
 /// [[..],[..]], trace by trace.
 void append_columns(fmt::memory_buffer& text, const std::vector<double>& values, std::size_t traces,
                     std::size_t columns) {
   text.push_back('[');
   for (std::size_t trace = 0; trace < traces; ++trace) {
     if (trace > 0) text.push_back(',');
-    text.push_back('[');
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (column > 0) text.push_back(',');
-      append_number(text, values[trace * columns + column]);
-    }
-    text.push_back(']');
+    append_json_numbers(text, std::span(values).subspan(trace * columns, columns));
   }
   text.push_back(']');
 }

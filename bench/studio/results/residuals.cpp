@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "fits/choice.h"
-#include "fits/fit_series.h"
 #include "laws/render.h"
+#include "recordings/axis_series.h"
 
 namespace kerf::bench {
 namespace {
@@ -112,7 +112,7 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
                   std::size_t columns) {
   const schema::Axis& about = recording.axes.at(axis);
   check_units(law, about);
-  const AxisSeries series = fit_series(recording, axis, law.contact).axis;
+  const AxisSeries series = fit_series(recording, axis, law.contact);
   if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
   const std::vector<double> force = render(without_rendering_aids(law.law), series);
   std::vector<double> residual;

@@ -1,7 +1,6 @@
 #include "views/hysteresis_loops.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -10,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "laws/render.h"
+#include "plot/plot.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -127,33 +127,6 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
   return cycles;
 }
 
-std::vector<std::size_t> loop_points(const std::vector<double>& position, const std::vector<double>& force,
-                                     std::size_t most) {
-  const std::size_t count = position.size();
-  constexpr std::size_t kept_of_each = 6;
-  const std::size_t stretches = count <= most ? count : most / kept_of_each;
-  std::vector<std::size_t> points;
-  for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
-    const std::size_t begin = stretch * count / stretches;
-    const std::size_t end = (stretch + 1) * count / stretches;
-    std::array kept{begin, begin, begin, begin, begin, end - 1};
-    const auto replace = [](std::size_t& at, const std::vector<double>& values, std::size_t with,
-                            bool larger) {
-      const bool is_beyond = larger ? values[with] > values[at] : values[with] < values[at];
-      if (is_beyond || values[at] != values[at]) at = with;
-    };
-    for (std::size_t i = begin; i < end; ++i) {
-      replace(kept[1], position, i, false);
-      replace(kept[2], position, i, true);
-      replace(kept[3], force, i, false);
-      replace(kept[4], force, i, true);
-    }
-    std::sort(kept.begin(), kept.end());
-    points.insert(points.end(), kept.begin(), std::unique(kept.begin(), kept.end()));
-  }
-  return points;
-}
-
 std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_t axis,
                                    const AxisCycles& cycles, std::size_t first, std::size_t count) {
   std::vector<ForceLoop> loops;
@@ -163,7 +136,7 @@ std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_
     const auto position = axis_of(file, Column::position, axis, shown[i].begin, shown[i].end);
     const auto force = axis_of(file, force_of(file), axis, shown[i].begin, shown[i].end);
     ForceLoop loop{.cycle = shown[i].cycle, .position = {}, .force = {}};
-    for (const std::size_t at : loop_points(position, force, max_points)) {
+    for (const std::size_t at : decimated_rows({position, force}, max_points)) {
       loop.position.push_back(position[at]);
       loop.force.push_back(resisting(force[at], is_measured(file), cycles.contact));
     }

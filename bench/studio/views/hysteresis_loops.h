@@ -44,8 +44,4 @@ struct ForceLoop {
                                                  const AxisCycles& cycles, std::size_t first,
                                                  std::size_t count);
 
-/// Rows to keep of many, so that at most `most` are left (at least 6).
-[[nodiscard]] std::vector<std::size_t> loop_points(const std::vector<double>& position,
-                                                   const std::vector<double>& force, std::size_t most);
-
 }  // namespace kerf::bench

@@ -1,8 +1,6 @@
 #include "views/recording_json.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <span>
 #include <vector>
 
@@ -26,23 +24,10 @@ std::string dumped(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-/// A list of numbers, by hand: a loop has some hundred, and there may be a hundred loops.
-void append_list(std::string& text, std::span<const double> values) {
-  text += '[';
-  for (const double value : values) {
-    if (text.back() != '[') text += ',';
-    if (std::isfinite(value)) {
-      fmt::format_to(std::back_inserter(text), "{:.6g}", value);
-    } else {
-      text += "null";
-    }
-  }
-  text += ']';
-}
-
+/// A loop has some hundred numbers, and there may be a hundred loops.
 void append_member(std::string& text, const char* name, std::span<const double> values) {
   text += fmt::format(",\"{}\":", name);
-  append_list(text, values);
+  append_json_numbers(text, values);
 }
 
 ordered_json axes_of(const schema::Recording& about) {
@@ -163,7 +148,7 @@ std::string loops_json(RecordingView& recording, std::size_t axis, std::size_t f
     text += '}';
   }
   text += "],\"average\":{\"position\":";
-  append_list(text, cycles.grid);
+  append_json_numbers(text, cycles.grid);
   append_member(text, "closing", cycles.closing);
   append_member(text, "opening", cycles.opening);
   return text + "}}";

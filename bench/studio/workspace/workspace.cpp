@@ -7,12 +7,12 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <openssl/sha.h>
 
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
 #include "http/routes.h"
+#include "recordings/provenance.h"
 
 namespace kerf::bench {
 namespace {
@@ -46,11 +46,7 @@ std::optional<FileKind> kind_of(const std::string& name) {
   return std::nullopt;
 }
 
-std::string id_of_name(const std::string& name) {
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
-  SHA256(reinterpret_cast<const unsigned char*>(name.data()), name.size(), digest.data());
-  return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + 8, ""));
-}
+std::string id_of_name(const std::string& name) { return sha256_of(std::string_view(name)).substr(0, 16); }
 
 bool is_name(std::string_view name) {
   const auto is_letter_or_digit = [](char c) {

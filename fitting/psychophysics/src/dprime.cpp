@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <kerf/psychophysics/dprime.h>
@@ -94,34 +94,15 @@ double log_probability(Count count, double rate) {
   return sum;
 }
 
-/// Largest over the criterion of the log-likelihood of two rates whose z lie `separation` apart: concave, so
-/// halved.
+/// Largest over the criterion of the log-likelihood of two rates whose z lie `separation` apart: concave.
 double profile(Count hits, Count false_alarms, double separation) {
-  const auto at = [&](double centre) {
-    return log_probability(hits, normal_probability(centre + 0.5 * separation)) +
+  const auto loss = [&](double centre) {
+    return -log_probability(hits, normal_probability(centre + 0.5 * separation)) -
            log_probability(false_alarms, normal_probability(centre - 0.5 * separation));
   };
-  constexpr double golden = 0.6180339887498949;
-  double lower = -8.0 - 0.5 * std::abs(separation);
-  double upper = -lower;
-  double a = upper - golden * (upper - lower);
-  double b = lower + golden * (upper - lower);
-  double at_a = at(a);
-  double at_b = at(b);
-  while (upper - lower > 1e-7) {
-    if (at_a < at_b) {
-      lower = std::exchange(a, b);
-      at_a = std::exchange(at_b, 0.0);
-      b = lower + golden * (upper - lower);
-      at_b = at(b);
-    } else {
-      upper = std::exchange(b, a);
-      at_b = std::exchange(at_a, 0.0);
-      a = upper - golden * (upper - lower);
-      at_a = at(a);
-    }
-  }
-  return std::max(at_a, at_b);
+  const double reach = 8.0 + 0.5 * std::abs(separation);
+  constexpr int bits = std::numeric_limits<double>::digits / 2;
+  return -boost::math::tools::brent_find_minima(loss, -reach, reach, bits).second;
 }
 
 Interval likelihood_interval(Count hits, Count false_alarms, double confidence) {

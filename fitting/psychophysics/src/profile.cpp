@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+
+#include <boost/math/tools/toms748_solve.hpp>
 
 namespace kerf::psychophysics {
 double Profile::end(std::size_t index, double direction) const {
@@ -22,26 +25,17 @@ double Profile::end(std::size_t index, double direction) const {
   }
 }
 
-/// False position after Illinois. It keeps the signs that it was given, since what is found from another
-/// start may differ by more than nothing.
+/// The values at both ends are those that were found on the way: from another start there may be others.
 double Profile::crossing(std::size_t index, Point& like, double inside, double below, double outside,
                          double above) const {
-  for (int i = 0; i < 80 && std::abs(outside - inside) > 1e-9; ++i) {
-    const double share = std::clamp(below / (below - above), 0.01, 0.99);
-    const double middle = inside + share * (outside - inside);
-    const double here = excess(index, middle, like);
-    if (std::abs(here) < 1e-9) return middle;
-    if (here > 0.0) {
-      outside = middle;
-      above = here;
-      below *= 0.5;
-    } else {
-      inside = middle;
-      below = here;
-      above *= 0.5;
-    }
-  }
-  return 0.5 * (inside + outside);
+  const auto loss = [&](double value) { return excess(index, value, like); };
+  const auto close = [](double lower, double upper) { return upper - lower < 1e-9; };
+  std::uintmax_t rounds = 80;
+  const auto [lower, upper] =
+      inside < outside
+          ? boost::math::tools::toms748_solve(loss, inside, outside, below, above, close, rounds)
+          : boost::math::tools::toms748_solve(loss, outside, inside, above, below, close, rounds);
+  return 0.5 * (lower + upper);
 }
 
 /// Begins at the point last found, which it moves.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <Eigen/Eigenvalues>
+#include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "infinite.h"
 #include "least_squares.h"
@@ -36,9 +37,7 @@ double deviation_of(const std::vector<Vector6d>& residuals, Eigen::Index axis, b
   }
   std::vector<double> sizes;
   for (const Vector6d& r : residuals) sizes.push_back(std::abs(r[axis]));
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
+  return 1.4826 * boost::math::statistics::median(sizes);
 }
 
 /// The noise of each axis: that given, else from residuals, and never so small against the force that

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boost/math/statistics/univariate_statistics.hpp>
+
 namespace kerf::fitting {
 namespace {
 
@@ -76,10 +78,8 @@ Vector6d noise_of(const BladeRows& rows, const BladeFitOptions& options) {
       largest = std::max(largest, rows.force[i].segment<3>(axis < 3 ? 0 : 3).norm());
     }
     if (sizes.empty()) continue;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
     // 20 = 1 + 9 + 9 + 1; and no force is known better than to a thousandth.
-    noise[axis] = std::max(1.4826 * *middle / std::sqrt(20.0), 1e-3 * largest);
+    noise[axis] = std::max(1.4826 * boost::math::statistics::median(sizes) / std::sqrt(20.0), 1e-3 * largest);
   }
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     const double given = options.noise[static_cast<std::size_t>(axis)];

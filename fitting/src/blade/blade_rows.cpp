@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <boost/math/statistics/univariate_statistics.hpp>
+
 namespace kerf::fitting {
 namespace {
 
@@ -64,9 +66,7 @@ Vector3d three(std::span<const double> values, std::size_t at) {
 double median_step(std::span<const double> time_s) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return boost::math::statistics::median(steps);
 }
 
 }  // namespace

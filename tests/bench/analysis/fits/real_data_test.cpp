@@ -9,6 +9,7 @@
 
 #include <kerf/fitting/fit.h>
 
+#include "fits/fit_series.h"
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
@@ -37,18 +38,6 @@ class RealFit : public testing::Test {
     }
     return few;
   }
-  static fitting::Series view(const AxisSeries& series) {
-    return {.time_s = series.time_s,
-            .penetration = series.penetration,
-            .velocity = series.velocity,
-            .force = series.force,
-            .cycle = series.cycle};
-  }
-  static double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-  }
   static double rms(const std::vector<double>& values) {
     double squares = 0.0;
     for (const double value : values) squares += value * value;
@@ -64,9 +53,10 @@ TEST_F(RealFit, OfATendonNeedsMoreThanOneRelaxationTime) {
   KERF_NEEDS_DATA("tendon/relaxation_fresh_1.csv");
   const auto tendon = imported("tendon/relaxation_fresh_1.csv", "time=Time,position=Extension,force=Load");
   const AxisSeries series = axis_series(tendon, 0, {.position = 0.0, .direction = 1.0});
-  const auto one = fitting::fit("kelvin", view(series));
-  const auto several = fitting::fit("maxwell", view(series));  // as many arms as held-out blocks pay for
-  const auto power = fitting::fit("springpot", view(series));
+  const auto one = fitting::fit("kelvin", fitted_view(series));
+  const auto several =
+      fitting::fit("maxwell", fitted_view(series));  // as many arms as held-out blocks pay for
+  const auto power = fitting::fit("springpot", fitted_view(series));
   EXPECT_GE(std::get<double>(several.law_options.at("arms")), 2.0);
   EXPECT_LT(several.cv_rmse, 0.5 * one.cv_rmse);
   // In the hold alone three arms leave 6 mN, the sensor's noise included: one misses by ten times that.
@@ -86,11 +76,11 @@ TEST_F(RealFit, OfAPolymerRelaxesAsAPowerOfTime) {
   const auto polymer = imported("vhb/relaxation_4d0.csv", "time=时间,position=位移,force=3");
   constexpr std::size_t hold = 255;
   const AxisSeries series = thinned(axis_series(polymer, 0, {.position = 0.0, .direction = 1.0}), 15, hold);
-  const auto power = fitting::fit("springpot", view(series));
+  const auto power = fitting::fit("springpot", fitted_view(series));
   fitting::FitOptions options;
   for (const double arms : {1.0, 2.0, 3.0}) {
     options.law_options["arms"] = arms;
-    const auto times = fitting::fit("maxwell", view(series), options);
+    const auto times = fitting::fit("maxwell", fitted_view(series), options);
     EXPECT_LT(power.cv_rmse, times.cv_rmse) << arms;
     if (arms < 3.0) {
       EXPECT_LT(power.rmse, 0.5 * times.rmse) << arms;
@@ -181,7 +171,7 @@ class RealGrasper : public RealFit {
 TEST_F(RealGrasper, LosesItsWorkToDryFrictionAtBothSpeeds) {
   const AxisSeries slow = spindle("00", resisting);
   const AxisSeries fast = spindle("33", resisting);
-  const std::vector<fitting::Series> both{view(slow), view(fast)};
+  const std::vector<fitting::Series> both{fitted_view(slow), fitted_view(fast)};
   const auto fit =
       fitting::fit("friction", both, {.folds = 0, .per_recording = {"offset", "stiffness", "coulomb"}});
   ASSERT_TRUE(fit.converged);
@@ -200,8 +190,8 @@ TEST_F(RealGrasper, LosesItsWorkToDryFrictionAtBothSpeeds) {
 // the same law without it.
 TEST_F(RealGrasper, IsNotViscous) {
   for (const auto* number : {"00", "33"}) {
-    const auto with = fitting::fit("friction", view(spindle(number, resisting)), {.folds = 0});
-    const auto without = fitting::fit("friction", view(spindle(number, "3.9811e-5 Nm")), {.folds = 0});
+    const auto with = fitting::fit("friction", fitted_view(spindle(number, resisting)), {.folds = 0});
+    const auto without = fitting::fit("friction", fitted_view(spindle(number, "3.9811e-5 Nm")), {.folds = 0});
     EXPECT_EQ(of(without, "coulomb").value, 0.0) << number;
     EXPECT_EQ(of(without, "coulomb").upper, std::numeric_limits<double>::infinity()) << number;
     EXPECT_GT(without.rmse, 3.0 * with.rmse) << number;
@@ -222,8 +212,8 @@ TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
     punch.cycles = find_cycles(punch, {});
     const AxisSeries series = thinned(axis_series(punch, 0, contact_of(punch, 0)), 10);
     const fitting::FitOptions options{.law_options = {{"segments", 2.0}}, .folds = 12};
-    const double by_way = fitting::fit("piecewise", view(series), options).cv_rmse;
-    const double by_time = fitting::fit("kelvin", view(series), {.folds = 12}).cv_rmse;
+    const double by_way = fitting::fit("piecewise", fitted_view(series), options).cv_rmse;
+    const double by_time = fitting::fit("kelvin", fitted_view(series), {.folds = 12}).cv_rmse;
     EXPECT_EQ(by_way < by_time ? "piecewise" : "kelvin", law) << name << ": " << by_way << " " << by_time;
     // Neither is good enough to be taken for the recording by a hand.
     EXPECT_GT(std::min(by_way, by_time), fitting::ForceJnd{}.at(rms(series.force))) << name;

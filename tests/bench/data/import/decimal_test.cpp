@@ -89,7 +89,7 @@ TEST(Decimal, StopsWhereTheNumberEnds) {
 }
 
 TEST(Decimal, TakesNothingFromWhatIsNoNumber) {
-  for (const auto* text : {"", "-", "+", ".", "abc", "e5", "--1", "+-1"}) {
+  for (const auto* text : {"", "-", "+", ".", "abc", "e5", "--1", "+-1", "-+1", "++1", " 1"}) {
     EXPECT_EQ(read(text).length, 0U) << text;
     EXPECT_EQ(read(text).value, -7.0) << text;
   }

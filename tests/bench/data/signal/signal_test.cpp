@@ -77,16 +77,6 @@ TEST(Derivative, StillHasNeighboursAcrossAGap) {
   EXPECT_THAT(differentiate(std::vector{1.0}, std::vector{7.0}, 0.01), testing::ElementsAre(0.0));
 }
 
-TEST(Median, IsTheMiddleValueOrTheMeanOfTwo) {
-  EXPECT_EQ(median({5.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(median({8.0, 1.0, 2.0, 4.0}), 3.0);
-}
-
-TEST(MedianPeriod, IsNotMovedByAGap) {
-  EXPECT_DOUBLE_EQ(median_period(std::vector{0.0, 1.0, 2.0, 50.0, 51.0}), 1.0);
-  EXPECT_EQ(median_period(std::vector{3.0}), 0.0);
-}
-
 TEST(Interpolation, IsLinearInsideAndHoldsOutside) {
   const std::vector<double> time{0.0, 1.0, 3.0};
   const std::vector<double> value{0.0, 10.0, 0.0};

@@ -80,5 +80,42 @@ TEST(Decimated, LeavesAShortCurveAlone) {
   EXPECT_EQ(decimated(curve).x, curve.x);
 }
 
+TEST(DecimatedRows, KeepTheExtremesOfEveryColumn) {
+  std::vector<double> position(100'000);
+  std::vector<double> force(100'000);
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] = std::sin(1e-4 * static_cast<double>(i));
+  position[31'234] = 5.0;
+  position[31'235] = -5.0;
+  force[77'777] = 9.0;
+  force[77'778] = -9.0;
+  force[0] = std::nan("");
+  const auto points = decimated_rows({position, force}, 600);
+  EXPECT_LE(points.size(), 600U);
+  for (const std::size_t row : {0U, 31'234U, 31'235U, 77'777U, 77'778U, 99'999U}) {
+    EXPECT_THAT(points, testing::Contains(row));
+  }
+  EXPECT_TRUE(std::is_sorted(points.begin(), points.end()));
+}
+
+TEST(DecimatedRows, AreAllWhereTheyAreFew) {
+  const std::vector<double> values{1.0, 2.0, 3.0};
+  const std::vector<double> nobody;
+  EXPECT_THAT(decimated_rows({values, values}, 600), testing::ElementsAre(0, 1, 2));
+  EXPECT_TRUE(decimated_rows({nobody, nobody}, 600).empty());
+}
+
+TEST(Thinned, KeepsEverySoManyPointsOfACloud) {
+  Curve cloud;
+  for (int i = 0; i < 1000; ++i) {
+    cloud.x.push_back(i);
+    cloud.y.push_back(-i);
+  }
+  const Curve fewer = thinned(cloud, 300);
+  EXPECT_EQ(fewer.x.size(), 334U);
+  EXPECT_EQ(fewer.x[7], 21.0);
+  EXPECT_EQ(fewer.y[7], -21.0);
+  EXPECT_EQ(thinned(cloud, 4000).x, cloud.x);
+}
+
 }  // namespace
 }  // namespace kerf::bench

@@ -92,7 +92,8 @@ TEST(KerfsOwnTable, HasSlotsAndPractice) {
 
 TEST(AnswersThatAreWritten, AreReadAgain) {
   Study study = testing::study_with(Design::abx, {.decision = psychophysics::Decision::abx_differencing});
-  testing::add_answers(study, "P1", "liver, raw", 7, 3);
+  study.name = R"(the "cold" one, again)";
+  testing::add_answers(study, "P1", R"(liver, "raw")", 7, 3);
   study.judgements[0].practice = true;
   study.judgements[1].response_s = 1.25;
   const Study again = parse_answers(answers_csv(study), "answers.csv");
@@ -100,7 +101,7 @@ TEST(AnswersThatAreWritten, AreReadAgain) {
   EXPECT_EQ(again.task->decision, psychophysics::Decision::abx_differencing);
   ASSERT_EQ(again.judgements.size(), 10U);
   for (std::size_t i = 0; i < 10; ++i) {
-    EXPECT_EQ(again.judgements[i].tissue, "liver, raw");
+    EXPECT_EQ(again.judgements[i].tissue, R"(liver, "raw")");
     EXPECT_EQ(again.judgements[i].right, study.judgements[i].right);
     EXPECT_EQ(again.judgements[i].answer, study.judgements[i].answer);
     EXPECT_EQ(again.judgements[i].practice, study.judgements[i].practice);

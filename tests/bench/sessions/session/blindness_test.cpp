@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/sessions/session/blind_run.h"
-#include "signal/signal.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {

@@ -122,28 +122,5 @@ TEST(ForceLoops, PassOverPhasesThatHoldNoRows) {
   EXPECT_EQ(axis_cycles(schema::RecordingFile(saved.path()), 1).cycles.size(), cycles);
 }
 
-TEST(LoopPoints, KeepTheExtremesOfPositionAndForce) {
-  std::vector<double> position(100'000);
-  std::vector<double> force(100'000);
-  for (std::size_t i = 0; i < position.size(); ++i) position[i] = std::sin(1e-4 * static_cast<double>(i));
-  position[31'234] = 5.0;
-  position[31'235] = -5.0;
-  force[77'777] = 9.0;
-  force[77'778] = -9.0;
-  force[0] = std::nan("");
-  const auto points = loop_points(position, force, 600);
-  EXPECT_LE(points.size(), 600U);
-  for (const std::size_t row : {0U, 31'234U, 31'235U, 77'777U, 77'778U, 99'999U}) {
-    EXPECT_THAT(points, testing::Contains(row));
-  }
-  EXPECT_TRUE(std::is_sorted(points.begin(), points.end()));
-}
-
-TEST(LoopPoints, AreAllWhereTheyAreFew) {
-  const std::vector<double> values{1.0, 2.0, 3.0};
-  EXPECT_THAT(loop_points(values, values, 600), testing::ElementsAre(0, 1, 2));
-  EXPECT_TRUE(loop_points({}, {}, 600).empty());
-}
-
 }  // namespace
 }  // namespace kerf::bench
