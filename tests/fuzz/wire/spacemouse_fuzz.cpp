@@ -1,12 +1,21 @@
-#include <cstdlib>
+#include <kerf/drivers/protocols/spacemouse.h>
 
-#include "kerf/drivers/protocols/spacemouse.h"
+#include "fuzz/target.h"
 
-// A report that is refused leaves no trace.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace kerf::drivers::spacemouse;
-  State state;
-  const State before = state;
-  if (!take_report({data, size}, state) && !(state == before)) std::abort();
-  return 0;
+namespace kerf::fuzz {
+namespace {
+
+namespace spacemouse = drivers::spacemouse;
+
+/// A report that is refused leaves no trace.
+void fuzz_spacemouse(Bytes bytes) {
+  spacemouse::State state;
+  const spacemouse::State before = state;
+  promise(spacemouse::take_report(bytes, state) || state == before,
+          "a report that is refused leaves no trace");
 }
+
+const Registered registered("spacemouse", fuzz_spacemouse);
+
+}  // namespace
+}  // namespace kerf::fuzz
