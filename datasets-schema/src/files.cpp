@@ -109,6 +109,13 @@ bool rename_new(const std::filesystem::path& from, const std::filesystem::path& 
   return true;
 }
 
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return text;
+}
+
 std::system_error write_error(const std::filesystem::path& file, const h5::Error& error) {
   if (error.system_error != 0) {
     return std::system_error(error.system_error, std::generic_category(), file.string() + ": cannot write");

@@ -62,6 +62,10 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 /// Renames a file to a name that nobody has. Returns false if somebody has it. @throws std::system_error
 [[nodiscard]] bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// A sentence with what a file calls its parts, which must not break the line nor drive the terminal that
+/// shows it: every control character of ASCII becomes a question mark.
+[[nodiscard]] std::string one_line(std::string text);
+
 /// What a user can act on when writing `file` failed.
 [[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 

@@ -6,8 +6,6 @@
 #include <cstring>
 #include <thread>
 
-#include <hdf5_hl.h>
-
 namespace kerf::schema::h5 {
 namespace {
 
@@ -365,6 +363,15 @@ Description describe(hid_t dataset) {
   return {type_name(type.id()), extent_of(Handle(call(H5Dget_space, dataset)))};
 }
 
+bool is_plausible(hid_t dataset, std::uintmax_t file_size) {
+  constexpr std::uintmax_t max_deflated = 1100;
+  std::uintmax_t bytes = H5Tget_size(Handle(call(H5Dget_type, dataset)).id());
+  for (const hsize_t length : extent_of(Handle(call(H5Dget_space, dataset)))) {
+    if (__builtin_mul_overflow(bytes, length, &bytes)) return false;
+  }
+  return bytes / max_deflated <= file_size;
+}
+
 void write(hid_t dataset, hid_t memory_type, const void* values) {
   call(H5Dwrite, dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
 }
@@ -471,19 +478,5 @@ void read_attribute(hid_t object, const std::string& name, hid_t native_type, vo
   const Handle attribute(call(H5Aopen, object, name.c_str(), H5P_DEFAULT));
   call(H5Aread, attribute.id(), native_type, values);
 }
-
-void make_scale(hid_t dataset, const std::string& name) { call(H5DSset_scale, dataset, name.c_str()); }
-
-void attach_scale(hid_t dataset, hid_t scale, unsigned dimension) {
-  call(H5DSattach_scale, dataset, scale, dimension);
-}
-
-void label(hid_t dataset, unsigned dimension, const std::string& name) {
-  call(H5DSset_label, dataset, dimension, name.c_str());
-}
-
-bool is_scale(hid_t dataset) { return call(H5DSis_scale, dataset) > 0; }
-
-bool has_scale(hid_t dataset, unsigned dimension) { return call(H5DSget_num_scales, dataset, dimension) > 0; }
 
 }  // namespace kerf::schema::h5

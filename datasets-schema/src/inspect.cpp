@@ -212,16 +212,8 @@ class Inspector {
                  Weight::fatal);
     }
     for (std::size_t i = 0; i < rule.shape.size(); ++i) bind(rule.shape[i], found.extent[i], path);
-    require_plausible(path, found.extent);
-  }
-
-  // A damaged extent must not make the reader ask for all the memory there is. Deflate packs 1000 : 1 at
-  // most.
-  void require_plausible(const std::string& path, const h5::Extent& extent) {
-    double values = 1.0;
-    for (const auto length : extent) values *= static_cast<double>(length);
-    if (values <= 1000.0 * static_cast<double>(file_size_)) return;
-    add(path, in_words(extent) + " values in a file of " + std::to_string(file_size_) + " bytes",
+    if (h5::is_plausible(dataset, file_size_)) return;
+    add(path, in_words(found.extent) + " values in a file of " + std::to_string(file_size_) + " bytes",
         "values that the file can hold", Weight::fatal);
   }
 
@@ -337,8 +329,8 @@ Inspection inspect_readable(const std::filesystem::path& file, bool look_through
   auto inspection = inspect(file, look_through_texts);
   if (const auto* fatal = inspection.first_fatal()) {
     const auto& [where, found, expected] = fatal->violation;
-    throw FormatError(file.string() + ": " + where + ": found " + found + ", expected " + expected +
-                      "; 'kerf validate' lists everything that is wrong");
+    throw FormatError(one_line(file.string() + ": " + where + ": found " + found + ", expected " + expected +
+                               "; 'kerf validate' lists everything that is wrong"));
   }
   return inspection;
 }

@@ -7,6 +7,7 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/validate.h>
 
+#include "files.h"
 #include "h5.h"
 
 namespace kerf::schema {
@@ -29,8 +30,8 @@ struct Inspection {
 /// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
 struct DamageError : FormatError {
   DamageError(const std::filesystem::path& file, const h5::Error& cause)
-      : FormatError(file.string() + ": damaged HDF5 file (" + cause.what() +
-                    "); expected a sound recording, take it from a copy"),
+      : FormatError(one_line(file.string() + ": damaged HDF5 file (" + cause.what() +
+                             "); expected a sound recording, take it from a copy")),
         reason(cause.what()) {}
   std::string reason;
 };

@@ -77,7 +77,8 @@ class PartReader {
       if (in_table || !found.extent.empty()) continue;
       if (found.type == "text") {
         properties[name] = h5::read_texts(group.id(), name).front();
-      } else if (found.type.starts_with("float") || found.type.find("int") != std::string::npos) {
+      } else if (found.type.starts_with("float") || found.type.starts_with("int") ||
+                 found.type.starts_with("uint")) {
         double number = 0.0;
         h5::read_attribute(group.id(), name, h5::native<double>(), &number);
         properties[name] = number;

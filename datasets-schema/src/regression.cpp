@@ -53,7 +53,7 @@ void write_case(hid_t cases, const StoredForces& one) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
-  throw FormatError(file.string() + ": " + what);
+  throw FormatError(one_line(file.string() + ": " + what));
 }
 
 /// The text of an attribute; empty if it is not there.
@@ -89,6 +89,8 @@ StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std
   const h5::Description about = h5::describe(dataset.id());
   if (about.type != "float64" || about.extent.size() != 2 || about.extent[1] == 0)
     refuse(file, where + "/force: found " + about.type + ", expected float64 of N x D");
+  if (!h5::is_plausible(dataset.id(), std::filesystem::file_size(file)))
+    refuse(file, where + "/force: found more values than the file can hold");
   for (const char* list : {"channels", "units"}) {
     if (h5::has_attribute(dataset.id(), list) && h5::describe_attribute(dataset.id(), list).type == "text" &&
         h5::read_texts(dataset.id(), list).size() == about.extent[1]) {

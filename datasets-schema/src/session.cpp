@@ -172,8 +172,8 @@ Session read_facts(hid_t file) {
 }
 
 [[noreturn]] void refuse_damage(const std::filesystem::path& file, const h5::Error& error) {
-  throw FormatError(file.string() + ": damaged HDF5 file (" + error.what() +
-                    "); expected a sound session, take it from a copy");
+  throw FormatError(one_line(file.string() + ": damaged HDF5 file (" + error.what() +
+                             "); expected a sound session, take it from a copy"));
 }
 
 /// Does `read` with the open file once its tree is known to be that of a session.
@@ -185,9 +185,9 @@ auto read_checked(const std::filesystem::path& file, Read read) {
     layout::check(tree);
     if (const Finding* fatal = tree.first_fatal()) {
       const Violation& violation = fatal->violation;
-      throw FormatError(file.string() + ": " + violation.where + ": found " + violation.found +
-                        ", expected " + violation.expected + " (a session of schema '" +
-                        std::string(session_schema_name) + "')");
+      throw FormatError(one_line(file.string() + ": " + violation.where + ": found " + violation.found +
+                                 ", expected " + violation.expected + " (a session of schema '" +
+                                 std::string(session_schema_name) + "')"));
     }
     return read(tree.file());
   } catch (const h5::Error& error) {

@@ -24,15 +24,6 @@ std::string attribute_of(const std::string& object, std::string_view name) {
   return object + " attribute '" + std::string(name) + '\'';
 }
 
-/// Bytes that an extent takes, or the most that there are.
-std::uintmax_t bytes_of(hid_t dataset, const h5::Extent& extent) {
-  std::uintmax_t bytes = H5Tget_size(h5::Handle(h5::call(H5Dget_type, dataset)).id());
-  for (const hsize_t length : extent) {
-    if (__builtin_mul_overflow(bytes, length, &bytes)) return UINTMAX_MAX;
-  }
-  return bytes;
-}
-
 }  // namespace
 
 TreeCheck::TreeCheck(const std::filesystem::path& file) {
@@ -100,9 +91,7 @@ std::optional<h5::Extent> TreeCheck::extent_of(const std::string& path, const st
     fail(path, in_words(found), expected);
     return std::nullopt;
   }
-  // Deflated, zeros take a thousandth of their room.
-  constexpr std::uintmax_t max_deflated = 1100;
-  if (bytes_of(dataset.id(), found.extent) / max_deflated > size_) {
+  if (!h5::is_plausible(dataset.id(), size_)) {
     fail(path, in_words(found), "no more than the file can hold");
     return std::nullopt;
   }

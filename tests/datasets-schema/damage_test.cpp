@@ -1,3 +1,5 @@
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <stdexcept>
 
@@ -121,6 +123,27 @@ TEST(ForeignFile, ThatClaimsMoreRowsThanItCanHoldIsNamed) {
                 }
               }),
               HasSubstr("1000000000000 values in a file of"));
+}
+
+TEST(ForeignFile, WithRecordsLongerThanItCanHoldIsNamed) {
+  EXPECT_THAT(refusal_after([](hid_t file) {
+                test::remove_link(file, "/events");
+                constexpr std::size_t absurd = 1U << 20U;
+                const std::vector<h5::Field> fields{
+                    {"time", "float64", 8, 0}, {"kind", "text", absurd, 8}, {"text", "text", 16, 8 + absurd}};
+                static_cast<void>(h5::create_dataset(
+                    file, "/events", h5::record_type(fields, 24 + absurd).id(), {.extent = {1000}}));
+              }),
+              HasSubstr("/events: found 1000 values in a file of"));
+}
+
+TEST(ForeignFile, IsRefusedInOneLineWhateverItsNamesAre) {
+  const std::string line = refusal_after([](hid_t file) {
+    test::replace_dataset<std::uint32_t>(file, "/samples/channels/a", {5});
+    h5::call(H5Lmove, file, "/samples/channels/a", file, "/samples/channels/two\nlines \x1b[31m", H5P_DEFAULT,
+             H5P_DEFAULT);
+  });
+  EXPECT_THAT(line, HasSubstr("/samples/channels/two?lines ?[31m: found uint32, expected float64"));
 }
 
 TEST(ForeignFile, IsReadDespiteWhatTheSchemaDoesNotKnow) {

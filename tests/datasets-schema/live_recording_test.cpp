@@ -5,11 +5,15 @@
 
 #include <kerf/schema/live_recording.h>
 
+#include "datasets-schema/changed_file.h"
 #include "datasets-schema/live_rows.h"
 #include "support/program.h"
 
 namespace kerf::schema {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 TEST(ReadTail, FollowsARecordingWhileItGrows) {
   const test::TemporaryFolder folder;
@@ -44,6 +48,26 @@ TEST(ReadTail, RefusesWhatIsNoRecording) {
   test::write_text(folder / "r.h5", "no recording");
   EXPECT_THROW((void)read_tail(folder / "r.h5"), FormatError);
   EXPECT_THROW((void)read_tail(folder / "none.h5"), std::invalid_argument);
+}
+
+TEST(ReadTail, RefusesColumnsWiderThanTheAxes) {
+  const test::ChangedFile file([](hid_t opened) {
+    test::replace_dataset<double>(opened, "/samples/velocity", {5, 1000});
+  });
+  EXPECT_THAT([&] { (void)read_tail(file.path()); },
+              ThrowsMessage<FormatError>(HasSubstr("/samples/velocity: found 1000 columns, expected 2")));
+}
+
+TEST(ReadTail, RefusesEventsOfAnotherShape) {
+  const test::ChangedFile file([](hid_t opened) { test::replace_dataset<double>(opened, "/events", {3}); });
+  EXPECT_THAT([&] { (void)read_tail(file.path()); },
+              ThrowsMessage<FormatError>(HasSubstr("/events: found float64")));
+}
+
+TEST(ReadTail, ReadsARecordingWithoutAStatus) {
+  const test::ChangedFile file([](hid_t opened) { test::remove_attribute(opened, "/", "status"); });
+  EXPECT_EQ(read_tail(file.path()).status, "");
+  EXPECT_EQ(read_tail(file.path()).rows, 5U);
 }
 
 TEST(FindRecording, KnowsWhetherSomebodyWritesIt) {

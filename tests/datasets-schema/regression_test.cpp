@@ -130,6 +130,17 @@ TEST_F(Regression, RefusesACutFile) {
   EXPECT_THROW((void)read_regression(file_), FormatError);
 }
 
+TEST_F(Regression, RefusesMoreForcesThanTheFileCanHold) {
+  write_regression(file_, {sample_forces()});
+  {
+    auto file = h5::WritableFile::open(file_);
+    const h5::Extent absurd{1'000'000'000'000, 2};
+    h5::call(H5Dset_extent, h5::open(file.id(), "/cases/a blade, slowly/force").id(), absurd.data());
+  }
+  EXPECT_THAT([&] { (void)read_regression(file_); },
+              ThrowsMessage<FormatError>(HasSubstr("found more values than the file can hold")));
+}
+
 TEST_F(Regression, IsValidAsItWasWritten) {
   write_regression(file_, {sample_forces()});
   EXPECT_THAT(validate(file_), IsEmpty());

@@ -111,11 +111,6 @@ Unit parse_unit(std::string_view given) {
   std::string_view text = trimmed(given);
   if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
   Unit unit{.factor = take_factor(text), .si = {}};
-  if (!std::isfinite(unit.factor) || unit.factor == 0.0) {
-    throw std::invalid_argument(
-        fmt::format("the factor in unit '{}' must be a finite number other than zero", given));
-  }
-
   std::vector<std::string> above;
   std::vector<std::string> below;
   bool divides = false;
@@ -135,6 +130,11 @@ Unit parse_unit(std::string_view given) {
     text.remove_prefix(end + (text.substr(end).starts_with("·") ? std::string_view("·").size() : 1));
     if (trimmed(text).empty())
       throw std::invalid_argument(fmt::format("unit '{}' ends in an operator", given));
+  }
+  // Of a prefix too: 1e308/mm is more than a double holds.
+  if (!std::isfinite(unit.factor) || unit.factor == 0.0) {
+    throw std::invalid_argument(
+        fmt::format("the factor in unit '{}' must be a finite number other than zero", given));
   }
   unit.si = joined(above);
   if (unit.si.empty()) unit.si.push_back('1');

@@ -58,6 +58,8 @@ TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
   EXPECT_THAT(message(""), testing::HasSubstr("empty"));
   EXPECT_THAT(message("nan mm"), testing::HasSubstr("finite"));
   EXPECT_THAT(message("0 mm"), testing::HasSubstr("zero"));
+  EXPECT_THAT(message("1e308/mm"), testing::HasSubstr("finite"));
+  EXPECT_THAT(message("1e-320/kPa³"), testing::HasSubstr("zero"));
 }
 
 }  // namespace

@@ -1,0 +1,44 @@
+#include <set>
+#include <stdexcept>
+
+#include "fuzz/scratch_folder.h"
+#include "fuzz/target.h"
+#include "fuzz/toml/examples.h"
+#include "regress/suite.h"
+
+namespace kerf::fuzz {
+namespace {
+
+/// The folder that a suite stands in, beside that of the laws as in the examples.
+const std::filesystem::path& folder_of_suites() {
+  static const ScratchFolder examples;
+  static const std::filesystem::path suites = [] {
+    for (const auto& [name, text] : example_laws()) (void)examples.write(name, text);
+    std::filesystem::create_directory(examples.path() / "regress");
+    return examples.path() / "regress";
+  }();
+  return suites;
+}
+
+/// A suite that is read has cases with names of their own, each of a trajectory on axes of its law.
+void fuzz_suite(Bytes bytes) {
+  const auto file = folder_of_suites() / "fuzz.toml";
+  std::ofstream(file, std::ios::binary | std::ios::trunc) << text_of(bytes);
+  bench::Suite suite;
+  if (!is_taken<std::invalid_argument>([&] { suite = bench::read_suite(file); })) return;
+  promise(!suite.cases.empty(), "a suite has cases");
+  std::set<std::string> names;
+  for (const bench::RegressionCase& one : suite.cases) {
+    promise(names.insert(one.name).second, "a case has a name of its own");
+    const std::size_t axes = bench::axes_of(one.law).size();
+    for (const bench::ScriptedAxis& motion : one.motion)
+      promise(motion.axis < axes, "an axis of the law moves");
+    promise(one.recording.empty() + one.scene.empty() + one.motion.empty() == 2, "a case has one trajectory");
+  }
+  promise(bench::only(suite, {suite.cases.front().name}).cases.size() == 1, "a case is found by its name");
+}
+
+const Registered registered("suite", fuzz_suite);
+
+}  // namespace
+}  // namespace kerf::fuzz
