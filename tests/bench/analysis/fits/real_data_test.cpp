@@ -13,6 +13,7 @@
 #include "import/import.h"
 #include "laws/render.h"
 #include "segment/segment.h"
+#include "signal/quantiles.h"
 #include "support/measured_data.h"
 
 // What the laws say of measurements of other labs (docs/findings.md).
