@@ -38,7 +38,7 @@ std::string refusal(const CurvePoints& points, const SegmentedOptions& options =
 
 TEST(Segmented, IsTheBestOfAllChoicesOfKnotsOnAGrid) {
   int which = 0;
-  for (const std::size_t cells : {12, 15}) {
+  for (const std::size_t cells : {12U, 15U}) {
     for (unsigned seed = 0; seed < 9; ++seed) {
       const auto points = which % 3 == 0   ? sampled(60, 0.3, seed, false, wave)
                           : which % 3 == 1 ? sampled(75, 0.1, seed, false, step)
@@ -153,7 +153,7 @@ TEST(Segmented, IsNeverWorseThanDifferentialEvolution) {
                                      sampled(80, 0.05, 2, false, step), sampled(100, 0.02, 3, false, bend)};
   for (const auto& points : all) {
     const auto curves = fit_segments(points.curve(), {.max_segments = 6});
-    for (const std::size_t segments : {3, 6}) {
+    for (const std::size_t segments : {3U, 6U}) {
       const double evolved = test::evolved_error(points, segments, 4);
       EXPECT_LE(curves[segments - 1].sum_of_squares, evolved * (1.0 + 1e-9))
           << segments << " segments, above by " << curves[segments - 1].sum_of_squares / evolved - 1.0;

@@ -52,8 +52,8 @@ TEST(CounterbalancedOrders, AreEvenOverEveryFullSquareAndFollowTheSeed) {
 }
 
 TEST(CounterbalancedComparisons, GiveEachLawTheFirstNameEquallyOften) {
-  for (const std::size_t subjects : {1, 3, 8}) {
-    for (const std::size_t tissues : {1, 4, 5}) {
+  for (const std::size_t subjects : {1U, 3U, 8U}) {
+    for (const std::size_t tissues : {1U, 4U, 5U}) {
       const auto plan = counterbalanced_comparisons(subjects, tissues, 17);
       std::vector<std::size_t> of_tissue(tissues, 0);
       for (const auto& row : plan) {
