@@ -23,9 +23,8 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
 constexpr double deviation_of_mad = 1.4826;
-constexpr std::size_t max_arms = 4;
-constexpr double white_below = 3.0;    ///< samples of correlation time
-constexpr double worth_an_arm = 0.95;  ///< share of the held-out error that a further arm has to reach
+constexpr double white_below = 3.0;      ///< samples of correlation time
+constexpr double worth_one_more = 0.95;  ///< share of the held-out error that a larger law has to reach
 
 std::vector<double> residuals_of(const Problem& problem, const Values& values, const Samples& samples) {
   std::vector<double> residuals = rendered(problem, values, samples);
@@ -190,20 +189,21 @@ FitResult fit_problem(const Problem& problem, const Samples& samples, const FitO
   return result;
 }
 
-/// Maxwell with as many arms as held-out cycles pay for: one more is taken if it lowers their error enough.
-/// Where one does not but the residuals are still far from white, the next is tried too.
-FitResult fit_arms(const FitOptions& options, const Samples& samples) {
+/// A law as large as held-out cycles pay for: one more arm is taken if it lowers their error enough. Where
+/// one does not but the residuals are still far from white, the next is tried too.
+FitResult fit_growing(std::string_view model, const FitOptions& options, const Samples& samples) {
+  const models::SizeFacts& size = models::law_facts(model).size;
   FitResult best;
   int failures = 0;
-  for (std::size_t arms = 1; arms <= max_arms; ++arms) {
-    FitOptions with_arms(options);
-    with_arms.law_options["arms"] = static_cast<double>(arms);
-    FitResult next = fit_problem(make_problem("maxwell", with_arms, samples), samples, with_arms);
+  for (std::size_t count = size.first; count <= size.last; ++count) {
+    FitOptions sized(options);
+    sized.law_options[std::string(size.option)] = static_cast<double>(count);
+    FitResult next = fit_problem(make_problem(model, sized, samples), samples, sized);
     if (next.parameters.empty()) return best.parameters.empty() ? next : best;
     const bool white = next.correlation_time < white_below;
     const bool validated = std::isfinite(next.cv_rmse);
     const bool better = best.parameters.empty() ||
-                        (validated ? next.cv_rmse < worth_an_arm * best.cv_rmse : next.bic < best.bic);
+                        (validated ? next.cv_rmse < worth_one_more * best.cv_rmse : next.bic < best.bic);
     failures = better ? 0 : failures + 1;
     if (better) best = std::move(next);
     if (failures == 2) break;
@@ -259,9 +259,10 @@ FitResult fit(std::string_view model, std::span<const Series> recordings, const 
   if (std::all_of(samples.force.begin(), samples.force.end(), [](double f) { return f == 0.0; })) {
     throw std::invalid_argument("cannot fit: the force is zero throughout");
   }
-  const bool count_arms = model == "maxwell" && !options.law_options.contains("arms");
-  FitResult result = count_arms ? fit_arms(options, samples)
-                                : fit_problem(make_problem(model, options, samples), samples, options);
+  const models::SizeFacts& size = models::law_facts(model).size;
+  const bool grows = size.grows && !options.law_options.contains(size.option);
+  FitResult result = grows ? fit_growing(model, options, samples)
+                           : fit_problem(make_problem(model, options, samples), samples, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -24,6 +24,7 @@ struct Problem {
   std::vector<double> breakpoints;  ///< inner knots that were given by hand
   std::shared_ptr<SegmentedMemory> segmented_memory{};
 
+  [[nodiscard]] const models::LawFacts& facts() const { return models::law_facts(model); }
   /// How many numbers are searched: one a free parameter, or one a recording where it is its own.
   [[nodiscard]] Eigen::Index coordinates() const;
   /// Parameter and recording of each coordinate; the recording of one that is shared is Estimate::shared.

@@ -12,24 +12,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "kerf/models/blade.h"
-#include "kerf/models/exponential.h"
-#include "kerf/models/fracture.h"
-#include "kerf/models/friction.h"
-#include "kerf/models/fuzzy_kelvin.h"
-#include "kerf/models/fuzzy_kelvin_3d.h"
-#include "kerf/models/fuzzy_rupture.h"
-#include "kerf/models/hunt_crossley.h"
-#include "kerf/models/kelvin.h"
-#include "kerf/models/maxwell.h"
-#include "kerf/models/orthogonal.h"
-#include "kerf/models/piecewise.h"
-#include "kerf/models/precontact.h"
-#include "kerf/models/recording.h"
-#include "kerf/models/scissors_analytic.h"
-#include "kerf/models/scissors_free.h"
-#include "kerf/models/scissors_mesh.h"
-#include "kerf/models/springpot.h"
+#include "kerf/models/registry.h"
 
 namespace kerf::models {
 
@@ -63,16 +46,6 @@ struct AnyLaw {
 };
 
 namespace {
-
-/// The registry: every law, once. A new law is one header, one entry here and one test.
-///
-/// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
-/// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
-using Registry =
-    std::tuple<Kelvin<double>, Maxwell<double>, Springpot<double>, Exponential<double>, HuntCrossley<double>,
-               Friction<double>, Piecewise<double>, Recording<double>, ScissorsAnalytic<double>,
-               Precontact<double>, Fracture<double>, FuzzyRupture<double>, FuzzyKelvin<double>, FuzzyKelvin3d,
-               Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
 
 constexpr std::size_t law_count = std::tuple_size_v<Registry>;
 template <Place I>
@@ -124,11 +97,6 @@ struct WithScalar<L<From>, T> {
   using Law = L<T>;
 };
 
-template <typename L>
-concept Spatial = requires {
-  L::axes();
-};
-
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// `Of` in the registry; laws in single precision have places of their own behind it.
@@ -154,14 +122,14 @@ struct RegisteredLaw final : AnyLaw {
     }
   }
   [[nodiscard]] double step(AnyState& state, const Motion& motion, double period_s) const noexcept override {
-    if constexpr (!Spatial<L>) {
+    if constexpr (!SpatialLaw<L>) {
       if (state.law == Of) return law.step(static_cast<StateOf<L, Of>&>(state).value, motion, period_s);
     }
     return not_a_number;
   }
   [[nodiscard]] AxisValues step(AnyState& state, const SpatialMotion& motion,
                                 double period_s) const noexcept override {
-    if constexpr (Spatial<L>) {
+    if constexpr (SpatialLaw<L>) {
       if (state.law == Of) return law.step(static_cast<StateOf<L, Of>&>(state).value, motion, period_s);
     }
     return {not_a_number};
@@ -170,26 +138,10 @@ struct RegisteredLaw final : AnyLaw {
   L law;
 };
 
-/// Laws that can be rendered in single precision, and have the option to say so.
-template <typename L>
-struct InFloat : std::false_type {};
-template <>
-struct InFloat<Kelvin<double>> : std::true_type {};
-template <>
-struct InFloat<Maxwell<double>> : std::true_type {};
-template <>
-struct InFloat<Exponential<double>> : std::true_type {};
-template <>
-struct InFloat<HuntCrossley<double>> : std::true_type {};
-template <>
-struct InFloat<Piecewise<double>> : std::true_type {};
-template <>
-struct InFloat<Recording<double>> : std::true_type {};
-
 template <Place I>
 std::shared_ptr<const AnyLaw> registered(std::span<const double> values, const Options& options) {
   using L = LawAt<I>;
-  if constexpr (InFloat<L>::value) {
+  if constexpr (L::facts.in_float) {
     const OptionReader reader(L::name, L::options(), options);
     if (reader.choice("precision", {"double", "float"}) == "float") {
       using Single = typename WithScalar<L, float>::Law;
@@ -225,6 +177,10 @@ LawInfo law_info(std::string_view model) {
   return dispatch(model, []<Place I>() { return info_of<LawAt<I>>(); });
 }
 
+const LawFacts& law_facts(std::string_view model) {
+  return *dispatch(model, []<Place I>() { return &LawAt<I>::facts; });
+}
+
 std::vector<ParameterInfo> Law::parameters(std::string_view model, const Options& options) {
   return dispatch(model, [&]<Place I>() {
     using L = LawAt<I>;
@@ -239,7 +195,7 @@ std::vector<OptionInfo> Law::options(std::string_view model) {
 
 std::vector<LawAxis> Law::axes(std::string_view model) {
   return dispatch(model, []<Place I>() {
-    if constexpr (Spatial<LawAt<I>>) return LawAt<I>::axes();
+    if constexpr (SpatialLaw<LawAt<I>>) return LawAt<I>::axes();
     return std::vector<LawAxis>{};
   });
 }

@@ -1,22 +1,13 @@
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <kerf/models/exponential.h>
-#include <kerf/models/fracture.h>
-#include <kerf/models/friction.h>
-#include <kerf/models/fuzzy_kelvin.h>
-#include <kerf/models/fuzzy_rupture.h>
-#include <kerf/models/hunt_crossley.h>
-#include <kerf/models/kelvin.h>
-#include <kerf/models/maxwell.h>
-#include <kerf/models/piecewise.h>
-#include <kerf/models/precontact.h>
-#include <kerf/models/recording.h>
-#include <kerf/models/scissors_analytic.h>
-#include <kerf/models/springpot.h>
+#include <kerf/models/registry.h>
+
+#include "support/example_laws.h"
 
 namespace kerf::models {
 namespace {
@@ -58,6 +49,22 @@ void expect_exact_derivatives(const std::vector<double>& values, const Options& 
   }
 }
 
+template <template <typename> typename L>
+void expect_of_example(const L<double>*) {
+  if constexpr (L<double>::facts.search == Search::descent) {
+    SCOPED_TRACE(L<double>::name);
+    const Law example = test::example(L<double>::name);
+    expect_exact_derivatives<L>(example.values(), example.options());
+  }
+}
+void expect_of_example(const void*) {}  // of several axes: not fitted so
+
+template <typename... L>
+void expect_of_all(const std::tuple<L...>*) {
+  (expect_of_example(static_cast<const L*>(nullptr)), ...);
+}
+
+TEST(Derivatives, OfEveryLawThatASearchDescends) { expect_of_all(static_cast<const Registry*>(nullptr)); }
 TEST(Derivatives, OfKelvin) { expect_exact_derivatives<Kelvin>({5.0, 8.0, 1.6}); }
 TEST(Derivatives, OfKelvinByEuler) {
   expect_exact_derivatives<Kelvin>({5.0, 8.0, 1.6}, {{"integrator", std::string("euler")}});

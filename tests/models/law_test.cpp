@@ -207,12 +207,10 @@ TEST(Law, AnUnknownNameIsAnsweredWithThoseThatExist) {
     (void)Law::make("burgers", std::vector{1.0});
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "unknown law 'burgers'; the laws are kelvin, maxwell, springpot, exponential, hunt_crossley, "
-        "friction, piecewise, recording, scissors_analytic, "
-        "precontact, fracture, fuzzy_rupture, fuzzy_kelvin, fuzzy_kelvin_3d, blade, scissors, "
-        "scissors_mesh, orthogonal");
+    const std::string message = error.what();
+    EXPECT_THAT(message, testing::StartsWith("unknown law 'burgers'; the laws are kelvin, maxwell, "));
+    for (const LawInfo& law : registry())
+      EXPECT_THAT(message, testing::HasSubstr(" " + std::string(law.name)));
   }
 }
 

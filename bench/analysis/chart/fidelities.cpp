@@ -14,15 +14,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr int max_lattice_nodes = 40'000;
-constexpr std::size_t max_segments = 12;
-constexpr std::size_t max_table_points = 256;
 
 std::string rate_label(double rate_hz) { return fmt::format("{:g} Hz", rate_hz); }
-
-bool has_option(const LawFile& law, std::string_view name) {
-  const auto options = models::Law::options(law.law.model());
-  return std::any_of(options.begin(), options.end(), [&](const auto& option) { return option.name == name; });
-}
 
 double option_number(const LawFile& law, std::string_view name) {
   const auto given = law.law.options().find(name);
@@ -33,11 +26,11 @@ double option_number(const LawFile& law, std::string_view name) {
   throw std::invalid_argument(fmt::format("law '{}' has no option '{}'", law.law.model(), name));
 }
 
-void blade(const LawFile& law, double rate_hz, Fidelities& to) {
+void strips(const LawFile& law, double rate_hz, Fidelities& to) {
   for (const char* kind : {"paper", "strips"}) {
-    for (double strips = 1.0; strips <= 64.0; strips *= 2.0) {
-      to.all.push_back({fmt::format("{} {:g}", kind, strips),
-                        with_options(law, {{"fidelity", std::string(kind)}, {"strips", strips}}), rate_hz});
+    for (double count = 1.0; count <= 64.0; count *= 2.0) {
+      to.all.push_back({fmt::format("{} {:g}", kind, count),
+                        with_options(law, {{"fidelity", std::string(kind)}, {"strips", count}}), rate_hz});
     }
   }
   const LawFile exact = with_options(law, {{"fidelity", std::string("exact")}});
@@ -93,9 +86,8 @@ void lattice(const LawFile& law, double rate_hz, Fidelities& to) {
   for (const double factor : {0.5, 1.0, 2.0, 3.0}) {
     const auto file = relaid(law, factor);
     if (!file) {
-      to.notes.push_back(
-          fmt::format("scissors_mesh with {:g} times the nodes a side has too {} nodes and is left out",
-                      factor, factor < 1.0 ? "few" : "many"));
+      to.notes.push_back(fmt::format("{} with {:g} times the nodes a side has too {} nodes and is left out",
+                                     law.law.model(), factor, factor < 1.0 ? "few" : "many"));
       continue;
     }
     if (factor > finest) {
@@ -146,26 +138,42 @@ LawFile with_options(const LawFile& law, const models::Options& changes) {
 
 Fidelities fidelities_of(const LawFile& law, double rate_hz) {
   Fidelities result{.all = {}, .reference = {"as given", law, rate_hz}, .notes = {}};
-  const std::string_view model = law.law.model();
-  const bool in_float = has_option(law, "precision");
-  const LawFile given = in_float ? with_options(law, {{"precision", std::string("double")}}) : law;
-  if (model == "blade") {
-    blade(given, rate_hz, result);
-  } else if (model == "scissors_mesh") {
-    lattice(given, rate_hz, result);
-  } else if (model == "kelvin" || model == "maxwell") {
-    integrators(given, rate_hz, result);
-  } else if (model == "orthogonal") {
-    projections(given, rate_hz, result);
-  } else {
+  const models::LawFacts& facts = models::law_facts(law.law.model());
+  const LawFile given = facts.in_float ? with_options(law, {{"precision", std::string("double")}}) : law;
+  const auto as_given = [&](double reference_hz) {
     result.all.push_back({"as given", given, rate_hz});
-    const bool sampled = model == "piecewise" || model == "recording" || model.starts_with("fuzzy_");
-    result.reference = {"as given", given, sampled ? rate_hz : reference_rate_factor * rate_hz};
-    if (model == "piecewise") append(result.all, resampled_segments(given, max_segments, rate_hz));
-    if (model == "recording") append(result.all, resampled_tables(given, max_table_points, rate_hz));
-    if (model.starts_with("fuzzy_")) add_memberships(given, rate_hz, result);
+    result.reference = {"as given", given, reference_hz};
+  };
+  switch (facts.fineness) {
+    case models::Fineness::strips:
+      strips(given, rate_hz, result);
+      break;
+    case models::Fineness::nodes:
+      lattice(given, rate_hz, result);
+      break;
+    case models::Fineness::integrators:
+      integrators(given, rate_hz, result);
+      break;
+    case models::Fineness::projections:
+      projections(given, rate_hz, result);
+      break;
+    case models::Fineness::segments:
+      as_given(rate_hz);
+      append(result.all, resampled_segments(given, facts.size.last, rate_hz));
+      break;
+    case models::Fineness::points:
+      as_given(rate_hz);
+      append(result.all, resampled_tables(given, facts.size.last, rate_hz));
+      break;
+    case models::Fineness::memberships:
+      as_given(rate_hz);
+      add_memberships(given, rate_hz, result);
+      break;
+    case models::Fineness::nothing:
+      as_given(reference_rate_factor * rate_hz);
+      break;
   }
-  if (in_float) {
+  if (facts.in_float) {
     const Fidelity& first = result.all.front();
     const LawFile single = with_options(first.law, {{"precision", std::string("float")}});
     result.all.push_back({first.label + ", float", single, rate_hz});

@@ -24,20 +24,20 @@ struct Fidelities {
 /// How many times the loop's rate the reference is computed at, where a law depends on the rate at all.
 inline constexpr double reference_rate_factor = 16.0;
 
-/// The fidelities of a law at a rate of the loop:
+/// The fidelities of a law at a rate of the loop, by what its facts call finer:
 ///
-///     blade            paper and strips, 1 to 64 a polygon, and exact; judged by exact
-///     scissors_mesh    half the nodes, as given, twice the nodes a side, and the sub-steps of its stiffest
-///                      spring, half and a quarter of them; judged by three times the nodes
-///     kelvin, maxwell  exact, semi-implicit and Euler; the latter two also at 250, 500, 1000 and 4000 Hz;
-///                      judged by exact at 16 times the rate
-///     piecewise        as given, and with 1 to 12 segments by least squares; judged by itself
-///     recording        as given, and resampled to 2, 4, ... 256 points; judged by itself
-///     fuzzy laws       as given, and with 2 to 5 memberships an input trained on it; judged by itself
-///     orthogonal       consistent and paper; judged by consistent at 16 times the rate
+///     strips       paper and strips, 1 to 64 a polygon, and exact; judged by exact
+///     nodes        half the nodes, as given, twice the nodes a side, and the sub-steps of its stiffest
+///                  spring, half and a quarter of them; judged by three times the nodes
+///     integrators  exact, semi-implicit and Euler; the latter two also at 250, 500, 1000 and 4000 Hz;
+///                  judged by exact at 16 times the rate
+///     segments     as given, and with 1 to 12 segments by least squares; judged by itself
+///     points       as given, and resampled to 2, 4, ... 256 points; judged by itself
+///     memberships  as given, and with 2 to 5 memberships an input trained on it; judged by itself
+///     projections  consistent and paper; judged by consistent at 16 times the rate
+///     nothing      as given, judged by itself at 16 times the rate
 ///
-/// others as given, judged by themselves at 16 times the rate. Laws that can be single are also computed
-/// singly, as given.
+/// Laws that can be single are also computed singly, as given.
 ///
 /// A lattice of other spacing is the same slab of the same tissue: a spring of a plane has one stiffness
 /// whatever the spacing h, a node's mass and damping go with h^2, and an element breaks at one strain.

@@ -1,7 +1,7 @@
 #include "chart/fit_plan.h"
 
 #include <algorithm>
-#include <utility>
+#include <iterator>
 
 #include <fmt/core.h>
 
@@ -11,42 +11,29 @@
 namespace kerf::bench {
 namespace {
 
-std::string counted(std::size_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+std::vector<FitPlan> sizes_of(const std::string& model, const models::SizeFacts& size) {
+  std::vector<FitPlan> plans;
+  for (std::size_t count = size.first; count <= size.last; count = size.doubles ? 2 * count : count + 1) {
+    const std::size_t told = size.squared ? count * count : count;
+    plans.push_back({model,
+                     fmt::format("{} {}{}", told, size.unit, told == 1 ? "" : "s"),
+                     {{std::string(size.option), static_cast<double>(count)}}});
+  }
+  return plans;
 }
 
-void add(const std::string& model, std::vector<FitPlan>& to) {
-  const auto sized = [&](std::size_t count, const char* option, const char* what) {
-    to.push_back({model, counted(count, what), {{option, static_cast<double>(count)}}});
-  };
-  if (model == "kelvin") {
-    to.push_back({model, "exact", {}});
-    to.push_back({model, "semi-implicit", {{"integrator", std::string("semi_implicit")}}});
-    to.push_back({model, "Euler", {{"integrator", std::string("euler")}}});
-  } else if (model == "maxwell") {
-    for (std::size_t arms = 1; arms <= 4; ++arms) sized(arms, "arms", "arm");
-  } else if (model == "piecewise") {
-    for (std::size_t segments = 1; segments <= 12; ++segments) sized(segments, "segments", "segment");
-  } else if (model == "recording") {
-    for (std::size_t points = 2; points <= 256; points *= 2) sized(points, "points", "point");
-  } else if (model.starts_with("fuzzy_")) {
-    for (std::size_t memberships = 2; memberships <= 5; ++memberships) {
-      to.push_back({model,
-                    counted(memberships * memberships, "rule"),
-                    {{"memberships", static_cast<double>(memberships)}}});
-    }
-  } else {
-    to.push_back({model, "as fitted", {}});
-  }
+std::vector<FitPlan> plans_of(const std::string& model) {
+  const models::LawFacts& facts = models::law_facts(model);
+  if (!facts.size.option.empty()) return sizes_of(model, facts.size);
+  if (facts.fineness != models::Fineness::integrators) return {{model, "as fitted", {}}};
+  return {{model, "exact", {}},
+          {model, "semi-implicit", {{"integrator", std::string("semi_implicit")}}},
+          {model, "Euler", {{"integrator", std::string("euler")}}}};
 }
 
 }  // namespace
 
-bool has_float(std::string_view model) {
-  const auto options = models::Law::options(model);
-  return std::any_of(options.begin(), options.end(),
-                     [](const auto& option) { return option.name == "precision"; });
-}
+bool has_float(std::string_view model) { return models::law_facts(model).in_float; }
 
 std::vector<FitPlan> fit_plans(const std::vector<std::string>& models) {
   std::vector<std::string> wanted;
@@ -61,14 +48,11 @@ std::vector<FitPlan> fit_plans(const std::vector<std::string>& models) {
       want(model);
     }
   }
-  if (models.empty()) {
-    for (const auto* model : {"kelvin", "maxwell", "springpot", "exponential", "hunt_crossley", "friction",
-                              "piecewise", "recording"}) {
-      want(model);
-    }
+  for (const std::string_view model : fitting::fitted_laws()) {
+    if (models.empty() && models::law_facts(model).charted) want(model);
   }
   std::vector<FitPlan> plans;
-  for (const std::string& model : wanted) add(model, plans);
+  for (const std::string& model : wanted) std::ranges::move(plans_of(model), std::back_inserter(plans));
   return plans;
 }
 

@@ -14,8 +14,8 @@ struct FitPlan {
   models::Options options;
 };
 
-/// The fits of the laws named. Empty: kelvin, maxwell, springpot, exponential, hunt_crossley, friction,
-/// piecewise and recording, which say something of any axis.
+/// The fits of the laws named, "all" for every one. Empty: those that are charted by their facts, which say
+/// something of any axis.
 /// @throws std::invalid_argument for a law that is unknown or not fitted.
 [[nodiscard]] std::vector<FitPlan> fit_plans(const std::vector<std::string>& models);
 

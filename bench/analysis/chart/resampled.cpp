@@ -63,20 +63,25 @@ Points points_of(const models::Law& law, double first, double last, bool loop) {
   return points;
 }
 
-/// Where in its values the surface of a fuzzy law begins; its options have the box.
-std::size_t surface_begins(std::string_view model) {
-  return model == "fuzzy_rupture" ? 0 : model == "fuzzy_kelvin" ? 3 : 9;
-}
-
-fitting::RuptureSamples samples_of_surface(const models::Law& law, std::size_t begins) {
+models::Options surface_options(const models::Law& law) {
   models::Options options;
   for (const models::OptionInfo& known : models::Law::options("fuzzy_rupture")) {
     const auto given = law.options().find(known.name);
     if (given != law.options().end()) options.insert(*given);
   }
+  return options;
+}
+
+/// Where in its values the surface of a fuzzy law begins; its options have the box.
+std::size_t surface_begins(const models::Law& law) {
+  const std::size_t surface = models::Law::parameters("fuzzy_rupture", surface_options(law)).size();
+  return law.values().size() - surface;
+}
+
+fitting::RuptureSamples samples_of_surface(const models::Law& law, std::size_t begins) {
   const std::vector<double> values(law.values().begin() + static_cast<std::ptrdiff_t>(begins),
                                    law.values().end());
-  const models::Law surface = models::Law::make("fuzzy_rupture", values, options);
+  const models::Law surface = models::Law::make("fuzzy_rupture", values, surface_options(law));
   models::Law::State state = surface.initial_state();
   const auto place = [](double least, double most, std::size_t i) {
     return least + (most - least) * static_cast<double>(i) / static_cast<double>(surface_points - 1);
@@ -148,9 +153,10 @@ std::vector<Fidelity> resampled_tables(const LawFile& file, std::size_t most, do
 
 void add_memberships(const LawFile& file, double rate_hz, Fidelities& to) {
   const models::Law& law = file.law;
-  const std::size_t begins = surface_begins(law.model());
+  const std::size_t begins = surface_begins(law);
   const fitting::RuptureSamples samples = samples_of_surface(law, begins);
-  for (std::size_t memberships = 2; memberships <= 5; ++memberships) {
+  const models::SizeFacts& size = models::law_facts(law.model()).size;
+  for (std::size_t memberships = size.first; memberships <= size.last; ++memberships) {
     if (static_cast<double>(memberships) == option_or(law, "memberships", 3.0)) continue;
     try {
       const auto trained = fitting::train_rupture(samples, {.memberships = memberships, .iterations = 100});

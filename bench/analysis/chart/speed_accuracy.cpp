@@ -12,6 +12,7 @@
 #include "chart/pareto_front.h"
 #include "chart/reference_forces.h"
 #include "fits/fit_series.h"
+#include "fits/law_options.h"
 #include "laws/placement.h"
 
 namespace kerf::bench {
@@ -70,12 +71,6 @@ ChartPoint point_of(const Fidelity& fidelity) {
           .file = fidelity.law};
 }
 
-bool within_units(const FitPlan& plan, const LawFile& law) {
-  const models::LawInfo info = models::law_info(plan.model);
-  return info.position_unit.empty() ||
-         (info.position_unit == law.position_unit && info.force_unit == law.force_unit);
-}
-
 /// What a law with two branches is rendered with, if it says nothing of that itself.
 void add_aids(LawFile& file, const std::vector<drivers::Sample>& samples, std::size_t axis) {
   for (const auto* aid : {"velocity_corner", "ramp_band", "reversal_scale"}) {
@@ -95,7 +90,8 @@ void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions
                 SpeedAccuracy& chart) {
   for (const FitPlan& plan : fit_plans(options.models)) {
     if (stopped(options)) return;
-    if (plan.model == law.law.model() || !within_units(plan, law)) continue;
+    const bool fits = units_fit(models::law_info(plan.model), law.position_unit, law.force_unit);
+    if (plan.model == law.law.model() || !fits) continue;
     try {
       fitting::FitOptions fit{.law_options = plan.options, .jnd = options.jnd, .folds = 0};
       fit.intervals = fitting::Intervals::white;

@@ -6,19 +6,12 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law.h>
 #include <kerf/schema/recording.h>
 
 namespace kerf::bench {
 
-/// What a law can tell of a cut beside a force that grows with the depth.
-enum class Effect {
-  rotation,    ///< of a blade: parts of it move at speeds and depths of their own
-  loop,        ///< hysteresis: opening is felt otherwise than closing, at any speed
-  relaxation,  ///< the force fades while the tool is held
-  cutting,     ///< the tissue gives way, and the force falls
-  rate,        ///< the force depends on the speed
-  stiffening   ///< the force is no straight line over the depth
-};
+using models::Effect;
 [[nodiscard]] std::string_view name_of(Effect effect) noexcept;
 using Effects = std::set<Effect>;
 
@@ -32,16 +25,13 @@ struct CandidateLaw {
 };
 
 struct CandidateOptions {
-  std::size_t max_segments = 12;  ///< of the piecewise law, 1 to 16
-  std::size_t max_arms = 4;       ///< of the Maxwell law, 1 to 6
+  std::size_t max_segments = 12;  ///< of a segmented law, 1 to 16
+  std::size_t max_arms = 4;       ///< of a law that a fit makes larger, 1 to 6
 };
 
-/// Every scalar law whose units fit an axis, from a straight line to tables of the recorded force, those with
-/// fewest parameters first. Laws with a branch for each direction are among them only where there are cycles.
-///
-/// Variants: the exponential law without viscosity, with it, and with an offset too; the springpot alone and
-/// beside a spring; Maxwell's with 2 arms and more (with one it is the Kelvin law); piecewise with 1 segment
-/// and more, for both directions together and each by itself.
+/// Every scalar law whose units fit an axis, in each form that its facts name, those with fewest parameters
+/// first: from a straight line to tables of the recorded force. Those with a branch for each direction are
+/// among them only where there are cycles.
 [[nodiscard]] std::vector<CandidateLaw> candidates_for(const schema::Axis& axis, bool has_cycles,
                                                        const CandidateOptions& options = {});
 

@@ -119,7 +119,7 @@ double TorqueJnd::at(double torque_n_m) const noexcept {
 }
 
 LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, const std::atomic<bool>& stop) {
-  if (scene.tissue.law.model() != "blade") {
+  if (models::law_facts(scene.tissue.law.model()).fineness != models::Fineness::strips) {
     throw std::invalid_argument(
         fmt::format("law '{}' acts on several axes and has no fidelities to choose among; of such laws only "
                     "'blade' has",

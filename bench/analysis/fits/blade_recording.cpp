@@ -170,7 +170,7 @@ BladeRecordingFit fit_blade_recording(const schema::Recording& recording,
 }
 
 models::Options blade_shape_of(const LawFile& law, const std::string& name) {
-  if (law.law.model() != models::Blade::name) {
+  if (models::law_facts(law.law.model()).search != models::Search::blade) {
     throw std::invalid_argument(
         fmt::format("{}: law '{}' has no shape of a blade; expected a law 'blade' with its polygons and edge",
                     name, law.law.model()));

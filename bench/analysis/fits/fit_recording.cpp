@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <system_error>
@@ -101,15 +102,13 @@ class CountWhenLeft {
   std::atomic<std::size_t>* count_;
 };
 
-bool units_fit(const std::string& model, const schema::Axis& axis) {
-  const models::LawInfo info = models::law_info(model);
-  return info.position_unit.empty() ||
-         (info.position_unit == axis.position_unit && info.force_unit == axis.force_unit);
+bool fits_axis(const std::string& model, const schema::Axis& axis) {
+  return units_fit(models::law_info(model), axis.position_unit, axis.force_unit);
 }
 
-/// A law whose equation is in metres says nothing of an angle. @throws std::invalid_argument.
+/// @throws std::invalid_argument.
 void check_units(const std::string& model, const schema::Axis& axis) {
-  if (units_fit(model, axis)) return;
+  if (fits_axis(model, axis)) return;
   const models::LawInfo info = models::law_info(model);
   throw std::invalid_argument(fmt::format("its force is in {} over {}, and axis '{}' has {} over {}",
                                           info.force_unit, info.position_unit, axis.name, axis.force_unit,
@@ -132,8 +131,13 @@ fitting::FitOptions options_for(const std::string& model, const FitRecordingOpti
                                 const models::Contact& contact) {
   fitting::FitOptions fit = options.fit;
   for (const auto& [name, value] : options_of_law(model, options.law_options)) fit.law_options[name] = value;
-  if (model == "piecewise") fit.law_options.try_emplace("segments", static_cast<double>(options.segments));
-  if (model == "scissors_analytic") fit.law_options.try_emplace("contact_angle", contact.position);
+  const models::LawFacts& facts = models::law_facts(model);
+  if (facts.search == models::Search::segments)
+    fit.law_options.try_emplace(std::string(facts.size.option), static_cast<double>(options.segments));
+  for (const models::DataOption& option : facts.from_data) {
+    if (option.from == models::From::contact)
+      fit.law_options.try_emplace(std::string(option.name), contact.position);
+  }
   return fit;
 }
 
@@ -183,8 +187,18 @@ std::string RecordingFit::refusal() const {
   return one_reason ? refusals[0].why : "";
 }
 
+std::vector<std::string> usual_laws() {
+  std::map<int, std::string> usual;
+  for (const models::LawInfo& law : models::registry()) {
+    if (const int place = models::law_facts(law.name).usual; place > 0) usual.emplace(place, law.name);
+  }
+  std::vector<std::string> names;
+  for (const auto& [place, name] : usual) names.push_back(name);
+  return names;
+}
+
 std::vector<std::string> models_of(const FitRecordingOptions& options) {
-  if (options.models.empty()) return {"kelvin", "exponential", "piecewise", "recording", "maxwell"};
+  if (options.models.empty()) return usual_laws();
   std::vector<std::string> models;
   const auto add = [&](std::string_view model) {
     if (std::find(models.begin(), models.end(), model) == models.end()) models.emplace_back(model);
@@ -216,7 +230,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     if (options.stop != nullptr && *options.stop)
       throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
     const CountWhenLeft counted(options.done);
-    if (!named(model) && !units_fit(model, axis)) continue;
+    if (!named(model) && !fits_axis(model, axis)) continue;
     try {
       check_units(model, axis);
       fitting::FitResult result =

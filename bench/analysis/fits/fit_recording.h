@@ -90,8 +90,10 @@ struct RecordingFit {
 /// scaling) if it has branches, scaled to a series of what it met.
 [[nodiscard]] models::Options with_rendering_aids(models::Options options, const AxisSeries& series);
 
-/// The laws that are asked for, each once: those named, every scalar law for "all", or the five that say
-/// something of any recording along an axis (kelvin, exponential, piecewise, recording, maxwell).
+/// The laws that say something of any recording along an axis, in the order of their facts.
+[[nodiscard]] std::vector<std::string> usual_laws();
+
+/// The laws that are asked for, each once: those named, every scalar law for "all", or the usual ones.
 [[nodiscard]] std::vector<std::string> models_of(const FitRecordingOptions& options);
 
 }  // namespace kerf::bench

@@ -8,8 +8,6 @@
 
 #include <fmt/core.h>
 
-#include <kerf/models/law.h>
-
 namespace kerf::bench {
 namespace {
 
@@ -45,6 +43,10 @@ models::OptionValue value_like(const models::OptionValue& standard, const Assign
 }
 
 }  // namespace
+
+bool units_fit(const models::LawInfo& law, std::string_view position_unit, std::string_view force_unit) {
+  return law.position_unit.empty() || (law.position_unit == position_unit && law.force_unit == force_unit);
+}
 
 models::Options options_of_law(std::string_view model, const std::vector<std::string>& given) {
   models::Options options;

@@ -4,9 +4,13 @@
 #include <string_view>
 #include <vector>
 
-#include <kerf/models/parameter.h>
+#include <kerf/models/law.h>
 
 namespace kerf::bench {
+
+/// A law whose equation is in metres says nothing of an angle.
+[[nodiscard]] bool units_fit(const models::LawInfo& law, std::string_view position_unit,
+                             std::string_view force_unit);
 
 /// Of options written as NAME=VALUE those that a law has, each of the type it has there. The last of a name
 /// counts.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "fits/law_options.h"
 #include "recordings/axes.h"
@@ -79,8 +79,8 @@ std::vector<std::string> law_options_of(const FitArguments& arguments) {
 
 void add_law_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--models", arguments.options.models,
-                  "Laws, separated by commas, or all whose units fit the axis (default: kelvin, exponential, "
-                  "piecewise, recording, maxwell)")
+                  fmt::format("Laws, separated by commas, or all whose units fit the axis (default: {})",
+                              fmt::join(usual_laws(), ", ")))
       .separated_by(',')
       .one_value_each();
   verb.add_option("--segments", arguments.segments,

@@ -156,7 +156,7 @@ void add_chart(CLI::App& app, Context& context) {
       [arguments, &context] { run_chart(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording");
   verb.add_option("--scene", arguments->scene, "Scene, in place of a recording");
-  verb.add_option("--laws", arguments->laws, "Laws to fit, or all (default: eight that suit any axis)")
+  verb.add_option("--laws", arguments->laws, "Laws to fit, or all (default: those that suit any axis)")
       .separated_by(',');
   verb.add_option("--axis", arguments->axis,
                   "Axis of the recording (default: that of its cycles, or the first)");

@@ -212,7 +212,7 @@ LawFile drawn_law(const EditorCurve& curve, const Knots& knots, const CurveSourc
 }
 
 Knots knots_of(const LawFile& file) {
-  if (file.law.model() != "piecewise") {
+  if (models::law_facts(file.law.model()).search != models::Search::segments) {
     throw std::invalid_argument(
         fmt::format("law '{}' has no breakpoints; the segment editor takes 'piecewise'", file.law.model()));
   }

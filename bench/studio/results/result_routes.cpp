@@ -129,7 +129,8 @@ HttpResponse fitted_laws_list() {
     list.push_back({{"model", info.name},
                     {"equation", info.equation},
                     {"position_unit", info.position_unit},
-                    {"force_unit", info.force_unit}});
+                    {"force_unit", info.force_unit},
+                    {"usual", models::law_facts(model).usual > 0}});
   }
   return json_response(list);
 }

@@ -59,14 +59,16 @@ nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry, RecordingLen
 }
 
 nlohmann::ordered_json law_entry(const WorkspaceEntry& entry) {
-  nlohmann::ordered_json json{{"id", entry.id},      {"name", entry.name}, {"model", ""}, {"axis", ""},
-                              {"position_unit", ""}, {"force_unit", ""},   {"error", ""}};
+  nlohmann::ordered_json json{{"id", entry.id},       {"name", entry.name},  {"model", ""},
+                              {"axis", ""},           {"position_unit", ""}, {"force_unit", ""},
+                              {"breakpoints", false}, {"error", ""}};
   try {
     const LawFile law = read_law_file(entry.path);
     json["model"] = law.law.model();
     json["axis"] = law.axis;
     json["position_unit"] = law.position_unit;
     json["force_unit"] = law.force_unit;
+    json["breakpoints"] = models::law_facts(law.law.model()).search == models::Search::segments;
   } catch (const std::exception& error) {
     json["error"] = error.what();
   }

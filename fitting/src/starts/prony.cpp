@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string_view>
 
 namespace kerf::fitting {
 namespace {
@@ -18,7 +19,7 @@ struct Dictionary {
   double squares = 0.0;
 };
 
-Dictionary dictionary_of(const Samples& samples, const Weights& weights) {
+Dictionary dictionary_of(std::string_view model, const Samples& samples, const Weights& weights) {
   Dictionary all;
   const double shortest = 2.0 * samples.median_period_s;
   const double longest = std::max(2.0 * samples.duration_s, 8.0 * shortest);
@@ -36,8 +37,8 @@ Dictionary dictionary_of(const Samples& samples, const Weights& weights) {
       const std::vector<double> values{1.0, 1.0, all.time_s[i]};
       const std::vector<double> slope{1.0, 1.0, 0.0};
       Eigen::MatrixXd pair(count, 2);
-      (void)kernel_of("maxwell").rows({.values = values, .slope = slope, .options = one_arm},
-                                      view_of(samples, weights, run), force.segment(begin, count), pair);
+      (void)kernel_of(model).rows({.values = values, .slope = slope, .options = one_arm},
+                                  view_of(samples, weights, run), force.segment(begin, count), pair);
       columns.col(0).segment(begin, count) = pair.col(0);
       columns.col(static_cast<Eigen::Index>(i) + 1).segment(begin, count) = pair.col(1);
     }
@@ -65,7 +66,7 @@ double left_by(const Dictionary& dictionary, const std::vector<Eigen::Index>& pl
 
 std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& samples,
                                          const Weights& weights) {
-  const Dictionary dictionary = dictionary_of(samples, weights);
+  const Dictionary dictionary = dictionary_of(problem.model, samples, weights);
   const std::size_t arms = (problem.parameters.size() - 1) / 2;
   struct Set {
     std::vector<Eigen::Index> places;

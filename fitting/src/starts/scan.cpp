@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "starts/prony.h"
 
@@ -20,33 +22,29 @@ std::vector<double> geometric(double first, double last, int steps) {
   return all;
 }
 
-/// Every parameter linear but those named, which take one value after another.
-std::vector<LinearFamily> grid_over(const Problem& problem, std::string_view name,
-                                    const std::vector<double>& values) {
-  std::vector<double> unit(problem.parameters.size(), 1.0);
-  std::vector<bool> linear(unit.size(), true);
-  std::size_t at = unit.size();
-  for (std::size_t i = 0; i < unit.size(); ++i) {
-    if (problem.parameters[i].name == name) at = i;
-  }
-  std::vector<LinearFamily> families;
-  if (at == unit.size()) return {family_of(problem, unit, linear)};
-  linear[at] = false;
-  for (const double value : values) {
-    unit[at] = std::clamp(value, problem.parameters[at].lower, problem.parameters[at].upper);
-    families.push_back(family_of(problem, unit, linear));
-  }
-  return families;
+std::size_t place_of(const Problem& problem, std::string_view name) {
+  const auto found = std::find_if(problem.parameters.begin(), problem.parameters.end(),
+                                  [&](const auto& info) { return info.name == name; });
+  if (found == problem.parameters.end())
+    throw std::logic_error("law '" + std::string(problem.model) +
+                           "' has no parameter to be scanned: " + std::string(name));
+  return static_cast<std::size_t>(found - problem.parameters.begin());
 }
 
-/// Kelvin is linear in both springs at a given relaxation time, along which the dashpot goes with its spring.
-std::vector<LinearFamily> kelvin_families(const Problem& problem, const Samples& samples) {
+/// An arm is linear in its spring at a given relaxation time, along which the dashpot goes with it.
+std::vector<LinearFamily> relaxations(const Problem& problem, const Samples& samples) {
+  const auto dashpot = static_cast<Eigen::Index>(place_of(problem, problem.facts().scan.parameter));
+  const auto spring = static_cast<Eigen::Index>(place_of(problem, problem.facts().scan.spring));
+  const std::vector<double> unit(problem.parameters.size(), 1.0);
+  std::vector<bool> linear(unit.size(), true);
+  linear[static_cast<std::size_t>(dashpot)] = false;
   const double shortest = 2.0 * samples.median_period_s;
   std::vector<LinearFamily> families;
   for (const double time_s : geometric(shortest, std::max(samples.duration_s, 4.0 * shortest), 13)) {
-    LinearFamily family = family_of(problem, {1.0, 1.0, time_s}, {true, true, false});
-    family.base[2] = 0.0;
-    family.directions(2, 1) = time_s;
+    LinearFamily family = family_of(problem, unit, linear);
+    const Eigen::Index column = spring - (dashpot < spring ? 1 : 0);
+    family.base[dashpot] = 0.0;
+    family.directions(dashpot, column) = time_s;
     families.push_back(std::move(family));
   }
   return families;
@@ -61,27 +59,56 @@ double option(const Problem& problem, std::string_view name) {
   return 0.0;
 }
 
+double unit_of(const Problem& problem, const Samples& samples) {
+  const models::ScanFacts& scan = problem.facts().scan;
+  switch (scan.unit) {
+    case models::ScanUnit::one:
+      break;
+    case models::ScanUnit::depth:
+      return std::max(samples.most, 1e-9);
+    case models::ScanUnit::per_depth:
+      return option(problem, scan.option) / std::max(samples.most, 1e-12);
+    case models::ScanUnit::range:
+      return samples.most - samples.least;
+  }
+  return 1.0;
+}
+
+std::vector<double> scanned_values(const Problem& problem, const Samples& samples) {
+  const models::ScanFacts& scan = problem.facts().scan;
+  std::vector<double> values(scan.values.begin(), scan.values.end());
+  for (double& value : values) value *= unit_of(problem, samples);
+  return scan.steps == 0 ? values : geometric(values.front(), values.back(), static_cast<int>(scan.steps));
+}
+
+/// One parameter takes one value after another; every other is linear.
+std::vector<LinearFamily> grid(const Problem& problem, const Samples& samples) {
+  const std::size_t at = place_of(problem, problem.facts().scan.parameter);
+  std::vector<double> unit(problem.parameters.size(), 1.0);
+  std::vector<bool> linear(unit.size(), true);
+  linear[at] = false;
+  std::vector<LinearFamily> families;
+  for (const double value : scanned_values(problem, samples)) {
+    unit[at] = std::clamp(value, problem.parameters[at].lower, problem.parameters[at].upper);
+    families.push_back(family_of(problem, unit, linear));
+  }
+  return families;
+}
+
 std::vector<LinearFamily> families_of(const Problem& problem, const Samples& samples,
                                       const Weights& weights) {
-  const double range = samples.most - samples.least;
-  if (problem.model == "kelvin") return kelvin_families(problem, samples);
-  if (problem.model == "maxwell") return prony_families(problem, samples, weights);
-  if (problem.model == "exponential") {
-    std::vector<double> exponents{0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 20.0};
-    for (double& e : exponents) e *= option(problem, "thickness") / std::max(samples.most, 1e-12);
-    return grid_over(problem, "exponent", exponents);
+  switch (problem.facts().scan.over) {
+    case models::Scan::values:
+      return grid(problem, samples);
+    case models::Scan::relaxation:
+      return relaxations(problem, samples);
+    case models::Scan::prony:
+      return prony_families(problem, samples, weights);
+    case models::Scan::nothing:
+      break;
   }
-  if (problem.model == "precontact") {
-    std::vector<double> widths{0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0};
-    for (double& width : widths) width *= std::max(samples.most, 1e-9);
-    return grid_over(problem, "width", widths);
-  }
-  if (problem.model == "springpot")
-    return grid_over(problem, "order", {0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95});
-  if (problem.model == "hunt_crossley")
-    return grid_over(problem, "exponent", {0.7, 1.0, 1.5, 2.0, 2.7, 3.5, 4.5});
-  if (problem.model == "friction") return grid_over(problem, "presliding", geometric(1e-4 * range, range, 9));
-  return grid_over(problem, "", {});
+  const std::size_t all = problem.parameters.size();
+  return {family_of(problem, std::vector<double>(all, 1.0), std::vector<bool>(all, true))};
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 #include <stdexcept>
 
 #include "segmented/segmented_law.h"
+#include "starts/fracture_fit.h"
 #include "starts/scan.h"
-#include "starts/staged.h"
+#include "starts/threshold.h"
 #include "tables.h"
 
 namespace kerf::fitting {
@@ -81,20 +82,49 @@ std::vector<bool> own_parameters(const Problem& problem, const std::vector<std::
   return own;
 }
 
+models::OptionValue taken_from(const Samples& samples, const models::DataOption& option) {
+  constexpr double nothing = 1e-9;
+  switch (option.from) {
+    case models::From::number:
+      break;
+    case models::From::cycles:
+      return samples.has_cycles;
+    case models::From::first:
+      return samples.least;
+    case models::From::last:
+      return samples.most;
+    case models::From::depth:
+      return std::max(samples.most, nothing);
+    case models::From::speed: {
+      double fastest = nothing;
+      for (const models::Motion& motion : samples.motion)
+        fastest = std::max(fastest, std::abs(motion.velocity));
+      return fastest;
+    }
+    case models::From::contact:  // samples begin there; who has the axis gives its position
+      break;
+  }
+  return option.number;
+}
+
+void hold(Problem& problem, std::string_view name) {
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    if (problem.parameters[i].name.starts_with(name)) problem.free[i] = false;
+  }
+}
+
 }  // namespace
 
 Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples) {
   Problem problem{.model = model, .law_options = given.law_options, .runs = samples.runs.size()};
+  const models::LawFacts& facts = problem.facts();
   models::Options& options = problem.law_options;
-  if (model == "piecewise" || model == "recording") options.try_emplace("loop", samples.has_cycles);
-  if (model == "recording") {
-    options.try_emplace("points", 101.0);
-    options.try_emplace("first", samples.least);
-    options.try_emplace("last", samples.most);
+  for (const models::DataOption& option : facts.from_data) {
+    if (option.from != models::From::contact)
+      options.try_emplace(std::string(option.name), taken_from(samples, option));
   }
-  if (model == "hunt_crossley") options.try_emplace("reference_depth", std::max(samples.most, 1e-9));
-  if (is_staged(model)) prepare_staged(model, options, samples);
-  if (model == "piecewise") {
+  const bool segmented = facts.search == models::Search::segments;
+  if (segmented) {
     problem.breakpoints = given.breakpoints;
     problem.segmented_memory = given.segmented_memory;
     prepare_segments(options, given, samples);
@@ -102,10 +132,10 @@ Problem make_problem(std::string_view model, const FitOptions& given, const Samp
   problem.parameters = models::Law::parameters(model, options);
   problem.free.assign(problem.parameters.size(), true);
   problem.own = own_parameters(problem, given.per_recording);
-  if (model == "piecewise") hold_knots(problem, !given.breakpoints.empty());
-  if (is_staged(model)) hold_unsearched(problem);
+  if (segmented) hold_knots(problem, !given.breakpoints.empty());
+  for (const std::string_view name : facts.held) hold(problem, name);
   const bool differs = std::find(problem.own.begin(), problem.own.end(), true) != problem.own.end();
-  if (differs && (model == "piecewise" || model == "recording" || is_staged(model))) {
+  if (differs && facts.search != models::Search::descent) {
     throw std::invalid_argument("law '" + std::string(model) +
                                 "' is fitted to all recordings as one; it has no "
                                 "parameters that each recording could have of its own");
@@ -115,9 +145,22 @@ Problem make_problem(std::string_view model, const FitOptions& given, const Samp
 
 Solution search(const Problem& problem, const Samples& samples, const Weights& weights, const Values& near,
                 const SearchOptions& options) {
-  if (problem.model == "recording") return solve_tables(problem, samples, weights, options.loss);
-  if (problem.model == "piecewise") return solve_segments(problem, samples, weights, options.loss);
-  if (is_staged(problem.model)) return solve_staged(problem, samples, weights, near, options.loss);
+  switch (problem.facts().search) {
+    case models::Search::tables:
+      return solve_tables(problem, samples, weights, options.loss);
+    case models::Search::segments:
+      return solve_segments(problem, samples, weights, options.loss);
+    case models::Search::threshold:
+      return solve_threshold(problem, samples, weights);
+    case models::Search::fracture:
+      return solve_fracture(problem, samples, weights, near, options.loss);
+    case models::Search::ruptures:
+      return solve_ruptures(problem, samples, weights);
+    case models::Search::descent:
+    case models::Search::none:
+    case models::Search::blade:
+      break;
+  }
   if (!near.empty()) return solve_from(problem, samples, weights, near, options);
   Solution start = begin_on_few(problem, samples, weights);
   if (start.values.empty()) return start;

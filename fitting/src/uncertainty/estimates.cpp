@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "infinite.h"
-#include "starts/staged.h"
 #include "tables.h"
 #include "uncertainty/profile.h"
 #include "uncertainty/statistics.h"
@@ -158,7 +157,7 @@ void estimate_tables(FitResult& result, const Problem& problem, const Samples& s
 void estimate_parameters(FitResult& result, const Problem& problem, const Samples& samples,
                          const Weights& weights, const Solution& solution, const FitOptions& options,
                          const RobustLoss& loss) {
-  if (problem.model == "recording") {
+  if (problem.facts().search == models::Search::tables) {
     estimate_tables(result, problem, samples, weights, solution, options.confidence);
     return;
   }
@@ -222,7 +221,8 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
       (run == 0 ? result.parameters : result.others).push_back(std::move(estimate));
     }
   }
-  if (const std::string note = staged_note(problem); !note.empty()) result.warnings.push_back(note);
+  if (const std::string_view note = problem.facts().held_note; !note.empty())
+    result.warnings.emplace_back(note);
 }
 
 }  // namespace kerf::fitting

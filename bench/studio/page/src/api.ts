@@ -37,6 +37,7 @@ export interface WorkspaceLaw {
   axis: string;
   position_unit: string;
   force_unit: string;
+  breakpoints: boolean; // knots that the segment editor moves
   error: string; // why it cannot be read; empty if it can
 }
 export interface WorkspaceSession {
@@ -202,6 +203,7 @@ export interface FittedLaw {
   equation: string;
   position_unit: string;
   force_unit: string;
+  usual: boolean; // fitted where none is named
 }
 
 // What the program's own verbs write; null: not finite.

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/rotation.h>
@@ -109,6 +110,7 @@ struct BladeFidelity {
 struct Blade {
   static constexpr std::string_view name = "blade";
   static constexpr std::string_view equation = "dF = -Kv v dl - (Kn n n^T + Kt (I - n n^T)) v ds, z < 0";
+  static constexpr LawFacts facts{.search = Search::blade, .fineness = Fineness::strips};
 
   BladeField viscous;
   BladeField elastic;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -28,6 +29,22 @@ template <typename T>
 struct Exponential {
   static constexpr std::string_view name = "exponential";
   static constexpr std::string_view equation = "F = alpha exp(beta x / L0) + B0 v";
+  static constexpr LawFacts facts{
+      .search = Search::descent,
+      .scan = {.over = Scan::values,
+               .parameter = "exponent",
+               .values = {0.1, 0.5, 1.0, 2.0, 3.0, 5.0, 8.0, 13.0, 20.0},
+               .unit = ScanUnit::per_depth,
+               .option = "thickness"},
+      .in_float = true,
+      .usual = 2,
+      .charted = true,
+      .variants = {{.suffix = "-elastic", .options = {"viscous=false"}, .effects = {Effect::stiffening}},
+                   {.effects = {Effect::stiffening, Effect::rate}},
+                   {.suffix = "-offset",
+                    .options = {"offset=true"},
+                    .effects = {Effect::stiffening, Effect::rate}}},
+      .rank = -2};
 
   T amplitude{};           ///< alpha [N], > 0
   T exponent{};            ///< beta [1], > 0

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -38,6 +39,13 @@ struct Fracture {
       "F = alpha exp(beta d / L0) up to the energy Uy, one tick of fracture, then Jc w";
   static constexpr std::string_view position_unit = "m";
   static constexpr std::string_view force_unit = "N";
+  static constexpr LawFacts facts{
+      .search = Search::fracture,
+      .searched_at_once = 5,
+      .held = {"width"},
+      .held_note =
+          "'width' is held at 0.01 m: forces tell only its product with 'toughness', the force of cutting",
+      .variants = {{.effects = {Effect::stiffening, Effect::cutting}}}};
 
   T amplitude{};           ///< alpha [N], > 0
   T exponent{};            ///< beta [1], > 0

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -33,6 +34,15 @@ template <typename T>
 struct Friction {
   static constexpr std::string_view name = "friction";
   static constexpr std::string_view equation = "F = F0 + k x + b v + Fc z, dz/dt = (v / xd) (1 - z sgn v)";
+  static constexpr LawFacts facts{.search = Search::descent,
+                                  .searched_at_once = 5,
+                                  .scan = {.over = Scan::values,
+                                           .parameter = "presliding",
+                                           .values = {1e-4, 1.0},
+                                           .steps = 9,
+                                           .unit = ScanUnit::range},
+                                  .charted = true,
+                                  .variants = {{.effects = {Effect::loop, Effect::rate}}}};
 
   T offset{};      ///< F0 [N]
   T stiffness{};   ///< k [N/m]

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/parameter.h>
 
 namespace kerf::models {
@@ -47,6 +48,17 @@ struct FuzzySurface {
 
   /// Number of parameters of m memberships, in the order of parameters(): 4 m premises, 3 m^2 consequents.
   static constexpr std::size_t parameter_count(std::size_t m) { return 4 * m + 3 * m * m; }
+
+  /// Facts of the laws that have one: the box of the data, and how many memberships.
+  static constexpr Few<DataOption, 5> from_data(double memberships) {
+    return {{"memberships", From::number, memberships},
+            {"least_depth", From::number, 0.0},
+            {"most_depth", From::depth},
+            {"least_speed", From::number, 0.0},
+            {"most_speed", From::speed}};
+  }
+  static constexpr SizeFacts size{
+      .option = "memberships", .unit = "rule", .first = 2, .last = 5, .squared = true};
 
   static std::vector<OptionInfo> options() {
     return {{"memberships", 3.0, "m, memberships an input, 1 to 5; m^2 rules"},

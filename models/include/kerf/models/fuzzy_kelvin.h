@@ -8,6 +8,7 @@
 
 #include <kerf/models/fuzzy.h>
 #include <kerf/models/kelvin.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -29,6 +30,17 @@ struct FuzzyKelvin {
   static constexpr std::string_view equation = "kelvin since the last rupture, up to F_rupture(d, |v|)";
   static constexpr std::string_view position_unit = "m";
   static constexpr std::string_view force_unit = "N";
+  static constexpr LawFacts facts{
+      .search = Search::ruptures,
+      .searched_at_once = 8,
+      .from_data = FuzzySurface<T>::from_data(1.0),
+      // One membership spans the whole box, and the depth of the blade does not change along the cut: the
+      // threshold is a line over the speed.
+      .held = {"depth_", "speed_", "per_depth"},
+      .size = FuzzySurface<T>::size,
+      .fineness = Fineness::memberships,
+      .variants = {
+          {.options = {"memberships=1"}, .effects = {Effect::relaxation, Effect::rate, Effect::cutting}}}};
 
   Kelvin<T> element;
   FuzzySurface<T> surface;

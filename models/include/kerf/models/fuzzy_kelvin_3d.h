@@ -9,6 +9,7 @@
 
 #include <kerf/models/fuzzy.h>
 #include <kerf/models/kelvin.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/spatial.h>
@@ -31,6 +32,7 @@ struct FuzzyKelvin3d {
   static constexpr std::string_view name = "fuzzy_kelvin_3d";
   static constexpr std::string_view equation =
       "three fuzzy_kelvin elements, along the cut, across it and in depth";
+  static constexpr LawFacts facts{.size = FuzzySurface<double>::size, .fineness = Fineness::memberships};
 
   std::array<Kelvin<double>, 3> element;
   double stiffening_per_m = 0.0;  ///< c

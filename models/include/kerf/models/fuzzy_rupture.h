@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <kerf/models/fuzzy.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -23,6 +24,13 @@ struct FuzzyRupture {
   static constexpr std::string_view equation = "F = sum w_i (p_i x + q_i |v| + r_i) / sum w_i";
   static constexpr std::string_view position_unit = "m";
   static constexpr std::string_view force_unit = "N";
+  static constexpr LawFacts facts{
+      .search = Search::threshold,
+      .searched_at_once = 8,
+      .from_data = FuzzySurface<T>::from_data(2.0),
+      .size = FuzzySurface<T>::size,
+      .fineness = Fineness::memberships,
+      .variants = {{.options = {"memberships=2"}, .effects = {Effect::stiffening, Effect::rate}}}};
 
   FuzzySurface<T> surface;
 

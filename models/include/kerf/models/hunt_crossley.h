@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -29,6 +30,13 @@ template <typename T>
 struct HuntCrossley {
   static constexpr std::string_view name = "hunt_crossley";
   static constexpr std::string_view equation = "F = (F1 + B1 v) (x / x1)^n";
+  static constexpr LawFacts facts{
+      .search = Search::descent,
+      .scan = {.over = Scan::values, .parameter = "exponent", .values = {0.7, 1.0, 1.5, 2.0, 2.7, 3.5, 4.5}},
+      .from_data = {{"reference_depth", From::depth}},
+      .in_float = true,
+      .charted = true,
+      .variants = {{.effects = {Effect::stiffening, Effect::rate}}}};
 
   T reference_force{};            ///< F1 [N], > 0
   T reference_damping{};          ///< B1 [N·s/m]

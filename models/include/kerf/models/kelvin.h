@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <kerf/models/integrator.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -33,6 +34,14 @@ template <typename T>
 struct Kelvin {
   static constexpr std::string_view name = "kelvin";
   static constexpr std::string_view equation = "F = k1 x + f, df/dt = k2 v - f k2 / b";
+  static constexpr LawFacts facts{
+      .search = Search::descent,
+      .scan = {.over = Scan::relaxation, .parameter = "damping", .spring = "series_stiffness"},
+      .fineness = Fineness::integrators,
+      .in_float = true,
+      .usual = 1,
+      .charted = true,
+      .variants = {{.effects = {Effect::relaxation, Effect::rate}}}};
 
   T parallel_stiffness{};  ///< k1 [N/m], > 0
   T series_stiffness{};    ///< k2 [N/m], > 0

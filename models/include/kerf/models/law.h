@@ -5,13 +5,14 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/spatial.h>
 
 namespace kerf::models {
 
-// One of the laws, and one's state; src/law.cpp has the list.
+// One of the laws, and one's state; registry.h has the list.
 struct AnyLaw;
 struct AnyState;
 
@@ -25,6 +26,7 @@ struct LawInfo {
 [[nodiscard]] std::vector<LawInfo> registry();
 /// @throws std::invalid_argument for an unknown law.
 [[nodiscard]] LawInfo law_info(std::string_view model);
+[[nodiscard]] const LawFacts& law_facts(std::string_view model);
 
 /// The answer of a scalar law in one tick.
 struct Response {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <kerf/models/integrator.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -40,6 +41,17 @@ template <typename T>
 struct Maxwell {
   static constexpr std::string_view name = "maxwell";
   static constexpr std::string_view equation = "F = k0 x + sum f_i, df_i/dt = k_i v - f_i / tau_i";
+  static constexpr LawFacts facts{
+      .search = Search::descent,
+      .searched_at_once = 14,
+      .scan = {.over = Scan::prony},
+      .size = {.option = "arms", .unit = "arm", .first = 1, .last = 4, .grows = true},
+      .fineness = Fineness::integrators,
+      .in_float = true,
+      .usual = 5,
+      .charted = true,
+      .variants = {{.effects = {Effect::relaxation, Effect::rate}, .sizes_from = 2}},  // of one: kelvin
+      .rank = 1};
   static constexpr std::size_t max_arms = 6;
 
   std::size_t arms = 1;

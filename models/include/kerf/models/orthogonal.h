@@ -12,6 +12,7 @@
 #include <kerf/models/exponential.h>
 #include <kerf/models/fracture.h>
 #include <kerf/models/implicit_surface.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/spatial.h>
@@ -82,6 +83,7 @@ template <ImplicitSurface S>
 struct Orthogonal {
   static constexpr std::string_view name = "orthogonal";
   static constexpr std::string_view equation = "tau = C q' + g - J^T L J' q' - J^T lambda_d - N^T zeta_d";
+  static constexpr LawFacts facts{.fineness = Fineness::projections};
 
   Exponential<double> deformation;
   Fracture<double> fracture;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -28,6 +29,23 @@ template <typename T>
 struct Piecewise {
   static constexpr std::string_view name = "piecewise";
   static constexpr std::string_view equation = "F linear between knots, closing and opening branch";
+  static constexpr LawFacts facts{
+      .search = Search::segments,
+      .searched_at_once = 8,
+      .from_data = {{"loop", From::cycles}},
+      .size = {.option = "segments", .unit = "segment", .first = 1, .last = 12},
+      .fineness = Fineness::segments,
+      .in_float = true,
+      .usual = 3,
+      .charted = true,
+      .variants = {{.options = {"loop=false"}, .sizes_from = 1, .from_size_2 = {Effect::stiffening}},
+                   {.suffix = "-loop",
+                    .options = {"loop=true"},
+                    .effects = {Effect::loop},
+                    .sizes_from = 1,
+                    .from_size_2 = {Effect::stiffening},
+                    .needs_cycles = true}},
+      .rank = 2};
   static constexpr std::size_t max_segments = 16;
 
   std::size_t knots = 2;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -25,6 +26,12 @@ template <typename T>
 struct Precontact {
   static constexpr std::string_view name = "precontact";
   static constexpr std::string_view equation = "F = K d^2 / (2 w) before the surface, K (d - w/2) past it";
+  static constexpr LawFacts facts{.search = Search::descent,
+                                  .scan = {.over = Scan::values,
+                                           .parameter = "width",
+                                           .values = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 2.0},
+                                           .unit = ScanUnit::depth},
+                                  .variants = {{.effects = {Effect::stiffening}}}};
 
   T stiffness{};  ///< K [N/m], > 0
   T width{};      ///< w [m], > 0

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -28,6 +29,23 @@ template <typename T>
 struct Recording {
   static constexpr std::string_view name = "recording";
   static constexpr std::string_view equation = "F = s f_close(x) or s f_open(x), tables over x";
+  static constexpr LawFacts facts{
+      .search = Search::tables,
+      .from_data = {{"loop", From::cycles},
+                    {"points", From::number, 101.0},
+                    {"first", From::first},
+                    {"last", From::last}},
+      .size = {.option = "points", .unit = "point", .first = 2, .last = 256, .doubles = true},
+      .fineness = Fineness::points,
+      .in_float = true,
+      .usual = 4,
+      .charted = true,
+      .variants = {{.options = {"points=101", "loop=false"}, .effects = {Effect::stiffening}},
+                   {.suffix = "-loop",
+                    .options = {"points=101", "loop=true"},
+                    .effects = {Effect::stiffening, Effect::loop},
+                    .needs_cycles = true}},
+      .rank = 2};
   static constexpr std::size_t max_points = 4096;
 
   double first = 0.0;  ///< penetration of the first grid point

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/scissors.h>
@@ -30,6 +31,10 @@ struct ScissorsAnalytic {
   static constexpr std::string_view equation = "F = s (tau_pf + f_bf x_c) / l_h + f_cf x_c / l_h";
   static constexpr std::string_view position_unit = "rad";
   static constexpr std::string_view force_unit = "N";
+  static constexpr LawFacts facts{
+      .search = Search::descent,
+      .from_data = {{"contact_angle", From::contact}},
+      .variants = {{.effects = {Effect::loop, Effect::cutting, Effect::stiffening}}}};
 
   T pivot_torque{};    ///< tau_pf [N·m]
   T blade_friction{};  ///< f_bf [N]

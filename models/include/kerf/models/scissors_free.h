@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/scissors.h>
@@ -57,6 +58,7 @@ struct ScissorsFree {
   static constexpr std::string_view name = "scissors";
   static constexpr std::string_view equation =
       "scissors_analytic on theta, k_t (x_m - x_c - x_s) up to f_max on x_s";
+  static constexpr LawFacts facts{};
 
   double pivot_torque = 0.0;    ///< tau_pf [N·m]
   double blade_friction = 0.0;  ///< f_bf [N]

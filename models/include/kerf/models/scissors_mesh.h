@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <kerf/models/lattice.h>
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 #include <kerf/models/scissors.h>
@@ -44,6 +45,7 @@ namespace kerf::models {
 struct ScissorsMesh {
   static constexpr std::string_view name = "scissors_mesh";
   static constexpr std::string_view equation = "slab and strip of springs, cut node by node";
+  static constexpr LawFacts facts{.fineness = Fineness::nodes};
 
   LatticeOptions slab;
   LatticeOptions strip;

@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -45,6 +46,16 @@ template <typename T>
 struct Springpot {
   static constexpr std::string_view name = "springpot";
   static constexpr std::string_view equation = "F = k x + c T0^alpha d^alpha x / dt^alpha";
+  static constexpr LawFacts facts{.search = Search::descent,
+                                  .scan = {.over = Scan::values,
+                                           .parameter = "order",
+                                           .values = {0.03, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95}},
+                                  .charted = true,
+                                  .variants = {{.suffix = "-alone",
+                                                .options = {"spring=false"},
+                                                .effects = {Effect::relaxation, Effect::rate}},
+                                               {.effects = {Effect::relaxation, Effect::rate}}},
+                                  .rank = -1};
   static constexpr std::size_t decays = 40;
   static constexpr double log_spacing = 0.75;  ///< h
   static constexpr double fastest_rate = 1e6;  ///< [1/s]

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -66,6 +67,20 @@ TEST(Candidates, FitTheUnitsOfTheAxis) {
   EXPECT_THAT(angles, Not(Contains("fracture")));
   EXPECT_THAT(depths, Contains("fracture"));
   EXPECT_THAT(depths, Not(Contains("scissors_analytic")));
+}
+
+TEST(Candidates, AreEveryScalarLawUnlessItSaysWhyNot) {
+  std::set<std::string> chosen;
+  for (const char* unit : {"m", "rad"}) {
+    std::set<std::string> names;
+    for (const CandidateLaw& law : candidates_for({.position_unit = unit, .force_unit = "N"}, true)) {
+      chosen.insert(law.model);
+      EXPECT_TRUE(names.insert(law.name).second) << law.name;
+      EXPECT_FALSE(law.effects.empty() && law.parameters > 2) << law.name << " is no straight line";
+    }
+  }
+  for (const std::string_view law : fitting::fitted_laws())
+    EXPECT_NE(chosen.contains(std::string(law)), !models::law_facts(law).not_a_candidate.empty()) << law;
 }
 
 TEST(Candidates, HaveABranchForEachWayOnlyWhereThereAreCycles) {

@@ -1,5 +1,6 @@
 #include "results/result_routes.h"
 
+#include <algorithm>
 #include <memory>
 #include <thread>
 
@@ -11,6 +12,7 @@
 #include "laws/law_file.h"
 #include "support/program.h"
 #include "support/recordings.h"
+#include "workspace/workspace_routes.h"
 
 namespace kerf::bench {
 namespace {
@@ -29,6 +31,7 @@ class ResultRoutes : public testing::Test {
     std::filesystem::create_directory(folder_ / "old.fit");
     test::write_text(folder_ / "old.fit/fit.json", R"({"jnd": 0.1})");
     add_result_routes(routes_, workspace_, jobs_);
+    add_workspace_routes(routes_, workspace_, "sim:scissors");
   }
 
   HttpResponse answer(HttpRequest request) {
@@ -82,7 +85,18 @@ TEST_F(ResultRoutes, ShowALawAndWhatItLeavesOfARecording) {
   ASSERT_EQ(residuals.status, 200) << residuals.body;
   EXPECT_EQ(json::parse(residuals.body)["time_s"].size(), 50U);
   EXPECT_NEAR(json::parse(residuals.body)["rmse"], 0.005, 0.001) << "the noise of the sensor";
-  EXPECT_GE(json::parse(get("/api/laws/fitted").body).size(), 10U);
+  const json fitted = json::parse(get("/api/laws/fitted").body);
+  EXPECT_GE(fitted.size(), 10U);
+  EXPECT_EQ(std::ranges::count_if(fitted, [](const json& one) { return one.at("usual").get<bool>(); }), 5);
+}
+
+TEST_F(ResultRoutes, SayWhichLawsHaveBreakpoints) {
+  write_law_file(folder_ / "knots.law.toml",
+                 {.law = models::Law::make("piecewise", std::vector{0.0, 1.0, 0.0, 2.0}, {{"segments", 1.0}}),
+                  .axis = "z"});
+  const json laws = json::parse(get("/api/workspace").body).at("laws");
+  ASSERT_EQ(laws.size(), 2U);
+  for (const json& one : laws) EXPECT_EQ(one.at("breakpoints"), one.at("model") == "piecewise") << one;
 }
 
 TEST_F(ResultRoutes, RefuseWhatIsNotAsItShouldBeInOneLine) {

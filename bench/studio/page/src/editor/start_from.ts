@@ -15,8 +15,7 @@ interface LawKnots extends Knots {
 export function startFrom(context: Context, drawing: Drawing, workspace: Workspace, taken: () => void): HTMLElement {
   const { curve } = drawing;
   const laws = lawsToPick(workspace).filter(
-    (it) =>
-      it.model === "piecewise" && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
+    (it) => it.breakpoints && it.position_unit === curve.position_unit && it.force_unit === curve.force_unit,
   );
   const take = async (id: string, name: string): Promise<void> => {
     try {

@@ -1,8 +1,6 @@
 import type { Axis, FittedLaw } from "../api";
 import { button, element } from "../ui/dom";
 
-const usual = ["kelvin", "exponential", "piecewise", "recording", "maxwell"];
-
 /** Which laws to fit: those whose units fit the axis. */
 export class LawCheckboxes {
   readonly root = element("fieldset", { class: "laws" });
@@ -19,7 +17,7 @@ export class LawCheckboxes {
     this.root.replaceChildren(
       element("legend", {}, "Laws to fit"),
       ...fitting.map((law) => {
-        const box = element("input", { type: "checkbox", checked: usual.includes(law.model) });
+        const box = element("input", { type: "checkbox", checked: law.usual });
         this.boxes.set(law.model, box);
         return element("label", { class: "tick", title: law.equation }, box, element("span", {}, law.model));
       }),

@@ -1,14 +1,12 @@
-#include "starts/staged.h"
+#include "starts/threshold.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <tuple>
 
 #include "kerf/fitting/rupture.h"
-#include "starts/fracture_fit.h"
 
 namespace kerf::fitting {
 namespace {
@@ -45,6 +43,8 @@ RuptureSamples in_cells(const Samples& samples, const Weights& weights) {
   return table;
 }
 
+}  // namespace
+
 Solution solve_threshold(const Problem& problem, const Samples& samples, const Weights& weights) {
   const auto memberships = static_cast<std::size_t>(std::get<double>(problem.law_options.at("memberships")));
   try {
@@ -60,50 +60,6 @@ Solution solve_threshold(const Problem& problem, const Samples& samples, const W
   } catch (const std::invalid_argument& error) {
     return {.values = {}, .message = error.what()};
   }
-}
-
-}  // namespace
-
-bool is_staged(std::string_view model) {
-  return model == "fracture" || model == "fuzzy_kelvin" || model == "fuzzy_rupture";
-}
-
-void prepare_staged(std::string_view model, models::Options& options, const Samples& samples) {
-  if (model == "fracture") return;
-  double fastest = 0.0;
-  for (const models::Motion& motion : samples.motion) fastest = std::max(fastest, std::abs(motion.velocity));
-  options.try_emplace("memberships", model == "fuzzy_kelvin" ? 1.0 : 2.0);
-  options.try_emplace("least_depth", 0.0);
-  options.try_emplace("most_depth", std::max(samples.most, 1e-9));
-  options.try_emplace("least_speed", 0.0);
-  options.try_emplace("most_speed", std::max(fastest, 1e-9));
-}
-
-void hold_unsearched(Problem& problem) {
-  const auto hold = [&](std::string_view name) {
-    for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-      if (problem.parameters[i].name.starts_with(name)) problem.free[i] = false;
-    }
-  };
-  if (problem.model == "fracture") hold("width");
-  if (problem.model == "fuzzy_kelvin") {
-    // One membership spans the whole box, and the depth of the blade does not change along the cut.
-    for (const auto* name : {"depth_", "speed_", "per_depth"}) hold(name);
-  }
-}
-
-Solution solve_staged(const Problem& problem, const Samples& samples, const Weights& weights,
-                      const Values& near, const RobustLoss& loss) {
-  if (problem.model == "fuzzy_rupture") return solve_threshold(problem, samples, weights);
-  if (problem.model == "fracture") return solve_fracture(problem, samples, weights, near, loss);
-  return solve_ruptures(problem, samples, weights);
-}
-
-std::string staged_note(const Problem& problem) {
-  if (problem.model == "fracture") {
-    return "'width' is held at 0.01 m: forces tell only its product with 'toughness', the force of cutting";
-  }
-  return {};
 }
 
 }  // namespace kerf::fitting
