@@ -3,7 +3,6 @@
 #include <tuple>
 
 #include <kerf/models/blade.h>
-#include <kerf/models/coulomb.h>
 #include <kerf/models/exponential.h>
 #include <kerf/models/fracture.h>
 #include <kerf/models/friction.h>
@@ -37,10 +36,9 @@ using LawList = std::tuple<typename Registered<L>::Law...>;
 ///
 /// A scalar law is templated, so that the law that is fitted is the one that is rendered, and its step takes
 /// a Motion along one axis. A spatial law names its axes and its step takes a SpatialMotion.
-using Registry =
-    LawList<Kelvin<double>, Maxwell<double>, Springpot<double>, Exponential<double>, HuntCrossley<double>,
-            Friction<double>, Coulomb<double>, Piecewise<double>, Recording<double>, ScissorsAnalytic<double>,
-            Precontact<double>, Fracture<double>, FuzzyRupture<double>, FuzzyKelvin<double>, FuzzyKelvin3d,
-            Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
+using Registry = LawList<Kelvin<double>, Maxwell<double>, Springpot<double>, Exponential<double>,
+                         HuntCrossley<double>, Friction<double>, Piecewise<double>, Recording<double>,
+                         ScissorsAnalytic<double>, Precontact<double>, Fracture<double>, FuzzyRupture<double>,
+                         FuzzyKelvin<double>, FuzzyKelvin3d, Blade, ScissorsFree, ScissorsMesh, Orthogonal>;
 
 }  // namespace kerf::models
