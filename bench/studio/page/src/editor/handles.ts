@@ -59,7 +59,9 @@ export class Handles {
     const handles = this.handles[branch];
     while (handles.length > count) handles.pop()?.node.remove();
     while (handles.length < count) {
-      const circles = ["hit", "halo", "mark"].map((it) => drawn("circle", { class: it, r: it === "mark" ? 7 : hitRadius }));
+      const circles = ["hit", "halo", "mark"].map((it) =>
+        drawn("circle", { class: it, r: it === "mark" ? 7 : hitRadius }),
+      );
       const node = drawn("g", { class: `knot ${branch}`, role: "slider", tabindex: 0 }, ...circles);
       node.dataset["branch"] = branch;
       node.dataset["index"] = String(handles.length);

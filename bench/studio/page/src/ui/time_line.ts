@@ -51,7 +51,13 @@ export function columnAt(line: TimeLine, t: number): number {
 }
 
 /** Widens `found` by the line's values within a stretch; logarithmic: by those above zero. */
-export function widen(found: { lower: number; upper: number }, line: TimeLine, from: number, to: number, logarithmic: boolean): void {
+export function widen(
+  found: { lower: number; upper: number },
+  line: TimeLine,
+  from: number,
+  to: number,
+  logarithmic: boolean,
+): void {
   const [first, end] = columnsWithin(line, from, to);
   for (let i = first; i < end; ++i) {
     const smallest = line.smallest[i] as number;

@@ -91,13 +91,27 @@ function within(map: Mapping, from: number, to: number): [number, number] {
   return [left, Math.max(map.pixels, right - left)];
 }
 
-function stripes(context: CanvasRenderingContext2D, left: number, top: number, width: number, height: number, step: number): void {
+function stripes(
+  context: CanvasRenderingContext2D,
+  left: number,
+  top: number,
+  width: number,
+  height: number,
+  step: number,
+): void {
   for (let x = left; x < left + width; x += 2 * step) {
     context.fillRect(x, top, Math.min(step, left + width - x), height);
   }
 }
 
-function hatch(context: CanvasRenderingContext2D, left: number, top: number, width: number, height: number, step: number): void {
+function hatch(
+  context: CanvasRenderingContext2D,
+  left: number,
+  top: number,
+  width: number,
+  height: number,
+  step: number,
+): void {
   context.save();
   context.beginPath();
   context.rect(left, top, width, height);

@@ -56,7 +56,14 @@ export class TimePlot {
     this.map = { from: 0, to: 1, width: 1, lower: 0, upper: 1, height: 1, logarithmic, pixels: 1 };
     this.box = element("div", { class: "time_box" });
     this.root = element("div", { class: bottom ? "time_plot bottom" : "time_plot" }, this.legend(), this.box);
-    this.plot = new uPlot(this.options(), [[0, 1], [null, null]], this.box);
+    this.plot = new uPlot(
+      this.options(),
+      [
+        [0, 1],
+        [null, null],
+      ],
+      this.box,
+    );
     this.over = this.plot.over;
     this.raster.canvas.className = "time_layer";
     this.over.append(this.ground, this.raster.canvas, this.line);
@@ -222,12 +229,18 @@ export class TimePlot {
     const { origin_s: origin } = this.shared;
     const step = splits.length > 1 ? (splits[1] as number) - (splits[0] as number) : 1;
     const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-6)));
-    return splits.map((it) => (it - origin).toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1").replace("-", "−"));
+    return splits.map((it) =>
+      (it - origin)
+        .toFixed(decimals)
+        .replace(/^-(0(\.0*)?)$/, "$1")
+        .replace("-", "−"),
+    );
   }
 
   private valueTicks(lower: number, upper: number, height: number): number[] {
     const count = Math.max(2, height / 26);
-    if (!this.logarithmic) return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
+    if (!this.logarithmic)
+      return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
     const ticks: number[] = [];
     const every = Math.max(1, Math.ceil((upper - lower) / count));
     for (let decade = Math.ceil(lower); decade <= upper; decade += every) ticks.push(decade);
@@ -252,7 +265,8 @@ export class TimePlot {
     map.logarithmic = this.logarithmic;
     if (map.width < 2 || map.height < 2) return;
     const { ground } = this;
-    if (ground.width !== map.width || ground.height !== map.height) [ground.width, ground.height] = [map.width, map.height];
+    if (ground.width !== map.width || ground.height !== map.height)
+      [ground.width, ground.height] = [map.width, map.height];
     const context = ground.getContext("2d");
     if (context && (this.marked || marks !== noMarks)) {
       context.clearRect(0, 0, map.width, map.height);
@@ -262,7 +276,8 @@ export class TimePlot {
     }
     const colours = palette();
     this.raster.begin(map);
-    for (const line of this.lines) this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
+    for (const line of this.lines)
+      this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
     this.raster.paint();
   }
 }
@@ -272,6 +287,13 @@ export function swatch(look: number): SVGSVGElement {
   return drawn(
     "svg",
     { class: "swatch", viewBox: "0 0 30 12", width: 30, height: 12, "aria-hidden": "true" },
-    drawn("line", { class: `look_${look}`, x1: 1, x2: 29, y1: 6, y2: 6, "stroke-dasharray": (dashes[look] ?? []).join(" ") }),
+    drawn("line", {
+      class: `look_${look}`,
+      x1: 1,
+      x2: 29,
+      y1: 6,
+      y2: 6,
+      "stroke-dasharray": (dashes[look] ?? []).join(" "),
+    }),
   );
 }

@@ -151,7 +151,13 @@ export class TimeRaster {
   }
 
   /** An upright bar over what is there already; its ends cover a share of their pixels. */
-  private bar(x: number, top: number, bottom: number, alpha: number, [red, green, blue]: readonly [number, number, number]): void {
+  private bar(
+    x: number,
+    top: number,
+    bottom: number,
+    alpha: number,
+    [red, green, blue]: readonly [number, number, number],
+  ): void {
     const { data, width, height } = this.image;
     const first = Math.max(0, Math.floor(top));
     const last = Math.min(height - 1, Math.ceil(bottom) - 1);

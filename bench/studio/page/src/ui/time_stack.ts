@@ -47,7 +47,13 @@ export class TimeStack {
       () => this.point(),
       options.zoomedWhileFollowing,
     );
-    this.shared = { range: this.range, marks: noMarks, origin_s: 0, timeLabel: options.timeLabel, redraw: () => this.draw() };
+    this.shared = {
+      range: this.range,
+      marks: noMarks,
+      origin_s: 0,
+      timeLabel: options.timeLabel,
+      redraw: () => this.draw(),
+    };
     const plots = element(
       "div",
       {
@@ -82,7 +88,15 @@ export class TimeStack {
   build(orders: readonly PlotOrder[]): void {
     for (const plot of this.plots) plot.end();
     this.plots = orders.map(
-      (it, k) => new TimePlot(it.title, it.lines, this.shared, k === orders.length - 1, it.logarithmic ?? false, it.titled ?? false),
+      (it, k) =>
+        new TimePlot(
+          it.title,
+          it.lines,
+          this.shared,
+          k === orders.length - 1,
+          it.logarithmic ?? false,
+          it.titled ?? false,
+        ),
     );
     this.area.replaceChildren(...this.plots.map((it) => it.root));
     for (const plot of this.plots) {

@@ -104,7 +104,8 @@ export class LastEvents {
 
   /** A stream that is opened again may tell what is known. */
   add(events: readonly KerfEvent[]): boolean {
-    const known = (it: KerfEvent): boolean => this.events.some((other) => other.time_s === it.time_s && other.text === it.text);
+    const known = (it: KerfEvent): boolean =>
+      this.events.some((other) => other.time_s === it.time_s && other.text === it.text);
     const fresh = events.filter((it) => !known(it));
     if (fresh.length === 0) return false;
     this.events.push(...fresh);

@@ -24,7 +24,17 @@ function progressCard(): { root: HTMLElement; show(state: SessionState): void; s
   const link = element("a", { target: "_blank", rel: "noopener noreferrer" }, "Open the subject's page");
   const warnings = element("ul", { class: "warnings", "aria-label": "Warnings" });
   const stop = button("Stop the session", () => {});
-  const root = element("section", { class: "card progress", "aria-label": "Progress" }, name, stage, bar, count, link, warnings, stop);
+  const root = element(
+    "section",
+    { class: "card progress", "aria-label": "Progress" },
+    name,
+    stage,
+    bar,
+    count,
+    link,
+    warnings,
+    stop,
+  );
   return {
     root,
     stop,
@@ -33,7 +43,8 @@ function progressCard(): { root: HTMLElement; show(state: SessionState): void; s
       stage.textContent = state.running ? (stages[state.stage] ?? state.stage) : state.ended && `Ended: ${state.ended}`;
       bar.max = Math.max(1, state.at_most);
       bar.value = state.answered;
-      count.textContent = state.at_most > 0 ? `${state.answered} of ${state.adaptive ? "at most " : ""}${state.at_most} trials` : "";
+      count.textContent =
+        state.at_most > 0 ? `${state.answered} of ${state.adaptive ? "at most " : ""}${state.at_most} trials` : "";
       link.hidden = !state.subject_url;
       if (state.subject_url && link.getAttribute("href") !== state.subject_url) link.href = state.subject_url;
       stop.hidden = !state.running;
@@ -50,9 +61,22 @@ function whereItStands(session: WorkspaceSession): string {
 }
 
 /** What is needed to begin: the device, and the passphrase of whoever keeps the blinding. */
-function startForm(session: WorkspaceSession, device: string, start: (order: Record<string, unknown>) => void): HTMLFormElement {
-  const uri = element("input", { type: "text", placeholder: "the protocol's", spellcheck: "false", autocomplete: "off" });
-  const passphrase = element("input", { type: "password", autocomplete: "off", required: session.key === "passphrase" });
+function startForm(
+  session: WorkspaceSession,
+  device: string,
+  start: (order: Record<string, unknown>) => void,
+): HTMLFormElement {
+  const uri = element("input", {
+    type: "text",
+    placeholder: "the protocol's",
+    spellcheck: "false",
+    autocomplete: "off",
+  });
+  const passphrase = element("input", {
+    type: "password",
+    autocomplete: "off",
+    required: session.key === "passphrase",
+  });
   const check = element("input", { type: "checkbox", checked: true });
   return element(
     "form",
@@ -70,7 +94,11 @@ function startForm(session: WorkspaceSession, device: string, start: (order: Rec
       ? labelled("Passphrase of whoever keeps the blinding", passphrase)
       : element("p", { class: "quiet" }, "Sealed with a key file: the studio has to be started with --key-file."),
     element("label", { class: "tick" }, check, element("span", {}, "Try the laws on the device first")),
-    element("button", { type: "submit", class: "firm" }, session.answered > 0 ? "Go on with the session" : "Begin the session"),
+    element(
+      "button",
+      { type: "submit", class: "firm" },
+      session.answered > 0 ? "Go on with the session" : "Begin the session",
+    ),
   );
 }
 
