@@ -76,13 +76,11 @@ export class ChartPage {
     this.law = new LawPanel(context);
     this.plot = new ChartPlot(placed, (at) => this.open(at));
     const recording = recordingsFor(workspace, chart.source)[0];
-    const is_its = recording !== undefined && recording.name.endsWith(`${chart.source}.h5`);
+    const its = recording?.name.endsWith(`${chart.source}.h5`) ? recording : undefined;
     const choice = new ChoicePanel(
       context,
       workspace,
-      is_its
-        ? () => void jobs.order("/api/choose", { recording: recording.id }, (id) => context.go("chart", id))
-        : null,
+      its ? () => void jobs.order("/api/choose", { recording: its.id }, (id) => context.go("chart", id)) : null,
       (id, title) => void this.law.open(id, title),
     );
     const chosen = workspace.files

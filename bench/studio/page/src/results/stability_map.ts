@@ -3,8 +3,7 @@ import { XyPlot } from "../ui/xy_plot";
 import { cellInWords, edgesOf } from "./map_model";
 import type { MapCell, MapModel } from "./map_model";
 
-const kinds = ["stable", "unstable", "stable_otherwise", "unstable_otherwise"] as const;
-type Kind = (typeof kinds)[number];
+type Kind = "stable" | "unstable" | "stable_otherwise" | "unstable_otherwise";
 
 function kindOf(cell: MapCell | undefined): Kind {
   if (!cell) return "unstable";

@@ -33,7 +33,7 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
     if (span.to_s < map.from || span.from_s > map.to) continue;
     if (((span.to_s - span.from_s) / (map.to - map.from)) * map.width < 2 * map.pixels) continue; // a blur
     const [left, width] = within(map, span.from_s, span.to_s);
-    context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0] as string;
+    context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0]!;
     if (span.shade !== "plain") {
       context.globalAlpha = 0.1;
       context.fillRect(left, 0, width, map.height);

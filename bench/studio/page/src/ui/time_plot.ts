@@ -149,8 +149,8 @@ export class TimePlot {
     const [lower, upper] = this.limits ?? [0, 0];
     const nothing = this.logarithmic ? 0 : 1e-6 * (upper - lower); // rounding of the arithmetic, not of the device
     const written = (value: number): string => plain(Math.abs(value) < nothing ? 0 : value / factor, 4);
-    const smallest = written(line.smallest[column] as number);
-    const largest = written(line.largest[column] as number);
+    const smallest = written(line.smallest[column]!);
+    const largest = written(line.largest[column]!);
     return `${smallest === largest ? smallest : `${smallest} to ${largest}`} ${text}`;
   }
 
@@ -197,7 +197,7 @@ export class TimePlot {
           size: this.bottom ? 24 : 0,
           labelSize: this.bottom ? timeAxisHeight - 24 : 0,
           label: this.bottom ? () => this.shared.timeLabel : "",
-          splits: (_, __, from, to) => this.timeTicks(from, to),
+          splits: (plot, _, from, to) => this.timeTicks(from, to, (plot.bbox.width || 800) / uPlot.pxRatio),
           values: (_, splits) => (this.bottom ? this.timeTexts(splits) : splits.map(() => "")),
         },
         {
@@ -219,15 +219,14 @@ export class TimePlot {
   }
 
   /** Whole steps from the origin, so that they stand still while time runs. */
-  private timeTicks(from: number, to: number): number[] {
+  private timeTicks(from: number, to: number, pixels: number): number[] {
     const { origin_s: origin } = this.shared;
-    const count = (this.plot?.bbox.width ?? 800) / uPlot.pxRatio / 110;
-    return linearTicks(from - origin, to - origin, count).map((it) => it + origin);
+    return linearTicks(from - origin, to - origin, pixels / 110).map((it) => it + origin);
   }
 
   private timeTexts(splits: number[]): string[] {
     const { origin_s: origin } = this.shared;
-    const step = splits.length > 1 ? (splits[1] as number) - (splits[0] as number) : 1;
+    const step = splits.length > 1 ? splits[1]! - splits[0]! : 1;
     const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-6)));
     return splits.map((it) =>
       (it - origin)

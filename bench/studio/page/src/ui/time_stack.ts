@@ -150,7 +150,7 @@ export class TimeStack {
     if (!timeKey(event, this.range)) return;
     clearTimeout(this.speak);
     this.speak = window.setTimeout(() => {
-      this.spoken.textContent = [this.reading.textContent ?? "", ...this.plots.map((it) => it.spoken())].join("; ");
+      this.spoken.textContent = [this.reading.textContent, ...this.plots.map((it) => it.spoken())].join("; ");
     }, 400);
   }
 

@@ -2,12 +2,12 @@ import type { Api, KerfEvent, LiveFrame, LoopStatus } from "../api";
 import { ApiError } from "../api";
 
 export interface LiveListener {
-  frame(frame: LiveFrame): void;
-  status(status: LoopStatus): void;
+  frame: (frame: LiveFrame) => void;
+  status: (status: LoopStatus) => void;
   /** Nothing has come for so long; 0: all is well. */
-  stale(seconds: number): void;
+  stale: (seconds: number) => void;
   /** A session is running: nothing of the loop is shown. */
-  session(line: string): void;
+  session: (line: string) => void;
 }
 
 const sessionLine = "A session is running; nothing of the loop is shown.";

@@ -153,8 +153,8 @@ export class RecordingLoops {
   private replot(loops: Loops): void {
     const x = `position ${loops.axis} [${loops.position_unit}]`;
     const y = `force ${loops.axis} [${loops.force_unit}]`;
-    if (this.frame.dataset["axes"] === x + y) return;
-    this.frame.dataset["axes"] = x + y;
+    if (this.frame.dataset.axes === x + y) return;
+    this.frame.dataset.axes = x + y;
     this.plot?.end();
     this.plot = new XyPlot({ label: x }, { label: y }, "Force against position");
     this.frame.setAttribute("aria-label", "Force against position. Left and right arrow: the cycle before and after.");

@@ -93,7 +93,7 @@ export class RecordingTime {
           it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit),
         )
         .map((it) => {
-          const line = it.lines[k] as TimeLine;
+          const line = it.lines[k]!;
           line.name = shortName(it.drawn.name);
           return line;
         }),

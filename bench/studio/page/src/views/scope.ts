@@ -58,7 +58,7 @@ class Scope {
     );
     this.picture = new ScopePicture(
       api,
-      (ticks) => this.stream?.open(ticks),
+      (ticks) => this.stream.open(ticks),
       (factor) => this.otherWindow(factor),
       complain,
     );

@@ -108,8 +108,8 @@ export class ScopeControls {
   private startOrStop(): void {
     if (this.status?.running || this.status?.starting) return this.order("/api/live/stop");
     const body: Record<string, string> = { device: this.device.value.trim() };
-    if (this.sensor.value.trim()) body["sensor"] = this.sensor.value.trim();
-    if (this.scene.value) body["scene_id"] = this.scene.value;
+    if (this.sensor.value.trim()) body.sensor = this.sensor.value.trim();
+    if (this.scene.value) body.scene_id = this.scene.value;
     this.order("/api/live/start", body);
   }
 

@@ -16,7 +16,7 @@ const stages: Record<string, string> = {
 };
 
 /** How far a session is: nothing of what was felt or answered. */
-function progressCard(): { root: HTMLElement; show(state: SessionState): void; stop: HTMLButtonElement } {
+function progressCard(): { root: HTMLElement; show: (state: SessionState) => void; stop: HTMLButtonElement } {
   const name = element("h2", {}, "No session is running");
   const stage = element("p", { role: "status" });
   const bar = element("progress", { max: 1, value: 0, "aria-label": "Trials done" });
@@ -164,10 +164,13 @@ function mount(root: HTMLElement, context: Context): () => void {
     running = now;
     await refresh();
   };
-  card.stop.addEventListener("click", () => context.api.post("/api/session/stop").then(look).catch(context.complain));
+  card.stop.addEventListener(
+    "click",
+    () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
+  );
   refresh().catch(context.complain);
   look().catch(context.complain);
-  const timer = setInterval(() => look().catch(context.complain), 500);
+  const timer = setInterval(() => void look().catch(context.complain), 500);
   return () => clearInterval(timer);
 }
 
