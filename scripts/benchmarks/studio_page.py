@@ -14,7 +14,7 @@ def ratio(wake, percentile):
 def measure(house, seconds=600):
     build = house / "build/release"
     run = subprocess.run(["node", str(house / "tests/bench/studio/page/budget.mjs"), str(build / "bin/kerf"),
-                          str(build / "bench/studio/page/node_modules"), str(seconds)], check=True, capture_output=True, text=True)
+                          str(build / "tests/bench/studio/page/node_modules"), str(seconds)], check=True, capture_output=True, text=True)
     found = json.loads(run.stdout)
     watched = found["watched"]
     rows = [

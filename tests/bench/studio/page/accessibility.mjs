@@ -9,7 +9,8 @@ function complaints() {
   function describe(node) {
     const name = node.tagName.toLowerCase();
     const id = node.id ? `#${node.id}` : "";
-    const classes = typeof node.className === "string" && node.className ? `.${node.className.trim().replace(/\s+/g, ".")}` : "";
+    const classes =
+      typeof node.className === "string" && node.className ? `.${node.className.trim().replace(/\s+/g, ".")}` : "";
     const text = (node.textContent ?? "").trim().replace(/\s+/g, " ").slice(0, 40);
     return `<${name}${id}${classes}>${text ? ` "${text}"` : ""}`;
   }
@@ -71,7 +72,7 @@ function complaints() {
     const style = getComputedStyle(node);
     const inSvg = node instanceof SVGElement;
     const colour = rgba(inSvg ? style.fill : style.color);
-    const under = ground(inSvg ? node.ownerSVGElement ?? node : node);
+    const under = ground(inSvg ? (node.ownerSVGElement ?? node) : node);
     colour[3] *= opacityOf(node) * (inSvg ? Number(style.fillOpacity) : 1);
     const size = parseFloat(style.fontSize);
     const large = size >= 24 || (size >= 18.66 && Number(style.fontWeight) >= 700);
@@ -84,42 +85,53 @@ function complaints() {
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   for (let text = walker.nextNode(); text; text = walker.nextNode()) {
     const node = text.parentElement;
-    if (!node || seen.has(node) || !text.data.trim() || /^(SCRIPT|STYLE|NOSCRIPT|OPTION|TITLE)$/i.test(node.tagName)) continue;
+    if (!node || seen.has(node) || !text.data.trim() || /^(SCRIPT|STYLE|NOSCRIPT|OPTION|TITLE)$/i.test(node.tagName))
+      continue;
     seen.add(node);
     if (visible(node) && !disabled(node)) checkContrast(node); // what is disabled is exempt (1.4.3)
   }
   for (const node of document.querySelectorAll("input, select, textarea")) {
-    if (visible(node) && !disabled(node) && !["checkbox", "radio", "range", "color"].includes(node.type)) checkContrast(node);
+    if (visible(node) && !disabled(node) && !["checkbox", "radio", "range", "color"].includes(node.type))
+      checkContrast(node);
   }
 
   // Names
 
   function nameOf(node) {
     const byId = (node.getAttribute("aria-labelledby") ?? "").split(/\s+/).filter(Boolean);
-    const labelled = byId.map((id) => document.getElementById(id)?.textContent ?? "").join(" ").trim();
+    const labelled = byId
+      .map((id) => document.getElementById(id)?.textContent ?? "")
+      .join(" ")
+      .trim();
     if (labelled) return labelled;
     const label = node.getAttribute("aria-label")?.trim();
     if (label) return label;
     const labels = [...(node.labels ?? [])].map((it) => it.textContent.trim()).filter(Boolean);
     if (labels.length > 0) return labels.join(" ");
     if (node instanceof SVGElement) return node.querySelector(":scope > title")?.textContent?.trim() ?? "";
-    if (/^(button|a|summary)$/i.test(node.tagName) || ["button", "link", "tab", "menuitem"].includes(node.getAttribute("role"))) {
+    if (
+      /^(button|a|summary)$/i.test(node.tagName) ||
+      ["button", "link", "tab", "menuitem"].includes(node.getAttribute("role"))
+    ) {
       const alternatives = [...node.querySelectorAll("img[alt], svg[aria-label]")];
       const other = alternatives.map((it) => it.getAttribute("alt") ?? it.getAttribute("aria-label"));
       return [node.textContent.trim(), ...other].join(" ").trim();
     }
     return node.getAttribute("title")?.trim() ?? "";
   }
-  const named = "button, input:not([type=hidden]), select, textarea, a[href], summary, progress, meter, dialog[open], "
-    + "[role=button], [role=slider], [role=application], [role=tab], [role=img], [role=tablist], svg.xy_plot, .time_focus, [tabindex='0']";
+  const named =
+    "button, input:not([type=hidden]), select, textarea, a[href], summary, progress, meter, dialog[open], " +
+    "[role=button], [role=slider], [role=application], [role=tab], [role=img], [role=tablist], svg.xy_plot, .time_focus, [tabindex='0']";
   for (const node of document.querySelectorAll(named)) {
     if (visible(node) && nameOf(node) === "") say("name", node, "has no accessible name");
   }
   for (const node of document.querySelectorAll("input, select, textarea")) {
-    if (visible(node) && nameOf(node) === (node.getAttribute("placeholder") ?? NaN)) say("name", node, "only a placeholder names it");
+    if (visible(node) && nameOf(node) === (node.getAttribute("placeholder") ?? NaN))
+      say("name", node, "only a placeholder names it");
   }
   for (const canvasNode of document.querySelectorAll("canvas")) {
-    if (!canvasNode.closest("[aria-hidden=true], [role=img], [role=application]")) say("name", canvasNode, "is neither hidden nor named");
+    if (!canvasNode.closest("[aria-hidden=true], [role=img], [role=application]"))
+      say("name", canvasNode, "is neither hidden nor named");
   }
   const ids = new Map();
   for (const node of document.querySelectorAll("[id]")) ids.set(node.id, (ids.get(node.id) ?? 0) + 1);
@@ -134,13 +146,18 @@ function complaints() {
 
   // Targets: at least 24 by 24 pixels, or as far from their neighbours; links within a sentence are exempt.
 
-  const targets = [...document.querySelectorAll("button, input:not([type=hidden]), select, textarea, a[href], summary, [role=button], [role=slider], [role=tab]")]
-    .filter((it) => visible(it) && !disabled(it));
+  const targets = [
+    ...document.querySelectorAll(
+      "button, input:not([type=hidden]), select, textarea, a[href], summary, [role=button], [role=slider], [role=tab]",
+    ),
+  ].filter((it) => visible(it) && !disabled(it));
   for (const node of targets) {
     const label = ["checkbox", "radio"].includes(node.type) ? node.closest("label") : null;
     const box = (label ?? node).getBoundingClientRect();
-    const inSentence = node.tagName === "A" && getComputedStyle(node).display === "inline"
-      && (node.parentElement?.textContent ?? "").trim() !== node.textContent.trim();
+    const inSentence =
+      node.tagName === "A" &&
+      getComputedStyle(node).display === "inline" &&
+      (node.parentElement?.textContent ?? "").trim() !== node.textContent.trim();
     if (!inSentence && (box.width < 23.5 || box.height < 23.5)) {
       say("target", node, `is ${box.width.toFixed(0)} by ${box.height.toFixed(0)} pixels`);
     }
@@ -168,9 +185,20 @@ function complaints() {
 /** What shows of a focus: the outline, the border, the shadow and the ground. */
 function looks(node) {
   const style = getComputedStyle(node);
-  const outline = style.outlineStyle === "none" || parseFloat(style.outlineWidth) === 0 ? "" : `${style.outlineStyle} ${style.outlineColor} ${style.outlineWidth}`;
+  const outline =
+    style.outlineStyle === "none" || parseFloat(style.outlineWidth) === 0
+      ? ""
+      : `${style.outlineStyle} ${style.outlineColor} ${style.outlineWidth}`;
   const drawn = node instanceof SVGElement ? `${style.stroke} ${style.strokeWidth} ${style.fill}` : "";
-  return [outline, style.borderColor, style.borderWidth, style.boxShadow, style.backgroundColor, style.textDecoration, drawn].join(" | ");
+  return [
+    outline,
+    style.borderColor,
+    style.borderWidth,
+    style.boxShadow,
+    style.backgroundColor,
+    style.textDecoration,
+    drawn,
+  ].join(" | ");
 }
 
 /** Goes through the page by the Tab key as a person does: what gets the focus must show it, and be seen. */
@@ -212,7 +240,17 @@ async function focusComplaints(page, at_most) {
  * All complaints about the page as it is now, at 1280 x 720 and 1024 x 768; the size it had is given back to it.
  * Options: sizes, focus (false: leave the focus alone), steps (how many times Tab is pressed at most).
  */
-export async function audit(page, { sizes = [[1280, 720], [1024, 768]], focus = true, steps = 120 } = {}) {
+export async function audit(
+  page,
+  {
+    sizes = [
+      [1280, 720],
+      [1024, 768],
+    ],
+    focus = true,
+    steps = 120,
+  } = {},
+) {
   const before = page.viewportSize();
   const found = [];
   for (const [width, height] of sizes) {

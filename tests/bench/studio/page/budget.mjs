@@ -26,8 +26,11 @@ async function paints(browser, studio, times) {
     const page = await openPage(browser);
     await page.goto(studio.page("scope"));
     await page.getByRole("heading", { name: "Scope" }).waitFor();
-    first.push(await until("it is painted", () =>
-      page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime)));
+    first.push(
+      await until("it is painted", () =>
+        page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime),
+      ),
+    );
     await page.context().close();
   }
   return first;
@@ -40,8 +43,12 @@ async function watch(browser, studio) {
     window.kerfTasks = [];
     window.kerfShift = 0;
     window.kerfFrames = 0;
-    new PerformanceObserver((list) => window.kerfTasks.push(...list.getEntries().map((it) => it.duration))).observe({ type: "longtask" });
-    new PerformanceObserver((list) => list.getEntries().forEach((it) => (window.kerfShift += it.value))).observe({ type: "layout-shift" });
+    new PerformanceObserver((list) => window.kerfTasks.push(...list.getEntries().map((it) => it.duration))).observe({
+      type: "longtask",
+    });
+    new PerformanceObserver((list) => list.getEntries().forEach((it) => (window.kerfShift += it.value))).observe({
+      type: "layout-shift",
+    });
     const count = () => {
       ++window.kerfFrames;
       requestAnimationFrame(count);
@@ -67,7 +74,11 @@ async function watch(browser, studio) {
     await page.waitForTimeout(Math.min(60000, 1000 * seconds));
     heap.push(await memory());
   }
-  const found = await page.evaluate(() => ({ tasks: window.kerfTasks, shift: window.kerfShift, frames: window.kerfFrames }));
+  const found = await page.evaluate(() => ({
+    tasks: window.kerfTasks,
+    shift: window.kerfShift,
+    frames: window.kerfFrames,
+  }));
   const watched = (Date.now() - begin) / 1000;
   return {
     seconds: watched,
@@ -104,13 +115,15 @@ try {
   const watched = await watch(browser, studio);
   for (const context of browser.contexts()) await context.close();
   const wake = await wakes(browser, studio, 7);
-  console.log(JSON.stringify({
-    bytes: await compressed(studio),
-    first_paint_ms: median(paint),
-    slowest_paint_ms: Math.max(...paint),
-    watched,
-    wake,
-  }));
+  console.log(
+    JSON.stringify({
+      bytes: await compressed(studio),
+      first_paint_ms: median(paint),
+      slowest_paint_ms: Math.max(...paint),
+      watched,
+      wake,
+    }),
+  );
 } finally {
   await browser.close();
   await studio.remove();

@@ -27,7 +27,17 @@ function numbersIn(file, name) {
 
 /** Runs a saved law on the simulated scissors, in virtual time. */
 function expectThatItRuns(studio, name) {
-  const words = ["check", `${name}.law.toml`, "--device", "sim:scissors", "--seconds", "2", "--virtual", "--floor", "0"];
+  const words = [
+    "check",
+    `${name}.law.toml`,
+    "--device",
+    "sim:scissors",
+    "--seconds",
+    "2",
+    "--virtual",
+    "--floor",
+    "0",
+  ];
   const check = studio.kerf(words);
   expectEqual(check.status, 0, `kerf ${words.join(" ")}: ${check.stdout} ${check.stderr}`);
 }
@@ -113,7 +123,11 @@ export async function drawByKeys(page, studio) {
   await press(page, ...Array(20).fill("Shift+ArrowRight"), " ", ...Array(3).fill("Shift+ArrowUp"), "a");
   expectEqual(await count(page), 4, "A adds at the cursor");
 
-  await tabTo(page, "a breakpoint", () => document.activeElement?.getAttribute("aria-label")?.startsWith("Breakpoint 3 of 4, closing") ?? false);
+  await tabTo(
+    page,
+    "a breakpoint",
+    () => document.activeElement?.getAttribute("aria-label")?.startsWith("Breakpoint 3 of 4, closing") ?? false,
+  );
   const [, , before] = await breakpoints(page);
   await press(page, "ArrowUp", "ArrowUp", "Shift+ArrowUp");
   const [, , up] = await breakpoints(page);
@@ -126,7 +140,10 @@ export async function drawByKeys(page, studio) {
   expectEqual(await count(page), 5, "Insert adds beside it");
   await press(page, "Delete");
   expectEqual(await count(page), 4, "Delete removes it");
-  expect(await page.evaluate(() => document.activeElement?.matches("g.knot") ?? false), "the focus stays at a breakpoint");
+  expect(
+    await page.evaluate(() => document.activeElement?.matches("g.knot") ?? false),
+    "the focus stays at a breakpoint",
+  );
 
   await tabTo(page, "the name", () => document.activeElement?.matches(".save input") ?? false);
   await press(page, "Control+a");
@@ -179,7 +196,11 @@ export async function workOnALaw(page, studio) {
   await save(page, "again");
   await page.getByText("kerf check again.law.toml").waitFor();
   for (const part of ["knot", "closing", "opening"])
-    expectEqual(numbersIn(join(studio.folder, "again.law.toml"), part), numbersIn(file, part), `${part} of a law that was gone on with`);
+    expectEqual(
+      numbersIn(join(studio.folder, "again.law.toml"), part),
+      numbersIn(file, part),
+      `${part} of a law that was gone on with`,
+    );
 }
 
 /** Nothing runs, so that there is nothing to feel it on; Escape is the loop's and leaves the drawing as it is. */

@@ -17,7 +17,9 @@ const page = resolve(process.argv[2] ?? join(here, "../../../../bench/studio/pag
 const { build } = createRequire(join(page, "package.json"))("esbuild");
 const bundle = await build({
   stdin: {
-    contents: ["knots", "history", "error", "scale", "lines", "drawing"].map((it) => `export * from "./src/editor/${it}";`).join("\n"),
+    contents: ["knots", "history", "error", "scale", "lines", "drawing"]
+      .map((it) => `export * from "./src/editor/${it}";`)
+      .join("\n"),
     resolveDir: page,
     loader: "ts",
   },
@@ -26,9 +28,12 @@ const bundle = await build({
   format: "esm",
   preserveSymlinks: true,
 });
-const editor = await import(`data:text/javascript;base64,${Buffer.from(bundle.outputFiles[0].text).toString("base64")}`);
+const editor = await import(
+  `data:text/javascript;base64,${Buffer.from(bundle.outputFiles[0].text).toString("base64")}`
+);
 
-const near = (a, b, share = 1e-12) => assert.ok(Math.abs(a - b) <= share * Math.max(Math.abs(a), Math.abs(b), 1e-300), `${a} and ${b}`);
+const near = (a, b, share = 1e-12) =>
+  assert.ok(Math.abs(a - b) <= share * Math.max(Math.abs(a), Math.abs(b), 1e-300), `${a} and ${b}`);
 
 /** A closing of 2 N at 0, 4 N at 10 mm and an opening of -1 N, on a grid of 1 mm. */
 const curve = () => ({
@@ -106,13 +111,18 @@ test("a breakpoint goes between its neighbours, with the averaged force on the o
 
 test("where no cycle reached, the other branch takes the force of the line", () => {
   const blind = { ...curve(), opening: Array(11).fill(null) };
-  const { knots } = editor.added({ ...line(), opening: [0, -2] }, blind, { penetration: 0.005, force: 3, branch: "closing" });
+  const { knots } = editor.added({ ...line(), opening: [0, -2] }, blind, {
+    penetration: 0.005,
+    force: 3,
+    branch: "closing",
+  });
   near(knots.opening[1], -1);
 });
 
 test("one breakpoint does not fall on another, and no more than seventeen are taken", () => {
   let knots = line();
-  for (let i = 1; i < 16; ++i) knots = editor.added(knots, curve(), { penetration: i * 6e-4, force: 1, branch: "closing" }).knots;
+  for (let i = 1; i < 16; ++i)
+    knots = editor.added(knots, curve(), { penetration: i * 6e-4, force: 1, branch: "closing" }).knots;
   assert.equal(knots.penetration.length, 17);
   assert.equal(editor.added(knots, curve(), { penetration: 3e-4, force: 1, branch: "closing" }), null);
   const beside = editor.added(line(), curve(), { penetration: 0, force: 1, branch: "closing" });

@@ -114,9 +114,19 @@ export async function openBrowser(modules) {
   const { chromium: engine } = await import(pathToFileURL(join(modules, "playwright-core", "index.mjs")));
   return engine.launch({
     executablePath: chromium,
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-           "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--no-proxy-server",
-           "--enable-precise-memory-info", "--js-flags=--expose-gc"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--disable-dev-shm-usage",
+      "--no-proxy-server",
+      "--enable-precise-memory-info",
+      "--js-flags=--expose-gc",
+    ],
   });
 }
 

@@ -13,18 +13,33 @@ async function furnish(studio) {
   studio.record("another_cut.h5", 10);
   studio.kerfOrThrow("session", "key", "keeper.key");
   const protocol = new URL("../../../../examples/sessions/abx.protocol.toml", import.meta.url).pathname;
-  studio.kerfOrThrow("session", "new", protocol, "--subject", "S01", "--key-file", "keeper.key", "-o", "S01.h5", "--no-check");
+  studio.kerfOrThrow(
+    "session",
+    "new",
+    protocol,
+    "--subject",
+    "S01",
+    "--key-file",
+    "keeper.key",
+    "-o",
+    "S01.h5",
+    "--no-check",
+  );
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
   const recording = await studio.id("recordings", "cut.h5");
   const work = async (path, body) => {
     const answer = (await studio.api(path, body)).json;
     if (answer.error) throw new Error(`${path}: ${answer.error}`);
     const { job } = answer;
-    return until(`${path} is done`, async () => {
-      const it = (await studio.api("/api/jobs")).json.find((each) => each.job === job);
-      if (it.state === "failed") throw new Error(`${path}: ${it.error}`);
-      return it.state === "done" ? it.file : null;
-    }, 120000);
+    return until(
+      `${path} is done`,
+      async () => {
+        const it = (await studio.api("/api/jobs")).json.find((each) => each.job === job);
+        if (it.state === "failed") throw new Error(`${path}: ${it.error}`);
+        return it.state === "done" ? it.file : null;
+      },
+      120000,
+    );
   };
   return {
     recording,
@@ -42,7 +57,8 @@ export const tests = {
   async "every page is fit to be seen, in light and dark"({ browser, studio, screenshots }) {
     const ids = await furnish(studio);
     const law = await until("the fit's laws are there", async () =>
-      (await studio.api("/api/workspace")).json.laws.find((it) => it.name === "cut.fit/kelvin.law.toml"));
+      (await studio.api("/api/workspace")).json.laws.find((it) => it.name === "cut.fit/kelvin.law.toml"),
+    );
     await studio.api("/api/live/start", { device: "sim:scissors" });
     expectEqual((await studio.api("/api/live/feel", { law: law.id })).status, 200, "a law is felt");
     const places = {
@@ -68,7 +84,8 @@ export const tests = {
         if (name === "scope") await page.waitForTimeout(5500);
         else await settled(page);
         await page.screenshot({ path: join(screenshots, `${name}-${colorScheme}.png`) });
-        for (const it of await audit(page, { focus: colorScheme === "light" })) complaints.push(`${name} ${colorScheme}: ${it}`);
+        for (const it of await audit(page, { focus: colorScheme === "light" }))
+          complaints.push(`${name} ${colorScheme}: ${it}`);
         expectNoComplaints(page);
         await page.context().close();
       }

@@ -47,7 +47,10 @@ export const tests = {
     const asked = views(page);
     await openRecording(page, studio, "cut.h5");
     await until("the whole is asked for", () => asked.length > 0);
-    const width = await page.locator(".u-over").first().evaluate((it) => it.clientWidth);
+    const width = await page
+      .locator(".u-over")
+      .first()
+      .evaluate((it) => it.clientWidth);
     expect(Math.abs(Number(asked[0].columns) - width) <= 1, `${asked[0].columns} columns for ${width} pixels`);
     await page.focus(".time_focus");
     for (let i = 0; i < 3; ++i) await page.keyboard.press("+");
@@ -96,7 +99,9 @@ export const tests = {
     await until("both are drawn", async () => (await page.locator(".time_legend").first().locator("li").count()) === 3);
     await until("the other is fetched", () => asked.some((it) => it.id === other));
     await page.selectOption(".overlay label:last-of-type select", "cycle");
-    await until("it is fetched where its first closing lies over", () => asked.some((it) => it.id === other && Number(it.from) !== 0));
+    await until("it is fetched where its first closing lies over", () =>
+      asked.some((it) => it.id === other && Number(it.from) !== 0),
+    );
     await page.screenshot({ path: `${screenshots}/overlay.png` });
     await page.click(".overlay_list button");
     await until("it is gone", async () => (await page.locator(".overlay_list li").count()) === 0);

@@ -30,7 +30,9 @@ async function tick(page, ...laws) {
 
 async function pickRecording(page, name) {
   await page.getByRole("combobox", { name: "Recording" }).selectOption({ label: name });
-  await until("its axes are known", async () => (await page.getByRole("combobox", { name: "Axis" }).textContent()).includes("theta"));
+  await until("its axes are known", async () =>
+    (await page.getByRole("combobox", { name: "Axis" }).textContent()).includes("theta"),
+  );
 }
 
 async function testFits(page, studio) {
@@ -40,16 +42,30 @@ async function testFits(page, studio) {
   await page.getByRole("button", { name: "Fit", exact: true }).click();
   await heading(page, /^Fit cut\.fit$/);
   const written = await jsonIn(studio, "cut.fit/fit.json");
-  expectEqual(await page.locator("table.fits tbody th").allTextContents(), ["kelvin", "exponential"], "laws, the least error first");
+  expectEqual(
+    await page.locator("table.fits tbody th").allTextContents(),
+    ["kelvin", "exponential"],
+    "laws, the least error first",
+  );
   expect((await page.textContent("main p.choice")).includes(written.choice.why), "the choice says why");
   await page.getByRole("button", { name: "exponential", exact: true }).click();
   await until("the parameters are those of the exponential law", async () =>
-    (await page.locator(".detail tbody th").allTextContents()).includes("exponent"));
+    (await page.locator(".detail tbody th").allTextContents()).includes("exponent"),
+  );
   const rmse = written.fits.find((it) => it.model === "exponential").rmse;
-  const shown = await until("residuals are shown", async () => /Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""));
-  expect(Math.abs(Number(shown[1]) / (1000 * rmse) - 1) < 0.01, `residuals of ${shown[1]} mN are the fit's ${1000 * rmse} mN`);
+  const shown = await until("residuals are shown", async () =>
+    /Error ([\d.]+) mN/.exec((await page.textContent(".residuals .figures")) ?? ""),
+  );
+  expect(
+    Math.abs(Number(shown[1]) / (1000 * rmse) - 1) < 0.01,
+    `residuals of ${shown[1]} mN are the fit's ${1000 * rmse} mN`,
+  );
   expect((await page.locator(".residuals .extremes").getAttribute("d")).length > 1000, "residuals are drawn over time");
-  expectEqual(await page.locator(".detail svg.interval").count(), Object.keys(written.fits[0].parameters).length, "bars of intervals");
+  expectEqual(
+    await page.locator(".detail svg.interval").count(),
+    Object.keys(written.fits[0].parameters).length,
+    "bars of intervals",
+  );
   return written;
 }
 
@@ -59,7 +75,9 @@ async function testFeeling(page) {
     page.evaluate(async (where) => {
       const token = document.querySelector("meta[name=kerf-token]").content;
       const headers = { "X-Kerf-Token": token, "Content-Type": "application/json" };
-      return (await fetch(where, where.endsWith("status") ? { headers } : { method: "POST", headers, body: "{}" })).json();
+      return (
+        await fetch(where, where.endsWith("status") ? { headers } : { method: "POST", headers, body: "{}" })
+      ).json();
     }, path);
   await page.getByRole("button", { name: "kelvin", exact: true }).click();
   await ask("/api/live/start");
@@ -82,12 +100,18 @@ async function testChart(page, studio) {
   const label = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   expectEqual(await page.textContent(".chart_plot .readout"), label, "the read-out of the point that the arrow led to");
   await page.keyboard.press("Enter");
-  await until("its law is open", async () => label.startsWith((await page.textContent(".law h2").catch(() => "")) || "?"));
+  await until("its law is open", async () =>
+    label.startsWith((await page.textContent(".law h2").catch(() => "")) || "?"),
+  );
   expect((await page.textContent(".law .equation")).startsWith("F ="), "the law's equation");
   expectEqual(await page.locator(".law tbody tr").count(), 3, "parameters of Kelvin's law");
   await page.locator("th button", { hasText: "p50" }).click();
   const costs = (await page.locator("table tr td:nth-child(3)").allTextContents()).map(Number).slice(-points.length);
-  expectEqual(costs, [...costs].sort((a, b) => a - b), "the table, sorted by cost");
+  expectEqual(
+    costs,
+    [...costs].sort((a, b) => a - b),
+    "the table, sorted by cost",
+  );
 }
 
 async function testChoice(page, studio) {
@@ -98,7 +122,10 @@ async function testChoice(page, studio) {
   expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
   expectEqual(await page.locator(".candidates tbody tr").count(), written.candidates.length, "the candidates");
   await page.getByRole("button", { name: `Open ${written.choice.law}` }).click();
-  await until("the chosen law is open", async () => (await page.textContent(".law h2").catch(() => "")) === written.choice.law);
+  await until(
+    "the chosen law is open",
+    async () => (await page.textContent(".law h2").catch(() => "")) === written.choice.law,
+  );
 }
 
 async function testStability(page, studio) {

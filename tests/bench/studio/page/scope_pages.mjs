@@ -85,7 +85,9 @@ export const tests = {
     const page = await openScope(browser, studio);
     await startLoop(page);
     // The stream breaks and every other answer stays away, as on a page that was left open for days.
-    await page.route("**/api/**", (route) => (route.request().url().includes("/zero") ? route.continue() : route.abort()));
+    await page.route("**/api/**", (route) =>
+      route.request().url().includes("/zero") ? route.continue() : route.abort(),
+    );
     await page.evaluate(() => window.dispatchEvent(new Event("offline")));
     await page.getByRole("button", { name: "Zero force" }).click();
     await until("the force is released", async () => (await status(studio)).released);

@@ -131,7 +131,10 @@ export const tests = {
     await page.evaluate(() => {
       window.shifts = [];
       new PerformanceObserver((list) => {
-        for (const it of list.getEntries()) window.shifts.push(...it.sources.map((source) => (source.node?.parentElement ?? document.body).outerHTML.slice(0, 120)));
+        for (const it of list.getEntries())
+          window.shifts.push(
+            ...it.sources.map((source) => (source.node?.parentElement ?? document.body).outerHTML.slice(0, 120)),
+          );
       }).observe({ type: "layout-shift" });
     });
     const box = await page.locator(".u-over").first().boundingBox();

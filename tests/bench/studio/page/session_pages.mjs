@@ -32,8 +32,18 @@ async function prepare(studio) {
   await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
   await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
   studio.kerfOrThrow("session", "key", "keeper.key");
-  studio.kerfOrThrow("session", "new", "abx.protocol.toml", "--subject", "S01", "--key-file", "keeper.key", "-o", "S01.h5",
-                     "--no-check");
+  studio.kerfOrThrow(
+    "session",
+    "new",
+    "abx.protocol.toml",
+    "--subject",
+    "S01",
+    "--key-file",
+    "keeper.key",
+    "-o",
+    "S01.h5",
+    "--no-check",
+  );
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
 }
 
@@ -79,7 +89,9 @@ export const tests = {
     await experimenter.getByText("Ended: finished: 4 trials").waitFor();
     expectNoComplaints(experimenter);
     expectNoComplaints(subject);
-    const analysis = JSON.parse(studio.kerfOrThrow("session", "analyze", "S01.h5", "--key-file", "keeper.key", "--json").stdout);
+    const analysis = JSON.parse(
+      studio.kerfOrThrow("session", "analyze", "S01.h5", "--key-file", "keeper.key", "--json").stdout,
+    );
     expect(JSON.stringify(analysis).includes("S01"), "the analysis knows the subject");
     const facts = JSON.parse(studio.kerfOrThrow("info", "S01.h5", "--json").stdout);
     expectEqual([facts.finished, facts.trials], [true, 4], "what the file says");
@@ -89,7 +101,11 @@ export const tests = {
     await prepare(studio);
     const id = await studio.id("sessions", "S01.h5");
     await studio.api("/api/live/zero", {});
-    expectEqual((await studio.api("/api/session/start", { session: id, check: false })).status, 409, "while zero force is held");
+    expectEqual(
+      (await studio.api("/api/session/start", { session: id, check: false })).status,
+      409,
+      "while zero force is held",
+    );
     await studio.api("/api/live/resume", {});
     await studio.api("/api/session/start", { session: id, check: false });
     const state = await until("the session runs", async () => {
@@ -106,7 +122,11 @@ export const tests = {
     expectEqual((await fetch(`${studio.origin}/subject/?token=${studio.token}`)).status, 403, "the other way round");
     for (const path of ["/api/live/view?traces=0&from=0&to=1&columns=10", "/api/live/traces"])
       expectEqual((await studio.api(path)).status, 409, path);
-    expectEqual((await studio.api("/api/live/start", { device: "sim:scissors" })).status, 409, "the loop cannot be had");
+    expectEqual(
+      (await studio.api("/api/live/start", { device: "sim:scissors" })).status,
+      409,
+      "the loop cannot be had",
+    );
     const page = await openPage(browser);
     await page.goto(studio.page("sessions"));
     await page.getByRole("button", { name: "Stop the session" }).click();

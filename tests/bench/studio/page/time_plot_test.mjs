@@ -13,7 +13,15 @@ import { fileURLToPath } from "node:url";
 const here = dirname(fileURLToPath(import.meta.url));
 const page = resolve(process.argv[2] ?? join(here, "../../../../bench/studio/page"));
 const { build } = createRequire(join(page, "package.json"))("esbuild");
-const modules = ["requests", "ui/numbers", "ui/time_limits", "ui/time_line", "ui/time_range", "ui/stretch_loader", "views/live_columns"];
+const modules = [
+  "requests",
+  "ui/numbers",
+  "ui/time_limits",
+  "ui/time_line",
+  "ui/time_range",
+  "ui/stretch_loader",
+  "views/live_columns",
+];
 const bundle = await build({
   stdin: { contents: modules.map((it) => `export * from "./src/${it}";`).join("\n"), resolveDir: page, loader: "ts" },
   bundle: true,
@@ -76,14 +84,23 @@ test("a frame of another loop is refused, one of the past put where it belongs",
 });
 
 test("no spike is lost when columns become longer or shorter", () => {
-  for (const [before, after] of [[2, 6], [2, 5], [6, 2], [5, 3], [7, 7]]) {
+  for (const [before, after] of [
+    [2, 6],
+    [2, 5],
+    [6, 2],
+    [5, 3],
+    [7, 7],
+  ]) {
     const old = new plot.LiveColumns(1, before, 60);
     old.push(frame(0, 60, before, 37));
     const fresh = new plot.LiveColumns(1, after, Math.ceil((60 * before) / after) + 2);
     fresh.takeFrom(old);
-    const holding = [...fresh.largest[0]].map((it, k) => (it === 1e6 ? fresh.time[k] : NaN)).filter((it) => !Number.isNaN(it));
+    const holding = [...fresh.largest[0]]
+      .map((it, k) => (it === 1e6 ? fresh.time[k] : NaN))
+      .filter((it) => !Number.isNaN(it));
     assert.ok(holding.length > 0, `${before} to ${after}`);
-    for (const time of holding) assert.ok(time <= 0.037 + before * 1e-3 && time + after * 1e-3 >= 0.037 - before * 1e-3);
+    for (const time of holding)
+      assert.ok(time <= 0.037 + before * 1e-3 && time + after * 1e-3 >= 0.037 - before * 1e-3);
     const smallest = [...fresh.smallest[0]].filter((it) => !Number.isNaN(it));
     assert.equal(Math.min(...smallest), 0);
   }
@@ -111,8 +128,15 @@ test("an axis has the prefix of its largest value, where its unit takes one", ()
 });
 
 const line = (time, smallest, largest = smallest) => ({
-  name: "", unit: "N", look: 0, time: Float64Array.from(time), smallest: Float64Array.from(smallest),
-  largest: Float64Array.from(largest), shift_s: 0, step_s: 1, middle_s: 0,
+  name: "",
+  unit: "N",
+  look: 0,
+  time: Float64Array.from(time),
+  smallest: Float64Array.from(smallest),
+  largest: Float64Array.from(largest),
+  shift_s: 0,
+  step_s: 1,
+  middle_s: 0,
 });
 
 test("the cursor reads the column that it is in, and nothing in a gap", () => {
@@ -133,7 +157,10 @@ test("values are sought in what is shown and one column on either side", () => {
 
 function range() {
   let changes = 0;
-  const it = new plot.TimeRange(() => ++changes, () => {});
+  const it = new plot.TimeRange(
+    () => ++changes,
+    () => {},
+  );
   it.bound(0, 100, 0.01);
   it.whole();
   return { it, changes: () => changes };
@@ -197,13 +224,14 @@ test("at most three requests are under way, in order, and all can be given up", 
   const requests = new plot.Requests();
   const begun = [];
   const go = [];
-  const run = (name) => requests.take((signal) => {
-    begun.push(name);
-    return new Promise((done, fail) => {
-      go.push(done);
-      signal.addEventListener("abort", () => fail(new Error("given up")));
+  const run = (name) =>
+    requests.take((signal) => {
+      begun.push(name);
+      return new Promise((done, fail) => {
+        go.push(done);
+        signal.addEventListener("abort", () => fail(new Error("given up")));
+      });
     });
-  });
   const all = ["a", "b", "c", "d", "e"].map((name) => run(name).catch((error) => error.message));
   await soon(5);
   assert.deepEqual(begun, ["a", "b", "c"]);
@@ -221,7 +249,10 @@ test("a request that is given up while it waits does not hold up the next", asyn
   const go = [];
   const held = [0, 1, 2].map(() => requests.take(() => new Promise((done) => go.push(done))));
   const impatient = new AbortController();
-  const left = requests.take((signal) => (signal.aborted ? Promise.reject(new Error("left")) : Promise.resolve("ran")), impatient.signal);
+  const left = requests.take(
+    (signal) => (signal.aborted ? Promise.reject(new Error("left")) : Promise.resolve("ran")),
+    impatient.signal,
+  );
   const next = requests.take(() => Promise.resolve("ran"));
   await soon(5);
   impatient.abort();

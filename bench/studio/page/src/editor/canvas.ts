@@ -40,7 +40,9 @@ export class Canvas {
       this.handles.group,
     );
     this.plot.svg.querySelector(".curves")?.setAttribute("clip-path", "url(#editor_frame)");
-    this.cursor = this.fromSpot(this.onLaw(0.5 * (curve.penetration[0]! + curve.penetration[curve.penetration.length - 1]!)));
+    this.cursor = this.fromSpot(
+      this.onLaw(0.5 * (curve.penetration[0]! + curve.penetration[curve.penetration.length - 1]!)),
+    );
     this.fit();
   }
 
@@ -53,7 +55,10 @@ export class Canvas {
     const wanted = limitsFor(this.drawing.curve, this.drawing.knots, this.drawing);
     if (this.isFitted) {
       const { x, y } = this.plot.limits;
-      const grown = (old: [number, number], now: [number, number]): [number, number] => [Math.min(old[0], now[0]), Math.max(old[1], now[1])];
+      const grown = (old: [number, number], now: [number, number]): [number, number] => [
+        Math.min(old[0], now[0]),
+        Math.max(old[1], now[1]),
+      ];
       wanted.x = grown(x, wanted.x);
       wanted.y = grown(y, wanted.y);
     }
@@ -113,7 +118,9 @@ export class Canvas {
     const sides = { x: left, y: top, width: plot.x(plot.limits.x[1]) - left, height: plot.y(plot.limits.y[0]) - top };
     for (const [name, value] of Object.entries(sides)) this.frame.setAttribute(name, value.toFixed(1));
     const branches = branchesOf(this.drawing.knots);
-    const bands = this.drawing.band ? branches.flatMap((it) => jndBands(this.drawing, it).map((band) => ({ band, branch: it }))) : [];
+    const bands = this.drawing.band
+      ? branches.flatMap((it) => jndBands(this.drawing, it).map((band) => ({ band, branch: it })))
+      : [];
     this.below.replaceChildren(
       ...bands.map(({ band, branch }) => drawn("path", { class: `jnd ${branch}`, d: `${plot.path(band)}Z` })),
       ...branches.map((it) => drawn("path", { class: `drawn ${it}`, d: plot.path(lawLine(this.drawing, it)) })),
@@ -137,7 +144,11 @@ export class Canvas {
     return [
       drawn("line", { class: "worst", x1: x, x2: x, y1: onCurve, y2: onLaw, "clip-path": "url(#editor_frame)" }),
       drawn("path", { class: "worst", d: `M${x - 6} ${onCurve - 6}l12 12m0 -12l-12 12` }),
-      drawn("text", { class: "worst", x: atRight ? x - 22 : x + 22, y: middle, "text-anchor": atRight ? "end" : "start" }, text),
+      drawn(
+        "text",
+        { class: "worst", x: atRight ? x - 22 : x + 22, y: middle, "text-anchor": atRight ? "end" : "start" },
+        text,
+      ),
     ];
   }
 

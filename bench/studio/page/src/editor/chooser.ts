@@ -13,6 +13,10 @@ export async function chooser(root: HTMLElement, context: Context): Promise<void
     element("p", {}, "A law of straight segments is drawn over the averaged cycle of a recording. Choose one:"),
     items.length > 0
       ? element("ul", { class: "card choices" }, ...items)
-      : element("p", { class: "card quiet" }, "The workspace has no recordings yet. The scope makes them, and so does 'kerf record'."),
+      : element(
+          "p",
+          { class: "card quiet" },
+          "The workspace has no recordings yet. The scope makes them, and so does 'kerf record'.",
+        ),
   );
 }

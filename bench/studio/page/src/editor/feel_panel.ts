@@ -49,7 +49,9 @@ export class FeelPanel {
   private async tell(): Promise<void> {
     const { released } = await this.context.api.get<LoopStatus>("/api/live/status");
     this.context.say(
-      released ? "Zero force stays on: resume on the scope to feel the drawn law." : "The device renders the drawn law now.",
+      released
+        ? "Zero force stays on: resume on the scope to feel the drawn law."
+        : "The device renders the drawn law now.",
     );
   }
 
@@ -58,7 +60,11 @@ export class FeelPanel {
     this.sent = performance.now();
     this.felt = knots;
     try {
-      await this.context.api.post("/api/editor/feel", { recording: this.drawing.curve.recording, axis: this.axis, knots });
+      await this.context.api.post("/api/editor/feel", {
+        recording: this.drawing.curve.recording,
+        axis: this.axis,
+        knots,
+      });
       if (says) await this.tell();
     } catch (error) {
       this.felt = null;

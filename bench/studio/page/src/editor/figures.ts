@@ -24,7 +24,11 @@ export class Figures {
       "table",
       { class: "figures" },
       element("caption", {}, "Law against averaged cycle"),
-      element("tbody", {}, ...heads.map((it, i) => element("tr", {}, element("th", { scope: "row" }, it), this.cells[i]!))),
+      element(
+        "tbody",
+        {},
+        ...heads.map((it, i) => element("tr", {}, element("th", { scope: "row" }, it), this.cells[i]!)),
+      ),
     );
     this.told = drawing.knots;
   }

@@ -50,8 +50,8 @@ export class Handles {
     const node = target instanceof Element ? target.closest<SVGGElement>("g.knot") : null;
     if (!node) return null;
     return {
-      index: Number(node.dataset["index"]),
-      branch: node.dataset["branch"] === "opening" ? "opening" : "closing",
+      index: Number(node.dataset.index),
+      branch: node.dataset.branch === "opening" ? "opening" : "closing",
     };
   }
 
@@ -59,10 +59,12 @@ export class Handles {
     const handles = this.handles[branch];
     while (handles.length > count) handles.pop()?.node.remove();
     while (handles.length < count) {
-      const circles = ["hit", "halo", "mark"].map((it) => drawn("circle", { class: it, r: it === "mark" ? 7 : hitRadius }));
+      const circles = ["hit", "halo", "mark"].map((it) =>
+        drawn("circle", { class: it, r: it === "mark" ? 7 : hitRadius }),
+      );
       const node = drawn("g", { class: `knot ${branch}`, role: "slider", tabindex: 0 }, ...circles);
-      node.dataset["branch"] = branch;
-      node.dataset["index"] = String(handles.length);
+      node.dataset.branch = branch;
+      node.dataset.index = String(handles.length);
       handles.push({ node, circles });
       // Closing first, then opening: the order of the Tab key.
       if (branch === "closing") this.group.insertBefore(node, this.handles.opening[0]?.node ?? null);

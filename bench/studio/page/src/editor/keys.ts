@@ -13,10 +13,10 @@ const arrows: Record<string, { x: number; y: number }> = {
 
 interface Told {
   /** After a change that is not part of a drag. */
-  settled(): void;
+  settled: () => void;
   /** Read out, not shown. */
-  announce(text: string): void;
-  refuse(why: string): void;
+  announce: (text: string) => void;
+  refuse: (why: string) => void;
 }
 
 /** Undo and redo from anywhere on the page but a field that has an undo of its own. */

@@ -48,11 +48,20 @@ export class KnotTable {
         "tr",
         {},
         element("th", { scope: "row" }, String(i + 1)),
-        ...columns.map((column) => element("td", {}, this.input(column, i, `${heads[column]} of breakpoint ${i + 1} in ${this.scale(column).unit}`))),
+        ...columns.map((column) =>
+          element(
+            "td",
+            {},
+            this.input(column, i, `${heads[column]} of breakpoint ${i + 1} in ${this.scale(column).unit}`),
+          ),
+        ),
         element(
           "td",
           {},
-          button("Remove", () => this.remove(i), { "aria-label": `Remove breakpoint ${i + 1}`, disabled: knots.penetration.length <= 2 }),
+          button("Remove", () => this.remove(i), {
+            "aria-label": `Remove breakpoint ${i + 1}`,
+            disabled: knots.penetration.length <= 2,
+          }),
         ),
       ),
     );
@@ -91,7 +100,10 @@ export class KnotTable {
 
   private take(column: Column, index: number, input: HTMLInputElement): void {
     const value = input.value.trim() === "" ? NaN : Number(input.value) / this.scale(column).perUnit;
-    const knots = { ...this.drawing.knots, [column]: this.drawing.knots[column].map((it, i) => (i === index ? value : it)) };
+    const knots = {
+      ...this.drawing.knots,
+      [column]: this.drawing.knots[column].map((it, i) => (i === index ? value : it)),
+    };
     const fault = faultOf(knots);
     if (fault) {
       this.refuse(fault);

@@ -52,7 +52,11 @@ export function startKnots(curve: EditorCurve): Knots {
   const reached = curve.penetration.filter((_, i) => curve.closing[i] != null || curve.opening[i] != null);
   const ends = [reached[0] ?? 0, reached[reached.length - 1] ?? 1];
   const closing = ends.map((it) => meanAt(curve, "closing", it) ?? 0);
-  return withOpening({ penetration: ends, closing, opening: [] }, curve, curve.opening.some((it) => it != null));
+  return withOpening(
+    { penetration: ends, closing, opening: [] },
+    curve,
+    curve.opening.some((it) => it != null),
+  );
 }
 
 /** With forces of its own for opening, those of the averaged curve; or without. */
@@ -101,7 +105,9 @@ export function moved(knots: Knots, index: number, spot: Spot, gap: number): Kno
     penetration: replaced(knots.penetration, index, penetration),
     closing: spot.branch === "closing" ? replaced(knots.closing, index, spot.force) : knots.closing,
     opening:
-      spot.branch === "opening" && knots.opening.length > 0 ? replaced(knots.opening, index, spot.force) : knots.opening,
+      spot.branch === "opening" && knots.opening.length > 0
+        ? replaced(knots.opening, index, spot.force)
+        : knots.opening,
   };
 }
 

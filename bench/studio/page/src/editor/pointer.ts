@@ -4,7 +4,12 @@ import { Handles } from "./handles";
 import { maxKnots } from "./knots";
 
 /** A press on the plot adds a breakpoint and holds it, one on a breakpoint holds that; a hold is one step back. */
-export function takePointer(drawing: Drawing, canvas: Canvas, dropped: () => void, refuse: (why: string) => void): void {
+export function takePointer(
+  drawing: Drawing,
+  canvas: Canvas,
+  dropped: () => void,
+  refuse: (why: string) => void,
+): void {
   const { svg } = canvas.plot;
   let drags = 0;
   let held: { pointer: number; index: number; off: { x: number; y: number } } | null = null;
@@ -26,7 +31,10 @@ export function takePointer(drawing: Drawing, canvas: Canvas, dropped: () => voi
       };
     }
     const index = handle ? handle.index : drawing.add(canvas.spotAt(at), tag);
-    if (index < 0) return refuse(`There is no room for another breakpoint here: a law takes up to ${maxKnots}, apart from each other.`);
+    if (index < 0)
+      return refuse(
+        `There is no room for another breakpoint here: a law takes up to ${maxKnots}, apart from each other.`,
+      );
     canvas.handles.focus(index, drawing.branch);
     held = { pointer: event.pointerId, index, off };
     svg.setPointerCapture(event.pointerId);

@@ -5,7 +5,13 @@ import type { Drawing } from "./drawing";
 
 /** Writes the law into the workspace; an existing file is replaced only when that is asked for. */
 export function savePanel(context: Context, drawing: Drawing, axis: number, name: string): HTMLElement {
-  const input = element("input", { type: "text", maxlength: 80, value: name, spellcheck: "false", autocomplete: "off" });
+  const input = element("input", {
+    type: "text",
+    maxlength: 80,
+    value: name,
+    spellcheck: "false",
+    autocomplete: "off",
+  });
   const said = element("p", { class: "said", role: "status" });
   const save = async (replace: boolean): Promise<void> => {
     const law: DrawnLaw = {

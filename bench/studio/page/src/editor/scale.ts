@@ -1,6 +1,12 @@
 import { plain } from "../ui/numbers";
 
-const prefixes: readonly [number, string][] = [[1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"]];
+const prefixes: readonly [number, string][] = [
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+];
 
 /** A unit with the prefix that suits a whole range, so that plot, labels and table agree. */
 export interface Scale {

@@ -19,12 +19,17 @@ export function startFrom(context: Context, drawing: Drawing, workspace: Workspa
   );
   const take = async (id: string, name: string): Promise<void> => {
     try {
-      const { contact_position, closing_direction, penetration, closing, opening } = await context.api.get<LawKnots>("/api/editor/law", { id });
+      const { contact_position, closing_direction, penetration, closing, opening } = await context.api.get<LawKnots>(
+        "/api/editor/law",
+        { id },
+      );
       if (closing_direction !== curve.closing_direction) throw new Error(`${name} engages the other way round.`);
       const by = (contact_position - curve.contact_position) * curve.closing_direction;
       drawing.set(shifted({ penetration, closing, opening }, by));
       taken();
-      context.say(by === 0 ? `Breakpoints of ${name}.` : `Breakpoints of ${name}, moved to the contact of this recording.`);
+      context.say(
+        by === 0 ? `Breakpoints of ${name}.` : `Breakpoints of ${name}, moved to the contact of this recording.`,
+      );
     } catch (error) {
       context.complain(error);
     }

@@ -6,11 +6,15 @@ import type { Drawing } from "./drawing";
 
 /** A button that stays in or out. */
 function toggle(text: string, pressed: boolean, set: (on: boolean) => void): HTMLButtonElement {
-  const node = button(text, () => {
-    const on = node.getAttribute("aria-pressed") !== "true";
-    node.setAttribute("aria-pressed", String(on));
-    set(on);
-  }, { "aria-pressed": String(pressed) });
+  const node = button(
+    text,
+    () => {
+      const on = node.getAttribute("aria-pressed") !== "true";
+      node.setAttribute("aria-pressed", String(on));
+      set(on);
+    },
+    { "aria-pressed": String(pressed) },
+  );
   return node;
 }
 
@@ -22,13 +26,27 @@ export function toolbar(
   axis: number,
   settled: () => void,
 ): { root: HTMLElement; show: () => void } {
-  const back = (step: () => void): (() => void) => () => {
-    step();
-    settled();
-  };
-  const undo = button("Undo", back(() => drawing.undo()), { title: "Ctrl+Z", "aria-keyshortcuts": "Control+Z" });
-  const redo = button("Redo", back(() => drawing.redo()), { title: "Ctrl+Shift+Z", "aria-keyshortcuts": "Control+Shift+Z Control+Y" });
-  const remove = button("Remove", back(() => void drawing.remove(drawing.selected)), { title: "Delete", "aria-label": "Remove the chosen breakpoint" });
+  const back =
+    (step: () => void): (() => void) =>
+    () => {
+      step();
+      settled();
+    };
+  const undo = button(
+    "Undo",
+    back(() => drawing.undo()),
+    { title: "Ctrl+Z", "aria-keyshortcuts": "Control+Z" },
+  );
+  const redo = button(
+    "Redo",
+    back(() => drawing.redo()),
+    { title: "Ctrl+Shift+Z", "aria-keyshortcuts": "Control+Shift+Z Control+Y" },
+  );
+  const remove = button(
+    "Remove",
+    back(() => void drawing.remove(drawing.selected)),
+    { title: "Delete", "aria-label": "Remove the chosen breakpoint" },
+  );
   const own = toggle("Opening as its own branch", drawing.hasOpening, (on) => {
     drawing.ownOpening(on);
     settled();
@@ -49,7 +67,11 @@ export function toolbar(
     drawing.band = on;
     drawing.changed();
   });
-  const cycles = toggle("Single cycles", false, (on) => void showCycles(context, drawing, canvas, axis, on).catch(context.complain));
+  const cycles = toggle(
+    "Single cycles",
+    false,
+    (on) => void showCycles(context, drawing, canvas, axis, on).catch(context.complain),
+  );
   const show = (): void => {
     undo.disabled = !drawing.history.canUndo;
     redo.disabled = !drawing.history.canRedo;
@@ -58,12 +80,36 @@ export function toolbar(
     branch.value = drawing.branch;
     branch.disabled = !drawing.hasOpening;
   };
-  return { root: element("div", { class: "tools", role: "toolbar", "aria-label": "Drawing" }, undo, redo, remove, labelled("Draw on", branch), own, band, cycles), show };
+  return {
+    root: element(
+      "div",
+      { class: "tools", role: "toolbar", "aria-label": "Drawing" },
+      undo,
+      redo,
+      remove,
+      labelled("Draw on", branch),
+      own,
+      band,
+      cycles,
+    ),
+    show,
+  };
 }
 
-async function showCycles(context: Context, drawing: Drawing, canvas: Canvas, axis: number, on: boolean): Promise<void> {
+async function showCycles(
+  context: Context,
+  drawing: Drawing,
+  canvas: Canvas,
+  axis: number,
+  on: boolean,
+): Promise<void> {
   if (!on) return canvas.showCycles(null);
-  const loops = await context.api.get<Loops>("/api/recording/loops", { id: drawing.curve.recording, axis, first: 1, count: 30 });
+  const loops = await context.api.get<Loops>("/api/recording/loops", {
+    id: drawing.curve.recording,
+    axis,
+    first: 1,
+    count: 30,
+  });
   canvas.showCycles(loops);
 }
 
@@ -87,9 +133,13 @@ export function optima(context: Context, drawing: Drawing, axis: number, settled
       context.complain(error);
     }
   };
-  const best = button("Fill in the best", () => void take("/api/editor/best", { segments: Number(count.value), loop: drawing.hasOpening }), {
-    title: "The breakpoints with the least error for so many segments",
-  });
+  const best = button(
+    "Fill in the best",
+    () => void take("/api/editor/best", { segments: Number(count.value), loop: drawing.hasOpening }),
+    {
+      title: "The breakpoints with the least error for so many segments",
+    },
+  );
   const forces = button("Best forces here", () => void take("/api/editor/forces", { knots: drawing.knots }), {
     title: "The forces with the least error at the penetrations that are drawn",
   });

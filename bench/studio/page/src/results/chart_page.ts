@@ -15,14 +15,46 @@ const microseconds = (ns: number | null): string => (ns === null ? "–" : (1e-3
 
 function tableOf(chart: PlacedChart, open: (at: PlacedPoint) => void): HTMLElement {
   const columns = [
-    { head: "law", text: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}`, key: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}` },
-    { head: "free", text: (at: PlacedPoint) => String(at.point.parameters), key: (at: PlacedPoint) => at.point.parameters },
-    { head: "p50 [µs]", text: (at: PlacedPoint) => microseconds(at.point.p50_ns), key: (at: PlacedPoint) => at.point.p50_ns ?? 0 },
-    { head: "p99.9 [µs]", text: (at: PlacedPoint) => microseconds(at.point.p999_ns), key: (at: PlacedPoint) => at.point.p999_ns ?? 0 },
-    { head: "error [N]", text: (at: PlacedPoint) => plain(at.point.error_n), key: (at: PlacedPoint) => at.point.error_n ?? Infinity },
-    { head: "error [JND]", text: (at: PlacedPoint) => plain(at.point.error_jnd, 2), key: (at: PlacedPoint) => at.point.error_jnd ?? Infinity },
-    { head: "stable", text: (at: PlacedPoint) => (at.point.stable ? "yes" : `no: ${at.point.why_not_stable}`), key: (at: PlacedPoint) => (at.point.stable ? "yes" : "no") },
-    { head: "front", text: (at: PlacedPoint) => (at.point.on_front ? "yes" : ""), key: (at: PlacedPoint) => (at.point.on_front ? "a" : "b") },
+    {
+      head: "law",
+      text: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}`,
+      key: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}`,
+    },
+    {
+      head: "free",
+      text: (at: PlacedPoint) => String(at.point.parameters),
+      key: (at: PlacedPoint) => at.point.parameters,
+    },
+    {
+      head: "p50 [µs]",
+      text: (at: PlacedPoint) => microseconds(at.point.p50_ns),
+      key: (at: PlacedPoint) => at.point.p50_ns ?? 0,
+    },
+    {
+      head: "p99.9 [µs]",
+      text: (at: PlacedPoint) => microseconds(at.point.p999_ns),
+      key: (at: PlacedPoint) => at.point.p999_ns ?? 0,
+    },
+    {
+      head: "error [N]",
+      text: (at: PlacedPoint) => plain(at.point.error_n),
+      key: (at: PlacedPoint) => at.point.error_n ?? Infinity,
+    },
+    {
+      head: "error [JND]",
+      text: (at: PlacedPoint) => plain(at.point.error_jnd, 2),
+      key: (at: PlacedPoint) => at.point.error_jnd ?? Infinity,
+    },
+    {
+      head: "stable",
+      text: (at: PlacedPoint) => (at.point.stable ? "yes" : `no: ${at.point.why_not_stable}`),
+      key: (at: PlacedPoint) => (at.point.stable ? "yes" : "no"),
+    },
+    {
+      head: "front",
+      text: (at: PlacedPoint) => (at.point.on_front ? "yes" : ""),
+      key: (at: PlacedPoint) => (at.point.on_front ? "a" : "b"),
+    },
   ];
   return new SortableTable("Every point", columns, chart.points, open).root;
 }
@@ -44,20 +76,39 @@ export class ChartPage {
     this.law = new LawPanel(context);
     this.plot = new ChartPlot(placed, (at) => this.open(at));
     const recording = recordingsFor(workspace, chart.source)[0];
-    const is_its = recording !== undefined && recording.name.endsWith(`${chart.source}.h5`);
+    const its = recording?.name.endsWith(`${chart.source}.h5`) ? recording : undefined;
     const choice = new ChoicePanel(
       context,
       workspace,
-      is_its ? () => void jobs.order("/api/choose", { recording: recording.id }, (id) => context.go("chart", id)) : null,
+      its ? () => void jobs.order("/api/choose", { recording: its.id }, (id) => context.go("chart", id)) : null,
       (id, title) => void this.law.open(id, title),
     );
-    const chosen = workspace.files.filter((it) => it.kind === "choice" && resultName(it).split("/").pop()?.replace(/(-\d+)?\.choice$/, "") === chart.source).sort(byName).pop();
+    const chosen = workspace.files
+      .filter(
+        (it) =>
+          it.kind === "choice" &&
+          resultName(it)
+            .split("/")
+            .pop()
+            ?.replace(/(-\d+)?\.choice$/, "") === chart.source,
+      )
+      .sort(byName)
+      .pop();
     if (chosen) void choice.open(chosen);
     this.root = element(
       "div",
       { class: "stack" },
-      element("p", { class: "quiet" }, `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`),
-      element("div", { class: "two wide" }, this.plot.root, element("div", { class: "stack" }, this.law.root, jobs.root)),
+      element(
+        "p",
+        { class: "quiet" },
+        `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
+      ),
+      element(
+        "div",
+        { class: "two wide" },
+        this.plot.root,
+        element("div", { class: "stack" }, this.law.root, jobs.root),
+      ),
       choice.root,
       tableOf(placed, (at) => this.open(at)),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),

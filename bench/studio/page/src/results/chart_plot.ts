@@ -11,7 +11,11 @@ const reach = 14; // of a pointer
 export class ChartPlot {
   readonly root: HTMLElement;
   private readonly plot: XyPlot;
-  private readonly readout = element("p", { class: "readout", role: "status" }, "Point at a mark, or go from mark to mark with the arrow keys. Enter opens its law.");
+  private readonly readout = element(
+    "p",
+    { class: "readout", role: "status" },
+    "Point at a mark, or go from mark to mark with the arrow keys. Enter opens its law.",
+  );
   private readonly marks: SVGGElement[] = [];
   private current = 0; // in points by error
   private opened = -1; // in the file
@@ -63,10 +67,19 @@ export class ChartPlot {
   }
 
   private legend(): HTMLElement {
-    const entry = (sample: Element, text: string): HTMLLIElement => element("li", {}, sample, element("span", {}, text));
+    const entry = (sample: Element, text: string): HTMLLIElement =>
+      element("li", {}, sample, element("span", {}, text));
     const line = (kind: string): SVGSVGElement =>
-      drawn("svg", { class: "sample", viewBox: "0 0 30 22", width: 30, height: 22, "aria-hidden": "true" }, drawn("line", { class: kind, x1: 1, x2: 29, y1: 11, y2: 11 }));
-    const cross = drawn("svg", { class: "sample", viewBox: "0 0 22 22", width: 22, height: 22, "aria-hidden": "true" }, drawn("path", { class: "cross", d: crossPath(11, 11) }));
+      drawn(
+        "svg",
+        { class: "sample", viewBox: "0 0 30 22", width: 30, height: 22, "aria-hidden": "true" },
+        drawn("line", { class: kind, x1: 1, x2: 29, y1: 11, y2: 11 }),
+      );
+    const cross = drawn(
+      "svg",
+      { class: "sample", viewBox: "0 0 22 22", width: 22, height: 22, "aria-hidden": "true" },
+      drawn("path", { class: "cross", d: crossPath(11, 11) }),
+    );
     return element(
       "ul",
       { class: "legend", "aria-label": "Legend" },
@@ -89,14 +102,21 @@ export class ChartPlot {
     plot.ground.replaceChildren(
       ...horizontal(chart.tick_us, `a tick at ${Math.round(chart.file.rate_hz)} Hz`, -6),
       ...horizontal(chart.tick_us / 2, "half of it", 18),
-      drawn("line", { class: "jnd_line", x1: plot.x(chart.jnd), x2: plot.x(chart.jnd), y1: plot.y(bottom), y2: plot.y(top) }),
+      drawn("line", {
+        class: "jnd_line",
+        x1: plot.x(chart.jnd),
+        x2: plot.x(chart.jnd),
+        y1: plot.y(bottom),
+        y2: plot.y(top),
+      }),
       drawn("text", { class: "line_label", x: plot.x(chart.jnd) + 6, y: plot.y(bottom) - 8 }, "JND"),
       drawn("path", { class: "stairs", d: this.stairs() }),
     );
     const had_focus = this.marks.includes(document.activeElement as unknown as SVGGElement);
     this.marks.length = 0;
     this.byError.forEach((at, place) => this.marks.push(this.mark(at, place)));
-    const on_top = (mark: SVGGElement): number => Number(mark.classList.contains("on_front")) + 2 * Number(mark.classList.contains("opened"));
+    const on_top = (mark: SVGGElement): number =>
+      Number(mark.classList.contains("on_front")) + 2 * Number(mark.classList.contains("opened"));
     plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
     if (had_focus) this.marks[this.current]?.focus();
   }
@@ -134,7 +154,10 @@ export class ChartPlot {
         },
       },
       drawn("circle", { class: "reach", cx: x, cy: y, r: 12 }),
-      drawn("path", { class: markClass(at.law), d: markPath(at.law, x, y, at.point.on_front ? radius + 1 : radius - 1) }),
+      drawn("path", {
+        class: markClass(at.law),
+        d: markPath(at.law, x, y, at.point.on_front ? radius + 1 : radius - 1),
+      }),
     );
     if (!at.point.stable) mark.append(drawn("path", { class: "cross", d: crossPath(x, y) }));
     return mark;
@@ -160,7 +183,9 @@ export class ChartPlot {
 
   /** Left and right by error, up and down by cost. */
   private key(event: KeyboardEvent, at: PlacedPoint): void {
-    const along = { ArrowRight: this.byError, ArrowLeft: this.byError, ArrowUp: this.byCost, ArrowDown: this.byCost }[event.key];
+    const along = { ArrowRight: this.byError, ArrowLeft: this.byError, ArrowUp: this.byCost, ArrowDown: this.byCost }[
+      event.key
+    ];
     if (along) {
       const step = event.key === "ArrowRight" || event.key === "ArrowUp" ? 1 : -1;
       const next = along[along.indexOf(at) + step];

@@ -14,8 +14,16 @@ function candidateTable(of: readonly ChoiceCandidate[]): HTMLElement {
     `${plain(it.tick_us, 2)} µs`,
     it.passed_over || "taken",
   ]);
-  const all = table("The candidates, simplest first", ["law", "free", "held out", "JND", "tick", "why passed over"], rows);
-  return element("div", { class: "scrolled candidates", tabindex: 0, role: "region", "aria-label": "The candidates" }, all);
+  const all = table(
+    "The candidates, simplest first",
+    ["law", "free", "held out", "JND", "tick", "why passed over"],
+    rows,
+  );
+  return element(
+    "div",
+    { class: "scrolled candidates", tabindex: 0, role: "region", "aria-label": "The candidates" },
+    all,
+  );
 }
 
 /** A choice in words: what was taken, why, and what was passed over. */
@@ -30,7 +38,11 @@ export class ChoicePanel {
   ) {
     this.root.append(
       element("div", { class: "head" }, element("h2", {}, "The simplest law that serves"), ...this.again("Choose")),
-      element("p", { class: "quiet" }, "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable."),
+      element(
+        "p",
+        { class: "quiet" },
+        "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable.",
+      ),
     );
   }
 
@@ -48,17 +60,34 @@ export class ChoicePanel {
 
   private show(file: WorkspaceFile, of: ChoiceFile): void {
     const law = of.choice.law ? lawBeside(this.workspace, file, `${of.choice.law}.law.toml`) : undefined;
-    const head = element("div", { class: "head" }, element("h2", {}, of.choice.law ? `Chosen: ${of.choice.law}` : "Nothing was chosen"));
+    const head = element(
+      "div",
+      { class: "head" },
+      element("h2", {}, of.choice.law ? `Chosen: ${of.choice.law}` : "Nothing was chosen"),
+    );
     if (law) {
       const title = of.choice.law ?? law.name;
-      head.append(button("Open", () => this.openLaw(law.id, title), { "aria-label": `Open ${title}` }), feelButton(this.context, law.id, title));
+      head.append(
+        button("Open", () => this.openLaw(law.id, title), { "aria-label": `Open ${title}` }),
+        feelButton(this.context, law.id, title),
+      );
     }
     head.append(...this.again("Choose again"));
     this.root.replaceChildren(
       head,
       element("p", { class: of.choice.serves ? "" : "wrong" }, of.choice.why),
-      element("p", { class: "quiet" }, `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, "N")}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`),
-      element("ul", { class: "effects" }, ...of.effects.map((it) => element("li", {}, element("strong", {}, `${it.effect} ${it.verdict}`), `: ${it.why}`))),
+      element(
+        "p",
+        { class: "quiet" },
+        `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, "N")}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`,
+      ),
+      element(
+        "ul",
+        { class: "effects" },
+        ...of.effects.map((it) =>
+          element("li", {}, element("strong", {}, `${it.effect} ${it.verdict}`), `: ${it.why}`),
+        ),
+      ),
       candidateTable(of.candidates),
       ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
     );

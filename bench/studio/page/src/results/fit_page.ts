@@ -11,7 +11,12 @@ const columns = 600;
 
 function list(title: string, lines: readonly string[], kind = ""): HTMLElement | null {
   if (lines.length === 0) return null;
-  return element("details", { class: kind, open: kind === "warnings" }, element("summary", {}, title), element("ul", {}, ...lines.map((it) => element("li", {}, it))));
+  return element(
+    "details",
+    { class: kind, open: kind === "warnings" },
+    element("summary", {}, title),
+    element("ul", {}, ...lines.map((it) => element("li", {}, it))),
+  );
 }
 
 /** A fit as it was written: all laws compared, and one of them looked at. */
@@ -36,9 +41,18 @@ export class FitPage {
     this.root = element(
       "div",
       {},
-      element("p", { class: "quiet" }, `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. JND ${withUnit(fit.jnd, "N")}; a straight line leaves ${withUnit(fit.line_rmse, "N")}.`),
+      element(
+        "p",
+        { class: "quiet" },
+        `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. JND ${withUnit(fit.jnd, "N")}; a straight line leaves ${withUnit(fit.line_rmse, "N")}.`,
+      ),
       this.table.root,
-      element("p", { class: "choice" }, element("strong", {}, fit.choice.model ? `Choice: ${fit.choice.model}. ` : "No choice. "), fit.choice.why),
+      element(
+        "p",
+        { class: "choice" },
+        element("strong", {}, fit.choice.model ? `Choice: ${fit.choice.model}. ` : "No choice. "),
+        fit.choice.why,
+      ),
       list("Warnings", fit.warnings, "warnings"),
       list(`${refused.length} laws could not be fitted`, refused),
       element("p", {}, element("a", { href: "#/fits" }, "All fits")),
@@ -95,7 +109,12 @@ export class FitPage {
     const axis = this.fit.recordings[0]?.axis ?? "";
     if (!shown || !plots || !recording) return;
     try {
-      const of = await this.context.api.get<Residuals>("/api/residuals", { id: recording, axis, law: shown.id, columns });
+      const of = await this.context.api.get<Residuals>("/api/residuals", {
+        id: recording,
+        axis,
+        law: shown.id,
+        columns,
+      });
       if (this.plots === plots && this.recording === recording) plots.show(of);
     } catch (error) {
       this.context.complain(error);

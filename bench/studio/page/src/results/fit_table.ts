@@ -55,7 +55,21 @@ export class FitTable {
         "table",
         { class: "fits" },
         element("caption", {}, "Laws compared"),
-        element("thead", {}, element("tr", {}, head("law", false), head("free"), head("error"), head("held out"), head("in JNDs"), head("BIC"), head("", false))),
+        element(
+          "thead",
+          {},
+          element(
+            "tr",
+            {},
+            head("law", false),
+            head("free"),
+            head("error"),
+            head("held out"),
+            head("in JNDs"),
+            head("BIC"),
+            head("", false),
+          ),
+        ),
         body,
       ),
     );
@@ -90,7 +104,8 @@ export function parameterTable(fit: LawFit): HTMLElement {
   const reach = reachOf(all.map(([, estimate]) => estimate));
   const rows = all.slice(0, maxShown).map(([parameter, estimate]) => {
     const { lower, upper } = intervalOf(estimate);
-    const interval = lower === null || upper === null ? "not determined" : `${lower.toPrecision(4)} to ${upper.toPrecision(4)}`;
+    const interval =
+      lower === null || upper === null ? "not determined" : `${lower.toPrecision(4)} to ${upper.toPrecision(4)}`;
     return element(
       "tr",
       {},
@@ -109,7 +124,19 @@ export function parameterTable(fit: LawFit): HTMLElement {
       "table",
       {},
       element("caption", {}, `Parameters of ${fit.model}`),
-      element("thead", {}, element("tr", {}, head("parameter", false), head("value"), head("unit", false), head(`${name} % interval`), head(`−${100 * reach} % to +${100 * reach} %`, false))),
+      element(
+        "thead",
+        {},
+        element(
+          "tr",
+          {},
+          head("parameter", false),
+          head("value"),
+          head("unit", false),
+          head(`${name} % interval`),
+          head(`−${100 * reach} % to +${100 * reach} %`, false),
+        ),
+      ),
       element("tbody", {}, ...rows),
     ),
     more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the law file`) : null,

@@ -38,7 +38,13 @@ export function intervalBar(estimate: Estimate, reach: number): SVGSVGElement {
   const to = known ? Math.max(at(upper), from + 2) : width - 4;
   return drawn(
     "svg",
-    { class: `interval${known ? "" : " unknown"}`, viewBox: `0 0 ${width} ${height}`, width, height, "aria-hidden": "true" },
+    {
+      class: `interval${known ? "" : " unknown"}`,
+      viewBox: `0 0 ${width} ${height}`,
+      width,
+      height,
+      "aria-hidden": "true",
+    },
     drawn("line", { class: "scale", x1: 4, x2: width - 4, y1: height / 2, y2: height / 2 }),
     drawn("line", { class: "span", x1: from, x2: to, y1: height / 2, y2: height / 2 }),
     drawn("line", { class: "value", x1: width / 2, x2: width / 2, y1: 3, y2: height - 3 }),

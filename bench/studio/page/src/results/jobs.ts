@@ -40,7 +40,8 @@ class JobLine {
     if (job.state === "running" && job.share < 0) this.bar.removeAttribute("value");
     else this.bar.value = job.state === "done" ? 1 : Math.max(0, job.share);
     if (job.state === "done" && job.file) {
-      if (!this.words.querySelector("a")) this.words.replaceChildren(element("a", { href: `#/${views[job.kind]}/${job.file}` }, "Open the result"));
+      if (!this.words.querySelector("a"))
+        this.words.replaceChildren(element("a", { href: `#/${views[job.kind]}/${job.file}` }, "Open the result"));
     } else {
       this.words.textContent = inWords(job);
     }

@@ -10,7 +10,10 @@ export class LawCheckboxes {
 
   show(axis: Axis | undefined): void {
     const fitting = this.laws.filter(
-      (it) => !axis || ((!it.position_unit || it.position_unit === axis.position_unit) && (!it.force_unit || it.force_unit === axis.force_unit)),
+      (it) =>
+        !axis ||
+        ((!it.position_unit || it.position_unit === axis.position_unit) &&
+          (!it.force_unit || it.force_unit === axis.force_unit)),
     );
     this.boxes.clear();
     const all = (checked: boolean) => (): void => this.boxes.forEach((box) => (box.checked = checked));

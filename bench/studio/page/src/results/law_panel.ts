@@ -28,15 +28,21 @@ function optionsInWords(law: LawView): string {
 }
 
 function parameterTable(law: LawView): HTMLElement {
-  const rows = law.parameters.slice(0, maxShown).map((it) => [
-    element("div", {}, it.name, element("p", { class: "quiet" }, it.meaning)),
-    it.value.toPrecision(5) + (it.std_error === null ? "" : ` ± ${it.std_error.toPrecision(2)}`),
-    it.unit === "1" ? "" : it.unit,
-  ]);
+  const rows = law.parameters
+    .slice(0, maxShown)
+    .map((it) => [
+      element("div", {}, it.name, element("p", { class: "quiet" }, it.meaning)),
+      it.value.toPrecision(5) + (it.std_error === null ? "" : ` ± ${it.std_error.toPrecision(2)}`),
+      it.unit === "1" ? "" : it.unit,
+    ]);
   const more = law.parameters.length - maxShown;
   const of = table("Parameters", ["name", "value ± standard error", "unit"], rows);
-  return element("div", { class: "scrolled", tabindex: 0, role: "region", "aria-label": "Parameters of the law" }, of,
-    more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the file`) : null);
+  return element(
+    "div",
+    { class: "scrolled", tabindex: 0, role: "region", "aria-label": "Parameters of the law" },
+    of,
+    more > 0 ? element("p", { class: "quiet" }, `and ${more} more, in the file`) : null,
+  );
 }
 
 /** One law: what it is, its curve, its parameters, and a way to feel it. */
@@ -68,23 +74,40 @@ export class LawPanel {
   private show(id: string, law: LawView, title: string): void {
     this.end();
     const unit = law.position_unit;
-    const text = element("details", {}, element("summary", {}, "The law file"), element("pre", { tabindex: 0 }, law.toml));
+    const text = element(
+      "details",
+      {},
+      element("summary", {}, "The law file"),
+      element("pre", { tabindex: 0 }, law.toml),
+    );
     this.root.replaceChildren(
       element("div", { class: "head" }, element("h2", {}, title), feelButton(this.context, id, title)),
       element("p", { class: "equation" }, law.equation),
-      element("p", { class: "quiet" }, `${law.name} · axis ${law.axis || "–"}${law.parameters.length > 0 ? ` · ${law.parameters.length} parameters` : ""}`),
+      element(
+        "p",
+        { class: "quiet" },
+        `${law.name} · axis ${law.axis || "–"}${law.parameters.length > 0 ? ` · ${law.parameters.length} parameters` : ""}`,
+      ),
     );
     const options = optionsInWords(law);
     if (options) this.root.append(element("p", { class: "quiet" }, options));
     if (law.curve.penetration.length > 0) {
-      this.plot = new XyPlot({ label: `penetration [${unit}]` }, { label: `force [${law.force_unit}]` }, `Force of ${title} over penetration`);
+      this.plot = new XyPlot(
+        { label: `penetration [${unit}]` },
+        { label: `force [${law.force_unit}]` },
+        `Force of ${title} over penetration`,
+      );
       const lines = [
         { x: law.curve.penetration, y: law.curve.closing, class: "closing" },
         { x: law.curve.penetration, y: law.curve.opening, class: "opening" },
       ];
       this.root.append(
         element("div", { class: "plot small" }, this.plot.svg),
-        element("p", { class: "quiet" }, `In (solid) and out (dashed) at ${withUnit(law.curve.speed, `${unit}/s`)}, to ${law.curve.range}.`),
+        element(
+          "p",
+          { class: "quiet" },
+          `In (solid) and out (dashed) at ${withUnit(law.curve.speed, `${unit}/s`)}, to ${law.curve.range}.`,
+        ),
       );
       this.plot.show(lines, XyPlot.around(lines));
     } else {

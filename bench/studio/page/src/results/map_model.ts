@@ -28,7 +28,13 @@ export interface MapModel {
 const numbersOf = (values: Iterable<number>): number[] => [...new Set(values)].sort((a, b) => a - b);
 
 /** A grid of the cells, whatever their order in the file. */
-function grid<Cell extends MapCell>(cells: readonly Cell[], xs: number[], ys: number[], x: (cell: Cell) => number, y: (cell: Cell) => number): MapCell[][] {
+function grid<Cell extends MapCell>(
+  cells: readonly Cell[],
+  xs: number[],
+  ys: number[],
+  x: (cell: Cell) => number,
+  y: (cell: Cell) => number,
+): MapCell[][] {
   const column = new Map(xs.map((value, i) => [value, i]));
   const row = new Map(ys.map((value, i) => [value, i]));
   const rows: MapCell[][] = ys.map(() => []);
@@ -58,23 +64,57 @@ export function mapModel(file: StabilityFile): MapModel {
     return {
       x: { axis: { label: "damping of the wall B [N·s/m]" }, values: xs, name: "B", unit: "N·s/m" },
       y: { axis: { label: "stiffness of the wall K [N/m]", logarithmic: true }, values: ys, name: "K", unit: "N/m" },
-      cells: grid(file.cells, xs, ys, (it) => it.B, (it) => it.K),
+      cells: grid(
+        file.cells,
+        xs,
+        ys,
+        (it) => it.B,
+        (it) => it.K,
+      ),
       boundaries: [
-        line("simulated, as it is", "simulated", of.map((it) => it.simulated)),
-        line("eigenvalues", "eigenvalues", of.map((it) => it.eigenvalues)),
-        line("passive, with filter and delay", "passive", of.map((it) => it.passive)),
-        line("Colgate and Schenkel", "colgate_schenkel", of.map((it) => it.colgate_schenkel)),
+        line(
+          "simulated, as it is",
+          "simulated",
+          of.map((it) => it.simulated),
+        ),
+        line(
+          "eigenvalues",
+          "eigenvalues",
+          of.map((it) => it.eigenvalues),
+        ),
+        line(
+          "passive, with filter and delay",
+          "passive",
+          of.map((it) => it.passive),
+        ),
+        line(
+          "Colgate and Schenkel",
+          "colgate_schenkel",
+          of.map((it) => it.colgate_schenkel),
+        ),
       ],
       device: [
-        { label: `passive without damping: ${withUnit(file.on.passive_stiffness_n_per_m, "N/m")}`, y: file.on.passive_stiffness_n_per_m },
-        { label: `the device's own damping: ${withUnit(file.on.damping_n_s_per_m, "N·s/m")}`, x: file.on.damping_n_s_per_m },
+        {
+          label: `passive without damping: ${withUnit(file.on.passive_stiffness_n_per_m, "N/m")}`,
+          y: file.on.passive_stiffness_n_per_m,
+        },
+        {
+          label: `the device's own damping: ${withUnit(file.on.damping_n_s_per_m, "N·s/m")}`,
+          x: file.on.damping_n_s_per_m,
+        },
       ],
       words: { stable: "comes to rest", unstable: "does not come to rest", theory: "the eigenvalues" },
     };
   }
   const xs = numbersOf(file.cells.map((it) => it.depth_m));
   const ys = numbersOf(file.cells.map((it) => it.rate_hz));
-  const cells = grid(file.cells, xs, ys, (it) => it.depth_m, (it) => it.rate_hz);
+  const cells = grid(
+    file.cells,
+    xs,
+    ys,
+    (it) => it.depth_m,
+    (it) => it.rate_hz,
+  );
   const ends = cells.map((row) => row.findIndex((it) => !it.theory)); // depth at which theory gives up
   const theory: PlotLine & { label: string } = {
     label: "local stiffness = passive stiffness",

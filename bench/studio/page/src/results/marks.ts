@@ -4,14 +4,49 @@ import { drawn } from "../ui/dom";
 
 const shapes: readonly ((x: number, y: number, r: number) => string)[] = [
   (x, y, r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`,
-  (x, y, r) => polygon(x, y, [[-r, -r], [r, -r], [r, r], [-r, r]]),
-  (x, y, r) => polygon(x, y, [[0, -1.2 * r], [1.15 * r, 0.9 * r], [-1.15 * r, 0.9 * r]]),
-  (x, y, r) => polygon(x, y, [[0, -1.35 * r], [1.35 * r, 0], [0, 1.35 * r], [-1.35 * r, 0]]),
-  (x, y, r) => polygon(x, y, [[0, 1.2 * r], [1.15 * r, -0.9 * r], [-1.15 * r, -0.9 * r]]),
+  (x, y, r) =>
+    polygon(x, y, [
+      [-r, -r],
+      [r, -r],
+      [r, r],
+      [-r, r],
+    ]),
+  (x, y, r) =>
+    polygon(x, y, [
+      [0, -1.2 * r],
+      [1.15 * r, 0.9 * r],
+      [-1.15 * r, 0.9 * r],
+    ]),
+  (x, y, r) =>
+    polygon(x, y, [
+      [0, -1.35 * r],
+      [1.35 * r, 0],
+      [0, 1.35 * r],
+      [-1.35 * r, 0],
+    ]),
+  (x, y, r) =>
+    polygon(x, y, [
+      [0, 1.2 * r],
+      [1.15 * r, -0.9 * r],
+      [-1.15 * r, -0.9 * r],
+    ]),
   (x, y, r) => {
     const w = 0.45 * r;
     const l = 1.25 * r;
-    return polygon(x, y, [[-w, -l], [w, -l], [w, -w], [l, -w], [l, w], [w, w], [w, l], [-w, l], [-w, w], [-l, w], [-l, -w], [-w, -w]]);
+    return polygon(x, y, [
+      [-w, -l],
+      [w, -l],
+      [w, -w],
+      [l, -w],
+      [l, w],
+      [w, w],
+      [w, l],
+      [-w, l],
+      [-w, w],
+      [-l, w],
+      [-l, -w],
+      [-w, -w],
+    ]);
   },
   (x, y, r) => star(x, y, r, 5),
   (x, y, r) => star(x, y, r, 4),

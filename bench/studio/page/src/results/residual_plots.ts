@@ -31,15 +31,29 @@ export class ResidualPlots {
     const residual = `law − measured [${force_unit}]`;
     const depth = `penetration [${position_unit}]`;
     this.time = new XyPlot({ label: "time [s]" }, { label: residual }, "Residual over time", () => this.drawTime());
-    this.penetration = new XyPlot({ label: depth }, { label: residual }, "Residual over penetration", () => this.drawPenetration());
-    this.loop = new XyPlot({ label: depth }, { label: `force [${force_unit}]` }, "Law over the data", () => this.drawLoop());
+    this.penetration = new XyPlot({ label: depth }, { label: residual }, "Residual over penetration", () =>
+      this.drawPenetration(),
+    );
+    this.loop = new XyPlot({ label: depth }, { label: `force [${force_unit}]` }, "Law over the data", () =>
+      this.drawLoop(),
+    );
     const figure = (title: string, plot: XyPlot, note: string): HTMLElement =>
-      element("figure", { class: "card" }, element("figcaption", {}, title), element("div", { class: "plot" }, plot.svg), element("p", { class: "quiet" }, note));
+      element(
+        "figure",
+        { class: "card" },
+        element("figcaption", {}, title),
+        element("div", { class: "plot" }, plot.svg),
+        element("p", { class: "quiet" }, note),
+      );
     this.root = element(
       "div",
       { class: "residuals" },
       this.words,
-      figure("Law over the data", this.loop, "Means of each penetration. Lines: the law; dots: the data. Out of the tissue: dashed, and open dots."),
+      figure(
+        "Law over the data",
+        this.loop,
+        "Means of each penetration. Lines: the law; dots: the data. Out of the tissue: dashed, and open dots.",
+      ),
       figure("Residual over time", this.time, "Smallest to largest of each stretch."),
       figure("Residual over penetration", this.penetration, "Mean, and one standard deviation about it."),
     );
@@ -74,7 +88,10 @@ export class ResidualPlots {
         if (force === null || x === undefined) return [];
         return [drawn("circle", { class: `measured ${kind}`, cx: this.loop.x(x), cy: this.loop.y(force), r: 4 })];
       });
-    this.loop.layer.replaceChildren(...dots("closing", of.loop.measured_closing), ...dots("opening", of.loop.measured_opening));
+    this.loop.layer.replaceChildren(
+      ...dots("closing", of.loop.measured_closing),
+      ...dots("opening", of.loop.measured_opening),
+    );
   }
 
   private drawTime(): void {
@@ -90,6 +107,9 @@ export class ResidualPlots {
     const of = this.residuals;
     if (!of) return;
     const path = bandPath(this.penetration, of.penetration, of.low, of.high);
-    this.penetration.ground.replaceChildren(...jndBand(this.penetration, of.jnd_n), drawn("path", { class: "deviation", d: path }));
+    this.penetration.ground.replaceChildren(
+      ...jndBand(this.penetration, of.jnd_n),
+      drawn("path", { class: "deviation", d: path }),
+    );
   }
 }

@@ -27,7 +27,13 @@ export class SortableTable<Row> {
     this.root = element(
       "div",
       { class: "scrolled" },
-      element("table", {}, element("caption", {}, caption), element("thead", {}, element("tr", {}, ...this.heads)), this.body),
+      element(
+        "table",
+        {},
+        element("caption", {}, caption),
+        element("thead", {}, element("tr", {}, ...this.heads)),
+        this.body,
+      ),
     );
     this.sort(0);
   }
@@ -40,12 +46,15 @@ export class SortableTable<Row> {
   private sort(column: number): void {
     this.down = column === this.by && !this.down;
     this.by = column;
-    this.heads.forEach((head, i) => head.setAttribute("aria-sort", i !== column ? "none" : this.down ? "descending" : "ascending"));
+    this.heads.forEach((head, i) =>
+      head.setAttribute("aria-sort", i !== column ? "none" : this.down ? "descending" : "ascending"),
+    );
     const key = this.columns[column]?.key;
     if (!key) return;
     const order = [...this.rows].sort((a, b) => {
       const [one, other] = [key(a), key(b)];
-      const less = typeof one === "string" ? one.localeCompare(String(other), "en", { numeric: true }) : one - Number(other);
+      const less =
+        typeof one === "string" ? one.localeCompare(String(other), "en", { numeric: true }) : one - Number(other);
       return this.down ? -less : less;
     });
     this.body.replaceChildren(...order.map((row) => this.row(row)));
@@ -57,7 +66,11 @@ export class SortableTable<Row> {
       {},
       ...this.columns.map((column, i) => {
         if (i > 0) return element("td", this.numeric(i), column.text(row));
-        return element("th", { scope: "row" }, element("button", { type: "button", class: "link", click: () => this.open(row) }, column.text(row)));
+        return element(
+          "th",
+          { scope: "row" },
+          element("button", { type: "button", class: "link", click: () => this.open(row) }, column.text(row)),
+        );
       }),
     );
   }

@@ -18,7 +18,15 @@ function number(value: number, min: number, max: number, step: number | "any"): 
 /** Which axis to map, in which hand, and for which law: walls without one. */
 export function stabilityForm(context: Context, workspace: Workspace, chosen: string, jobs: JobList): HTMLElement {
   const simulated = workspace.device.startsWith("sim:") ? workspace.device : "sim:scissors";
-  const device = element("input", { type: "text", value: simulated, spellcheck: "false", autocomplete: "off", required: true, pattern: "sim:.*", title: "A simulated device: sim:NAME" });
+  const device = element("input", {
+    type: "text",
+    value: simulated,
+    spellcheck: "false",
+    autocomplete: "off",
+    required: true,
+    pattern: "sim:.*",
+    title: "A simulated device: sim:NAME",
+  });
   const rate = number(1000, 20, 20000, "any");
   const cells = number(40, 2, 60, 1);
   const depth = number(10, 0.01, 500, "any");
@@ -26,7 +34,12 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
   const laws = lawsToPick(workspace);
   let law = laws.some((it) => it.id === chosen) ? chosen : "";
   let grip = "light";
-  const of_law = element("div", { class: "row", hidden: !law }, labelled("Depth of the tool [mm]", depth), labelled("Speed of the tool [m/s]", speed));
+  const of_law = element(
+    "div",
+    { class: "row", hidden: !law },
+    labelled("Depth of the tool [mm]", depth),
+    labelled("Speed of the tool [m/s]", speed),
+  );
   const submit = (event: Event): void => {
     event.preventDefault();
     context.say("");
@@ -48,7 +61,10 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
       { class: "row" },
       labelled("Device", device),
       labelled("Rate [Hz]", rate),
-      labelled("Hand on it", select(grips, grip, (value) => (grip = value))),
+      labelled(
+        "Hand on it",
+        select(grips, grip, (value) => (grip = value)),
+      ),
       labelled("Cells a side", cells),
     ),
     element(
@@ -56,10 +72,17 @@ export function stabilityForm(context: Context, workspace: Workspace, chosen: st
       { class: "row" },
       labelled(
         "Of",
-        select([{ value: "", text: "walls, over stiffness and damping" }, ...laws.map((it) => ({ value: it.id, text: it.name }))], law, (value) => {
-          law = value;
-          of_law.hidden = !law;
-        }),
+        select(
+          [
+            { value: "", text: "walls, over stiffness and damping" },
+            ...laws.map((it) => ({ value: it.id, text: it.name })),
+          ],
+          law,
+          (value) => {
+            law = value;
+            of_law.hidden = !law;
+          },
+        ),
       ),
       element("button", { type: "submit", class: "firm" }, "Map"),
     ),

@@ -3,8 +3,7 @@ import { XyPlot } from "../ui/xy_plot";
 import { cellInWords, edgesOf } from "./map_model";
 import type { MapCell, MapModel } from "./map_model";
 
-const kinds = ["stable", "unstable", "stable_otherwise", "unstable_otherwise"] as const;
-type Kind = (typeof kinds)[number];
+type Kind = "stable" | "unstable" | "stable_otherwise" | "unstable_otherwise";
 
 function kindOf(cell: MapCell | undefined): Kind {
   if (!cell) return "unstable";
@@ -23,14 +22,25 @@ function patterns(): SVGDefsElement {
     );
   const lines = (): SVGElement => drawn("path", { class: "hatch", d: "M-2 10L10 -2M2 14L14 2" });
   const dot = (): SVGElement => drawn("circle", { class: "dot", cx: 6, cy: 6, r: 2.2 });
-  return drawn("defs", {}, of("stable"), of("unstable", lines()), of("stable_otherwise", dot()), of("unstable_otherwise", lines(), dot()));
+  return drawn(
+    "defs",
+    {},
+    of("stable"),
+    of("unstable", lines()),
+    of("stable_otherwise", dot()),
+    of("unstable_otherwise", lines(), dot()),
+  );
 }
 
 /** Cells, boundaries and the device's own lines; the cell under the cursor, or that the arrow keys lead to, is read out. */
 export class StabilityMap {
   readonly root: HTMLElement;
   private readonly plot: XyPlot;
-  private readonly readout = element("p", { class: "readout", role: "status" }, "Point at a cell, or go from cell to cell with the arrow keys.");
+  private readonly readout = element(
+    "p",
+    { class: "readout", role: "status" },
+    "Point at a cell, or go from cell to cell with the arrow keys.",
+  );
   private readonly cursor = drawn("rect", { class: "cursor" });
   private readonly x_edges: number[];
   private readonly y_edges: number[];
@@ -50,7 +60,13 @@ export class StabilityMap {
     svg.setAttribute("aria-roledescription", "map; arrow keys go from cell to cell");
     svg.addEventListener("pointermove", (event) => this.under(event));
     svg.addEventListener("keydown", (event) => this.key(event));
-    this.root = element("figure", { class: "card map" }, element("div", { class: "plot tall" }, svg), this.readout, this.legend());
+    this.root = element(
+      "figure",
+      { class: "card map" },
+      element("div", { class: "plot tall" }, svg),
+      this.readout,
+      this.legend(),
+    );
     const first = (of: number[]): number => of[0] ?? 0;
     const last = (of: number[]): number => of[of.length - 1] ?? 1;
     this.plot.show(map.boundaries, {
@@ -66,7 +82,8 @@ export class StabilityMap {
   private legend(): HTMLElement {
     const sample = (...inside: SVGElement[]): SVGSVGElement =>
       drawn("svg", { class: "sample", viewBox: "0 0 34 22", width: 34, height: 22, "aria-hidden": "true" }, ...inside);
-    const cell = (kind: Kind): SVGSVGElement => sample(drawn("rect", { x: 1, y: 1, width: 32, height: 20, fill: `url(#map_${kind})`, class: "swatch" }));
+    const cell = (kind: Kind): SVGSVGElement =>
+      sample(drawn("rect", { x: 1, y: 1, width: 32, height: 20, fill: `url(#map_${kind})`, class: "swatch" }));
     const line = (kind: string): SVGSVGElement => sample(drawn("line", { class: kind, x1: 1, x2: 33, y1: 11, y2: 11 }));
     const { stable, unstable } = this.map.words;
     const entries: [SVGSVGElement, string][] = [
@@ -75,7 +92,10 @@ export class StabilityMap {
       [cell("stable_otherwise"), `${stable}, theory says otherwise`],
       [cell("unstable_otherwise"), `${unstable}, theory says otherwise`],
       ...this.map.boundaries.map((it): [SVGSVGElement, string] => [line(`curve ${it.class}`), it.label]),
-      ...this.map.device.map((it): [SVGSVGElement, string] => [line(it.x === undefined ? "own level" : "own upright"), it.label]),
+      ...this.map.device.map((it): [SVGSVGElement, string] => [
+        line(it.x === undefined ? "own level" : "own upright"),
+        it.label,
+      ]),
     ];
     return element(
       "ul",
@@ -121,9 +141,25 @@ export class StabilityMap {
     const [bottom, top] = plot.limits.y;
     return this.map.device.flatMap((it): SVGElement[] => {
       if (it.y !== undefined && it.y > bottom && it.y < top)
-        return [drawn("line", { class: "own level", x1: plot.x(left), x2: plot.x(right), y1: plot.y(it.y), y2: plot.y(it.y) })];
+        return [
+          drawn("line", {
+            class: "own level",
+            x1: plot.x(left),
+            x2: plot.x(right),
+            y1: plot.y(it.y),
+            y2: plot.y(it.y),
+          }),
+        ];
       if (it.x !== undefined && it.x > left && it.x < right)
-        return [drawn("line", { class: "own upright", x1: plot.x(it.x), x2: plot.x(it.x), y1: plot.y(bottom), y2: plot.y(top) })];
+        return [
+          drawn("line", {
+            class: "own upright",
+            x1: plot.x(it.x),
+            x2: plot.x(it.x),
+            y1: plot.y(bottom),
+            y2: plot.y(top),
+          }),
+        ];
       return [];
     });
   }
@@ -132,7 +168,8 @@ export class StabilityMap {
     const at = this.plot.pointer(event);
     const x = this.plot.xAt(at.x);
     const y = this.plot.yAt(at.y);
-    const place = (value: number, edges: readonly number[]): number => edges.findIndex((edge, i) => value >= edge && value <= (edges[i + 1] ?? -Infinity));
+    const place = (value: number, edges: readonly number[]): number =>
+      edges.findIndex((edge, i) => value >= edge && value <= (edges[i + 1] ?? -Infinity));
     const column = place(x, this.x_edges);
     const row = place(y, this.y_edges);
     if (column >= 0 && row >= 0) this.go(row, column);
@@ -161,6 +198,7 @@ export class StabilityMap {
 
   private showCursor(): void {
     if (this.row < 0) return this.cursor.setAttribute("width", "0");
-    for (const [name, value] of Object.entries(this.box(this.row, this.column, this.column + 1))) this.cursor.setAttribute(name, String(value));
+    for (const [name, value] of Object.entries(this.box(this.row, this.column, this.column + 1)))
+      this.cursor.setAttribute(name, String(value));
   }
 }

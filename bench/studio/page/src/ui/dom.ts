@@ -62,10 +62,6 @@ export function table(caption: string, heads: string[], rows: (Node | string)[][
     {},
     element("caption", {}, caption),
     element("thead", {}, element("tr", {}, ...heads.map((it) => element("th", { scope: "col" }, it)))),
-    element(
-      "tbody",
-      {},
-      ...rows.map((row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell)))),
-    ),
+    element("tbody", {}, ...rows.map((row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell))))),
   );
 }

@@ -33,8 +33,16 @@ export function help(opener: HTMLButtonElement): () => void {
     "dialog",
     { id: "help", "aria-labelledby": "help_head" },
     head,
-    element("dl", {}, ...keys.map(([key, what]) => element("div", {}, element("dt", {}, key), element("dd", {}, what)))),
-    element("p", {}, "Keys of a plot work while it has the focus. What a screen reader keeps for itself goes past this page."),
+    element(
+      "dl",
+      {},
+      ...keys.map(([key, what]) => element("div", {}, element("dt", {}, key), element("dd", {}, what))),
+    ),
+    element(
+      "p",
+      {},
+      "Keys of a plot work while it has the focus. What a screen reader keeps for itself goes past this page.",
+    ),
     element("label", { class: "single_keys" }, single, "Single keys (? and Space) work outside of plots"),
     close,
   );
@@ -54,7 +62,8 @@ export function help(opener: HTMLButtonElement): () => void {
   opener.addEventListener("click", toggle);
   addEventListener("keydown", (event) => {
     if (event.key === "Escape" && dialog.open) toggle();
-    if (event.key === "?" && singleKeysOn() && !event.ctrlKey && !event.altKey && !event.metaKey && !isTyping(event)) toggle();
+    if (event.key === "?" && singleKeysOn() && !event.ctrlKey && !event.altKey && !event.metaKey && !isTyping(event))
+      toggle();
   });
   return toggle;
 }
@@ -62,7 +71,8 @@ export function help(opener: HTMLButtonElement): () => void {
 /** Ctrl + Alt + a digit, which neither browsers nor screen readers of the desktop use; not AltGr, which types. */
 export function pageKeys(go: (page: number) => void): void {
   addEventListener("keydown", (event) => {
-    if (!event.ctrlKey || !event.altKey || event.shiftKey || event.metaKey || event.getModifierState("AltGraph")) return;
+    if (!event.ctrlKey || !event.altKey || event.shiftKey || event.metaKey || event.getModifierState("AltGraph"))
+      return;
     const digit = /^Digit([1-9])$/.exec(event.code)?.[1];
     if (digit === undefined) return;
     event.preventDefault();

@@ -26,7 +26,7 @@ export function loopState(
 
   const say = (text: string, state: string): void => {
     if (words.textContent !== text) words.textContent = text; // it is read out when it changes
-    words.dataset["state"] = state;
+    words.dataset.state = state;
   };
 
   const look = async (): Promise<void> => {

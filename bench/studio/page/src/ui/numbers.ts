@@ -1,7 +1,13 @@
 // Numbers with units, as the field writes them.
 
 const prefixes: readonly [number, string][] = [
-  [1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"],
+  [1e9, "G"],
+  [1e6, "M"],
+  [1e3, "k"],
+  [1, ""],
+  [1e-3, "m"],
+  [1e-6, "µ"],
+  [1e-9, "n"],
 ];
 
 /** 0.00123 "s" -> "1.23 ms"; three digits unless told. */

@@ -10,7 +10,8 @@ export function calmLimits(
   before: readonly [number, number] | null,
   logarithmic: boolean,
 ): [number, number] {
-  if (!(lower <= upper) || !Number.isFinite(upper - lower)) return before ? [before[0], before[1]] : logarithmic ? [-6, -3] : [-1, 1];
+  if (!(lower <= upper) || !Number.isFinite(upper - lower))
+    return before ? [before[0], before[1]] : logarithmic ? [-6, -3] : [-1, 1];
   if (logarithmic) return wholeDecades(lower, upper, before);
   const least = Math.max(Math.abs(lower), Math.abs(upper)) * 1e-5;
   if (upper - lower <= least) {

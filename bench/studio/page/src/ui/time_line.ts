@@ -29,7 +29,7 @@ export function indexAt(time: Float64Array, t: number): number {
   let high = time.length;
   while (low < high) {
     const middle = (low + high) >>> 1;
-    if ((time[middle] as number) < t) low = middle + 1;
+    if (time[middle]! < t) low = middle + 1;
     else high = middle;
   }
   return low;
@@ -46,16 +46,22 @@ export function columnsWithin(line: TimeLine, from: number, to: number): [number
 /** The column that a time falls into; -1 if none does. */
 export function columnAt(line: TimeLine, t: number): number {
   const at = indexAt(line.time, t - line.shift_s + line.step_s * 1e-3) - 1;
-  if (at < 0 || t - line.shift_s - (line.time[at] as number) > 2.5 * line.step_s) return -1;
+  if (at < 0 || t - line.shift_s - line.time[at]! > 2.5 * line.step_s) return -1;
   return Number.isNaN(line.smallest[at]) ? -1 : at;
 }
 
 /** Widens `found` by the line's values within a stretch; logarithmic: by those above zero. */
-export function widen(found: { lower: number; upper: number }, line: TimeLine, from: number, to: number, logarithmic: boolean): void {
+export function widen(
+  found: { lower: number; upper: number },
+  line: TimeLine,
+  from: number,
+  to: number,
+  logarithmic: boolean,
+): void {
   const [first, end] = columnsWithin(line, from, to);
   for (let i = first; i < end; ++i) {
-    const smallest = line.smallest[i] as number;
-    const largest = line.largest[i] as number;
+    const smallest = line.smallest[i]!;
+    const largest = line.largest[i]!;
     if (largest > found.upper) found.upper = largest;
     if (smallest < found.lower && (!logarithmic || smallest > 0)) found.lower = smallest;
   }

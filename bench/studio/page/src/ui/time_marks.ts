@@ -33,7 +33,7 @@ export function drawGround(context: CanvasRenderingContext2D, marks: TimeMarks, 
     if (span.to_s < map.from || span.from_s > map.to) continue;
     if (((span.to_s - span.from_s) / (map.to - map.from)) * map.width < 2 * map.pixels) continue; // a blur
     const [left, width] = within(map, span.from_s, span.to_s);
-    context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0] as string;
+    context.fillStyle = colours.lines[span.shade === "orange" ? 4 : 0]!;
     if (span.shade !== "plain") {
       context.globalAlpha = 0.1;
       context.fillRect(left, 0, width, map.height);
@@ -91,13 +91,27 @@ function within(map: Mapping, from: number, to: number): [number, number] {
   return [left, Math.max(map.pixels, right - left)];
 }
 
-function stripes(context: CanvasRenderingContext2D, left: number, top: number, width: number, height: number, step: number): void {
+function stripes(
+  context: CanvasRenderingContext2D,
+  left: number,
+  top: number,
+  width: number,
+  height: number,
+  step: number,
+): void {
   for (let x = left; x < left + width; x += 2 * step) {
     context.fillRect(x, top, Math.min(step, left + width - x), height);
   }
 }
 
-function hatch(context: CanvasRenderingContext2D, left: number, top: number, width: number, height: number, step: number): void {
+function hatch(
+  context: CanvasRenderingContext2D,
+  left: number,
+  top: number,
+  width: number,
+  height: number,
+  step: number,
+): void {
   context.save();
   context.beginPath();
   context.rect(left, top, width, height);

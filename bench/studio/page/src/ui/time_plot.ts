@@ -56,7 +56,14 @@ export class TimePlot {
     this.map = { from: 0, to: 1, width: 1, lower: 0, upper: 1, height: 1, logarithmic, pixels: 1 };
     this.box = element("div", { class: "time_box" });
     this.root = element("div", { class: bottom ? "time_plot bottom" : "time_plot" }, this.legend(), this.box);
-    this.plot = new uPlot(this.options(), [[0, 1], [null, null]], this.box);
+    this.plot = new uPlot(
+      this.options(),
+      [
+        [0, 1],
+        [null, null],
+      ],
+      this.box,
+    );
     this.over = this.plot.over;
     this.raster.canvas.className = "time_layer";
     this.over.append(this.ground, this.raster.canvas, this.line);
@@ -142,8 +149,8 @@ export class TimePlot {
     const [lower, upper] = this.limits ?? [0, 0];
     const nothing = this.logarithmic ? 0 : 1e-6 * (upper - lower); // rounding of the arithmetic, not of the device
     const written = (value: number): string => plain(Math.abs(value) < nothing ? 0 : value / factor, 4);
-    const smallest = written(line.smallest[column] as number);
-    const largest = written(line.largest[column] as number);
+    const smallest = written(line.smallest[column]!);
+    const largest = written(line.largest[column]!);
     return `${smallest === largest ? smallest : `${smallest} to ${largest}`} ${text}`;
   }
 
@@ -190,7 +197,7 @@ export class TimePlot {
           size: this.bottom ? 24 : 0,
           labelSize: this.bottom ? timeAxisHeight - 24 : 0,
           label: this.bottom ? () => this.shared.timeLabel : "",
-          splits: (_, __, from, to) => this.timeTicks(from, to),
+          splits: (plot, _, from, to) => this.timeTicks(from, to, (plot.bbox.width || 800) / uPlot.pxRatio),
           values: (_, splits) => (this.bottom ? this.timeTexts(splits) : splits.map(() => "")),
         },
         {
@@ -212,22 +219,27 @@ export class TimePlot {
   }
 
   /** Whole steps from the origin, so that they stand still while time runs. */
-  private timeTicks(from: number, to: number): number[] {
+  private timeTicks(from: number, to: number, pixels: number): number[] {
     const { origin_s: origin } = this.shared;
-    const count = (this.plot?.bbox.width ?? 800) / uPlot.pxRatio / 110;
-    return linearTicks(from - origin, to - origin, count).map((it) => it + origin);
+    return linearTicks(from - origin, to - origin, pixels / 110).map((it) => it + origin);
   }
 
   private timeTexts(splits: number[]): string[] {
     const { origin_s: origin } = this.shared;
-    const step = splits.length > 1 ? (splits[1] as number) - (splits[0] as number) : 1;
+    const step = splits.length > 1 ? splits[1]! - splits[0]! : 1;
     const decimals = Math.min(9, Math.max(0, -Math.floor(Math.log10(step) + 1e-6)));
-    return splits.map((it) => (it - origin).toFixed(decimals).replace(/^-(0(\.0*)?)$/, "$1").replace("-", "−"));
+    return splits.map((it) =>
+      (it - origin)
+        .toFixed(decimals)
+        .replace(/^-(0(\.0*)?)$/, "$1")
+        .replace("-", "−"),
+    );
   }
 
   private valueTicks(lower: number, upper: number, height: number): number[] {
     const count = Math.max(2, height / 26);
-    if (!this.logarithmic) return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
+    if (!this.logarithmic)
+      return linearTicks(lower / this.unit.factor, upper / this.unit.factor, count).map((it) => it * this.unit.factor);
     const ticks: number[] = [];
     const every = Math.max(1, Math.ceil((upper - lower) / count));
     for (let decade = Math.ceil(lower); decade <= upper; decade += every) ticks.push(decade);
@@ -252,7 +264,8 @@ export class TimePlot {
     map.logarithmic = this.logarithmic;
     if (map.width < 2 || map.height < 2) return;
     const { ground } = this;
-    if (ground.width !== map.width || ground.height !== map.height) [ground.width, ground.height] = [map.width, map.height];
+    if (ground.width !== map.width || ground.height !== map.height)
+      [ground.width, ground.height] = [map.width, map.height];
     const context = ground.getContext("2d");
     if (context && (this.marked || marks !== noMarks)) {
       context.clearRect(0, 0, map.width, map.height);
@@ -262,7 +275,8 @@ export class TimePlot {
     }
     const colours = palette();
     this.raster.begin(map);
-    for (const line of this.lines) this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
+    for (const line of this.lines)
+      this.raster.add(line, colours.lines[line.look] ?? colours.ink, dashes[line.look] ?? []);
     this.raster.paint();
   }
 }
@@ -272,6 +286,13 @@ export function swatch(look: number): SVGSVGElement {
   return drawn(
     "svg",
     { class: "swatch", viewBox: "0 0 30 12", width: 30, height: 12, "aria-hidden": "true" },
-    drawn("line", { class: `look_${look}`, x1: 1, x2: 29, y1: 6, y2: 6, "stroke-dasharray": (dashes[look] ?? []).join(" ") }),
+    drawn("line", {
+      class: `look_${look}`,
+      x1: 1,
+      x2: 29,
+      y1: 6,
+      y2: 6,
+      "stroke-dasharray": (dashes[look] ?? []).join(" "),
+    }),
   );
 }

@@ -59,13 +59,13 @@ export class TimeRaster {
     let upperBefore = 0;
     let lowerBefore = 0;
     for (let i = first; i < end; ++i) {
-      const largest = line.largest[i] as number;
-      const smallest = line.smallest[i] as number;
+      const largest = line.largest[i]!;
+      const smallest = line.smallest[i]!;
       if (smallest !== smallest) {
         before = NaN;
         continue;
       }
-      const x = x0 + (line.time[i] as number) * perSecond;
+      const x = x0 + line.time[i]! * perSecond;
       const upper = y0 - (map.logarithmic ? Math.log10(largest > floor ? largest : floor) : largest) * perValue;
       const lower = y0 - (map.logarithmic ? Math.log10(smallest > floor ? smallest : floor) : smallest) * perValue;
       this.put(Math.floor(x), upper, lower);
@@ -80,8 +80,8 @@ export class TimeRaster {
   }
 
   private put(pixel: number, upper: number, lower: number): void {
-    if (upper < (this.top[pixel] as number)) this.top[pixel] = upper;
-    if (lower > (this.bottom[pixel] as number)) this.bottom[pixel] = lower;
+    if (upper < this.top[pixel]!) this.top[pixel] = upper;
+    if (lower > this.bottom[pixel]!) this.bottom[pixel] = lower;
   }
 
   /** From one column to the next, over all pixels between them. */
@@ -122,8 +122,8 @@ export class TimeRaster {
     const half = 0.5 * thickness * map.pixels;
     const edge = 2 * half;
     for (let pixel = 0; pixel < this.top.length; ++pixel) {
-      const top = this.top[pixel] as number;
-      const bottom = this.bottom[pixel] as number;
+      const top = this.top[pixel]!;
+      const bottom = this.bottom[pixel]!;
       if (top === Infinity) continue;
       const thick = bottom - top > 2 * edge;
       if (total > 0 && !thick && !inkAt(dash, (((along + pixel) % total) + total) % total, map.pixels)) continue;
@@ -151,7 +151,13 @@ export class TimeRaster {
   }
 
   /** An upright bar over what is there already; its ends cover a share of their pixels. */
-  private bar(x: number, top: number, bottom: number, alpha: number, [red, green, blue]: readonly [number, number, number]): void {
+  private bar(
+    x: number,
+    top: number,
+    bottom: number,
+    alpha: number,
+    [red, green, blue]: readonly [number, number, number],
+  ): void {
     const { data, width, height } = this.image;
     const first = Math.max(0, Math.floor(top));
     const last = Math.min(height - 1, Math.ceil(bottom) - 1);
@@ -159,12 +165,12 @@ export class TimeRaster {
       const covered = Math.min(bottom, y + 1) - Math.max(top, y);
       const over = alpha * (covered < 1 ? covered : 1);
       const at = 4 * (y * width + x);
-      const under = ((data[at + 3] as number) / 255) * (1 - over);
+      const under = (data[at + 3]! / 255) * (1 - over);
       const sum = over + under;
       if (sum <= 0) continue;
-      data[at] = (red * over + (data[at] as number) * under) / sum;
-      data[at + 1] = (green * over + (data[at + 1] as number) * under) / sum;
-      data[at + 2] = (blue * over + (data[at + 2] as number) * under) / sum;
+      data[at] = (red * over + data[at]! * under) / sum;
+      data[at + 1] = (green * over + data[at + 1]! * under) / sum;
+      data[at + 2] = (blue * over + data[at + 2]! * under) / sum;
       data[at + 3] = 255 * sum;
     }
   }
@@ -182,7 +188,7 @@ export class TimeRaster {
 function inkAt(dash: readonly number[], along: number, pixels: number): boolean {
   let rest = along;
   for (let k = 0; k < dash.length; ++k) {
-    rest -= (dash[k] as number) * pixels;
+    rest -= dash[k]! * pixels;
     if (rest < 0) return k % 2 === 0;
   }
   return true;

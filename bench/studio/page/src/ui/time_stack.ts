@@ -47,7 +47,13 @@ export class TimeStack {
       () => this.point(),
       options.zoomedWhileFollowing,
     );
-    this.shared = { range: this.range, marks: noMarks, origin_s: 0, timeLabel: options.timeLabel, redraw: () => this.draw() };
+    this.shared = {
+      range: this.range,
+      marks: noMarks,
+      origin_s: 0,
+      timeLabel: options.timeLabel,
+      redraw: () => this.draw(),
+    };
     const plots = element(
       "div",
       {
@@ -82,7 +88,15 @@ export class TimeStack {
   build(orders: readonly PlotOrder[]): void {
     for (const plot of this.plots) plot.end();
     this.plots = orders.map(
-      (it, k) => new TimePlot(it.title, it.lines, this.shared, k === orders.length - 1, it.logarithmic ?? false, it.titled ?? false),
+      (it, k) =>
+        new TimePlot(
+          it.title,
+          it.lines,
+          this.shared,
+          k === orders.length - 1,
+          it.logarithmic ?? false,
+          it.titled ?? false,
+        ),
     );
     this.area.replaceChildren(...this.plots.map((it) => it.root));
     for (const plot of this.plots) {
@@ -136,7 +150,7 @@ export class TimeStack {
     if (!timeKey(event, this.range)) return;
     clearTimeout(this.speak);
     this.speak = window.setTimeout(() => {
-      this.spoken.textContent = [this.reading.textContent ?? "", ...this.plots.map((it) => it.spoken())].join("; ");
+      this.spoken.textContent = [this.reading.textContent, ...this.plots.map((it) => it.spoken())].join("; ");
     }, 400);
   }
 

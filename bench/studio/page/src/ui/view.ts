@@ -10,18 +10,18 @@ export interface Place {
 export interface Context {
   readonly api: Api;
   readonly place: Place;
-  go(view: string, id?: string): void;
+  go: (view: string, id?: string) => void;
   /** One line for the person at the page; an empty one takes it away. */
-  say(text: string): void;
+  say: (text: string) => void;
   /** What did not work, in a line that stays until the next. */
-  complain(error: unknown): void;
+  complain: (error: unknown) => void;
   /** Puts the focus on the page's h1, where it has changed. */
-  focusHead(): void;
+  focusHead: () => void;
 }
 
 /** A page of the studio. mount() fills the root and gives back what ends it: timers, streams, listeners. */
 export interface View {
   readonly name: string;
   readonly title: string;
-  mount(root: HTMLElement, context: Context): () => void;
+  mount: (root: HTMLElement, context: Context) => () => void;
 }

@@ -2,14 +2,14 @@ import { drawn } from "./dom";
 import { linearTicks, logarithmicTicks, plain } from "./numbers";
 
 export interface AxisOptions {
-  label: string;  // with its unit: "angle [deg]"
+  label: string; // with its unit: "angle [deg]"
   logarithmic?: boolean;
 }
 
 export interface PlotLine {
   x: readonly (number | null)[];
   y: readonly (number | null)[];
-  class: string;  // "closing", "model", "faint"; looks are the style sheet's
+  class: string; // "closing", "model", "faint"; looks are the style sheet's
 }
 
 export interface Limits {
@@ -45,7 +45,14 @@ export class XyPlot {
   ) {
     this.layer = drawn("g", { class: "layer" });
     this.ground = drawn("g", { class: "ground" });
-    this.svg = drawn("svg", { class: "xy_plot", role: "group", "aria-label": name }, this.ground, this.frame, this.curves, this.layer);
+    this.svg = drawn(
+      "svg",
+      { class: "xy_plot", role: "group", "aria-label": name },
+      this.ground,
+      this.frame,
+      this.curves,
+      this.layer,
+    );
     this.observer = new ResizeObserver((entries) => {
       const box = entries[entries.length - 1]?.contentRect;
       if (!box || box.width < 100 || box.height < 100) return;
@@ -90,13 +97,19 @@ export class XyPlot {
     return margin.left + share(value, this.limits.x, this.xAxis) * (this.width - margin.left - margin.right);
   }
   y(value: number): number {
-    return this.height - margin.bottom - share(value, this.limits.y, this.yAxis) * (this.height - margin.top - margin.bottom);
+    return (
+      this.height - margin.bottom - share(value, this.limits.y, this.yAxis) * (this.height - margin.top - margin.bottom)
+    );
   }
   xAt(pixel: number): number {
     return valueAt((pixel - margin.left) / (this.width - margin.left - margin.right), this.limits.x, this.xAxis);
   }
   yAt(pixel: number): number {
-    return valueAt((this.height - margin.bottom - pixel) / (this.height - margin.top - margin.bottom), this.limits.y, this.yAxis);
+    return valueAt(
+      (this.height - margin.bottom - pixel) / (this.height - margin.top - margin.bottom),
+      this.limits.y,
+      this.yAxis,
+    );
   }
   /** Where a pointer is, in pixels of the plot. */
   pointer(event: MouseEvent): { x: number; y: number } {
@@ -121,12 +134,28 @@ export class XyPlot {
     }
     const middle = (margin.top + bottom) / 2;
     parts.push(
-      drawn("rect", { class: "border", x: margin.left, y: margin.top, width: right - margin.left, height: bottom - margin.top }),
-      drawn("text", { class: "axis", x: (margin.left + right) / 2, y: this.height - 8, "text-anchor": "middle" }, this.xAxis.label),
-      drawn("text", { class: "axis", x: 18, y: middle, "text-anchor": "middle", transform: `rotate(-90 18 ${middle})` }, this.yAxis.label),
+      drawn("rect", {
+        class: "border",
+        x: margin.left,
+        y: margin.top,
+        width: right - margin.left,
+        height: bottom - margin.top,
+      }),
+      drawn(
+        "text",
+        { class: "axis", x: (margin.left + right) / 2, y: this.height - 8, "text-anchor": "middle" },
+        this.xAxis.label,
+      ),
+      drawn(
+        "text",
+        { class: "axis", x: 18, y: middle, "text-anchor": "middle", transform: `rotate(-90 18 ${middle})` },
+        this.yAxis.label,
+      ),
     );
     this.frame.replaceChildren(...parts);
-    this.curves.replaceChildren(...this.lines.map((line) => drawn("path", { class: `curve ${line.class}`, d: this.path(line) })));
+    this.curves.replaceChildren(
+      ...this.lines.map((line) => drawn("path", { class: `curve ${line.class}`, d: this.path(line) })),
+    );
     this.redrawn();
   }
 

@@ -18,7 +18,9 @@ function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen:
   const order = (path: string, more: Record<string, unknown>): void => {
     if (!which.recording) return context.complain(new Error("There is no recording"));
     context.say("");
-    void jobs.order(path, { recording: which.recording.id, axis: which.axis, ...more }, (file) => context.go("chart", file));
+    void jobs.order(path, { recording: which.recording.id, axis: which.axis, ...more }, (file) =>
+      context.go("chart", file),
+    );
   };
   const start = (event: Event): void => {
     event.preventDefault();
@@ -32,8 +34,17 @@ function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen:
     element("h2", {}, "Chart laws of a recording"),
     which.root,
     boxes.root,
-    element("p", { class: "quiet" }, "Every law is fitted in every size, and its tick is timed: a chart takes a minute. A choice tries every law that fits the axis, whatever is ticked."),
-    element("div", { class: "row" }, element("button", { type: "submit", class: "firm" }, "Chart"), button("Choose the simplest that serves", () => order("/api/choose", {}))),
+    element(
+      "p",
+      { class: "quiet" },
+      "Every law is fitted in every size, and its tick is timed: a chart takes a minute. A choice tries every law that fits the axis, whatever is ticked.",
+    ),
+    element(
+      "div",
+      { class: "row" },
+      element("button", { type: "submit", class: "firm" }, "Chart"),
+      button("Choose the simplest that serves", () => order("/api/choose", {})),
+    ),
   );
 }
 
@@ -43,7 +54,9 @@ function listOf(title: string, files: readonly WorkspaceFile[]): HTMLElement {
     "section",
     { class: "card", "aria-label": title },
     element("h2", {}, title),
-    links.length > 0 ? element("ul", { class: "links" }, ...links) : element("p", { class: "quiet" }, "There is none yet."),
+    links.length > 0
+      ? element("ul", { class: "links" }, ...links)
+      : element("p", { class: "quiet" }, "There is none yet."),
   );
 }
 
@@ -75,7 +88,10 @@ export const chart: View = {
       const law = new LawPanel(context);
       ends.push(() => law.end());
       const panel = new ChoicePanel(context, workspace, null, (id, name) => void law.open(id, name));
-      root.append(element("div", { class: "two" }, panel.root, law.root), element("p", {}, element("a", { href: "#/chart" }, "All charts and choices")));
+      root.append(
+        element("div", { class: "two" }, panel.root, law.root),
+        element("p", {}, element("a", { href: "#/chart" }, "All charts and choices")),
+      );
       await panel.open(file);
     };
     const show = async (): Promise<void> => {
@@ -89,13 +105,20 @@ export const chart: View = {
       if (choice) return showChoice(workspace, choice);
       const laws = await context.api.get<FittedLaw[]>("/api/laws/fitted");
       if (ended) return;
-      if (id && !workspace.recordings.some((it) => it.id === id)) context.say("That chart is not in this folder any more.");
+      if (id && !workspace.recordings.some((it) => it.id === id))
+        context.say("That chart is not in this folder any more.");
       root.append(
         element(
           "div",
           { class: "two" },
           form(context, workspace, laws, id, jobs),
-          element("div", { class: "stack" }, jobs.root, listOf("Charts in this folder", charts), listOf("Choices in this folder", choices)),
+          element(
+            "div",
+            { class: "stack" },
+            jobs.root,
+            listOf("Charts in this folder", charts),
+            listOf("Choices in this folder", choices),
+          ),
         ),
       );
     };

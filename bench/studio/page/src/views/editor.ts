@@ -33,7 +33,10 @@ function draftOf(curve: EditorCurve): History<Knots> {
 }
 
 function stemOf(name: string): string {
-  const stem = (name.split("/").pop() ?? "").replace(/\.h5$/, "").replace(/[^A-Za-z0-9_.-]/g, "_").slice(0, 70);
+  const stem = (name.split("/").pop() ?? "")
+    .replace(/\.h5$/, "")
+    .replace(/[^A-Za-z0-9_.-]/g, "_")
+    .slice(0, 70);
   return /^[A-Za-z0-9]/.test(stem) ? `${stem}_drawn` : "drawn";
 }
 
@@ -45,7 +48,12 @@ interface Opened {
 }
 
 /** The editor of one axis; gives back what ends it. */
-function edit(root: HTMLElement, context: Context, { recording, workspace, axis, curve }: Opened, change: (axis: number) => void): () => void {
+function edit(
+  root: HTMLElement,
+  context: Context,
+  { recording, workspace, axis, curve }: Opened,
+  change: (axis: number) => void,
+): () => void {
   const name = workspace.recordings.find((it) => it.id === curve.recording)?.name ?? "recording";
   const drawing = new Drawing(curve, draftOf(curve));
   const canvas = new Canvas(drawing);
@@ -172,7 +180,10 @@ export const editor: View = {
         if (mine !== asked) return;
         context.complain(error);
         if (root.childElementCount === 0) {
-          root.append(element("h1", {}, "Segment editor"), element("p", {}, element("a", { href: "#/editor" }, "Choose a recording")));
+          root.append(
+            element("h1", {}, "Segment editor"),
+            element("p", {}, element("a", { href: "#/editor" }, "Choose a recording")),
+          );
         }
       }
     };

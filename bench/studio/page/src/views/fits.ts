@@ -29,7 +29,12 @@ function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen:
     element("h2", {}, "Fit laws to a recording"),
     which.root,
     boxes.root,
-    element("div", { class: "row" }, labelled("Folds that are held out by turns (0: none)", folds), element("button", { type: "submit", class: "firm" }, "Fit")),
+    element(
+      "div",
+      { class: "row" },
+      labelled("Folds that are held out by turns (0: none)", folds),
+      element("button", { type: "submit", class: "firm" }, "Fit"),
+    ),
   );
 }
 
@@ -39,7 +44,9 @@ function listOf(files: readonly WorkspaceFile[]): HTMLElement {
     "section",
     { class: "card", "aria-label": "Fits in this folder" },
     element("h2", {}, "Fits in this folder"),
-    links.length > 0 ? element("ul", { class: "links" }, ...links) : element("p", { class: "quiet" }, "There is none yet."),
+    links.length > 0
+      ? element("ul", { class: "links" }, ...links)
+      : element("p", { class: "quiet" }, "There is none yet."),
   );
 }
 
@@ -67,9 +74,15 @@ export const fits: View = {
       }
       const laws = await context.api.get<FittedLaw[]>("/api/laws/fitted");
       if (ended) return;
-      if (id && !workspace.recordings.some((it) => it.id === id)) context.say("That fit is not in this folder any more.");
+      if (id && !workspace.recordings.some((it) => it.id === id))
+        context.say("That fit is not in this folder any more.");
       root.append(
-        element("div", { class: "two" }, form(context, workspace, laws, id, jobs), element("div", { class: "stack" }, jobs.root, listOf(files))),
+        element(
+          "div",
+          { class: "two" },
+          form(context, workspace, laws, id, jobs),
+          element("div", { class: "stack" }, jobs.root, listOf(files)),
+        ),
       );
     };
     show().catch(context.complain);

@@ -53,7 +53,7 @@ export class LiveColumns {
     const at = this.capacity - 1 - this.newest + first;
     for (let trace = 0; trace < this.traces; ++trace) {
       const [smallest, largest] = [frame.smallest[trace], frame.largest[trace]];
-      const [to, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
+      const [to, up] = [this.smallest[trace]!, this.largest[trace]!];
       for (let k = Math.max(0, -at); k < columns; ++k) {
         to[at + k] = smallest?.[k] ?? NaN;
         up[at + k] = largest?.[k] ?? NaN;
@@ -90,10 +90,10 @@ export class LiveColumns {
       const low = smallest[trace]?.[k] ?? NaN;
       const high = largest[trace]?.[k] ?? NaN;
       if (Number.isNaN(low)) continue;
-      const [down, up] = [this.smallest[trace] as Float64Array, this.largest[trace] as Float64Array];
+      const [down, up] = [this.smallest[trace]!, this.largest[trace]!];
       for (let i = first; i < end; ++i) {
-        if (!((down[i] as number) <= low)) down[i] = low;
-        if (!((up[i] as number) >= high)) up[i] = high;
+        if (!(down[i]! <= low)) down[i] = low;
+        if (!(up[i]! >= high)) up[i] = high;
       }
     }
   }
@@ -103,8 +103,8 @@ export class LiveColumns {
     this.newest = Math.max(newest, this.newest);
     if (by > 0) {
       for (let trace = 0; trace < this.traces; ++trace) {
-        shift(this.smallest[trace] as Float64Array, by);
-        shift(this.largest[trace] as Float64Array, by);
+        shift(this.smallest[trace]!, by);
+        shift(this.largest[trace]!, by);
       }
     }
     this.setTimes();

@@ -2,12 +2,12 @@ import type { Api, KerfEvent, LiveFrame, LoopStatus } from "../api";
 import { ApiError } from "../api";
 
 export interface LiveListener {
-  frame(frame: LiveFrame): void;
-  status(status: LoopStatus): void;
+  frame: (frame: LiveFrame) => void;
+  status: (status: LoopStatus) => void;
   /** Nothing has come for so long; 0: all is well. */
-  stale(seconds: number): void;
+  stale: (seconds: number) => void;
   /** A session is running: nothing of the loop is shown. */
-  session(line: string): void;
+  session: (line: string) => void;
 }
 
 const sessionLine = "A session is running; nothing of the loop is shown.";
@@ -104,7 +104,8 @@ export class LastEvents {
 
   /** A stream that is opened again may tell what is known. */
   add(events: readonly KerfEvent[]): boolean {
-    const known = (it: KerfEvent): boolean => this.events.some((other) => other.time_s === it.time_s && other.text === it.text);
+    const known = (it: KerfEvent): boolean =>
+      this.events.some((other) => other.time_s === it.time_s && other.text === it.text);
     const fresh = events.filter((it) => !known(it));
     if (fresh.length === 0) return false;
     this.events.push(...fresh);

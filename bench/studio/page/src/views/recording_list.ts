@@ -46,7 +46,12 @@ function row(it: WorkspaceRecording, timed: boolean): HTMLElement {
       {},
       element("a", { href: `#/recordings/${it.id}` }, it.name),
       it.partial
-        ? element("p", { class: "partial" }, "Not closed: being written, or left by a crash. Then mend it: ", element("code", {}, `kerf repair ${it.name}`))
+        ? element(
+            "p",
+            { class: "partial" },
+            "Not closed: being written, or left by a crash. Then mend it: ",
+            element("code", {}, `kerf repair ${it.name}`),
+          )
         : null,
     ),
     timed ? element("td", { class: "number" }, it.seconds === undefined ? "–" : length(it.seconds)) : null,

@@ -11,7 +11,12 @@ const atOnce = 60; // cycles
 export class RecordingLoops {
   readonly root: HTMLElement;
   private plot: XyPlot | null = null;
-  private readonly frame = element("div", { class: "loops_frame", tabindex: 0, role: "group", keydown: (it: KeyboardEvent) => this.key(it) });
+  private readonly frame = element("div", {
+    class: "loops_frame",
+    tabindex: 0,
+    role: "group",
+    keydown: (it: KeyboardEvent) => this.key(it),
+  });
   private readonly text = element("p", { class: "quiet loops_text", role: "status" });
   private readonly key_ = element("ul", { class: "mark_legend", "aria-label": "Lines" });
   private readonly kind: HTMLSelectElement;
@@ -28,7 +33,11 @@ export class RecordingLoops {
     private readonly complain: (error: unknown) => void,
   ) {
     this.kind = select(
-      [{ value: "all", text: "all cycles" }, { value: "one", text: "one cycle" }, { value: "average", text: "average" }],
+      [
+        { value: "all", text: "all cycles" },
+        { value: "one", text: "one cycle" },
+        { value: "average", text: "average" },
+      ],
       "all",
       () => void this.load(),
     );
@@ -36,7 +45,15 @@ export class RecordingLoops {
     this.root = element(
       "div",
       { class: "recording_loops" },
-      element("div", { class: "row" }, labelled("Show", this.kind), labelled("Axis", this.axis), this.previous, this.next, this.text),
+      element(
+        "div",
+        { class: "row" },
+        labelled("Show", this.kind),
+        labelled("Axis", this.axis),
+        this.previous,
+        this.next,
+        this.text,
+      ),
       this.frame,
       this.key_,
     );
@@ -113,7 +130,8 @@ export class RecordingLoops {
     answers.forEach((loops, k) => {
       if (!loops) return;
       if (kind !== "average" && (k === 0 || kind === "one")) {
-        for (const it of loops.loops) lines.push({ x: it.position, y: it.force, class: kind === "one" ? `look_${k}` : "many" });
+        for (const it of loops.loops)
+          lines.push({ x: it.position, y: it.force, class: kind === "one" ? `look_${k}` : "many" });
       }
       if (kind === "average" || (k > 0 && kind === "all")) {
         lines.push({ x: loops.average.position, y: loops.average.closing, class: `look_${k}` });
@@ -135,8 +153,8 @@ export class RecordingLoops {
   private replot(loops: Loops): void {
     const x = `position ${loops.axis} [${loops.position_unit}]`;
     const y = `force ${loops.axis} [${loops.force_unit}]`;
-    if (this.frame.dataset["axes"] === x + y) return;
-    this.frame.dataset["axes"] = x + y;
+    if (this.frame.dataset.axes === x + y) return;
+    this.frame.dataset.axes = x + y;
     this.plot?.end();
     this.plot = new XyPlot({ label: x }, { label: y }, "Force against position");
     this.frame.setAttribute("aria-label", "Force against position. Left and right arrow: the cycle before and after.");

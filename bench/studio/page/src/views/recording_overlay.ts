@@ -26,7 +26,10 @@ export class RecordingOverlay {
       (id) => void this.choose(id, others.find((it) => it.id === id)?.name ?? id),
     );
     this.alignment = select(
-      [{ value: "start", text: "their start" }, { value: "cycle", text: "their first closing" }],
+      [
+        { value: "start", text: "their start" },
+        { value: "cycle", text: "their first closing" },
+      ],
       "start",
       () => this.changed(),
     );

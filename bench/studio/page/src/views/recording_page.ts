@@ -11,7 +11,12 @@ import { firstTraces, traceChoice } from "./recording_traces";
 type Tab = "time" | "loops";
 
 /** One recording: over time, and as force against position. Gives back what ends it. */
-export function recordingPage(context: Context, root: HTMLElement, recording: Recording, workspace: Workspace): () => void {
+export function recordingPage(
+  context: Context,
+  root: HTMLElement,
+  recording: Recording,
+  workspace: Workspace,
+): () => void {
   const { api, complain } = context;
   const name = workspace.recordings.find((it) => it.id === recording.id)?.name ?? recording.id;
   const chosen = firstTraces(recording);
@@ -46,7 +51,11 @@ export function recordingPage(context: Context, root: HTMLElement, recording: Re
     choice.hidden = tab !== "time";
     show();
   }
-  const list = element("div", { class: "tabs", role: "tablist", "aria-label": "Ways to see it" }, ...tabs.map(([, it]) => it));
+  const list = element(
+    "div",
+    { class: "tabs", role: "tablist", "aria-label": "Ways to see it" },
+    ...tabs.map(([, it]) => it),
+  );
   list.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
     open(tab === "time" ? "loops" : "time");
@@ -81,8 +90,14 @@ export function recordingPage(context: Context, root: HTMLElement, recording: Re
 }
 
 function links(id: string): HTMLElement[] {
-  const link = (view: string, text: string): HTMLElement => element("a", { class: "go", href: `#/${view}/${id}` }, text);
-  return [element("a", { class: "go", href: "#/recordings" }, "All recordings"), link("editor", "Draw a law"), link("fits", "Fit"), link("chart", "Chart")];
+  const link = (view: string, text: string): HTMLElement =>
+    element("a", { class: "go", href: `#/${view}/${id}` }, text);
+  return [
+    element("a", { class: "go", href: "#/recordings" }, "All recordings"),
+    link("editor", "Draw a law"),
+    link("fits", "Fit"),
+    link("chart", "Chart"),
+  ];
 }
 
 function facts(recording: Recording): HTMLElement {
@@ -118,7 +133,9 @@ function eventList(recording: Recording, go: (time_s: number) => void): HTMLElem
         element(
           "li",
           {},
-          button(`${it.time_s.toFixed(3)} s ${it.kind}${it.text ? `: ${it.text}` : ""}`, () => go(it.time_s), { class: "plain" }),
+          button(`${it.time_s.toFixed(3)} s ${it.kind}${it.text ? `: ${it.text}` : ""}`, () => go(it.time_s), {
+            class: "plain",
+          }),
         ),
       ),
       more > 0 ? element("li", {}, `and ${more.toLocaleString("en-GB")} more`) : null,

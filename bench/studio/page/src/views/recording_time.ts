@@ -59,7 +59,9 @@ export class RecordingTime {
 
   private source(drawn: Drawn, traces: readonly Trace[], look: number): Source {
     const { recording, shift_s } = drawn;
-    const indices = traces.map((trace) => recording.traces.findIndex((it) => it.name === trace.name && it.unit === trace.unit));
+    const indices = traces.map((trace) =>
+      recording.traces.findIndex((it) => it.name === trace.name && it.unit === trace.unit),
+    );
     const lines = traces.map((trace) => ({ ...emptyLine(trace, look), shift_s }));
     const asked = indices.filter((it) => it >= 0);
     const fetch = (from: number, to: number, columns: number, signal: AbortSignal) =>
@@ -87,9 +89,11 @@ export class RecordingTime {
       title: inWords(trace.name),
       titled: true,
       lines: this.sources
-        .filter((it) => it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit))
+        .filter((it) =>
+          it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit),
+        )
         .map((it) => {
-          const line = it.lines[k] as TimeLine;
+          const line = it.lines[k]!;
           line.name = shortName(it.drawn.name);
           return line;
         }),

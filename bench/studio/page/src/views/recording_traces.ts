@@ -6,7 +6,9 @@ import { axisOf, inWords } from "./trace_groups";
 export function firstTraces(recording: Recording): Set<string> {
   const axis = recording.axes[recording.cycles?.axis ?? 0]?.name ?? "";
   const wanted = recording.traces.filter(
-    (it) => (it.group === "position" || it.group === "velocity" || it.group === "force") && axisOf(it, recording.axes) === axis,
+    (it) =>
+      (it.group === "position" || it.group === "velocity" || it.group === "force") &&
+      axisOf(it, recording.axes) === axis,
   );
   return new Set((wanted.length > 0 ? wanted : recording.traces.slice(0, 3)).map((it) => it.name));
 }
@@ -23,7 +25,12 @@ export function traceChoice(traces: readonly Trace[], chosen: Set<string>, chang
         changed();
       },
     });
-    return element("label", { class: "tick" }, input, `${inWords(trace.name)}${trace.unit === "1" ? "" : ` [${trace.unit}]`}`);
+    return element(
+      "label",
+      { class: "tick" },
+      input,
+      `${inWords(trace.name)}${trace.unit === "1" ? "" : ` [${trace.unit}]`}`,
+    );
   };
   return element("fieldset", { class: "trace_choice" }, element("legend", {}, "Traces"), ...traces.map(box));
 }

@@ -26,10 +26,16 @@ class Scope {
   private readonly events = new LastEvents();
   private readonly list = element("ol", { class: "event_list", tabindex: 0, "aria-label": "Events, newest first" });
   private readonly window: HTMLSelectElement;
-  private readonly pauseButton = button("Pause", () => this.togglePause(), { title: "Space", "aria-keyshortcuts": "Space" });
+  private readonly pauseButton = button("Pause", () => this.togglePause(), {
+    title: "Space",
+    "aria-keyshortcuts": "Space",
+  });
   private readonly axis = select([{ value: "", text: "all axes" }], "", () => this.chooseTraces());
   private readonly scale = select(
-    [{ value: "linear", text: "linear" }, { value: "log", text: "log" }],
+    [
+      { value: "linear", text: "linear" },
+      { value: "log", text: "log" },
+    ],
     "linear",
     (value) => this.picture.stack.logarithmic("Timing", value === "log"),
   );
@@ -50,7 +56,12 @@ class Scope {
       "5",
       (value) => this.picture.setWindow(Number(value)),
     );
-    this.picture = new ScopePicture(api, (ticks) => this.stream?.open(ticks), (factor) => this.otherWindow(factor), complain);
+    this.picture = new ScopePicture(
+      api,
+      (ticks) => this.stream.open(ticks),
+      (factor) => this.otherWindow(factor),
+      complain,
+    );
     this.stream = new LiveStream(api, {
       frame: (frame) => {
         if (this.events.add(frame.events)) this.showEvents();

@@ -9,12 +9,23 @@ export class ScopeControls {
   private status: LoopStatus | null = null;
   private laws: Workspace["laws"] = [];
   private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
-  private readonly sensor = element("input", { type: "text", autocomplete: "off", spellcheck: "false", placeholder: "none" });
+  private readonly sensor = element("input", {
+    type: "text",
+    autocomplete: "off",
+    spellcheck: "false",
+    placeholder: "none",
+  });
   private readonly scene = select([{ value: "", text: "none" }], "", () => {});
   private readonly law = select([{ value: "", text: "nothing" }], "", () => this.feel());
   private readonly start = element("button", { type: "submit", class: "firm", disabled: true }, "Start"); // until fill()
   private readonly resume = button("Let force back", () => this.order("/api/live/resume"), { disabled: true });
-  private readonly name = element("input", { type: "text", autocomplete: "off", spellcheck: "false", maxlength: 80, value: nameOfNow() });
+  private readonly name = element("input", {
+    type: "text",
+    autocomplete: "off",
+    spellcheck: "false",
+    maxlength: 80,
+    value: nameOfNow(),
+  });
   private readonly record = button("Record", () => this.toggleRecording(), { disabled: true });
   private readonly recorded = element("p", { class: "recorded quiet" });
   private readonly state = element("p", { class: "ended", role: "status" });
@@ -50,7 +61,12 @@ export class ScopeControls {
       element("option", { value: "" }, first),
       ...items.map((it) => element("option", { value: it.id }, it.name)),
     ];
-    this.scene.replaceChildren(...options("none", workspace.files.filter((it) => it.kind === "scene")));
+    this.scene.replaceChildren(
+      ...options(
+        "none",
+        workspace.files.filter((it) => it.kind === "scene"),
+      ),
+    );
     this.law.replaceChildren(...options("nothing", this.laws));
     if (this.status) this.show(this.status);
   }
@@ -92,8 +108,8 @@ export class ScopeControls {
   private startOrStop(): void {
     if (this.status?.running || this.status?.starting) return this.order("/api/live/stop");
     const body: Record<string, string> = { device: this.device.value.trim() };
-    if (this.sensor.value.trim()) body["sensor"] = this.sensor.value.trim();
-    if (this.scene.value) body["scene_id"] = this.scene.value;
+    if (this.sensor.value.trim()) body.sensor = this.sensor.value.trim();
+    if (this.scene.value) body.scene_id = this.scene.value;
     this.order("/api/live/start", body);
   }
 

@@ -2,7 +2,12 @@ import type { LoopStatus, Percentiles } from "../api";
 import { element } from "../ui/dom";
 import { plain } from "../ui/numbers";
 
-const shares: readonly [keyof Percentiles, string][] = [["p50", "median"], ["p99", "99 %"], ["p999", "99.9 %"], ["max", "max"]];
+const shares: readonly [keyof Percentiles, string][] = [
+  ["p50", "median"],
+  ["p99", "99 %"],
+  ["p999", "99.9 %"],
+  ["max", "max"],
+];
 
 /** How well the loop keeps time, in a table that never changes its size. */
 export class ScopeFigures {
@@ -35,7 +40,11 @@ export class ScopeFigures {
         element(
           "thead",
           {},
-          element("tr", {}, ...["ticks", "missed", "rows lost"].map((it) => element("th", { scope: "col", class: "number" }, it))),
+          element(
+            "tr",
+            {},
+            ...["ticks", "missed", "rows lost"].map((it) => element("th", { scope: "col", class: "number" }, it)),
+          ),
         ),
         element("tbody", {}, element("tr", {}, cell("ticks"), cell("missed"), cell("lost"))),
       ),

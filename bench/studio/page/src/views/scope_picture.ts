@@ -64,7 +64,7 @@ export class ScopePicture {
     this.rate_hz = rate_hz;
     this.ticks = ticks;
     this.chosen = chosen;
-    const shown = chosen.map((it) => traces[it] as Trace);
+    const shown = chosen.map((it) => traces[it]!);
     this.lines = shown.map((it) => emptyLine(it, 0));
     this.stack.build(plotsOf(shown, this.lines, logarithmic));
     if (same && this.columns) this.attach();
@@ -159,10 +159,10 @@ export class ScopePicture {
     const { columns } = this;
     if (!columns) return;
     this.lines.forEach((line, k) => {
-      const trace = this.chosen[k] as number;
+      const trace = this.chosen[k]!;
       line.time = columns.time;
-      line.smallest = columns.smallest[trace] as Float64Array;
-      line.largest = columns.largest[trace] as Float64Array;
+      line.smallest = columns.smallest[trace]!;
+      line.largest = columns.largest[trace]!;
       line.step_s = columns.column_s;
       line.middle_s = 0.5 * (columns.ticks - 1) * columns.period_s;
     });

@@ -16,7 +16,7 @@ const stages: Record<string, string> = {
 };
 
 /** How far a session is: nothing of what was felt or answered. */
-function progressCard(): { root: HTMLElement; show(state: SessionState): void; stop: HTMLButtonElement } {
+function progressCard(): { root: HTMLElement; show: (state: SessionState) => void; stop: HTMLButtonElement } {
   const name = element("h2", {}, "No session is running");
   const stage = element("p", { role: "status" });
   const bar = element("progress", { max: 1, value: 0, "aria-label": "Trials done" });
@@ -24,7 +24,17 @@ function progressCard(): { root: HTMLElement; show(state: SessionState): void; s
   const link = element("a", { target: "_blank", rel: "noopener noreferrer" }, "Open the subject's page");
   const warnings = element("ul", { class: "warnings", "aria-label": "Warnings" });
   const stop = button("Stop the session", () => {});
-  const root = element("section", { class: "card progress", "aria-label": "Progress" }, name, stage, bar, count, link, warnings, stop);
+  const root = element(
+    "section",
+    { class: "card progress", "aria-label": "Progress" },
+    name,
+    stage,
+    bar,
+    count,
+    link,
+    warnings,
+    stop,
+  );
   return {
     root,
     stop,
@@ -33,7 +43,8 @@ function progressCard(): { root: HTMLElement; show(state: SessionState): void; s
       stage.textContent = state.running ? (stages[state.stage] ?? state.stage) : state.ended && `Ended: ${state.ended}`;
       bar.max = Math.max(1, state.at_most);
       bar.value = state.answered;
-      count.textContent = state.at_most > 0 ? `${state.answered} of ${state.adaptive ? "at most " : ""}${state.at_most} trials` : "";
+      count.textContent =
+        state.at_most > 0 ? `${state.answered} of ${state.adaptive ? "at most " : ""}${state.at_most} trials` : "";
       link.hidden = !state.subject_url;
       if (state.subject_url && link.getAttribute("href") !== state.subject_url) link.href = state.subject_url;
       stop.hidden = !state.running;
@@ -50,9 +61,22 @@ function whereItStands(session: WorkspaceSession): string {
 }
 
 /** What is needed to begin: the device, and the passphrase of whoever keeps the blinding. */
-function startForm(session: WorkspaceSession, device: string, start: (order: Record<string, unknown>) => void): HTMLFormElement {
-  const uri = element("input", { type: "text", placeholder: "the protocol's", spellcheck: "false", autocomplete: "off" });
-  const passphrase = element("input", { type: "password", autocomplete: "off", required: session.key === "passphrase" });
+function startForm(
+  session: WorkspaceSession,
+  device: string,
+  start: (order: Record<string, unknown>) => void,
+): HTMLFormElement {
+  const uri = element("input", {
+    type: "text",
+    placeholder: "the protocol's",
+    spellcheck: "false",
+    autocomplete: "off",
+  });
+  const passphrase = element("input", {
+    type: "password",
+    autocomplete: "off",
+    required: session.key === "passphrase",
+  });
   const check = element("input", { type: "checkbox", checked: true });
   return element(
     "form",
@@ -70,7 +94,11 @@ function startForm(session: WorkspaceSession, device: string, start: (order: Rec
       ? labelled("Passphrase of whoever keeps the blinding", passphrase)
       : element("p", { class: "quiet" }, "Sealed with a key file: the studio has to be started with --key-file."),
     element("label", { class: "tick" }, check, element("span", {}, "Try the laws on the device first")),
-    element("button", { type: "submit", class: "firm" }, session.answered > 0 ? "Go on with the session" : "Begin the session"),
+    element(
+      "button",
+      { type: "submit", class: "firm" },
+      session.answered > 0 ? "Go on with the session" : "Begin the session",
+    ),
   );
 }
 
@@ -136,10 +164,13 @@ function mount(root: HTMLElement, context: Context): () => void {
     running = now;
     await refresh();
   };
-  card.stop.addEventListener("click", () => context.api.post("/api/session/stop").then(look).catch(context.complain));
+  card.stop.addEventListener(
+    "click",
+    () => void context.api.post("/api/session/stop").then(look).catch(context.complain),
+  );
   refresh().catch(context.complain);
   look().catch(context.complain);
-  const timer = setInterval(() => look().catch(context.complain), 500);
+  const timer = setInterval(() => void look().catch(context.complain), 500);
   return () => clearInterval(timer);
 }
 

@@ -16,14 +16,19 @@ function listOf(files: readonly WorkspaceFile[]): HTMLElement {
     "section",
     { class: "card", "aria-label": "Maps in this folder" },
     element("h2", {}, "Maps in this folder"),
-    links.length > 0 ? element("ul", { class: "links" }, ...links) : element("p", { class: "quiet" }, "There is none yet."),
+    links.length > 0
+      ? element("ul", { class: "links" }, ...links)
+      : element("p", { class: "quiet" }, "There is none yet."),
   );
 }
 
 /** What was mapped, in a line. */
 function about(file: StabilityFile): string {
   const { on } = file;
-  const of = file.study === "wall" ? "Virtual walls" : `${file.law}, to ${withUnit(file.range.depth_m, "m")} at up to ${withUnit(file.range.speed_m_s, "m/s")}`;
+  const of =
+    file.study === "wall"
+      ? "Virtual walls"
+      : `${file.law}, to ${withUnit(file.range.depth_m, "m")} at up to ${withUnit(file.range.speed_m_s, "m/s")}`;
   return `${of}, on ${on.device}, axis ${on.axis}, at ${withUnit(on.rate_hz, "Hz")}, hand: ${on.grip}.`;
 }
 
@@ -56,7 +61,12 @@ export const stability: View = {
         context.say("That map is not in this folder any more.");
       }
       root.append(
-        element("div", { class: "two" }, stabilityForm(context, workspace, id, jobs), element("div", { class: "stack" }, jobs.root, listOf(files))),
+        element(
+          "div",
+          { class: "two" },
+          stabilityForm(context, workspace, id, jobs),
+          element("div", { class: "stack" }, jobs.root, listOf(files)),
+        ),
       );
     };
     show().catch(context.complain);

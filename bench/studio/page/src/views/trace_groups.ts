@@ -42,7 +42,11 @@ export function plotsOf(traces: readonly Trace[], lines: readonly TimeLine[], lo
     const line = lines[k];
     if (!line) return;
     const key = `${trace.group} ${trace.unit}`;
-    const order = orders.get(key) ?? { title: titles[trace.group], lines: [], logarithmic: logarithmic && trace.group === "timing" };
+    const order = orders.get(key) ?? {
+      title: titles[trace.group],
+      lines: [],
+      logarithmic: logarithmic && trace.group === "timing",
+    };
     line.look = order.lines.length % looks;
     order.lines.push(line);
     orders.set(key, order);
