@@ -62,7 +62,7 @@ inline constexpr std::size_t chart_steps = 1000;
 /// A path of the tool that can be had at any rate, on the axes of a device.
 struct ScriptedPath {
   drivers::DeviceInfo device;
-  std::function<ToolPath(double rate_hz)> at;
+  std::function<SampledMotion(double rate_hz)> at;
 };
 
 /// The script of a scene, on its device; no deeper than where its first layer is cut through. @throws as

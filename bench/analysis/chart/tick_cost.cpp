@@ -113,16 +113,20 @@ struct Rounds {
 class Subject {
  public:
   explicit Subject(const TimedLaw& timed)
-      : timed_(timed), rendering_(timed.rendering), duration_(timed.path.size()), pushes_(timed.path.size()) {
-    chosen_.reserve(timed.path.size());
+      : rendering_(timed.rendering),
+        fresh_(timed.rendering),
+        path_(*timed.path),
+        duration_(path_.ticks()),
+        pushes_(path_.ticks()) {
+    chosen_.reserve(path_.ticks());
   }
 
   void warm_round(std::uint64_t step_of_stamps, double overhead) {
     const std::int64_t begin_ns = WallClock::now_ns();
-    rendering_ = timed_.rendering;
-    for (std::size_t i = 0; i < std::min(warm_up_ticks, timed_.path.size()); ++i) step(i);
-    rendering_ = timed_.rendering;
-    for (std::size_t i = 0; i < timed_.path.size(); ++i) time(i);
+    rendering_ = fresh_;
+    for (std::size_t i = 0; i < std::min(warm_up_ticks, path_.ticks()); ++i) step(i);
+    rendering_ = fresh_;
+    for (std::size_t i = 0; i < path_.ticks(); ++i) time(i);
     chosen_.clear();
     const bool ever = std::any_of(pushes_.begin(), pushes_.end(), [](auto pushes) { return pushes != 0; });
     for (std::size_t i = 0; i < duration_.size(); ++i) {
@@ -142,7 +146,7 @@ class Subject {
     }
     const std::size_t count = std::min(most, places.size());
     chosen_.clear();
-    rendering_ = timed_.rendering;
+    rendering_ = fresh_;
     std::size_t tick = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t place = places[k * places.size() / count];
@@ -167,17 +171,19 @@ class Subject {
   }
 
  private:
-  void step(std::size_t i) noexcept { (void)rendering_(timed_.path[i], timed_.period_s); }
+  void step(std::size_t i) noexcept { (void)rendering_(path_.sample[i], path_.period_s[i]); }
   void time(std::size_t i) noexcept {
-    const drivers::Sample& sample = timed_.path[i];
+    const models::SpatialMotion& sample = path_.sample[i];
+    const double period_s = path_.period_s[i];
     const std::uint64_t begin = stamp();
-    const Command command = rendering_(sample, timed_.period_s);
+    const Command command = rendering_(sample, period_s);
     duration_[i] = stamp() - begin;
     pushes_[i] = std::any_of(command.force.begin(), command.force.end(), [](double f) { return f != 0.0; });
   }
 
-  const TimedLaw& timed_;
   LawRendering rendering_;
+  const LawRendering& fresh_;
+  const SampledMotion& path_;
   std::vector<std::uint64_t> duration_;
   std::vector<std::uint8_t> pushes_;
   std::vector<double> chosen_;
@@ -199,10 +205,10 @@ double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, Cache
 }
 
 void check(const TimedLaw& law) {
-  if (law.path.empty()) throw std::invalid_argument("the path that a law is timed along has no samples");
-  if (!(law.period_s > 0.0) || !std::isfinite(law.period_s)) {
+  if (law.path->ticks() == 0)
+    throw std::invalid_argument("the path that a law is timed along has no samples");
+  if (!std::ranges::all_of(law.path->period_s, [](double s) { return s > 0.0 && std::isfinite(s); }))
     throw std::invalid_argument("the period of the ticks that are timed must be positive");
-  }
 }
 
 }  // namespace

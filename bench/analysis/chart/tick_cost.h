@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <kerf/drivers/device.h>
-
+#include "laws/sampled_motion.h"
 #include "loop/command.h"
 
 namespace kerf::bench {
@@ -19,12 +18,10 @@ struct TickCost {
   double cold_p999_ns = 0.0;
 };
 
-/// A law as the loop renders it, and the samples that it is shown, one a tick. The samples must outlive the
-/// measurement.
+/// A law as the loop renders it, and the motion that it is shown, which must outlive the measurement.
 struct TimedLaw {
   LawRendering rendering;
-  std::span<const drivers::Sample> path;
-  double period_s = 1e-3;
+  const SampledMotion* path;
 };
 
 struct TickCostOptions {

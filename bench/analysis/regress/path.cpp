@@ -6,6 +6,7 @@
 #include <cstring>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -64,42 +65,34 @@ Point at(const RampAndHold& ramp, double time_s) {
   return {ramp.from, 0.0};
 }
 
-/// Ticks at a rate; positions and velocities still to be filled in.
-RegressionPath uniform(const RegressionCase& one, double seconds) {
-  const auto ticks = static_cast<std::size_t>(std::round(seconds * one.rate_hz));
-  RegressionPath path{.axes = axes_of(one.law), .time_s = {}, .period_s = {}, .position = {}, .velocity = {}};
-  for (std::size_t tick = 0; tick < ticks; ++tick)
-    path.time_s.push_back(static_cast<double>(tick) / one.rate_hz);
-  path.period_s.assign(ticks, 1.0 / one.rate_hz);
-  path.position.resize(ticks);
-  path.velocity.resize(ticks);
-  return path;
+SampledMotion uniform(const RegressionCase& one, double seconds) {
+  return ticks_at(one.rate_hz, static_cast<std::size_t>(std::round(seconds * one.rate_hz)));
 }
 
-RegressionPath scripted(const RegressionCase& one) {
-  RegressionPath path = uniform(one, one.seconds.value_or(standard_seconds));
+SampledMotion scripted(const RegressionCase& one) {
+  SampledMotion path = uniform(one, one.seconds.value_or(standard_seconds));
   for (const ScriptedAxis& motion : one.motion) {
     for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
       const Point point =
           std::visit([&](const auto& script) { return at(script, path.time_s[tick]); }, motion.script);
-      path.position[tick][motion.axis] = point.x;
-      path.velocity[tick][motion.axis] = point.v;
+      path.sample[tick].position[motion.axis] = point.x;
+      path.sample[tick].velocity[motion.axis] = point.v;
     }
   }
   return path;
 }
 
-RegressionPath along_scene(const RegressionCase& one) {
+SampledMotion along_scene(const RegressionCase& one) {
   Scene scene = read_scene(one.scene);
   if (one.seconds) scene.trajectory.seconds = *one.seconds;
   const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
   const std::vector<std::size_t> axes = axes_for(one.law, device);
-  const ToolPath tool = tool_path(scene, one.rate_hz);
-  RegressionPath path = uniform(one, static_cast<double>(tool.position.size()) / one.rate_hz);
-  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
+  SampledMotion path = tool_path(scene, one.rate_hz);
+  for (models::SpatialMotion& sample : path.sample) {
+    const models::SpatialMotion tool = std::exchange(sample, {});
     for (std::size_t i = 0; i < axes.size(); ++i) {
-      path.position[tick][i] = tool.position[tick][axes[i]];
-      path.velocity[tick][i] = tool.velocity[tick][axes[i]];
+      sample.position[i] = tool.position[axes[i]];
+      sample.velocity[i] = tool.velocity[axes[i]];
     }
   }
   return path;
@@ -116,32 +109,27 @@ std::size_t column_for(const models::LawAxis& axis, const LawFile& law, const sc
   return column;
 }
 
-RegressionPath recorded(const RegressionCase& one) {
+SampledMotion recorded(const RegressionCase& one) {
   const schema::Recording recording = schema::read_recording(one.recording);
-  RegressionPath path{.axes = axes_of(one.law), .time_s = {}, .period_s = {}, .position = {}, .velocity = {}};
+  const std::vector<models::LawAxis> axes = axes_of(one.law);
   std::vector<std::size_t> columns;
-  for (const models::LawAxis& axis : path.axes) columns.push_back(column_for(axis, one.law, recording));
+  for (const models::LawAxis& axis : axes) columns.push_back(column_for(axis, one.law, recording));
+  SampledMotion path;
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     const double time_s = recording.time[row] - recording.time.front();
     if (one.seconds && time_s >= *one.seconds - rounding_s) break;
-    models::AxisValues position{};
-    models::AxisValues velocity{};
+    models::SpatialMotion sample;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      position[i] = recording.position[row * recording.dimensions() + columns[i]];
-      velocity[i] = recording.velocity[row * recording.dimensions() + columns[i]];
-      if (std::isfinite(position[i]) && std::isfinite(velocity[i])) continue;
-      throw std::invalid_argument(fmt::format("row {} of axis '{}' is not finite; 'kerf prepare' mends gaps",
-                                              row, path.axes[i].name));
+      sample.position[i] = recording.position[row * recording.dimensions() + columns[i]];
+      sample.velocity[i] = recording.velocity[row * recording.dimensions() + columns[i]];
+      if (std::isfinite(sample.position[i]) && std::isfinite(sample.velocity[i])) continue;
+      throw std::invalid_argument(
+          fmt::format("row {} of axis '{}' is not finite; 'kerf prepare' mends gaps", row, axes[i].name));
     }
     path.time_s.push_back(recording.time[row]);
-    path.position.push_back(position);
-    path.velocity.push_back(velocity);
+    path.sample.push_back(sample);
   }
-  // The first row has no period before it; the next one's stands in, since a law only starts there.
-  for (std::size_t i = 0; i < path.ticks(); ++i) {
-    const std::size_t end = std::min(std::max<std::size_t>(i, 1), path.ticks() - 1);
-    path.period_s.push_back(end > 0 ? path.time_s[end] - path.time_s[end - 1] : 1e-3);
-  }
+  path.period_s = periods_of(path.time_s);
   return path;
 }
 
@@ -152,12 +140,12 @@ void add_bytes(std::string& bytes, double value) {
 
 }  // namespace
 
-RegressionPath trajectory_of(const RegressionCase& one) {
+SampledMotion trajectory_of(const RegressionCase& one) {
   return !one.recording.empty() ? recorded(one) : !one.scene.empty() ? along_scene(one) : scripted(one);
 }
 
-RegressionPath path_of(const RegressionCase& one) {
-  RegressionPath path;
+SampledMotion path_of(const RegressionCase& one) {
+  SampledMotion path;
   try {
     path = trajectory_of(one);
   } catch (const std::invalid_argument& error) {
@@ -171,13 +159,13 @@ RegressionPath path_of(const RegressionCase& one) {
   return path;
 }
 
-std::string checksum(const RegressionPath& path) {
+std::string checksum(const SampledMotion& motion, std::size_t axes) {
   std::string bytes;
-  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
-    add_bytes(bytes, path.period_s[tick]);
-    for (std::size_t i = 0; i < path.axes.size(); ++i) {
-      add_bytes(bytes, path.position[tick][i]);
-      add_bytes(bytes, path.velocity[tick][i]);
+  for (std::size_t tick = 0; tick < motion.ticks(); ++tick) {
+    add_bytes(bytes, motion.period_s[tick]);
+    for (std::size_t i = 0; i < axes; ++i) {
+      add_bytes(bytes, motion.sample[tick].position[i]);
+      add_bytes(bytes, motion.sample[tick].velocity[i]);
     }
   }
   return sha256_of(std::string_view(bytes));

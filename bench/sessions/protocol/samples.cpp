@@ -14,7 +14,7 @@ namespace {
 
 constexpr double largest_gain = 20.0;
 
-RegressionPath path_along(const Protocol& protocol, const LawFile& law) {
+SampledMotion path_along(const Protocol& protocol, const LawFile& law) {
   if (!protocol.motion) {
     throw std::invalid_argument(fmt::format(
         "protocol '{}' has no [motion], so it does not say along what forces are rendered", protocol.name));
@@ -114,7 +114,7 @@ std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial) 
 
 std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law) {
   const models::Law& model = law.law.law;
-  const RenderedForces rendered = render_forces(model, law.law.contact, path_along(protocol, law.law));
+  const RenderedForces rendered = render_forces(law.law, path_along(protocol, law.law));
   if (rendered.first_fault) {
     throw std::invalid_argument(
         fmt::format("law '{}' faults along the [motion] of protocol '{}', first at {:.4g} s", model.model(),

@@ -49,15 +49,16 @@ std::vector<NamedSample> all_samples(const Protocol& protocol) {
 }
 
 /// Every axis through the middle half of its range and back.
-std::vector<drivers::Sample> sweep(const drivers::DeviceInfo& device, double period_s) {
-  std::vector<drivers::Sample> path(static_cast<std::size_t>(sweep_s / period_s));
-  for (std::size_t tick = 0; tick < path.size(); ++tick) {
+SampledMotion sweep(const drivers::DeviceInfo& device, double rate_hz) {
+  const double period_s = 1.0 / rate_hz;
+  SampledMotion path = ticks_at(rate_hz, static_cast<std::size_t>(sweep_s / period_s));
+  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
     const double phase = 2.0 * std::numbers::pi * static_cast<double>(tick) * period_s / sweep_s;
     for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
       const double middle = 0.5 * (device.axes[axis].lower + device.axes[axis].upper);
       const double reach = 0.25 * (device.axes[axis].upper - device.axes[axis].lower);
-      path[tick].position[axis] = middle - reach * std::cos(phase);
-      path[tick].velocity[axis] = reach * 2.0 * std::numbers::pi / sweep_s * std::sin(phase);
+      path.sample[tick].position[axis] = middle - reach * std::cos(phase);
+      path.sample[tick].velocity[axis] = reach * 2.0 * std::numbers::pi / sweep_s * std::sin(phase);
     }
   }
   return path;
@@ -66,12 +67,11 @@ std::vector<drivers::Sample> sweep(const drivers::DeviceInfo& device, double per
 void require_in_time(const Protocol& protocol, const std::vector<NamedSample>& samples,
                      const drivers::DeviceInfo& device) {
   const double period_s = 1.0 / protocol.rate_hz;
-  const auto path = sweep(device, period_s);
+  const SampledMotion path = sweep(device, protocol.rate_hz);
   std::vector<TimedLaw> timed;
   for (const NamedSample& one : samples) {
     const LawFile& law = one.played.law;
-    timed.push_back(
-        {.rendering = {law.law, law.contact, axes_for(law, device)}, .path = path, .period_s = period_s});
+    timed.push_back({.rendering = {law.law, law.contact, axes_for(law, device)}, .path = &path});
   }
   std::vector<double> costs_ns;
   for (const TickCost& cost : tick_costs(timed, {.rounds = 5, .cold_ticks = 0}))

@@ -31,43 +31,42 @@ const std::vector<ScriptedAxis> every_kind{
     {.script = RampAndHold{.from = 0.6, .to = 0.1, .start_s = 0.1, .ramp_s = 0.2, .hold_s = 0.3}}};
 
 TEST(RegressionPath, HasOneEntryATick) {
-  const RegressionPath path = path_of(case_with(every_kind[0], 0.75));
+  const SampledMotion path = path_of(case_with(every_kind[0], 0.75));
   EXPECT_EQ(path.ticks(), 750U);
-  EXPECT_EQ(path.position.size(), 750U);
   EXPECT_DOUBLE_EQ(path.time_s.back(), 0.749);
   EXPECT_EQ(path.period_s[7], 1e-3);
 }
 
 TEST(RegressionPath, MovesAtTheSpeedThatItSays) {
   for (const ScriptedAxis& motion : every_kind) {
-    const RegressionPath path = path_of(case_with(motion));
+    const SampledMotion path = path_of(case_with(motion));
     double travelled = 0.0;
     double most = 0.0;
     for (std::size_t i = 1; i < path.ticks(); ++i) {
-      travelled += 0.5e-3 * (path.velocity[i - 1][0] + path.velocity[i][0]);
-      most = std::max(most, std::abs(path.position[0][0] + travelled - path.position[i][0]));
+      travelled += 0.5e-3 * (path.sample[i - 1].velocity[0] + path.sample[i].velocity[0]);
+      most = std::max(most, std::abs(path.sample[0].position[0] + travelled - path.sample[i].position[0]));
     }
     EXPECT_LT(most, 3e-3) << motion.script.index();
   }
 }
 
 TEST(RegressionPath, GoesToAndFroBetweenItsEnds) {
-  const RegressionPath path = path_of(case_with(every_kind[1]));
-  EXPECT_EQ(path.position[0][0], 0.6);
-  EXPECT_EQ(path.velocity[50][0], 0.0) << "it pauses first";
-  EXPECT_DOUBLE_EQ(path.position[150][0], 0.35) << "half way";
-  EXPECT_NEAR(path.velocity[150][0], -1.875 * 0.5 / 0.2, 1e-9) << "15/8 of the mean speed";
-  EXPECT_NEAR(path.position[275][0], 0.1, 1e-12);
-  EXPECT_NEAR(path.position[500][0], 0.6, 1e-9);
+  const SampledMotion path = path_of(case_with(every_kind[1]));
+  EXPECT_EQ(path.sample[0].position[0], 0.6);
+  EXPECT_EQ(path.sample[50].velocity[0], 0.0) << "it pauses first";
+  EXPECT_DOUBLE_EQ(path.sample[150].position[0], 0.35) << "half way";
+  EXPECT_NEAR(path.sample[150].velocity[0], -1.875 * 0.5 / 0.2, 1e-9) << "15/8 of the mean speed";
+  EXPECT_NEAR(path.sample[275].position[0], 0.1, 1e-12);
+  EXPECT_NEAR(path.sample[500].position[0], 0.6, 1e-9);
 }
 
 TEST(RegressionPath, HoldsAfterItsRampAndComesBack) {
-  const RegressionPath path = path_of(case_with(every_kind[3]));
-  EXPECT_NEAR(path.position[200][0], 0.35, 1e-12);
-  EXPECT_DOUBLE_EQ(path.velocity[200][0], -2.5);
-  EXPECT_EQ(path.position[450][0], 0.1);
-  EXPECT_DOUBLE_EQ(path.velocity[700][0], 2.5);
-  EXPECT_EQ(path.position[900][0], 0.6);
+  const SampledMotion path = path_of(case_with(every_kind[3]));
+  EXPECT_NEAR(path.sample[200].position[0], 0.35, 1e-12);
+  EXPECT_DOUBLE_EQ(path.sample[200].velocity[0], -2.5);
+  EXPECT_EQ(path.sample[450].position[0], 0.1);
+  EXPECT_DOUBLE_EQ(path.sample[700].velocity[0], 2.5);
+  EXPECT_EQ(path.sample[900].position[0], 0.6);
 }
 
 class RecordedPath : public testing::Test {
@@ -94,9 +93,9 @@ class RecordedPath : public testing::Test {
 };
 
 TEST_F(RecordedPath, TakesTheLawsAxisRowByRow) {
-  const RegressionPath path = path_of(along(closing()));
+  const SampledMotion path = path_of(along(closing()));
   ASSERT_EQ(path.ticks(), 100U);
-  EXPECT_DOUBLE_EQ(path.position[50][0], 0.55);
+  EXPECT_DOUBLE_EQ(path.sample[50].position[0], 0.55);
   EXPECT_NEAR(path.period_s[0], 2e-3, 1e-12);
 }
 
@@ -121,11 +120,11 @@ TEST_F(RecordedPath, RefusesWhatALawCannotFollow) {
 }
 
 TEST(Checksum, ChangesWithAnyDigitOfThePath) {
-  RegressionPath path = path_of(case_with(every_kind[1]));
-  const std::string before = checksum(path);
-  EXPECT_EQ(before, checksum(path_of(case_with(every_kind[1]))));
-  path.velocity[3][0] = std::nextafter(path.velocity[3][0], 1.0);
-  EXPECT_NE(checksum(path), before);
+  SampledMotion path = path_of(case_with(every_kind[1]));
+  const std::string before = checksum(path, 1);
+  EXPECT_EQ(before, checksum(path_of(case_with(every_kind[1])), 1));
+  path.sample[3].velocity[0] = std::nextafter(path.sample[3].velocity[0], 1.0);
+  EXPECT_NE(checksum(path, 1), before);
 }
 
 TEST(Checksum, OfALawIsOfWhatBearsOnItsForces) {
@@ -142,18 +141,18 @@ TEST(RenderedForcesOf, EveryLawAreTheSameTwice) {
   for (const models::LawInfo& info : models::registry()) {
     RegressionCase one = case_with(every_kind[1], 0.1);
     one.law.law = test::example(info.name);
-    const RegressionPath path = path_of(one);
-    const RenderedForces first = render_forces(one.law.law, one.law.contact, path);
+    const SampledMotion path = path_of(one);
+    const RenderedForces first = render_forces(one.law, path);
     EXPECT_EQ(first.rows(), 100U) << info.name;
-    EXPECT_EQ(first.force, render_forces(one.law.law, one.law.contact, path).force) << info.name;
+    EXPECT_EQ(first.force, render_forces(one.law, path).force) << info.name;
   }
 }
 
 TEST(RenderedForcesOf, AFaultAreCounted) {
   const RegressionCase one = case_with(every_kind[1], 0.1);
-  RegressionPath path = path_of(one);
-  path.position[30][0] = std::nan("");
-  const RenderedForces got = render_forces(one.law.law, one.law.contact, path);
+  SampledMotion path = path_of(one);
+  path.sample[30].position[0] = std::nan("");
+  const RenderedForces got = render_forces(one.law, path);
   EXPECT_EQ(got.faults, 1U);
   EXPECT_EQ(got.first_fault, 30U);
 }
@@ -162,9 +161,9 @@ TEST(TickCost, IsManyTimesHigherForAMesh) {
   const RegressionCase spring = case_with(every_kind[1], 0.2);
   RegressionCase mesh = spring;
   mesh.law.law = test::example("scissors_mesh");
-  const double simple = tick_cost(spring.law.law, {}, path_of(spring));
+  const double simple = tick_cost(spring.law, path_of(spring));
   EXPECT_GT(simple, 0.0);
-  EXPECT_GT(tick_cost(mesh.law.law, {}, path_of(mesh)), 5.0 * simple);
+  EXPECT_GT(tick_cost(mesh.law, path_of(mesh)), 5.0 * simple);
 }
 
 }  // namespace
