@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "laws/placement.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {

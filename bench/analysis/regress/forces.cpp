@@ -2,15 +2,14 @@
 
 #include <cerrno>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <system_error>
 
 #include <time.h>
 
+#include "laws/placement.h"
 #include "laws/render.h"
 #include "loop/command.h"
-#include "regress/suite.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -22,13 +21,6 @@ double thread_ns() {
   if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot read the processor's time");
   return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
-}
-
-/// The law's own axes, in their order.
-std::vector<std::size_t> own_axes(const LawFile& law) {
-  std::vector<std::size_t> axes(axes_of(law).size());
-  std::iota(axes.begin(), axes.end(), 0);
-  return axes;
 }
 
 /// Nanoseconds of one round of the calibration loop.

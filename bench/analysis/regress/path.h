@@ -8,12 +8,9 @@
 
 namespace kerf::bench {
 
-/// The motion of a case on the axes of its law, in their own frame. @throws std::invalid_argument: a
-/// recording without the law's axes, in other units or with a sample that is not finite; a scene without a
-/// script; no tick at all.
+/// The motion of a case on the axes of its law. @throws std::invalid_argument as sampled(), naming the case;
+/// no tick at all.
 [[nodiscard]] SampledMotion path_of(const RegressionCase& one);
-/// The same, with messages that do not speak of a case.
-[[nodiscard]] SampledMotion trajectory_of(const RegressionCase& one);
 
 /// SHA-256 of a motion's numbers on the axes of a law, and of what of a law has a bearing on its forces:
 /// everything of its file but comments, standard errors and where it comes from.

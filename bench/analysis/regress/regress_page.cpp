@@ -7,6 +7,7 @@
 
 #include "files/whole_file.h"
 #include "html/html.h"
+#include "laws/placement.h"
 #include "regress/context.h"
 
 namespace kerf::bench {

@@ -58,6 +58,13 @@ std::vector<double> periods_of(std::span<const double> time_s) {
   return periods;
 }
 
+double deepest(const SampledMotion& motion, std::size_t axis, const models::Contact& contact) {
+  double depth = 0.0;
+  for (const auto& [position, velocity] : motion.sample)
+    depth = std::max(depth, contact.motion(position[axis], velocity[axis]).penetration);
+  return depth;
+}
+
 std::vector<double> render(const models::Law& law, const AxisSeries& series) {
   std::vector<models::Motion> motion;
   motion.reserve(series.time_s.size());

@@ -25,4 +25,7 @@ struct SampledMotion {
 /// law only starts there, and 1 ms where there is no next one.
 [[nodiscard]] std::vector<double> periods_of(std::span<const double> time_s);
 
+/// The deepest penetration of a motion along one of its axes; 0 if it meets nothing.
+[[nodiscard]] double deepest(const SampledMotion& motion, std::size_t axis, const models::Contact& contact);
+
 }  // namespace kerf::bench

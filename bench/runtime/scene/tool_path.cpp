@@ -15,12 +15,9 @@ namespace {
 
 constexpr double ticks_at_most = 2e7;  // 2.2 GB
 
-void follow(const ScissorsStrokes& strokes, double period_s, SampledMotion& path) {
-  drivers::Strokes hand({.open_rad = strokes.open_rad,
-                         .close_rad = strokes.close_rad,
-                         .stroke_s = strokes.stroke_s,
-                         .pause_s = strokes.pause_s,
-                         .variation = 0.0});
+void follow(drivers::HandOptions options, double period_s, SampledMotion& path) {
+  options.variation = 0.0;
+  drivers::Strokes hand(options);
   for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
     const auto wish = hand.at(static_cast<double>(tick) * period_s);
     path.sample[tick] = {.position = {wish.angle_rad}, .velocity = {wish.speed_rad_s}};
@@ -43,14 +40,7 @@ void follow(std::monostate, double, SampledMotion&) {
 Script script_of(const Scene& scene) {
   if (scene.trajectory.script.index() != 0) return scene.trajectory.script;
   drivers::Uri uri = drivers::parse_uri(device_of(scene));
-  if (uri.name == "sim:scissors") {
-    const drivers::HandOptions hand = drivers::SimulatedScissors::parse_options(std::move(uri)).hand;
-    return ScissorsStrokes{.open_rad = hand.open_rad,
-                           .close_rad = hand.close_rad,
-                           .stroke_s = hand.stroke_s,
-                           .pause_s = hand.pause_s,
-                           .variation = hand.variation};
-  }
+  if (uri.name == "sim:scissors") return drivers::SimulatedScissors::parse_options(std::move(uri)).hand;
   if (uri.name != "sim:pose6") return {};
   const drivers::SimulatedPose6::Options options = drivers::SimulatedPose6::parse_options(std::move(uri));
   if (options.path) return *options.path;

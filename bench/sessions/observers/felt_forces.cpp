@@ -13,7 +13,6 @@
 
 #include "laws/placement.h"
 #include "protocol/samples.h"
-#include "regress/suite.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -103,7 +102,7 @@ FeltRenderer::FeltRenderer(const Protocol& protocol, const FeltOptions& options)
                     "device; add one, or give --device sim:...",
                     protocol.name));
   }
-  if (protocol.motion) seconds_ = protocol.motion->seconds;
+  if (protocol.motion) seconds_ = protocol.motion->seconds.value_or(seconds_);
   if (options.seconds > 0.0) seconds_ = options.seconds;
   if (device_uri_.find("seed=") == std::string::npos)
     renderings_ = std::max<std::size_t>(1, options.renderings);
@@ -123,7 +122,6 @@ FeltForces FeltRenderer::rendered(const PlayedLaw& law) const {
 }
 
 void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, FeltForces& felt) const {
-  std::optional<LawRendering> rendering;
   std::optional<FeltRows> rows;
   const std::atomic<bool> stop{false};
   const RunOptions options{
@@ -133,13 +131,8 @@ void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, Fel
       .virtual_time = true,
       .rendering =
           [&](const drivers::DeviceInfo& device) {
-            rendering.emplace(law.law.law, law.law.contact, axes_for(law.law, device));
             rows.emplace(device, static_cast<std::size_t>(seconds_ * protocol_->rate_hz) + 1, felt);
-            return OtherRendering{.step = [&](const drivers::Sample& now, double period_s) {
-              Command command = (*rendering)(now, period_s);
-              for (double& force : command.force) force *= law.gain;
-              return command;
-            }};
+            return rendering_of(law, device);
           },
       .each_row = [&](const schema::Row& row) { rows->take(row); },
       .ramp_s = std::min(protocol_->ramp_s, soft_start_s),

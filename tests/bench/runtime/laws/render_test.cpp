@@ -74,6 +74,13 @@ TEST(Render, CountsTheTicksInWhichALawFails) {
   EXPECT_EQ(rendered.first_fault, 2U);
 }
 
+TEST(Deepest, IsHowFarAMotionGoesIntoTheTissue) {
+  SampledMotion motion = ticks_at(1000.0, 3);
+  motion.sample[1].position[2] = -0.3;
+  EXPECT_EQ(deepest(motion, 2, {.position = -0.1, .direction = -1.0}), 0.3 - 0.1);
+  EXPECT_EQ(deepest(motion, 2, {.position = 0.1, .direction = 1.0}), 0.0) << "it never gets there";
+}
+
 TEST(Periods, OfTheFirstSampleIsThatOfTheNext) {
   EXPECT_EQ(periods_of(std::vector{1.0, 1.5, 1.75}), (std::vector{0.5, 0.5, 0.25}));
   EXPECT_EQ(periods_of(std::vector{1.0}), std::vector{1e-3});
