@@ -15,7 +15,7 @@ constexpr double scene_runaway = 10.0;  // times the largest force of the refere
 }  // namespace
 
 ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& path,
-                                 std::vector<std::size_t> axes, const fitting::ForceJnd& jnd)
+                                 std::vector<std::size_t> axes, const fitting::Jnd& jnd)
     : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
   RenderedMotion forces = render(reference.law, axes_, path.at(rate_hz_));
   if (forces.faults > 0) {
@@ -31,8 +31,7 @@ ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& 
   if (count == 0) throw std::invalid_argument("the tool never meets the tissue on this path");
   for (const std::size_t axis : axes_) {
     const drivers::AxisInfo& info = path.device.axes.at(axis);
-    Axis about{.name = info.name, .axis = axis};
-    if (info.force_unit == "N·m") about.lever_m = info.lever != 1.0 ? info.lever : fingers_m;
+    Axis about{.name = info.name, .axis = axis, .lever_m = fitting::felt_lever(info.force_unit, info.lever)};
     double squares = 0.0;
     for (const drivers::Axes& force : reference_) {
       const double newtons = force[axis] / about.lever_m;

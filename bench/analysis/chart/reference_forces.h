@@ -16,7 +16,7 @@ class ReferenceForces {
  public:
   /// @throws std::invalid_argument if the reference fails, or never pushes.
   ReferenceForces(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
-                  const fitting::ForceJnd& jnd);
+                  const fitting::Jnd& jnd);
 
   /// Fills the point's errors and its stability from the forces of its law at its rate.
   void compare(const RenderedMotion& forces, ChartPoint& point) const;

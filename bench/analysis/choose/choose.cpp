@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -12,7 +11,6 @@
 #include <fmt/core.h>
 
 #include "chart/tick_cost.h"
-#include "fits/choice.h"
 #include "recordings/axis_series.h"
 
 namespace kerf::bench {
@@ -94,10 +92,8 @@ class LawSelection {
   }
 
   void measure(const AxisSeries& series) {
-    choice_.jnd_n = jnd_of(series.force, options_.fit.jnd);
-    const double squares =
-        std::inner_product(series.force.begin(), series.force.end(), series.force.begin(), 0.0);
-    choice_.force_rms_n = std::sqrt(squares / static_cast<double>(series.force.size()));
+    choice_.force_rms_n = fitting::rms_of(series.force);
+    choice_.jnd_n = options_.fit.jnd.at(choice_.force_rms_n);
     const double duration_s = series.time_s.back() - series.time_s.front();
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
     path_ = ticks_at(1.0 / std::max(1e-6, duration_s / periods), series.force.size());

@@ -83,10 +83,6 @@ Candidate candidate(const LawFile& file, const std::string& kind, int strips) {
 
 }  // namespace
 
-double TorqueJnd::at(double torque_n_m) const noexcept {
-  return std::max(weber_fraction * std::abs(torque_n_m), threshold_n_m);
-}
-
 LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, const std::atomic<bool>& stop) {
   if (scene.tissue.law.model() != "blade") {
     throw std::invalid_argument(

@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+
 #include "laws/placement.h"
 #include "loop/clock.h"
 #include "loop/command.h"
@@ -107,7 +109,7 @@ void compare_exactly(const schema::Recording& recording, const LawTrace& trace, 
 }
 
 /// The differences, over the rows that have both forces.
-void measure(const std::vector<double>& time_s, const AxisJnd& jnd, AxisComparison& result) {
+void measure(const std::vector<double>& time_s, const fitting::Jnd& jnd, AxisComparison& result) {
   double squares = 0.0;
   double force_squares = 0.0;
   for (std::size_t row = 0; row < result.rendered.size(); ++row) {
@@ -145,7 +147,7 @@ AxisComparison compare(const Source& source, const LawTrace& trace, std::size_t 
     result.recorded.push_back((commanded ? sense : 1.0) * recorded[row * axes + axis]);
     result.rendered.push_back(sense * trace.force[row][axis]);
   }
-  const ForceEventOptions events{.jnd = jnd_for(recording.axes[axis]),
+  const ForceEventOptions events{.jnd = fitting::jnd_of(recording.axes[axis].force_unit),
                                  .contact = options.contact,
                                  .window_s = options.window_s};
   measure(recording.time, events.jnd, result);

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/fitting/jnd.h>
 
 #include "laws/placement.h"
 #include "protocol/samples.h"
@@ -51,7 +52,8 @@ class FeltRows {
   FeltRows(const drivers::DeviceInfo& device, std::size_t ticks, FeltForces& felt) : felt_(felt) {
     felt_.axes = device.axes.size();
     felt_.force_n.reserve(felt_.force_n.size() + ticks * felt_.axes);
-    for (const drivers::AxisInfo& axis : device.axes) newtons_.push_back(felt_newtons(axis.force_unit));
+    for (const drivers::AxisInfo& axis : device.axes)
+      newtons_.push_back(1.0 / fitting::felt_lever(axis.force_unit));
   }
   void take(const schema::Row& row) {
     if (row.time_s < soft_start_s || felt_.force_n.size() + felt_.axes > felt_.force_n.capacity()) return;
@@ -148,7 +150,7 @@ FeltForces FeltRenderer::along_motion(const PlayedLaw& law) const {
   const auto law_axes = axes_of(law.law);
   FeltForces felt{.axes = law_axes.size(), .force_n = forces_along(*protocol_, law)};
   for (std::size_t i = 0; i < felt.force_n.size(); ++i)
-    felt.force_n[i] *= felt_newtons(law_axes[i % felt.axes].force_unit);
+    felt.force_n[i] *= 1.0 / fitting::felt_lever(law_axes[i % felt.axes].force_unit);
   return felt;
 }
 

@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+
 #include "laws/placement.h"
 #include "laws/render.h"
 
@@ -24,7 +26,7 @@ double strength_of(const Protocol& protocol, std::size_t sample) {
   for (std::size_t i = 0; i < forces.size(); i += axes.size()) {
     double squared = 0.0;
     for (std::size_t axis = 0; axis < axes.size(); ++axis)
-      squared += std::pow(felt_newtons(axes[axis].force_unit) * forces[i + axis], 2);
+      squared += std::pow(1.0 / fitting::felt_lever(axes[axis].force_unit) * forces[i + axis], 2);
     sum += squared;
     peak = std::max(peak, squared);
   }

@@ -36,9 +36,6 @@ struct PlayedLaw {
 /// @throws std::invalid_argument: the protocol has no motion, or the law faults along it.
 [[nodiscard]] std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law);
 
-/// Newtons that a unit of force or torque is felt as: a torque at a lever of 10 mm.
-[[nodiscard]] inline double felt_newtons(std::string_view unit) { return unit == "N·m" ? 100.0 : 1.0; }
-
 /// Sets the gains of the samples so that peak or root mean square of the force along the protocol's motion
 /// (over the axes, torques at a lever of 10 mm) is that of the first sample of each tissue. Nothing where the
 /// protocol leaves them as they are. @throws std::invalid_argument: no motion, a sample without force, a gain

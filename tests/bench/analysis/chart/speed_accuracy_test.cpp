@@ -79,7 +79,7 @@ TEST(SpeedAccuracy, StripsOfABladeConvergeWithTheSquareOfTheirNumber) {
   EXPECT_NEAR(point(chart, "blade", "exact").error_jnd, 0.0, 1e-9);
   EXPECT_EQ(point(chart, "blade", "paper 64").axis, "rz") << "the paper's blade turns without a torque";
   // Kn w^3 l / 12 w_z = 4e-3 N·m (T2 with 100 times the Kn), at the fingers 10 mm from the axis.
-  EXPECT_NEAR(point(chart, "blade", "paper 64").error_n, 4e-3 / fingers_m, 1e-9);
+  EXPECT_NEAR(point(chart, "blade", "paper 64").error_n, 4e-3 / fitting::fingers_m, 1e-9);
 }
 
 TEST(SpeedAccuracy, CrossesEulerOutPastTwiceTheRelaxationTime) {
