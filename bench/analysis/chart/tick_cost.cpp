@@ -127,6 +127,10 @@ class Subject {
     for (std::size_t i = 0; i < std::min(warm_up_ticks, path_.ticks()); ++i) step(i);
     rendering_ = fresh_;
     for (std::size_t i = 0; i < path_.ticks(); ++i) time(i);
+    rendering_ = fresh_;
+    const std::uint64_t begin = stamp();
+    for (std::size_t i = 0; i < path_.ticks(); ++i) step(i);
+    passages_.push_back(static_cast<double>(stamp() - begin) / static_cast<double>(path_.ticks()));
     chosen_.clear();
     const bool ever = std::any_of(pushes_.begin(), pushes_.end(), [](auto pushes) { return pushes != 0; });
     for (std::size_t i = 0; i < duration_.size(); ++i) {
@@ -163,11 +167,12 @@ class Subject {
     return done < std::min(fewest_rounds, options.rounds) ||
            (done < options.rounds && static_cast<double>(done + 1) * longest_s_ <= options.max_seconds);
   }
-  [[nodiscard]] TickCost cost(double unit_ns) const {
+  [[nodiscard]] TickCost cost(double unit_ns, double calibration_round) const {
     return {.p50_ns = unit_ns * quantile(warm_.p50, quiet_share),
             .p999_ns = unit_ns * quantile(warm_.p999, 0.5),
             .cold_p50_ns = unit_ns * quantile(cold_.p50, 0.5),
-            .cold_p999_ns = unit_ns * quantile(cold_.p999, 0.5)};
+            .cold_p999_ns = unit_ns * quantile(cold_.p999, 0.5),
+            .mean_rounds = quantile(passages_, quiet_share) / calibration_round};
   }
 
  private:
@@ -187,9 +192,22 @@ class Subject {
   std::vector<std::uint64_t> duration_;
   std::vector<std::uint8_t> pushes_;
   std::vector<double> chosen_;
+  std::vector<double> passages_;  ///< mean tick of each
   Rounds warm_, cold_;
   double longest_s_ = 0.0;
 };
+
+/// One round of the calibration loop, in units of the stamp.
+double calibration() {
+  constexpr int rounds = 20000;
+  volatile double seed = 1.5;
+  double x = seed;
+  const std::uint64_t begin = stamp();
+  for (int i = 0; i < rounds; ++i) x = std::sqrt(1.25 + x * 0.75) + 1.0 / (1.0 + x);
+  const std::uint64_t spent = stamp() - begin;
+  seed = x;
+  return static_cast<double>(spent) / rounds;
+}
 
 /// What two stamps cost with an empty body between them.
 double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, CacheFlush* flush) {
@@ -229,7 +247,9 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
   const auto count_one = [&] {
     if (options.done != nullptr) ++*options.done;
   };
+  std::vector<double> calibrations;
   for (std::size_t round = 0; round < options.rounds; ++round) {
+    calibrations.push_back(calibration());
     const double overhead = overhead_of_stamps(4000, step, nullptr);
     for (std::size_t k = 0; k < subjects.size(); ++k) {
       if (stopped()) return {};
@@ -246,8 +266,9 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
       count_one();
     }
   }
+  const double calibration_round = quantile(calibrations, quiet_share);
   std::vector<TickCost> costs;
-  for (const Subject& subject : subjects) costs.push_back(subject.cost(rate.unit_ns()));
+  for (const Subject& subject : subjects) costs.push_back(subject.cost(rate.unit_ns(), calibration_round));
   return costs;
 }
 

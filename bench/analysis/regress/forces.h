@@ -26,9 +26,8 @@ struct RenderedForces {
 
 [[nodiscard]] RenderedForces render_forces(const LawFile& law, const SampledMotion& motion);
 
-/// What a tick of a law costs, in rounds of a calibration loop: a chain of multiplications, divisions and
-/// square roots that a processor cannot shorten. Both are measured by turns, so that what slows the machine
-/// slows both; the median of the ratios. @throws std::invalid_argument for a path without a tick.
+/// What a tick of a law costs along a motion, in rounds of a calibration loop: TickCost::mean_rounds.
+/// @throws std::invalid_argument as tick_costs().
 [[nodiscard]] double tick_cost(const LawFile& law, const SampledMotion& motion);
 
 /// What a tick's cost depends on beside the code: "optimised" or "not optimised".

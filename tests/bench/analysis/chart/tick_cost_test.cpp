@@ -40,6 +40,8 @@ TEST(TickCost, IsGreaterForALawThatDoesMore) {
   const auto costs = tick_costs(laws, {.rounds = 3, .cold_ticks = 16});
   ASSERT_EQ(costs.size(), 2U);
   EXPECT_GT(costs[0].p50_ns, costs[1].p50_ns);
+  EXPECT_GT(costs[1].mean_rounds, 0.0);
+  EXPECT_GT(costs[0].mean_rounds, costs[1].mean_rounds);
   for (const TickCost& cost : costs) {
     EXPECT_LE(cost.p50_ns, cost.p999_ns);
     EXPECT_LE(cost.cold_p50_ns, cost.cold_p999_ns);
