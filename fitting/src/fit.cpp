@@ -46,7 +46,7 @@ double rms_of(const std::vector<double>& residuals, Chosen&& chosen) {
 }
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
-                    const ForceJnd& jnd) {
+                    const Jnd& jnd) {
   double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.fold[i] == Samples::test) continue;
@@ -213,10 +213,6 @@ FitResult fit_growing(std::string_view model, const FitOptions& options, const S
 }
 
 }  // namespace
-
-double ForceJnd::at(double force_n) const noexcept {
-  return std::max(weber_fraction * std::abs(force_n), threshold_n);
-}
 
 models::Law FitResult::law(std::size_t recording) const {
   std::vector<double> values;

@@ -31,7 +31,8 @@ struct LawPoint {
   const models::Options& options;
 };
 
-/// The step of one law of the registry on dual numbers, run over samples.
+/// The step of one law of the registry on dual numbers, run over samples. Not Law::along(): a force and its
+/// derivatives are summed where they arise, since to store them costs more than the step.
 class LawKernel {
  public:
   virtual ~LawKernel() = default;

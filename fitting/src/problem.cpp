@@ -143,10 +143,10 @@ std::vector<double> rendered(const Problem& problem, const Values& values, const
   force.reserve(samples.size());
   for (std::size_t run = 0; run < samples.runs.size(); ++run) {
     const models::Law law = models::Law::make(problem.model, values[run], problem.law_options);
-    models::Law::State state = law.initial_state();
-    for (std::size_t i = samples.runs[run].begin; i < samples.runs[run].end; ++i) {
-      force.push_back(law.step(state, samples.motion[i], samples.period_s[i]).force);
-    }
+    const auto [begin, end, noise] = samples.runs[run];
+    const auto part = law.along(std::span(samples.motion).subspan(begin, end - begin),
+                                std::span(samples.period_s).subspan(begin, end - begin));
+    force.insert(force.end(), part.begin(), part.end());
   }
   return force;
 }

@@ -253,4 +253,12 @@ SpatialResponse Law::step(State& state, const SpatialMotion& motion, double peri
   return {.force = force, .fault = false};
 }
 
+std::vector<double> Law::along(std::span<const Motion> motion, std::span<const double> period_s) const {
+  std::vector<double> force;
+  force.reserve(motion.size());
+  State state = initial_state();
+  for (std::size_t i = 0; i < motion.size(); ++i) force.push_back(step(state, motion[i], period_s[i]).force);
+  return force;
+}
+
 }  // namespace kerf::models

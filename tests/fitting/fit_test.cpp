@@ -129,7 +129,7 @@ TEST(Choice, TakesTheSimplestLawWithinTheJnd) {
   }
   EXPECT_EQ(choose_simplest(results, strokes.series(), {}).model, "kelvin");
   const Choice strict =
-      choose_simplest(results, strokes.series(), {.weber_fraction = 0.0, .threshold_n = 1e-4});
+      choose_simplest(results, strokes.series(), {.jnd = {.weber_fraction = 0.0, .threshold = 1e-4}});
   EXPECT_EQ(strict.model, "kelvin");
   EXPECT_THAT(strict.why, testing::HasSubstr("no law stays within the JND"));
 }
@@ -140,10 +140,25 @@ TEST(Line, IsTheLeastThatALawHasToBeat) {
   EXPECT_GT(line_rmse(Strokes(4000, 0.0, kelvin).series()), 0.1);
 }
 
-TEST(ForceJnd, IsTheLargerOfAFractionAndAThreshold) {
-  EXPECT_DOUBLE_EQ(ForceJnd{}.at(5.0), 0.35);
-  EXPECT_DOUBLE_EQ(ForceJnd{}.at(-5.0), 0.35);
-  EXPECT_DOUBLE_EQ(ForceJnd{}.at(0.1), 0.05);
+TEST(Jnd, IsTheLargerOfAFractionAndAThreshold) {
+  EXPECT_DOUBLE_EQ(force_jnd.at(5.0), 0.35);
+  EXPECT_DOUBLE_EQ(force_jnd.at(-5.0), 0.35);
+  EXPECT_DOUBLE_EQ(force_jnd.at(0.1), 0.05);
+  EXPECT_DOUBLE_EQ(torque_jnd.at(0.06), 0.127 * 0.06);
+  EXPECT_DOUBLE_EQ(torque_jnd.at(-1.0), 0.127);
+  EXPECT_DOUBLE_EQ(torque_jnd.at(1e-5), 5e-4);
+}
+
+TEST(Jnd, IsThatOfTheUnit) {
+  EXPECT_EQ(&jnd_of("N"), &force_jnd);
+  EXPECT_EQ(&jnd_of("N·m"), &torque_jnd);
+}
+
+TEST(Jnd, OfATorqueIsFeltAtALever) {
+  EXPECT_EQ(felt_lever("N", 0.08), 1.0) << "the force is one at the hand already";
+  EXPECT_EQ(felt_lever("N·m", 0.08), 0.08);
+  EXPECT_EQ(felt_lever("N·m", 1.0), fingers_m) << "the axis names none";
+  EXPECT_DOUBLE_EQ(torque_jnd.threshold, force_jnd.threshold * fingers_m);
 }
 
 }  // namespace

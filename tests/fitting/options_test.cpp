@@ -145,7 +145,7 @@ TEST(Segments, AreCountedByBicOrTheJnd) {
   EXPECT_EQ(std::get<double>(by_bic.law_options.at("segments")), 3.0);
   const auto by_jnd =
       fit("piecewise", strokes.series(),
-          {.jnd = {.weber_fraction = 0.0, .threshold_n = 0.6}, .folds = 0, .segments = CountBy::jnd});
+          {.jnd = {.weber_fraction = 0.0, .threshold = 0.6}, .folds = 0, .segments = CountBy::jnd});
   EXPECT_EQ(std::get<double>(by_jnd.law_options.at("segments")), 1.0) << "nobody feels more";
 }
 

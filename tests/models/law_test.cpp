@@ -202,6 +202,18 @@ TEST_P(EveryLaw, RefusesUnknownOptionsAndAWrongNumberOfValues) {
   EXPECT_THROW((void)Law::make(law.model(), std::vector<double>{}, law.options()), std::invalid_argument);
 }
 
+TEST(Law, AlongAMotionGivesWhatItsStepsGiveFromAFreshStateEachTime) {
+  const Law law = Law::make("kelvin", std::vector{8.0, 7.0, 130.0});
+  const std::vector<Motion> motion{{0.1, 0.5}, {0.2, 0.5}, {0.2, 0.0}};
+  const std::vector<double> period_s{1e-3, 0.2, 0.1};
+  Law::State state = law.initial_state();
+  std::vector<double> force;
+  for (std::size_t i = 0; i < motion.size(); ++i)
+    force.push_back(law.step(state, motion[i], period_s[i]).force);
+  EXPECT_EQ(law.along(motion, period_s), force);
+  EXPECT_EQ(law.along(motion, period_s), force) << "nothing is left of the first time";
+}
+
 TEST(Law, AnUnknownNameIsAnsweredWithThoseThatExist) {
   try {
     (void)Law::make("burgers", std::vector{1.0});

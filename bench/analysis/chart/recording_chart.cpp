@@ -20,7 +20,7 @@ constexpr double runaway = 10.0;  // times the largest force recorded
 bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
 
 /// The stretch of a recording that laws are timed along: that with most contact.
-std::vector<drivers::Sample> timed_stretch(const AxisSeries& series, const FitSource& source) {
+SampledMotion timed_stretch(const AxisSeries& series, const FitSource& source, double period_s) {
   const std::size_t rows = series.time_s.size();
   const std::size_t length = std::min(rows, max_timed_ticks);
   std::size_t inside = 0;
@@ -33,13 +33,13 @@ std::vector<drivers::Sample> timed_stretch(const AxisSeries& series, const FitSo
     most = inside;
     begin = end + 1 - length;
   }
-  std::vector<drivers::Sample> samples(length);
+  SampledMotion stretch = ticks_at(1.0 / period_s, length);
   for (std::size_t i = 0; i < length; ++i) {
     const models::Contact& contact = source.contact;
-    samples[i].position[0] = contact.position + contact.direction * series.penetration[begin + i];
-    samples[i].velocity[0] = contact.direction * series.velocity[begin + i];
+    stretch.sample[i].position[0] = contact.position + contact.direction * series.penetration[begin + i];
+    stretch.sample[i].velocity[0] = contact.direction * series.velocity[begin + i];
   }
-  return samples;
+  return stretch;
 }
 
 FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options) {
@@ -166,12 +166,10 @@ class RecordingChart {
   }
 
   void time() {
-    const auto samples = timed_stretch(series_, source_);
+    const SampledMotion stretch = timed_stretch(series_, source_, period_s_);
     std::vector<TimedLaw> laws;
     for (const ChartPoint& point : chart_.points) {
-      laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, {0}),
-                      .path = samples,
-                      .period_s = period_s_});
+      laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, {0}), .path = &stretch});
     }
     TickCostOptions timing = options_.timing;
     timing.stop = options_.stop;

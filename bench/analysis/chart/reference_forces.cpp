@@ -14,34 +14,11 @@ constexpr double scene_runaway = 10.0;  // times the largest force of the refere
 
 }  // namespace
 
-std::vector<drivers::Sample> samples_of(const ToolPath& path) {
-  std::vector<drivers::Sample> samples(path.position.size());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i].position = path.position[i];
-    samples[i].velocity = path.velocity[i];
-  }
-  return samples;
-}
-
-ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,
-                   std::span<const drivers::Sample> samples, double period_s) {
-  LawRendering rendering(law.law, law.contact, axes);
-  ForcePath path;
-  path.force.reserve(samples.size());
-  for (const drivers::Sample& sample : samples) {
-    const Command command = rendering(sample, period_s);
-    path.force.push_back(command.force);
-    path.fault = path.fault || command.flags != 0;
-  }
-  return path;
-}
-
 ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& path,
-                                 std::vector<std::size_t> axes, const fitting::ForceJnd& jnd)
+                                 std::vector<std::size_t> axes, const fitting::Jnd& jnd)
     : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
-  const ToolPath ticks = path.at(rate_hz_);
-  ForcePath forces = rendered(reference.law, axes_, samples_of(ticks), ticks.period_s);
-  if (forces.fault) {
+  RenderedMotion forces = render(reference.law, axes_, path.at(rate_hz_));
+  if (forces.faults > 0) {
     throw std::invalid_argument(
         fmt::format("the reference itself ({} of law '{}') fails on this path: its force is not finite",
                     reference.label, reference.law.law.model()));
@@ -54,8 +31,7 @@ ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& 
   if (count == 0) throw std::invalid_argument("the tool never meets the tissue on this path");
   for (const std::size_t axis : axes_) {
     const drivers::AxisInfo& info = path.device.axes.at(axis);
-    Axis about{.name = info.name, .axis = axis};
-    if (info.force_unit == "N·m") about.lever_m = info.lever != 1.0 ? info.lever : fingers_m;
+    Axis about{.name = info.name, .axis = axis, .lever_m = fitting::felt_lever(info.force_unit, info.lever)};
     double squares = 0.0;
     for (const drivers::Axes& force : reference_) {
       const double newtons = force[axis] / about.lever_m;
@@ -90,7 +66,7 @@ double ReferenceForces::jnd_of(const std::string& axis) const {
   return about_.front().jnd_n;
 }
 
-void ReferenceForces::compare(const ForcePath& forces, ChartPoint& point) const {
+void ReferenceForces::compare(const RenderedMotion& forces, ChartPoint& point) const {
   double largest_n = 0.0;
   point.error_jnd = -1.0;
   for (std::size_t place = 0; place < about_.size(); ++place) {
@@ -114,7 +90,7 @@ void ReferenceForces::compare(const ForcePath& forces, ChartPoint& point) const 
     point.worst_n = worst;
     point.axis = about_[place].name;
   }
-  if (forces.fault) {
+  if (forces.faults > 0) {
     point.stable = false;
     point.why = "its force is not finite";
   } else if (largest_n > scene_runaway * peak_n_) {

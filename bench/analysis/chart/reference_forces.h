@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -8,31 +7,19 @@
 
 #include "chart/fidelities.h"
 #include "chart/speed_accuracy.h"
+#include "laws/render.h"
 
 namespace kerf::bench {
-
-/// Forces along a path, tick by tick, on the axes of the device, and whether the law ever failed.
-struct ForcePath {
-  std::vector<drivers::Axes> force;
-  bool fault = false;
-};
-
-/// What a device would have said along a path.
-[[nodiscard]] std::vector<drivers::Sample> samples_of(const ToolPath& path);
-
-/// What LawRendering gives along the samples.
-[[nodiscard]] ForcePath rendered(const LawFile& law, const std::vector<std::size_t>& axes,
-                                 std::span<const drivers::Sample> samples, double period_s);
 
 /// The reference that points of a scene are judged by.
 class ReferenceForces {
  public:
   /// @throws std::invalid_argument if the reference fails, or never pushes.
   ReferenceForces(const Fidelity& reference, const ScriptedPath& path, std::vector<std::size_t> axes,
-                  const fitting::ForceJnd& jnd);
+                  const fitting::Jnd& jnd);
 
   /// Fills the point's errors and its stability from the forces of its law at its rate.
-  void compare(const ForcePath& forces, ChartPoint& point) const;
+  void compare(const RenderedMotion& forces, ChartPoint& point) const;
 
   [[nodiscard]] const std::vector<std::size_t>& axes() const noexcept { return axes_; }
   [[nodiscard]] double jnd_n(std::size_t place) const { return about_.at(place).jnd_n; }

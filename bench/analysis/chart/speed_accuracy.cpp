@@ -23,35 +23,35 @@ constexpr double shown_from_jnd = 1e-3;
 
 bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
 
-/// Samples along the path, by rate, each made once.
-class Samples {
+/// The motion along the path, by rate, each made once.
+class Motions {
  public:
-  explicit Samples(const ScriptedPath& path) : path_(path) {}
-  const std::vector<drivers::Sample>& at(double rate_hz) {
+  explicit Motions(const ScriptedPath& path) : path_(path) {}
+  const SampledMotion& at(double rate_hz) {
     const auto known = of_rate_.find(rate_hz);
     if (known != of_rate_.end()) return known->second;
-    return of_rate_.emplace(rate_hz, samples_of(path_.at(rate_hz))).first->second;
+    return of_rate_.emplace(rate_hz, path_.at(rate_hz)).first->second;
   }
 
  private:
   const ScriptedPath& path_;
-  std::map<double, std::vector<drivers::Sample>> of_rate_;
+  std::map<double, SampledMotion> of_rate_;
 };
 
 /// What the reference of a law along one axis looks like to a fit. A cycle begins where the tool turns
 /// inwards.
-AxisSeries reference_series(const LawFile& law, const ReferenceForces& reference,
-                            const std::vector<drivers::Sample>& samples, double rate_hz) {
+AxisSeries reference_series(const LawFile& law, const ReferenceForces& reference, const SampledMotion& path) {
   const std::size_t axis = reference.axes().front();
-  const std::size_t step = samples.size() / max_fit_samples + 1;
+  const std::size_t step = path.ticks() / max_fit_samples + 1;
   AxisSeries series;
   std::uint32_t number = 0;
   bool inwards = false;
-  for (std::size_t i = 0; i < samples.size(); i += step) {
-    const models::Motion motion = law.contact.motion(samples[i].position[axis], samples[i].velocity[axis]);
+  for (std::size_t i = 0; i < path.ticks(); i += step) {
+    const auto& [position, velocity] = path.sample[i];
+    const models::Motion motion = law.contact.motion(position[axis], velocity[axis]);
     if (motion.velocity > 0.0 && !inwards) ++number;
     if (motion.velocity != 0.0) inwards = motion.velocity > 0.0;
-    series.time_s.push_back(static_cast<double>(i) / rate_hz);
+    series.time_s.push_back(path.time_s[i]);
     series.penetration.push_back(motion.penetration);
     series.velocity.push_back(motion.velocity);
     series.force.push_back(resisting(reference.force_n(0, series.time_s.back()), false, law.contact));
@@ -72,13 +72,13 @@ ChartPoint point_of(const Fidelity& fidelity) {
 }
 
 /// What a law with two branches is rendered with, if it says nothing of that itself.
-void add_aids(LawFile& file, const std::vector<drivers::Sample>& samples, std::size_t axis) {
+void add_aids(LawFile& file, const SampledMotion& path, std::size_t axis) {
   for (const auto* aid : {"velocity_corner", "ramp_band", "reversal_scale"}) {
     if (file.law.options().count(aid) > 0) return;
   }
   AxisSeries met;
-  for (const drivers::Sample& sample : samples) {
-    const models::Motion motion = file.contact.motion(sample.position[axis], sample.velocity[axis]);
+  for (const auto& [position, velocity] : path.sample) {
+    const models::Motion motion = file.contact.motion(position[axis], velocity[axis]);
     met.penetration.push_back(motion.penetration);
     met.velocity.push_back(motion.velocity);
   }
@@ -107,13 +107,12 @@ void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions
   }
 }
 
-void time_points(const std::vector<std::size_t>& axes, Samples& samples, const ChartOptions& options,
+void time_points(const std::vector<std::size_t>& axes, Motions& motions, const ChartOptions& options,
                  SpeedAccuracy& chart) {
   std::vector<TimedLaw> laws;
   for (const ChartPoint& point : chart.points) {
     laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, axes),
-                    .path = samples.at(point.rate_hz),
-                    .period_s = 1.0 / point.rate_hz});
+                    .path = &motions.at(point.rate_hz)});
   }
   TickCostOptions timing = options.timing;
   timing.stop = options.stop;
@@ -146,13 +145,13 @@ ScriptedPath scripted_path(const Scene& scene) {
   const bool ends = std::isfinite(scene.tissue_until) && !scene.tissue.law.is_spatial();
   const std::size_t axis = ends ? axis_for(scene.tissue, device->info()) : 0;
   return {.device = device->info(), .at = [scene, ends, axis](double rate_hz) {
-            ToolPath path = tool_path(scene, rate_hz);
+            SampledMotion path = tool_path(scene, rate_hz);
             const models::Contact& contact = scene.tissue.contact;
-            for (std::size_t i = 0; ends && i < path.position.size(); ++i) {
-              const double depth = contact.direction * (path.position[i][axis] - contact.position);
-              if (depth < scene.tissue_until) continue;
-              path.position[i][axis] = contact.position + contact.direction * scene.tissue_until;
-              path.velocity[i][axis] = 0.0;
+            for (models::SpatialMotion& sample : path.sample) {
+              if (!ends) break;
+              if (contact.motion(sample.position[axis], 0.0).penetration < scene.tissue_until) continue;
+              sample.position[axis] = contact.position + contact.direction * scene.tissue_until;
+              sample.velocity[axis] = 0.0;
             }
             return path;
           }};
@@ -169,10 +168,10 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
                       .one_axis = reference.axes().size() == 1,
                       .points = {},
                       .notes = fidelities.notes};
-  Samples samples(path);
+  Motions motions(path);
   for (const Fidelity& fidelity : fidelities.all) chart.points.push_back(point_of(fidelity));
   if (!law.law.is_spatial()) {
-    const AxisSeries series = reference_series(law, reference, samples.at(options.rate_hz), options.rate_hz);
+    const AxisSeries series = reference_series(law, reference, motions.at(options.rate_hz));
     add_fitted(law, series, options, chart);
   } else if (!options.models.empty()) {
     chart.notes.push_back(
@@ -180,16 +179,15 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
   }
   for (ChartPoint& point : chart.points) {
     if (stopped(options)) break;
-    reference.compare(rendered(point.file, reference.axes(), samples.at(point.rate_hz), 1.0 / point.rate_hz),
-                      point);
-    if (!law.law.is_spatial()) add_aids(point.file, samples.at(options.rate_hz), reference.axes().front());
+    reference.compare(render(point.file, reference.axes(), motions.at(point.rate_hz)), point);
+    if (!law.law.is_spatial()) add_aids(point.file, motions.at(options.rate_hz), reference.axes().front());
     if (!point.stable || !options.unstable) continue;
     if (const auto why = options.unstable(point.file, point.rate_hz)) {
       point.stable = false;
       point.why = *why;
     }
   }
-  if (!stopped(options)) time_points(reference.axes(), samples, options, chart);
+  if (!stopped(options)) time_points(reference.axes(), motions, options, chart);
   chart.stopped = chart.stopped || stopped(options);
   if (chart.stopped) {
     chart.points.clear();

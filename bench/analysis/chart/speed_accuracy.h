@@ -47,7 +47,7 @@ struct SpeedAccuracy {
 struct ChartOptions {
   double rate_hz = 1000.0;
   std::vector<std::string> models;  ///< laws to fit; empty: those that say something of any axis
-  fitting::ForceJnd jnd;
+  fitting::Jnd jnd;
   std::size_t folds = 5;
   std::size_t threads = 1;
   /// Why a closed loop with this law at this rate is not stable, in words; nothing if it is. Empty: only what
@@ -62,7 +62,7 @@ inline constexpr std::size_t chart_steps = 1000;
 /// A path of the tool that can be had at any rate, on the axes of a device.
 struct ScriptedPath {
   drivers::DeviceInfo device;
-  std::function<ToolPath(double rate_hz)> at;
+  std::function<SampledMotion(double rate_hz)> at;
 };
 
 /// The script of a scene, on its device; no deeper than where its first layer is cut through. @throws as
@@ -74,7 +74,7 @@ struct ScriptedPath {
 /// at the ticks of each, while the reference pushes.
 ///
 /// Each axis is judged by its own JND at the root mean square of its reference; a torque in N·m counts as the
-/// force at the fingers, `fingers_m` from the axis where the device names no lever. A point is judged by its
+/// force at the hand (fitting::felt_lever). A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
 /// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
 /// rendering aids of [Okamura2003] where they have none. Only points at the chart's own rate compete for the
@@ -82,7 +82,6 @@ struct ScriptedPath {
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);
-inline constexpr double fingers_m = 0.01;
 
 /// Every law that fits an axis of a recording, in every size: segments 1 to 12, tables of 2 to 256 points,
 /// arms 1 to 4, and each integrator. Errors are those on held-out cycles (blocks where there are none); a law

@@ -113,16 +113,24 @@ struct Rounds {
 class Subject {
  public:
   explicit Subject(const TimedLaw& timed)
-      : timed_(timed), rendering_(timed.rendering), duration_(timed.path.size()), pushes_(timed.path.size()) {
-    chosen_.reserve(timed.path.size());
+      : rendering_(timed.rendering),
+        fresh_(timed.rendering),
+        path_(*timed.path),
+        duration_(path_.ticks()),
+        pushes_(path_.ticks()) {
+    chosen_.reserve(path_.ticks());
   }
 
   void warm_round(std::uint64_t step_of_stamps, double overhead) {
     const std::int64_t begin_ns = WallClock::now_ns();
-    rendering_ = timed_.rendering;
-    for (std::size_t i = 0; i < std::min(warm_up_ticks, timed_.path.size()); ++i) step(i);
-    rendering_ = timed_.rendering;
-    for (std::size_t i = 0; i < timed_.path.size(); ++i) time(i);
+    rendering_ = fresh_;
+    for (std::size_t i = 0; i < std::min(warm_up_ticks, path_.ticks()); ++i) step(i);
+    rendering_ = fresh_;
+    for (std::size_t i = 0; i < path_.ticks(); ++i) time(i);
+    rendering_ = fresh_;
+    const std::uint64_t begin = stamp();
+    for (std::size_t i = 0; i < path_.ticks(); ++i) step(i);
+    passages_.push_back(static_cast<double>(stamp() - begin) / static_cast<double>(path_.ticks()));
     chosen_.clear();
     const bool ever = std::any_of(pushes_.begin(), pushes_.end(), [](auto pushes) { return pushes != 0; });
     for (std::size_t i = 0; i < duration_.size(); ++i) {
@@ -142,7 +150,7 @@ class Subject {
     }
     const std::size_t count = std::min(most, places.size());
     chosen_.clear();
-    rendering_ = timed_.rendering;
+    rendering_ = fresh_;
     std::size_t tick = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t place = places[k * places.size() / count];
@@ -159,31 +167,47 @@ class Subject {
     return done < std::min(fewest_rounds, options.rounds) ||
            (done < options.rounds && static_cast<double>(done + 1) * longest_s_ <= options.max_seconds);
   }
-  [[nodiscard]] TickCost cost(double unit_ns) const {
+  [[nodiscard]] TickCost cost(double unit_ns, double calibration_round) const {
     return {.p50_ns = unit_ns * quantile(warm_.p50, quiet_share),
             .p999_ns = unit_ns * quantile(warm_.p999, 0.5),
             .cold_p50_ns = unit_ns * quantile(cold_.p50, 0.5),
-            .cold_p999_ns = unit_ns * quantile(cold_.p999, 0.5)};
+            .cold_p999_ns = unit_ns * quantile(cold_.p999, 0.5),
+            .mean_rounds = quantile(passages_, quiet_share) / calibration_round};
   }
 
  private:
-  void step(std::size_t i) noexcept { (void)rendering_(timed_.path[i], timed_.period_s); }
+  void step(std::size_t i) noexcept { (void)rendering_(path_.sample[i], path_.period_s[i]); }
   void time(std::size_t i) noexcept {
-    const drivers::Sample& sample = timed_.path[i];
+    const models::SpatialMotion& sample = path_.sample[i];
+    const double period_s = path_.period_s[i];
     const std::uint64_t begin = stamp();
-    const Command command = rendering_(sample, timed_.period_s);
+    const Command command = rendering_(sample, period_s);
     duration_[i] = stamp() - begin;
     pushes_[i] = std::any_of(command.force.begin(), command.force.end(), [](double f) { return f != 0.0; });
   }
 
-  const TimedLaw& timed_;
   LawRendering rendering_;
+  const LawRendering& fresh_;
+  const SampledMotion& path_;
   std::vector<std::uint64_t> duration_;
   std::vector<std::uint8_t> pushes_;
   std::vector<double> chosen_;
+  std::vector<double> passages_;  ///< mean tick of each
   Rounds warm_, cold_;
   double longest_s_ = 0.0;
 };
+
+/// One round of the calibration loop, in units of the stamp.
+double calibration() {
+  constexpr int rounds = 20000;
+  volatile double seed = 1.5;
+  double x = seed;
+  const std::uint64_t begin = stamp();
+  for (int i = 0; i < rounds; ++i) x = std::sqrt(1.25 + x * 0.75) + 1.0 / (1.0 + x);
+  const std::uint64_t spent = stamp() - begin;
+  seed = x;
+  return static_cast<double>(spent) / rounds;
+}
 
 /// What two stamps cost with an empty body between them.
 double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, CacheFlush* flush) {
@@ -199,10 +223,10 @@ double overhead_of_stamps(std::size_t times, std::uint64_t step_of_stamps, Cache
 }
 
 void check(const TimedLaw& law) {
-  if (law.path.empty()) throw std::invalid_argument("the path that a law is timed along has no samples");
-  if (!(law.period_s > 0.0) || !std::isfinite(law.period_s)) {
+  if (law.path->ticks() == 0)
+    throw std::invalid_argument("the path that a law is timed along has no samples");
+  if (!std::ranges::all_of(law.path->period_s, [](double s) { return s > 0.0 && std::isfinite(s); }))
     throw std::invalid_argument("the period of the ticks that are timed must be positive");
-  }
 }
 
 }  // namespace
@@ -223,7 +247,9 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
   const auto count_one = [&] {
     if (options.done != nullptr) ++*options.done;
   };
+  std::vector<double> calibrations;
   for (std::size_t round = 0; round < options.rounds; ++round) {
+    calibrations.push_back(calibration());
     const double overhead = overhead_of_stamps(4000, step, nullptr);
     for (std::size_t k = 0; k < subjects.size(); ++k) {
       if (stopped()) return {};
@@ -240,8 +266,9 @@ std::vector<TickCost> tick_costs(std::span<const TimedLaw> laws, const TickCostO
       count_one();
     }
   }
+  const double calibration_round = quantile(calibrations, quiet_share);
   std::vector<TickCost> costs;
-  for (const Subject& subject : subjects) costs.push_back(subject.cost(rate.unit_ns()));
+  for (const Subject& subject : subjects) costs.push_back(subject.cost(rate.unit_ns(), calibration_round));
   return costs;
 }
 

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <kerf/drivers/device.h>
-
+#include "laws/sampled_motion.h"
 #include "loop/command.h"
 
 namespace kerf::bench {
@@ -17,14 +16,13 @@ struct TickCost {
   double p999_ns = 0.0;
   double cold_p50_ns = 0.0;  ///< the caches of the processor's core hold none of the law's data
   double cold_p999_ns = 0.0;
+  double mean_rounds = 0.0;  ///< mean over the whole path, in rounds of the calibration loop
 };
 
-/// A law as the loop renders it, and the samples that it is shown, one a tick. The samples must outlive the
-/// measurement.
+/// A law as the loop renders it, and the motion that it is shown, which must outlive the measurement.
 struct TimedLaw {
   LawRendering rendering;
-  std::span<const drivers::Sample> path;
-  double period_s = 1e-3;
+  const SampledMotion* path;
 };
 
 struct TickCostOptions {
@@ -42,6 +40,10 @@ struct TickCostOptions {
 /// each, each along its whole path from a fresh state. A neighbour on the same core slows whole rounds, by
 /// half or more, so that the cost p50 is the lowest tenth of its medians in the rounds; the others are the
 /// median of their percentiles. Nothing is allocated between the stamps.
+///
+/// In rounds: the whole path without a stamp between its ticks, so that they overlap as the processor likes,
+/// over a loop of multiplications, divisions and square roots that it cannot shorten and that takes its turn
+/// in every round. This tells more of the law than of the machine.
 ///
 /// Cold: before a tick the thread reads a buffer larger than the last cache that the core has for itself. The
 /// law's data then come from the shared cache or from memory; instructions may stay in a cache of their own,

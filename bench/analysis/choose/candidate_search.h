@@ -73,7 +73,9 @@ struct LawChoice {
   fitting::FitOptions settings;
 };
 
-/// Goes over candidates whose errors are known, from the simplest on, and takes the first that serves.
+/// Goes over candidates whose errors are known, from the simplest on, and takes the first that serves. Not
+/// the question of fitting::choose_simplest(), which asks what describes a recording: here a law has to hold
+/// in the loop too.
 ///
 /// The order is that of the number of parameters; of equal ones that of the cost of a tick in whole
 /// microseconds (a thousandth of the period at 1 kHz: finer differences buy nothing and do not repeat), then

@@ -89,7 +89,7 @@ json choice_as_json(const LawChoice& choice) {
       {"jnd", choice.jnd_n},
       {"force_rms", choice.force_rms_n},
       {"weber_fraction", choice.settings.jnd.weber_fraction},
-      {"threshold", choice.settings.jnd.threshold_n},
+      {"threshold", choice.settings.jnd.threshold},
       {"held_out_by", choice.held_out},
       {"choice",
        {{"law", name_at(choice.taken)},

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <thread>
@@ -12,7 +11,6 @@
 #include <fmt/core.h>
 
 #include "chart/tick_cost.h"
-#include "fits/choice.h"
 #include "recordings/axis_series.h"
 
 namespace kerf::bench {
@@ -83,7 +81,7 @@ class LawSelection {
   void time(std::span<Candidate> group) const {
     std::vector<TimedLaw> timed;
     for (const Candidate& one : group) {
-      if (one.file) timed.push_back({LawRendering(one.file->law, {}, {0}), path_, period_s_});
+      if (one.file) timed.push_back({LawRendering(one.file->law, {}, {0}), &path_});
     }
     const std::vector<TickCost> costs =
         tick_costs(timed, {.rounds = timing_rounds, .cold_ticks = 0, .max_seconds = timing_s});
@@ -94,15 +92,13 @@ class LawSelection {
   }
 
   void measure(const AxisSeries& series) {
-    choice_.jnd_n = jnd_of(series.force, options_.fit.jnd);
-    const double squares =
-        std::inner_product(series.force.begin(), series.force.end(), series.force.begin(), 0.0);
-    choice_.force_rms_n = std::sqrt(squares / static_cast<double>(series.force.size()));
+    choice_.force_rms_n = fitting::rms_of(series.force);
+    choice_.jnd_n = options_.fit.jnd.at(choice_.force_rms_n);
     const double duration_s = series.time_s.back() - series.time_s.front();
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
-    period_s_ = std::max(1e-6, duration_s / periods);
+    path_ = ticks_at(1.0 / std::max(1e-6, duration_s / periods), series.force.size());
     for (std::size_t i = 0; i < series.force.size(); ++i)
-      path_.push_back({.position = {series.penetration[i]}, .velocity = {series.velocity[i]}});
+      path_.sample[i] = {.position = {series.penetration[i]}, .velocity = {series.velocity[i]}};
   }
 
   void describe_folds(std::size_t cycles) {
@@ -183,8 +179,7 @@ class LawSelection {
   const std::atomic<bool>& stop_;
   LawChoice choice_;
   CandidateSearch search_;
-  std::vector<drivers::Sample> path_;  ///< the recording, as penetration on one axis
-  double period_s_ = 1e-3;
+  SampledMotion path_;  ///< the recording, as penetration on one axis
   std::shared_ptr<fitting::SegmentedMemory> memory_;
 };
 

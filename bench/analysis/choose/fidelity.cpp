@@ -8,29 +8,14 @@
 
 #include <fmt/core.h>
 
-#include "chart/reference_forces.h"
 #include "chart/tick_cost.h"
 #include "laws/placement.h"
-#include "loop/command.h"
+#include "laws/render.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::array strip_counts{1, 2, 4, 8, 16, 32, 64};
-
-/// The scene's script, tick by tick, and the device's axes that the blade is rendered on.
-struct BladePath {
-  std::vector<drivers::Sample> samples;
-  std::vector<std::size_t> axes;
-  double period_s = 0.0;
-};
-
-BladePath blade_path(const Scene& scene, double rate_hz) {
-  const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
-  return {.samples = samples_of(tool_path(scene, rate_hz)),
-          .axes = axes_for(scene.tissue, device),
-          .period_s = 1.0 / rate_hz};
-}
 
 LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
   models::Options options = law.law.options();
@@ -41,27 +26,10 @@ LawFile with_fidelity(const LawFile& law, const std::string& kind, int strips) {
   return other;
 }
 
-LawRendering rendering_of(const Candidate& one, const BladePath& path) {
-  return {one.file->law, one.file->contact, path.axes};
-}
-
-/// The forces of a candidate along the path, by the blade's own axes.
-std::vector<models::AxisValues> forces_of(const Candidate& one, const BladePath& path) {
-  LawRendering rendering = rendering_of(one, path);
-  std::vector<models::AxisValues> forces;
-  for (const drivers::Sample& sample : path.samples) {
-    const Command command = rendering(sample, path.period_s);
-    models::AxisValues force{};
-    for (std::size_t i = 0; i < path.axes.size(); ++i) force[i] = command.force[path.axes[i]];
-    forces.push_back(force);
-  }
-  return forces;
-}
-
 /// What a tick of each costs in the loop.
-void time(std::vector<Candidate>& all, const BladePath& path) {
+void time(std::vector<Candidate>& all, const SampledMotion& path, const std::vector<std::size_t>& axes) {
   std::vector<TimedLaw> timed;
-  for (const Candidate& one : all) timed.push_back({rendering_of(one, path), path.samples, path.period_s});
+  for (const Candidate& one : all) timed.push_back({{one.file->law, one.file->contact, axes}, &path});
   const std::vector<TickCost> costs = tick_costs(timed, {.rounds = 9, .cold_ticks = 0});
   for (std::size_t i = 0; i < all.size(); ++i) all[i].tick_us = 1e-3 * costs[i].p50_ns;
 }
@@ -72,16 +40,17 @@ struct Size {
   double torque_n_m = 0.0;
 };
 
-Size size_of(const std::vector<models::AxisValues>& force, const std::vector<models::AxisValues>& less,
-             const std::vector<bool>& counts) {
+/// By the blade's own axes, which are those of the device.
+Size size_of(const std::vector<drivers::Axes>& force, const std::vector<drivers::Axes>& less,
+             const std::vector<bool>& counts, const std::vector<std::size_t>& axes) {
   Size squares;
   double ticks = 0.0;
   for (std::size_t tick = 0; tick < force.size(); ++tick) {
     if (!counts[tick]) continue;
     ticks += 1.0;
-    for (std::size_t axis = 0; axis < 6; ++axis) {
-      const double value = force[tick][axis] - (less.empty() ? 0.0 : less[tick][axis]);
-      (axis < 3 ? squares.force_n : squares.torque_n_m) += value * value;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      const double value = force[tick][axes[i]] - (less.empty() ? 0.0 : less[tick][axes[i]]);
+      (i < 3 ? squares.force_n : squares.torque_n_m) += value * value;
     }
   }
   return {.force_n = std::sqrt(squares.force_n / ticks), .torque_n_m = std::sqrt(squares.torque_n_m / ticks)};
@@ -114,10 +83,6 @@ Candidate candidate(const LawFile& file, const std::string& kind, int strips) {
 
 }  // namespace
 
-double TorqueJnd::at(double torque_n_m) const noexcept {
-  return std::max(weber_fraction * std::abs(torque_n_m), threshold_n_m);
-}
-
 LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, const std::atomic<bool>& stop) {
   if (models::law_facts(scene.tissue.law.model()).fineness != models::Fineness::strips) {
     throw std::invalid_argument(
@@ -125,28 +90,30 @@ LawChoice choose_fidelity(const Scene& scene, const FidelityOptions& options, co
                     "'blade' has",
                     scene.tissue.law.model()));
   }
-  const BladePath path = blade_path(scene, options.rate_hz);
-  if (path.samples.empty()) throw std::invalid_argument("the scene's path is over before its first tick");
+  const SampledMotion path = tool_path(scene, options.rate_hz);
+  const std::vector<std::size_t> axes =
+      axes_for(scene.tissue, drivers::open_device(device_of(scene))->info());
+  if (path.ticks() == 0) throw std::invalid_argument("the scene's path is over before its first tick");
   LawChoice choice;
   choice.settings.jnd = options.jnd;
   choice.candidates.push_back(candidate(scene.tissue, "exact", 16));
   for (const char* kind : {"paper", "strips"}) {
     for (const int strips : strip_counts) choice.candidates.push_back(candidate(scene.tissue, kind, strips));
   }
-  const auto reference = forces_of(choice.candidates.front(), path);
+  const auto reference = render(*choice.candidates.front().file, axes, path).force;
   std::vector<bool> pushes;
-  for (const models::AxisValues& force : reference)
+  for (const drivers::Axes& force : reference)
     pushes.push_back(std::ranges::any_of(force, [](double value) { return value != 0.0; }));
   const auto ticks = std::ranges::count(pushes, true);
   if (ticks == 0) throw std::invalid_argument("along the scene's path the blade never pushes on anything");
-  const Size whole = size_of(reference, {}, pushes);
+  const Size whole = size_of(reference, {}, pushes, axes);
   choice.force_rms_n = whole.force_n;
   choice.jnd_n = options.jnd.at(whole.force_n);
   const double jnd_n_m = options.torque_jnd.at(whole.torque_n_m);
   choice.held_out = fmt::format("the scene's path, {} ticks of {} in the tissue", ticks, pushes.size());
-  time(choice.candidates, path);
+  time(choice.candidates, path, axes);
   for (Candidate& one : choice.candidates) {
-    const Size error = size_of(forces_of(one, path), reference, pushes);
+    const Size error = size_of(render(*one.file, axes, path).force, reference, pushes, axes);
     one.error_n = error.force_n;
     one.error_torque_n_m = error.torque_n_m;
     one.error_jnd = std::max(error.force_n / choice.jnd_n, error.torque_n_m / jnd_n_m);

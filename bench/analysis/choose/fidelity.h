@@ -9,19 +9,10 @@
 
 namespace kerf::bench {
 
-/// What of a torque a person can feel: the larger of a Weber fraction and an absolute threshold. Source of
-/// the fraction: [JanduraSrinivasan1994] (12.7 % at 60 mN·m between two fingers); the threshold is
-/// assumed, 0.05 N at a radius of 10 mm.
-struct TorqueJnd {
-  double weber_fraction = 0.127;
-  double threshold_n_m = 5e-4;
-  [[nodiscard]] double at(double torque_n_m) const noexcept;
-};
-
 struct FidelityOptions {
   double rate_hz = 1000.0;
-  fitting::ForceJnd jnd;
-  TorqueJnd torque_jnd;
+  fitting::Jnd jnd = fitting::force_jnd;
+  fitting::Jnd torque_jnd = fitting::torque_jnd;
   CandidateSearchOptions search;
 };
 

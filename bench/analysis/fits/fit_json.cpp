@@ -125,7 +125,7 @@ json settings_as_json(const fitting::FitOptions& settings) {
           {"loss", name_of(settings.loss)},
           {"loss_scale", settings.loss_scale_n > 0.0 ? json(settings.loss_scale_n) : json(nullptr)},
           {"weber_fraction", settings.jnd.weber_fraction},
-          {"threshold", settings.jnd.threshold_n}};
+          {"threshold", settings.jnd.threshold}};
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 
 #include <fmt/core.h>
 
-#include "fits/choice.h"
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
 #include "recordings/provenance.h"
@@ -245,8 +244,8 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   if (fit.laws.empty()) return fit;
   const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
-  fit.jnd_n = jnd_of(sources.pool.force, options.fit.jnd);
-  fit.choice = choose(results, pool, options.fit);
+  fit.jnd_n = options.fit.jnd.at(fitting::rms_of(sources.pool.force));
+  fit.choice = fitting::choose_simplest(results, pool, options.fit);
   return fit;
 }
 

@@ -7,22 +7,16 @@
 
 #include <fmt/ranges.h>
 
-#include <kerf/fitting/fit.h>
-
-#include "choose/fidelity.h"
+#include <kerf/fitting/jnd.h>
 
 namespace kerf::bench {
 namespace {
-
-double jnd_of(const schema::ForceChannel& channel, double force) {
-  return channel.unit == "N·m" ? TorqueJnd{}.at(force) : fitting::ForceJnd{}.at(force);
-}
 
 double allowed_by(const Tolerance& tolerance, const schema::ForceChannel& channel, double expected) {
   if (tolerance.exact) return 0.0;
   const double absolute = (channel.unit == "N·m" ? tolerance.torque_n_m : tolerance.force_n).value_or(0.0);
   return std::max({absolute, tolerance.relative.value_or(0.0) * std::abs(expected),
-                   tolerance.jnd ? *tolerance.jnd * jnd_of(channel, expected) : 0.0});
+                   tolerance.jnd ? *tolerance.jnd * fitting::jnd_of(channel.unit).at(expected) : 0.0});
 }
 
 bool same_bits(double a, double b) {
@@ -119,7 +113,7 @@ class Comparing {
       differs = true;
       one.allowed = allowed_by(tolerance_, about.channel, one.expected);
       const double apart = std::abs(one.difference());
-      one.jnds = apart / jnd_of(about.channel, one.expected);
+      one.jnds = apart / fitting::jnd_of(about.channel.unit).at(one.expected);
       about.largest_difference = std::max(about.largest_difference, apart);
       about.largest_jnds = std::max(about.largest_jnds, one.jnds);
       // A number that is not finite is within no tolerance.

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "laws/placement.h"
 #include "tables/json_number.h"
 
 namespace kerf::bench {
@@ -77,8 +78,8 @@ std::vector<ContextRow> context_of(const RegressionOutcome& outcome, std::size_t
     ContextRow row{.tick = tick};
     if (tick < outcome.path.ticks()) {
       row.time_s = outcome.path.time_s[tick];
-      row.position = outcome.path.position[tick][worst.channel];
-      row.velocity = outcome.path.velocity[tick][worst.channel];
+      row.position = outcome.path.sample[tick].position[worst.channel];
+      row.velocity = outcome.path.sample[tick].velocity[worst.channel];
     }
     if (tick < outcome.stored.rows()) row.expected = outcome.stored.force[tick * columns + worst.channel];
     if (tick < outcome.got.rows()) row.got = outcome.got.force[tick * columns + worst.channel];
@@ -91,7 +92,7 @@ std::string context_table(const RegressionOutcome& outcome) {
   const auto rows = context_of(outcome);
   if (rows.empty()) return {};
   const ForceDifference& worst = *outcome.comparison.worst;
-  const models::LawAxis& axis = outcome.path.axes[worst.channel];
+  const models::LawAxis axis = axes_of(outcome.about.law)[worst.channel];
   const auto line = [](const auto&... cells) {
     std::string text;
     ((text += fmt::format("{:>18}", cells)), ...);

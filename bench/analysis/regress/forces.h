@@ -6,7 +6,8 @@
 
 #include <kerf/schema/regression.h>
 
-#include "regress/path.h"
+#include "laws/law_file.h"
+#include "laws/sampled_motion.h"
 
 namespace kerf::bench {
 
@@ -23,14 +24,11 @@ struct RenderedForces {
   }
 };
 
-[[nodiscard]] RenderedForces render_forces(const models::Law& law, const models::Contact& contact,
-                                           const RegressionPath& path);
+[[nodiscard]] RenderedForces render_forces(const LawFile& law, const SampledMotion& motion);
 
-/// What a tick of a law costs, in rounds of a calibration loop: a chain of multiplications, divisions and
-/// square roots that a processor cannot shorten. Both are measured by turns, so that what slows the machine
-/// slows both; the median of the ratios. @throws std::invalid_argument for a path without a tick.
-[[nodiscard]] double tick_cost(const models::Law& law, const models::Contact& contact,
-                               const RegressionPath& path);
+/// What a tick of a law costs along a motion, in rounds of a calibration loop: TickCost::mean_rounds.
+/// @throws std::invalid_argument as tick_costs().
+[[nodiscard]] double tick_cost(const LawFile& law, const SampledMotion& motion);
 
 /// What a tick's cost depends on beside the code: "optimised" or "not optimised".
 [[nodiscard]] std::string build_kind();

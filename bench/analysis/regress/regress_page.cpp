@@ -7,6 +7,7 @@
 
 #include "files/whole_file.h"
 #include "html/html.h"
+#include "laws/placement.h"
 #include "regress/context.h"
 
 namespace kerf::bench {
@@ -50,7 +51,7 @@ std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:
 std::string context_section(const RegressionOutcome& outcome) {
   const auto context = context_of(outcome);
   if (context.empty()) return {};
-  const models::LawAxis& axis = outcome.path.axes[outcome.comparison.worst->channel];
+  const models::LawAxis axis = axes_of(outcome.about.law)[outcome.comparison.worst->channel];
   std::vector<std::vector<std::string>> rows{
       {"tick", "time [s]", fmt::format("{} [{}]", axis.name, axis.position_unit),
        fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),

@@ -39,7 +39,8 @@ std::vector<std::string> dropped_from(const Suite& suite, const std::vector<sche
 
 std::string why_different(const RegressionOutcome& outcome) {
   const bool law = checksum(outcome.about.law) != outcome.stored.law_sha256;
-  const bool trajectory = checksum(outcome.path) != outcome.stored.trajectory_sha256;
+  const bool trajectory =
+      checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
   const std::string since =
       fmt::format("since {} ({}: {})", outcome.stored.date, outcome.stored.software, outcome.stored.reason);
   if (law && trajectory) return fmt::format("the law file and the trajectory have changed {}", since);
@@ -68,14 +69,14 @@ void judge_cost(RegressionOutcome& outcome) {
 RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
   const auto begin = Clock::now();
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
-  outcome.got = render_forces(one.law.law, one.law.contact, outcome.path);
+  outcome.got = render_forces(one.law, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
   outcome.messages = outcome.comparison.messages;
   if (!outcome.comparison.passed) {
     for (std::string& line : diagnose(stored, outcome.got)) outcome.messages.push_back(std::move(line));
   }
   outcome.why = why_different(outcome);
-  if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law.law, one.law.contact, outcome.path);
+  if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law, outcome.path);
   judge_cost(outcome);
   outcome.seconds = seconds_since(begin);
   return outcome;
@@ -93,12 +94,12 @@ std::string how_different(const ForceComparison& comparison) {
 }
 
 /// A case as it is now, measured anew.
-schema::StoredForces stored_now(const RegressionCase& one, const RegressionPath& path,
+schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& path,
                                 const RenderedForces& got, std::optional<double> cost) {
   schema::StoredForces now{.name = one.name,
                            .model = std::string(one.law.law.model()),
                            .law_sha256 = checksum(one.law),
-                           .trajectory_sha256 = checksum(path),
+                           .trajectory_sha256 = checksum(path, got.channels.size()),
                            .channels = got.channels,
                            .force = got.force,
                            .faults = got.faults,
@@ -109,10 +110,10 @@ schema::StoredForces stored_now(const RegressionCase& one, const RegressionPath&
 
 StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs) {
   if (before == nullptr) {
-    const RegressionPath path = path_of(one);
-    const RenderedForces got = render_forces(one.law.law, one.law.contact, path);
+    const SampledMotion path = path_of(one);
+    const RenderedForces got = render_forces(one.law, path);
     std::optional<double> cost;
-    if (tick_costs && one.tick_cost) cost = tick_cost(one.law.law, one.law.contact, path);
+    if (tick_costs && one.tick_cost) cost = tick_cost(one.law, path);
     return {.name = one.name,
             .kind = ChangeKind::added,
             .what = fmt::format("{} ticks of {} channel{}", got.rows(), got.channels.size(),
@@ -123,8 +124,8 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
   const RegressionOutcome outcome = run_case(one, *before, tick_costs);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
-  const bool same_source =
-      checksum(one.law) == before->law_sha256 && checksum(outcome.path) == before->trajectory_sha256;
+  const bool same_source = checksum(one.law) == before->law_sha256 &&
+                           checksum(outcome.path, outcome.got.channels.size()) == before->trajectory_sha256;
   const bool no_cost_yet = outcome.tick_cost && !before->tick_cost;
   if (outcome.passed() && same_source && !no_cost_yet) {
     if (outcome.comparison.differing > 0) change.what += ", within the tolerance: it stays as it is";

@@ -15,7 +15,7 @@ namespace kerf::bench {
 /// What came of one case.
 struct RegressionOutcome {
   RegressionCase about;
-  RegressionPath path;
+  SampledMotion path;
   RenderedForces got;
   schema::StoredForces stored;
   ForceComparison comparison;

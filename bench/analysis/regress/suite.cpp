@@ -10,14 +10,14 @@
 
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
-#include "scene/read_trajectory.h"
+#include "laws/placement.h"
+#include "scene/read_motion.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double longest_s = 3600.0;
 constexpr std::array<std::string_view, 7> settings{"rate", "seconds", "absolute", "relative",
                                                    "jnd",  "exact",   "tick_cost"};
 
@@ -26,14 +26,6 @@ std::vector<std::string_view> with_settings(Names... names) {
   std::vector<std::string_view> all{names...};
   all.insert(all.end(), settings.begin(), settings.end());
   return all;
-}
-
-/// The names of axes or of cases. Clang 14 does not take the views of GCC's library.
-template <typename Named>
-std::string names_in(const std::vector<Named>& all) {
-  std::string text;
-  for (const Named& one : all) text += (text.empty() ? "" : ", ") + one.name;
-  return text;
 }
 
 /// A bare number within bounds.
@@ -57,10 +49,10 @@ void read_absolute(const Place& place, const toml::node& node, Tolerance& tolera
 /// The settings that a table names, over those that it inherits.
 void read_settings(const Place& place, const toml::table& table, RegressionCase& one) {
   if (table.contains("rate"))
-    one.rate_hz = read_number(place, table, {.key = "rate", .unit = "Hz", .lower = 1.0, .upper = 1e5});
+    one.motion.rate_hz = read_number(place, table, {.key = "rate", .unit = "Hz", .lower = 1.0, .upper = 1e5});
   if (table.contains("seconds"))
-    one.seconds =
-        read_number(place, table, {.key = "seconds", .unit = "s", .lower = 0.001, .upper = longest_s});
+    one.motion.seconds =
+        read_number(place, table, {.key = "seconds", .unit = "s", .lower = 0.001, .upper = longest_motion_s});
   const bool inexact = table.contains("absolute") || table.contains("relative") || table.contains("jnd");
   if (inexact) one.tolerance = {};
   if (const toml::node* absolute = table.get("absolute")) {
@@ -83,66 +75,16 @@ void read_settings(const Place& place, const toml::table& table, RegressionCase&
     one.tick_cost = plain(place, *cost, "tick_cost", 1.1, 1000.0);
 }
 
-ScriptedAxis read_motion(const Place& place, const toml::table& table, const RegressionCase& one) {
-  const auto axes = axes_of(one.law);
-  const std::string name = place.text(table, "axis", axes.front().name);
-  const auto axis = std::ranges::find(axes, name, &models::LawAxis::name);
-  if (axis == axes.end()) {
-    place.refuse(*table.get("axis"), "'axis' is \"{}\", and the law has {}", name, names_in(axes));
-  }
-  const auto position = [&](std::string_view key) {
-    return read_number(place, table, {.key = key, .unit = axis->position_unit, .required = true});
-  };
-  const auto seconds = [&](std::string_view key, double standard, double lower) {
-    return read_number(place, table,
-                       {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = longest_s});
-  };
-  ScriptedAxis motion{.axis = static_cast<std::size_t>(axis - axes.begin()), .script = Rest{}};
-  const std::string kind = place.text(table, "kind", "");
-  if (kind == "rest") {
-    place.allow_only(table, {"kind", "axis", "at"}, "a motion of the kind \"rest\"");
-    motion.script = Rest{.at = position("at")};
-  } else if (kind == "strokes") {
-    place.allow_only(table, {"kind", "axis", "from", "to", "stroke", "pause"}, "a motion of strokes");
-    motion.script = StrokesToAndFro{.from = position("from"),
-                                    .to = position("to"),
-                                    .stroke_s = seconds("stroke", StrokesToAndFro{}.stroke_s, 0.001),
-                                    .pause_s = seconds("pause", StrokesToAndFro{}.pause_s, 0.0)};
-  } else if (kind == "sine") {
-    place.allow_only(table, {"kind", "axis", "centre", "amplitude", "frequency", "phase"},
-                     "a motion of the kind \"sine\"");
-    motion.script = Sine{
-        .centre = position("centre"),
-        .amplitude = position("amplitude"),
-        .frequency_hz = read_number(
-            place, table,
-            {.key = "frequency", .unit = "Hz", .standard = Sine{}.frequency_hz, .lower = 0.0, .upper = 1e4}),
-        .phase_rad = read_number(place, table, {.key = "phase", .unit = "rad"})};
-  } else if (kind == "ramp-and-hold") {
-    place.allow_only(table, {"kind", "axis", "from", "to", "start", "ramp", "hold"},
-                     "a motion of the kind \"ramp-and-hold\"");
-    motion.script = RampAndHold{.from = position("from"),
-                                .to = position("to"),
-                                .start_s = seconds("start", RampAndHold{}.start_s, 0.0),
-                                .ramp_s = seconds("ramp", RampAndHold{}.ramp_s, 0.001),
-                                .hold_s = seconds("hold", RampAndHold{}.hold_s, 0.0)};
-  } else {
-    const toml::node* node = table.get("kind");
-    place.refuse(node != nullptr ? *node : table,
-                 "'kind' is \"{}\", expected \"rest\", \"strokes\", \"sine\" or \"ramp-and-hold\"", kind);
-  }
-  return motion;
-}
-
 void read_motions(const Place& place, const toml::node& node, RegressionCase& one) {
+  const std::vector<models::LawAxis> axes = axes_of(one.law);
   if (const toml::table* table = node.as_table()) {
-    one.motion.push_back(read_motion(place, *table, one));
+    one.motion.axes.push_back(read_scripted_axis(place, *table, axes));
   } else if (const toml::array* all = node.as_array(); all != nullptr && all->is_homogeneous<toml::table>()) {
     for (const toml::node& each : *all) {
-      one.motion.push_back(read_motion(place, *each.as_table(), one));
-      const std::size_t axis = one.motion.back().axis;
-      if (std::ranges::count(one.motion, axis, &ScriptedAxis::axis) > 1)
-        place.refuse(each, "axis '{}' has two motions", axes_of(one.law)[axis].name);
+      one.motion.axes.push_back(read_scripted_axis(place, *each.as_table(), axes));
+      const std::size_t axis = one.motion.axes.back().axis;
+      if (std::ranges::count(one.motion.axes, axis, &ScriptedAxis::axis) > 1)
+        place.refuse(each, "axis '{}' has two motions", axes[axis].name);
     }
   } else {
     place.refuse(node, "expected one [[case.motion]] or more");
@@ -188,22 +130,17 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
     place.refuse(table, "case '{}' needs one trajectory: a recording, a scene or [[case.motion]]; found {}",
                  one.name, sources);
   }
-  if (table.contains("recording")) one.recording = file_at(place, table, "recording", folder);
-  if (table.contains("scene")) one.scene = file_at(place, table, "scene", folder);
+  if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
+  if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
   read_settings(place, table, one);
   if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
-  if (table.contains("rate") && !one.recording.empty())
+  if (table.contains("rate") && !one.motion.recording.empty())
     place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");
   require_tolerances(place, table, one);
   return one;
 }
 
 }  // namespace
-
-std::vector<models::LawAxis> axes_of(const LawFile& law) {
-  if (law.law.is_spatial()) return law.law.axes();
-  return {{law.axis.empty() ? "position" : law.axis, law.position_unit, law.force_unit}};
-}
 
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "laws/law_file.h"
+#include "scene/motion.h"
 
 namespace kerf::bench {
 
@@ -23,50 +23,12 @@ struct Tolerance {
   bool exact = false;
 };
 
-/// Stays in one place.
-struct Rest {
-  double at = 0.0;
-};
-/// To and fro with minimum jerk, a pause before every stroke.
-struct StrokesToAndFro {
-  double from = 0.0;
-  double to = 0.0;
-  double stroke_s = 0.4;
-  double pause_s = 0.1;
-};
-/// x = centre + amplitude sin(2 pi f t + phase)
-struct Sine {
-  double centre = 0.0;
-  double amplitude = 0.0;
-  double frequency_hz = 1.0;
-  double phase_rad = 0.0;
-};
-/// Rests, goes at constant speed, holds, and goes back if there is time for it.
-struct RampAndHold {
-  double from = 0.0;
-  double to = 0.0;
-  double start_s = 0.1;
-  double ramp_s = 0.2;
-  double hold_s = 0.4;
-};
-
-/// What one axis of a trajectory does. Positions in the axis' own unit.
-struct ScriptedAxis {
-  std::size_t axis = 0;  ///< of the law's
-  std::variant<Rest, StrokesToAndFro, Sine, RampAndHold> script;
-};
-
-/// A law, a trajectory and how exactly the forces have to be those stored. The trajectory is that of a
-/// recording, of a scene's script, or of motions given axis by axis.
+/// A law, a trajectory and how exactly the forces have to be those stored.
 struct RegressionCase {
   std::string name;
   std::filesystem::path law_file;
   LawFile law;
-  std::filesystem::path recording;
-  std::filesystem::path scene;
-  std::vector<ScriptedAxis> motion;
-  double rate_hz = 1000.0;        ///< of a scripted trajectory
-  std::optional<double> seconds;  ///< of a scripted one without it 1; of the others all there is
+  MotionSource motion;
   Tolerance tolerance;
   std::optional<double> tick_cost;  ///< how many times its stored cost a tick may cost
 };
@@ -85,8 +47,5 @@ struct Suite {
 /// The suite with these cases alone, in the suite's order; all of them if none is named.
 /// @throws std::invalid_argument for a name that is none.
 [[nodiscard]] Suite only(const Suite& suite, const std::vector<std::string>& names);
-
-/// The axes that a law acts on, with their units; a scalar law has one.
-[[nodiscard]] std::vector<models::LawAxis> axes_of(const LawFile& law);
 
 }  // namespace kerf::bench

@@ -6,10 +6,6 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <kerf/fitting/fit.h>
-
-#include "choose/fidelity.h"
-
 namespace kerf::bench {
 namespace {
 
@@ -101,19 +97,6 @@ EventMatch match(const std::vector<double>& recorded, const std::vector<double>&
 }
 
 }  // namespace
-
-double AxisJnd::at(double force) const noexcept {
-  return std::max(weber_fraction * std::abs(force), threshold);
-}
-
-AxisJnd jnd_for(const schema::Axis& axis) {
-  if (axis.force_unit == "N") {
-    const fitting::ForceJnd jnd;
-    return {.weber_fraction = jnd.weber_fraction, .threshold = jnd.threshold_n};
-  }
-  const TorqueJnd jnd;
-  return {.weber_fraction = jnd.weber_fraction, .threshold = jnd.threshold_n_m};
-}
 
 std::vector<ForceEvent> find_force_events(std::span<const double> time_s, std::span<const double> force,
                                           const ForceEventOptions& options) {

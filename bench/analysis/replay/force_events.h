@@ -7,18 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include <kerf/schema/recording.h>
+#include <kerf/fitting/jnd.h>
 
 namespace kerf::bench {
-
-/// What of a force or a torque a person can feel: the larger of a share of it and an absolute threshold.
-struct AxisJnd {
-  double weber_fraction = 0.0;
-  double threshold = 0.0;  ///< in the unit of the axis' force
-  [[nodiscard]] double at(double force) const noexcept;
-};
-/// fitting::ForceJnd for a force in N, TorqueJnd for a torque in N·m.
-[[nodiscard]] AxisJnd jnd_for(const schema::Axis& axis);
 
 enum class ForceEventKind : std::uint8_t { contact, release, drop };
 inline constexpr std::array<std::string_view, 3> force_event_names{"contact", "release", "drop"};
@@ -30,7 +21,7 @@ struct ForceEvent {
 };
 
 struct ForceEventOptions {
-  AxisJnd jnd;
+  fitting::Jnd jnd;
   double contact = 0.0;     ///< |F| above which there is contact, until it is below half of it; 0: twice the
                             ///< threshold of the JND
   double window_s = 0.005;  ///< a drop falls by more than the JND at its peak within so long

@@ -8,6 +8,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+
 #include "laws/placement.h"
 #include "loop/clock.h"
 #include "loop/command.h"
@@ -40,28 +42,8 @@ std::uint32_t flags_of(const schema::Recording& recording, std::size_t row) {
   return recording.flags.empty() ? 0U : recording.flags[row];
 }
 
-drivers::Sample sample_of(const schema::Recording& recording, std::size_t row) {
-  const std::size_t axes = recording.dimensions();
-  drivers::Sample sample;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    sample.position[axis] = recording.position[row * axes + axis];
-    sample.velocity[axis] = recording.velocity[row * axes + axis];
-  }
-  return sample;
-}
-
-/// The time since the tick before, as the loop takes it.
-double elapsed_s(const Source& source, std::size_t row) {
-  const schema::Recording& recording = source.recording;
-  if (!source.on_grid) {
-    return row > 0 ? recording.time[row] - recording.time[row - 1] : source.period_s;
-  }
-  const std::uint64_t expected =
-      row > 0 ? recording.tick[row - 1] + 1 : (source.from_start ? 0 : recording.tick[0]);
-  return static_cast<double>(recording.tick[row] + 1 - expected) * source.period_s;
-}
-
-/// A law at work on the rows of a recording.
+/// A law at work on the rows of a recording, one by one: by a clock, beside others, and past the rows that
+/// the loop passed by, so not by render().
 class Player {
  public:
   Player(const NamedLaw& law, const drivers::DeviceInfo& axes, std::size_t rows)
@@ -70,7 +52,7 @@ class Player {
     trace_.force.reserve(rows);
     trace_.flags.reserve(rows);
   }
-  void step(const drivers::Sample& sample, double period_s, std::uint32_t recorded_flags) {
+  void step(const models::SpatialMotion& sample, double period_s, std::uint32_t recorded_flags) {
     Command command;
     if ((recorded_flags & not_rendered) == 0) command = rendering_(sample, period_s);
     if ((command.flags & schema::flag_law_fault) != 0) ++trace_.faults;
@@ -127,7 +109,7 @@ void compare_exactly(const schema::Recording& recording, const LawTrace& trace, 
 }
 
 /// The differences, over the rows that have both forces.
-void measure(const std::vector<double>& time_s, const AxisJnd& jnd, AxisComparison& result) {
+void measure(const std::vector<double>& time_s, const fitting::Jnd& jnd, AxisComparison& result) {
   double squares = 0.0;
   double force_squares = 0.0;
   for (std::size_t row = 0; row < result.rendered.size(); ++row) {
@@ -165,8 +147,9 @@ AxisComparison compare(const Source& source, const LawTrace& trace, std::size_t 
     result.recorded.push_back((commanded ? sense : 1.0) * recorded[row * axes + axis]);
     result.rendered.push_back(sense * trace.force[row][axis]);
   }
-  const ForceEventOptions events{
-      .jnd = jnd_for(recording.axes[axis]), .contact = options.contact, .window_s = options.window_s};
+  const ForceEventOptions events{.jnd = fitting::jnd_of(recording.axes[axis].force_unit),
+                                 .contact = options.contact,
+                                 .window_s = options.window_s};
   measure(recording.time, events.jnd, result);
   const std::span<const double> times(recording.time.data(), trace.force.size());
   result.recorded_events = find_force_events(times, result.recorded, events);
@@ -182,6 +165,7 @@ OpenLoopResult run_open_loop(const Source& source, const std::vector<NamedLaw>& 
                              const OpenLoopOptions& options, const std::atomic<bool>& stop) {
   const schema::Recording& recording = source.recording;
   const drivers::DeviceInfo axes = device_of_axes(recording);
+  const SampledMotion motion = motion_of(source);
   std::vector<Player> players;
   for (const NamedLaw& law : laws) players.emplace_back(law, axes, recording.rows());
   std::optional<Pace> pace;
@@ -189,9 +173,8 @@ OpenLoopResult run_open_loop(const Source& source, const std::vector<NamedLaw>& 
   OpenLoopResult result;
   for (; result.rows < recording.rows() && !stop; ++result.rows) {
     if (pace) pace->wait(recording.time[result.rows], source.period_s);
-    const drivers::Sample sample = sample_of(recording, result.rows);
-    const double period_s = elapsed_s(source, result.rows);
-    for (Player& player : players) player.step(sample, period_s, flags_of(recording, result.rows));
+    for (Player& player : players)
+      player.step(motion.sample[result.rows], motion.period_s[result.rows], flags_of(recording, result.rows));
   }
   if (pace) result.punctuality = pace->punctuality();
   for (Player& player : players) {

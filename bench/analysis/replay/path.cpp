@@ -58,21 +58,16 @@ void check_row(const Source& source, std::size_t row, const Path& path, const dr
   }
 }
 
-Path::Piece piece_of(const Source& source, std::size_t begin, std::size_t end, const Path& path,
+Path::Piece piece_of(const SampledMotion& motion, std::size_t begin, std::size_t end, const Path& path,
                      double speed) {
-  const schema::Recording& recording = source.recording;
-  const std::size_t axes = recording.dimensions();
   Path::Piece piece;
   for (std::size_t row = begin; row < end; ++row) {
-    drivers::Axes position{};
-    drivers::Axes velocity{};
-    for (std::size_t axis = 0; axis < axes; ++axis) {
-      position[path.axes[axis]] = recording.position[row * axes + axis];
-      velocity[path.axes[axis]] = speed * recording.velocity[row * axes + axis];
+    piece.time_s.push_back((motion.time_s[row] - motion.time_s[begin]) / speed);
+    models::SpatialMotion& sample = piece.sample.emplace_back();
+    for (std::size_t axis = 0; axis < path.axes.size(); ++axis) {
+      sample.position[path.axes[axis]] = motion.sample[row].position[axis];
+      sample.velocity[path.axes[axis]] = speed * motion.sample[row].velocity[axis];
     }
-    piece.time_s.push_back((recording.time[row] - recording.time[begin]) / speed);
-    piece.position.push_back(position);
-    piece.velocity.push_back(velocity);
   }
   // A duration that is whole in ticks stays so, however it was rounded.
   piece.ticks = static_cast<std::uint64_t>(std::ceil(piece.time_s.back() / path.period_s - 1e-6));
@@ -122,15 +117,16 @@ Path make_path(const Source& source, const drivers::DeviceInfo& device, double p
     if (info.speed_limit > 0.0) path.move_limit[axis] = std::min(path.move_limit[axis], info.speed_limit);
   }
   for (std::size_t row = 0; row < recording.rows(); ++row) check_row(source, row, path, device, options);
+  const SampledMotion motion = motion_of(source);
   std::size_t begin = 0;
   for (const Gap& gap : source.gaps) {
     if (options.bridge) break;
-    path.pieces.push_back(piece_of(source, begin, gap.after + 1, path, options.speed));
+    path.pieces.push_back(piece_of(motion, begin, gap.after + 1, path, options.speed));
     path.pieces.back().wait_ticks =
         static_cast<std::uint64_t>(std::llround((gap.end_s - gap.begin_s) / options.speed / period_s));
     begin = gap.after + 1;
   }
-  path.pieces.push_back(piece_of(source, begin, recording.rows(), path, options.speed));
+  path.pieces.push_back(piece_of(motion, begin, recording.rows(), path, options.speed));
   find_longest_pass(path, device);
   return path;
 }
@@ -161,12 +157,12 @@ void PathPlayer::enter(Part part, std::uint64_t ticks) noexcept {
 void PathPlayer::next() noexcept {
   const Path::Piece& piece = path_->pieces[piece_];
   if (part_ == Part::move) {
-    reference_.position = piece.position.front();
+    reference_.position = piece.sample.front().position;
     row_ = 0;
     return enter(Part::play, piece.ticks);
   }
   if (part_ == Part::play) {
-    reference_.position = piece.position.back();
+    reference_.position = piece.sample.back().position;
     return enter(Part::wait, piece.wait_ticks);
   }
   if (piece_ + 1 == path_->pieces.size() && !path_->loop) return enter(Part::end, 0);
@@ -176,11 +172,11 @@ void PathPlayer::next() noexcept {
 
 void PathPlayer::begin_move() noexcept {
   from_ = reference_.position;
-  enter(Part::move, ticks_of_move(*path_, from_, path_->pieces[piece_].position.front()));
+  enter(Part::move, ticks_of_move(*path_, from_, path_->pieces[piece_].sample.front().position));
 }
 
 void PathPlayer::move_on() noexcept {
-  const drivers::Axes& to = path_->pieces[piece_].position.front();
+  const drivers::Axes& to = path_->pieces[piece_].sample.front().position;
   const double seconds = static_cast<double>(length_) * path_->period_s;
   const drivers::MinimumJerk stroke =
       length_ > 0 ? drivers::MinimumJerk::at(static_cast<double>(at_) / static_cast<double>(length_))
@@ -199,10 +195,11 @@ void PathPlayer::play_on() noexcept {
   const double length_s = piece.time_s[after] - piece.time_s[row_];
   const double share = length_s > 0.0 ? std::clamp((now_s - piece.time_s[row_]) / length_s, 0.0, 1.0) : 1.0;
   for (const std::size_t axis : path_->axes) {
-    const double position = piece.position[row_][axis];
-    const double velocity = piece.velocity[row_][axis];
-    reference_.position[axis] = position + share * (piece.position[after][axis] - position);
-    reference_.velocity[axis] = velocity + share * (piece.velocity[after][axis] - velocity);
+    const auto& [position, velocity] = piece.sample[row_];
+    reference_.position[axis] =
+        position[axis] + share * (piece.sample[after].position[axis] - position[axis]);
+    reference_.velocity[axis] =
+        velocity[axis] + share * (piece.sample[after].velocity[axis] - velocity[axis]);
   }
 }
 

@@ -28,8 +28,7 @@ struct PathOptions {
 struct Path {
   struct Piece {
     std::vector<double> time_s;  ///< from the piece's begin, at the speed of the replay
-    std::vector<drivers::Axes> position;
-    std::vector<drivers::Axes> velocity;
+    std::vector<models::SpatialMotion> sample;
     std::uint64_t ticks = 0;       ///< that playing it takes
     std::uint64_t wait_ticks = 0;  ///< of the gap after it, for which the reference stays where it is
   };

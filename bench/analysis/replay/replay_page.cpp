@@ -7,6 +7,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+
 #include "html/html.h"
 
 namespace kerf::bench {
@@ -19,7 +21,7 @@ constexpr std::array colours{Colour::blue,   Colour::vermillion, Colour::green, 
 
 std::pair<Chart, Chart> charts_of_axis(const Source& source, const OpenLoopResult& result, std::size_t axis) {
   const schema::Axis& about = source.recording.axes[axis];
-  const AxisJnd jnd = jnd_for(about);
+  const fitting::Jnd& jnd = fitting::jnd_of(about.force_unit);
   Chart forces{.title = fmt::format("Force on {}, recorded and rendered on the same ticks", about.name),
                .x_label = "time [s]",
                .y_label = fmt::format("force [{}]", about.force_unit),

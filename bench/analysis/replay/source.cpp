@@ -229,6 +229,25 @@ Source at_speed(const Source& source, double speed) {
   return result;
 }
 
+SampledMotion motion_of(const Source& source) {
+  const schema::Recording& recording = source.recording;
+  const std::size_t axes = recording.dimensions();
+  SampledMotion motion{.time_s = recording.time, .period_s = periods_of(recording.time), .sample = {}};
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    models::SpatialMotion& sample = motion.sample.emplace_back();
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      sample.position[axis] = recording.position[row * axes + axis];
+      sample.velocity[axis] = recording.velocity[row * axes + axis];
+    }
+    if (!source.on_grid) continue;
+    const std::uint64_t expected =
+        row > 0 ? recording.tick[row - 1] + 1 : (source.from_start ? 0 : recording.tick[0]);
+    motion.period_s[row] = static_cast<double>(recording.tick[row] + 1 - expected) * source.period_s;
+  }
+  if (!source.on_grid) motion.period_s.front() = source.period_s;
+  return motion;
+}
+
 std::string gaps_in_words(const Source& source, bool bridge) {
   if (source.gaps.empty()) return "";
   const auto longest =

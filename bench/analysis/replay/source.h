@@ -8,6 +8,8 @@
 
 #include <kerf/schema/recording.h>
 
+#include "laws/sampled_motion.h"
+
 namespace kerf::bench {
 
 /// Which rows of a recording are replayed; all of them unless something is said.
@@ -48,6 +50,9 @@ struct Source {
 /// between the rows, velocities times the speed. Ticks that fall into a gap are left out, so that a gap stays
 /// one. Every row is flagged as resampled.
 [[nodiscard]] Source at_speed(const Source& source, double speed);
+
+/// The rows as the loop that recorded them saw them: their periods are those since its tick before.
+[[nodiscard]] SampledMotion motion_of(const Source& source);
 
 /// What a replay makes of the gaps, as a sentence; empty if there are none.
 [[nodiscard]] std::string gaps_in_words(const Source& source, bool bridge);

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <kerf/fitting/jnd.h>
+
 #include "stability/law_force.h"
 #include "stability/sampled_device.h"
 #include "stability/strokes.h"
@@ -87,6 +89,6 @@ struct PressVerdict {
 /// beyond 1 kN, or its ripple is over `felt_n` at the end and has not fallen by 10 % since the second
 /// quarter. The device must be in a hand with a stiffness.
 [[nodiscard]] PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press& how,
-                                 double felt_n = 0.05);
+                                 double felt_n = fitting::force_jnd.threshold);
 
 }  // namespace kerf::bench

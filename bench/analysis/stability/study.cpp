@@ -44,7 +44,7 @@ std::size_t axis_of(const AxisRequest& given, const drivers::DeviceInfo& info) {
     if (info.axes[at].name == given.axis) return at;
   }
   throw std::invalid_argument(
-      fmt::format("{} has no axis '{}'; it has {}", info.uri, given.axis, names_of_axes(info)));
+      fmt::format("{} has no axis '{}'; it has {}", info.uri, given.axis, names_in(info.axes)));
 }
 
 Range range_of(const std::vector<double>& given, const char* option, Range standard, bool from_zero) {

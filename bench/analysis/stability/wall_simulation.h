@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include <kerf/fitting/jnd.h>
+
 #include "stability/sampled_loop.h"
 #include "stability/wall_theory.h"
 
@@ -15,7 +17,7 @@ struct WallTrial {
   double seconds = 2.0;
   double start_m = 1e-3;
   double push_n = 0.0;
-  double felt_n = 0.05;  ///< rms of a force about its mean that a hand feels
+  double felt_n = fitting::force_jnd.threshold;  ///< rms of a force about its mean that a hand feels
 };
 
 /// Whether simulated walls come to rest.

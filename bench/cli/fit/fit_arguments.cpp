@@ -148,7 +148,7 @@ void add_estimation_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--weber", fit.jnd.weber_fraction, "Weber fraction of the force JND")
       .within(0.0, 1.0)
       .with_default();
-  verb.add_option("--threshold", fit.jnd.threshold_n, "Smallest force JND [N]").not_negative().with_default();
+  verb.add_option("--threshold", fit.jnd.threshold, "Smallest force JND [N]").not_negative().with_default();
 }
 
 }  // namespace

@@ -67,11 +67,7 @@ SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, const Char
 /// How deep the tool goes by the scene's script, past the tissue's contact.
 double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) {
   if (scene.tissue.law.is_spatial()) return 0.0;
-  const std::size_t axis = axis_for(scene.tissue, path.device);
-  double deepest = 0.0;
-  for (const drivers::Axes& position : path.at(rate_hz).position)
-    deepest = std::max(deepest, scene.tissue.contact.motion(position[axis], 0.0).penetration);
-  return deepest;
+  return deepest(path.at(rate_hz), axis_for(scene.tissue, path.device), scene.tissue.contact);
 }
 
 SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions options) {

@@ -202,7 +202,7 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("--weber", arguments->choose.fit.jnd.weber_fraction, "Weber fraction of the force JND")
       .within(0.0, 1.0)
       .with_default();
-  verb.add_option("--threshold", arguments->choose.fit.jnd.threshold_n, "Smallest force JND [N]")
+  verb.add_option("--threshold", arguments->choose.fit.jnd.threshold, "Smallest force JND [N]")
       .positive()
       .with_default();
   verb.add_option("--record-seconds", arguments->record_s,

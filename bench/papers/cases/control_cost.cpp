@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <kerf/drivers/hand.h>
-#include <kerf/fitting/fit.h>
+#include <kerf/fitting/jnd.h>
 
 #include "cases/controlled_wall.h"
 
@@ -35,7 +35,7 @@ void tap(const SampledDevice& device, ControlCost& cost) {
     const double rendered_n = controlled(reading);
     const double own_n = own(reading);
     const double difference_n = std::abs(rendered_n - own_n);
-    const double jnd = difference_n / fitting::ForceJnd{}.at(own_n);
+    const double jnd = difference_n / fitting::force_jnd.at(own_n);
     if (own_n == 0.0 && rendered_n == 0.0) continue;
     cost.worst_n = std::max(cost.worst_n, difference_n);
     cost.worst_jnd = std::max(cost.worst_jnd, jnd);

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <kerf/fitting/jnd.h>
+
 #include "plot/plot.h"
 #include "stability/sampled_loop.h"
 
@@ -26,7 +28,7 @@ struct CaseTrace {
 inline constexpr double lost_n = 1000.0;
 
 /// Force that a hand feels for certain, the floor of the bench's threshold [N].
-inline constexpr double felt_n = 0.05;
+inline constexpr double felt_n = fitting::force_jnd.threshold;
 
 /// rms of a force about its mean over the last `share` of a trace [N].
 [[nodiscard]] double ripple_n(const CaseTrace& trace, double share = 0.25);

@@ -1,16 +1,11 @@
 #include "laws/placement.h"
 
+#include <numeric>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 namespace kerf::bench {
-
-std::string names_of_axes(const drivers::DeviceInfo& device) {
-  std::string names;
-  for (const drivers::AxisInfo& axis : device.axes) names += (names.empty() ? "" : ", ") + axis.name;
-  return names;
-}
 
 std::size_t axis_for(const LawFile& law, const drivers::DeviceInfo& device) {
   const auto fits = [&](const drivers::AxisInfo& axis) {
@@ -49,6 +44,17 @@ std::vector<std::size_t> axes_for(const LawFile& law, const drivers::DeviceInfo&
     }
     axes.push_back(axis);
   }
+  return axes;
+}
+
+std::vector<models::LawAxis> axes_of(const LawFile& law) {
+  if (law.law.is_spatial()) return law.law.axes();
+  return {{law.axis.empty() ? "position" : law.axis, law.position_unit, law.force_unit}};
+}
+
+std::vector<std::size_t> own_axes(const LawFile& law) {
+  std::vector<std::size_t> axes(axes_of(law).size());
+  std::iota(axes.begin(), axes.end(), 0);
   return axes;
 }
 

@@ -10,8 +10,14 @@
 
 namespace kerf::bench {
 
-/// The names of a device's axes, for messages: "theta, x_s".
-[[nodiscard]] std::string names_of_axes(const drivers::DeviceInfo& device);
+/// The names of axes, or of what else has one, for messages: "theta, x_s". Clang 14 does not take the views
+/// of GCC's library.
+template <typename Named>
+[[nodiscard]] std::string names_in(const std::vector<Named>& all) {
+  std::string text;
+  for (const Named& one : all) text += (text.empty() ? "" : ", ") + one.name;
+  return text;
+}
 
 /// The axis of a device on which a law is rendered: the one it names, else the first with its units.
 /// @throws std::invalid_argument if there is none, naming both units.
@@ -21,5 +27,10 @@ namespace kerf::bench {
 /// names.
 /// @throws std::invalid_argument if the device lacks an axis, or has it in other units.
 [[nodiscard]] std::vector<std::size_t> axes_for(const LawFile& law, const drivers::DeviceInfo& device);
+
+/// The axes that a law acts on, with their units; a scalar law has one.
+[[nodiscard]] std::vector<models::LawAxis> axes_of(const LawFile& law);
+/// Their places in a motion that has no others: 0, 1, ...
+[[nodiscard]] std::vector<std::size_t> own_axes(const LawFile& law);
 
 }  // namespace kerf::bench

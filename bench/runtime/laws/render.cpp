@@ -10,6 +10,7 @@
 #include <kerf/models/branch.h>
 
 #include "laws/law_toml.h"
+#include "loop/command.h"
 
 namespace kerf::bench {
 
@@ -41,19 +42,48 @@ models::Law without_rendering_aids(const models::Law& law) {
   return models::Law::make(law.model(), law.values(), options);
 }
 
+SampledMotion ticks_at(double rate_hz, std::size_t ticks) {
+  SampledMotion motion;
+  for (std::size_t tick = 0; tick < ticks; ++tick)
+    motion.time_s.push_back(static_cast<double>(tick) / rate_hz);
+  motion.period_s.assign(ticks, 1.0 / rate_hz);
+  motion.sample.resize(ticks);
+  return motion;
+}
+
+std::vector<double> periods_of(std::span<const double> time_s) {
+  std::vector<double> periods(time_s.size(), 1e-3);
+  for (std::size_t i = 1; i < time_s.size(); ++i) periods[i] = time_s[i] - time_s[i - 1];
+  if (periods.size() > 1) periods[0] = periods[1];
+  return periods;
+}
+
+double deepest(const SampledMotion& motion, std::size_t axis, const models::Contact& contact) {
+  double depth = 0.0;
+  for (const auto& [position, velocity] : motion.sample)
+    depth = std::max(depth, contact.motion(position[axis], velocity[axis]).penetration);
+  return depth;
+}
+
 std::vector<double> render(const models::Law& law, const AxisSeries& series) {
-  std::vector<double> force;
-  force.reserve(series.time_s.size());
-  models::Law::State state = law.initial_state();
-  for (std::size_t i = 0; i < series.time_s.size(); ++i) {
-    // The first row has no period before it; the next one's stands in, since a law only starts there.
-    const std::size_t end = std::min(std::max<std::size_t>(i, 1), series.time_s.size() - 1);
-    const double period_s = end > 0 ? series.time_s[end] - series.time_s[end - 1] : 1e-3;
-    force.push_back(
-        law.step(state, {.penetration = series.penetration[i], .velocity = series.velocity[i]}, period_s)
-            .force);
+  std::vector<models::Motion> motion;
+  motion.reserve(series.time_s.size());
+  for (std::size_t i = 0; i < series.time_s.size(); ++i)
+    motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
+  return law.along(motion, periods_of(series.time_s));
+}
+
+RenderedMotion render(const LawFile& law, const std::vector<std::size_t>& axes, const SampledMotion& motion) {
+  LawRendering rendering(law.law, law.contact, axes);
+  RenderedMotion rendered;
+  rendered.force.reserve(motion.ticks());
+  for (std::size_t tick = 0; tick < motion.ticks(); ++tick) {
+    const Command command = rendering(motion.sample[tick], motion.period_s[tick]);
+    rendered.force.push_back(command.force);
+    if ((command.flags & schema::flag_law_fault) == 0) continue;
+    if (rendered.faults++ == 0) rendered.first_fault = tick;
   }
-  return force;
+  return rendered;
 }
 
 }  // namespace kerf::bench

@@ -47,25 +47,30 @@ class LawRendering {
     for (const std::size_t axis : axes) axis_.at(count_++) = axis;
   }
 
-  [[nodiscard]] Command operator()(const drivers::Sample& sample, double period_s) noexcept {
-    return spatial_ ? in_space(sample, period_s) : along_axis(sample, period_s);
+  /// At a drivers::Sample of the device, or at a models::SpatialMotion of its axes.
+  template <typename Sample>
+  [[nodiscard]] Command operator()(const Sample& sample, double period_s) noexcept {
+    return spatial_ ? in_space(sample.position, sample.velocity, period_s)
+                    : along_axis(sample.position, sample.velocity, period_s);
   }
 
  private:
-  [[nodiscard]] Command along_axis(const drivers::Sample& sample, double period_s) noexcept {
+  [[nodiscard]] Command along_axis(const drivers::Axes& position, const drivers::Axes& velocity,
+                                   double period_s) noexcept {
     const std::size_t axis = axis_[0];
-    const models::Motion motion = contact_.motion(sample.position[axis], sample.velocity[axis]);
+    const models::Motion motion = contact_.motion(position[axis], velocity[axis]);
     const models::Response response = law_.step(state_, motion, period_s);
     Command command;
     command.force[axis] = -contact_.direction * response.force;
     if (response.fault) command.flags |= schema::flag_law_fault;
     return command;
   }
-  [[nodiscard]] Command in_space(const drivers::Sample& sample, double period_s) noexcept {
+  [[nodiscard]] Command in_space(const drivers::Axes& position, const drivers::Axes& velocity,
+                                 double period_s) noexcept {
     models::SpatialMotion motion;
     for (std::size_t i = 0; i < count_; ++i) {
-      motion.position[i] = sample.position[axis_[i]];
-      motion.velocity[i] = sample.velocity[axis_[i]];
+      motion.position[i] = position[axis_[i]];
+      motion.velocity[i] = velocity[axis_[i]];
     }
     const models::SpatialResponse response = law_.step(state_, motion, period_s);
     Command command;

@@ -141,7 +141,7 @@ void read_device(const Place& place, const toml::table& root, Scene& scene) {
   if (axis.empty() || std::ranges::find(device.axes, axis, &drivers::AxisInfo::name) != device.axes.end())
     return;
   place.refuse(*tissue_table(place, root).get("axis"), "'axis' is \"{}\", and the axes of {} are {}", axis,
-               device.model, names_of_axes(device));
+               device.model, names_in(device.axes));
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 #include <kerf/mechanisms/angle.h>
 
 #include "laws/placement.h"
+#include "scene/read_motion.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr double longest_s = 3600.0;
 constexpr double cycles_at_most = 100.0;
 constexpr std::size_t keyframes_at_most = 1000;
 
@@ -26,28 +26,20 @@ void expect_device(const Place& place, const toml::node& node, const drivers::De
                device.model);
 }
 
-ScissorsStrokes read_strokes(const Place& place, const toml::table& table,
-                             const drivers::DeviceInfo& device) {
+drivers::HandOptions read_strokes(const Place& place, const toml::table& table,
+                                  const drivers::DeviceInfo& device) {
   place.allow_only(table, {"kind", "seconds", "open", "close", "stroke", "pause", "variation"},
                    "a [trajectory] of strokes");
   const drivers::AxisInfo& theta = device.axes.front();
-  const ScissorsStrokes standard;
-  ScissorsStrokes strokes;
-  strokes.open_rad = read_number(
-      place, table,
-      {.key = "open", .unit = "rad", .standard = standard.open_rad, .lower = degree, .upper = theta.upper});
-  strokes.close_rad = read_number(place, table,
-                                  {.key = "close",
-                                   .unit = "rad",
-                                   .standard = standard.close_rad,
-                                   .lower = theta.lower,
-                                   .upper = 59.0 * degree});
-  strokes.stroke_s = read_number(
-      place, table,
-      {.key = "stroke", .unit = "s", .standard = standard.stroke_s, .lower = 0.05, .upper = 100.0});
-  strokes.pause_s =
-      read_number(place, table,
-                  {.key = "pause", .unit = "s", .standard = standard.pause_s, .lower = 0.0, .upper = 100.0});
+  drivers::HandOptions strokes;
+  const auto angle = [&](std::string_view key, double standard, double lower, double upper) {
+    return read_number(place, table,
+                       {.key = key, .unit = "rad", .standard = standard, .lower = lower, .upper = upper});
+  };
+  strokes.open_rad = angle("open", strokes.open_rad, degree, theta.upper);
+  strokes.close_rad = angle("close", strokes.close_rad, theta.lower, 59.0 * degree);
+  strokes.stroke_s = read_seconds(place, table, "stroke", strokes.stroke_s, 0.05, 100.0);
+  strokes.pause_s = read_seconds(place, table, "pause", strokes.pause_s, 0.0, 100.0);
   if (const toml::node* node = table.get("variation")) {
     strokes.variation = place.number(*node, "'variation'");
     if (!(strokes.variation >= 0.0 && strokes.variation <= 0.3))
@@ -65,10 +57,7 @@ ScissorsStrokes read_strokes(const Place& place, const toml::table& table,
 /// In and out along one axis, at rest at both ends; the other axes stay at zero.
 struct Indentation {
   std::size_t axis = 0;
-  double from = 0.0;
-  double to = 0.0;
-  double pause_s = 0.5;
-  double stroke_s = 0.8;
+  StrokesToAndFro strokes{.stroke_s = 0.8, .pause_s = 0.5};
   double hold_s = 1.0;
   double cycles = 1.0;
 
@@ -83,12 +72,12 @@ struct Indentation {
       keyframe.position[axis] = position;
       path.keyframes.push_back(keyframe);
     };
-    add(from, 0.0);
+    add(strokes.from, 0.0);
     for (double cycle = 0.0; cycle < cycles; ++cycle) {
-      add(from, pause_s);
-      add(to, stroke_s);
-      add(to, hold_s);
-      add(from, stroke_s);
+      add(strokes.from, strokes.pause_s);
+      add(strokes.to, strokes.stroke_s);
+      add(strokes.to, hold_s);
+      add(strokes.from, strokes.stroke_s);
     }
     return path;
   }
@@ -111,27 +100,19 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
   const auto axis = std::ranges::find(device.axes, name, &drivers::AxisInfo::name);
   if (axis == device.axes.end()) {
     place.refuse(*table.get("axis"), "'axis' is \"{}\", and the axes of {} are {}", name, device.model,
-                 names_of_axes(device));
+                 names_in(device.axes));
   }
-  const auto place_of = [&](std::string_view key) {
-    return read_number(place, table,
-                       {.key = key,
-                        .unit = axis->position_unit,
-                        .lower = axis->lower,
-                        .upper = axis->upper,
-                        .required = true});
-  };
-  const auto seconds_of = [&](std::string_view key, double standard, double lower, double upper) {
-    return read_number(place, table,
-                       {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = upper});
-  };
   const Indentation standard;
   return Indentation{.axis = static_cast<std::size_t>(axis - device.axes.begin()),
-                     .from = place_of("from"),
-                     .to = place_of("to"),
-                     .pause_s = seconds_of("pause", standard.pause_s, 0.0, 1000.0),
-                     .stroke_s = seconds_of("stroke", standard.stroke_s, 0.05, 100.0),
-                     .hold_s = seconds_of("hold", standard.hold_s, 0.0, 1000.0),
+                     .strokes = read_strokes(place, table,
+                                             {.unit = axis->position_unit,
+                                              .standard = standard.strokes,
+                                              .lower = axis->lower,
+                                              .upper = axis->upper,
+                                              .shortest_s = 0.05,
+                                              .longest_s = 100.0,
+                                              .longest_pause_s = 1000.0}),
+                     .hold_s = read_seconds(place, table, "hold", standard.hold_s, 0.0, 1000.0),
                      .cycles = read_cycles(place, table)}
       .path();
 }
@@ -140,15 +121,15 @@ drivers::PosePath::Options read_indentation(const Place& place, const toml::tabl
 PoseKeyframe read_keyframe(const Place& place, const toml::table& table, const drivers::DeviceInfo& device,
                            PoseKeyframe keyframe) {
   place.allow_only(table, {"at", "position"}, "[[trajectory.keyframe]]");
-  keyframe.at_s = read_number(place, table,
-                              {.key = "at", .unit = "s", .lower = 0.0, .upper = longest_s, .required = true});
+  keyframe.at_s = read_number(
+      place, table, {.key = "at", .unit = "s", .lower = 0.0, .upper = longest_motion_s, .required = true});
   if (table.get("position") == nullptr) return keyframe;
   const toml::table& position = place.table(table, "position");
   for (const auto& [key, node] : position) {
     const auto axis = std::ranges::find(device.axes, key.str(), &drivers::AxisInfo::name);
     if (axis == device.axes.end()) {
       place.refuse(node, "unknown axis '{}' in a keyframe; those of {} are {}", key.str(), device.model,
-                   names_of_axes(device));
+                   names_in(device.axes));
     }
     keyframe.position[static_cast<std::size_t>(axis - device.axes.begin())] = read_number(
         place, position,
@@ -217,6 +198,12 @@ double read_number(const Place& place, const toml::table& table, const SceneNumb
                about.unit, about.lower, about.upper, about.unit);
 }
 
+double read_seconds(const Place& place, const toml::table& table, std::string_view key, double standard,
+                    double lower, double upper) {
+  return read_number(place, table,
+                     {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = upper});
+}
+
 Trajectory read_trajectory(const Place& place, const toml::table& table, const drivers::DeviceInfo& device) {
   const std::string kind = place.text(table, "kind", "");
   const toml::node& at = table.get("kind") != nullptr ? *table.get("kind") : table;
@@ -234,9 +221,7 @@ Trajectory read_trajectory(const Place& place, const toml::table& table, const d
   } else {
     place.refuse(at, "'kind' is \"{}\", expected \"strokes\", \"indent\" or \"keyframes\"", kind);
   }
-  trajectory.seconds =
-      read_number(place, table,
-                  {.key = "seconds", .unit = "s", .standard = standard_s, .lower = 0.01, .upper = longest_s});
+  trajectory.seconds = read_seconds(place, table, "seconds", standard_s, 0.01);
   return trajectory;
 }
 

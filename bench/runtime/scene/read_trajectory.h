@@ -19,6 +19,12 @@ struct SceneNumber {
 /// @throws std::invalid_argument with file, line, found and expected, also for a number out of its range.
 [[nodiscard]] double read_number(const Place& place, const toml::table& table, const SceneNumber& about);
 
+/// No script goes on for longer.
+inline constexpr double longest_motion_s = 3600.0;
+/// A duration. @throws as above.
+[[nodiscard]] double read_seconds(const Place& place, const toml::table& table, std::string_view key,
+                                  double standard, double lower, double upper = longest_motion_s);
+
 /// The table [trajectory] of a scene on a simulated device. @throws std::invalid_argument as above.
 [[nodiscard]] Trajectory read_trajectory(const Place& place, const toml::table& table,
                                          const drivers::DeviceInfo& device);

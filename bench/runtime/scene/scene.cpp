@@ -100,7 +100,7 @@ std::string fitting_device(const LawFile& tissue) {
       tissue.axis, tissue.position_unit, tissue.force_unit));
 }
 
-std::string options_of(const ScissorsStrokes& strokes) {
+std::string options_of(const drivers::HandOptions& strokes) {
   return fmt::format("&open={:.12g}deg&close={:.12g}deg&stroke={}s&pause={}s&variation={}",
                      strokes.open_rad / degree, strokes.close_rad / degree, strokes.stroke_s, strokes.pause_s,
                      strokes.variation);

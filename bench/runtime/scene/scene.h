@@ -9,6 +9,7 @@
 #include <kerf/drivers/hand.h>
 
 #include "laws/law_file.h"
+#include "laws/sampled_motion.h"
 #include "scene/trajectory.h"
 
 namespace kerf::bench {
@@ -58,16 +59,10 @@ struct Scene {
 /// fits, with hand and trajectory as options. @throws std::invalid_argument if no device fits the tissue.
 [[nodiscard]] std::string device_of(const Scene& scene);
 
-/// The tool's path by script alone, one entry a tick from t = 0 on: where the hand would have the tool if
-/// nothing resisted, and how fast. Strokes are taken without their variation.
-struct ToolPath {
-  double period_s = 0.0;
-  std::vector<drivers::Axes> position;  ///< of every axis of the scene's device
-  std::vector<drivers::Axes> velocity;  ///< its derivative
-};
-
+/// The tool's path by script alone, on every axis of the scene's device: where the hand would have the tool
+/// if nothing resisted, and how fast. Strokes are taken without their variation.
 /// @throws std::invalid_argument: a scene that says nothing of what the hand does, on a device that is not a
 ///         pair of scissors; a rate that is not from 1 Hz to 1 MHz; more than 20 million ticks.
-[[nodiscard]] ToolPath tool_path(const Scene& scene, double rate_hz);
+[[nodiscard]] SampledMotion tool_path(const Scene& scene, double rate_hz);
 
 }  // namespace kerf::bench

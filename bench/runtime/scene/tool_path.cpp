@@ -13,35 +13,26 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double ticks_at_most = 2e7;  // 2 GB
+constexpr double ticks_at_most = 2e7;  // 2.2 GB
 
-ToolPath path_of(const ScissorsStrokes& strokes, std::size_t ticks, double period_s) {
-  drivers::Strokes hand({.open_rad = strokes.open_rad,
-                         .close_rad = strokes.close_rad,
-                         .stroke_s = strokes.stroke_s,
-                         .pause_s = strokes.pause_s,
-                         .variation = 0.0});
-  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+void follow(drivers::HandOptions options, double period_s, SampledMotion& path) {
+  options.variation = 0.0;
+  drivers::Strokes hand(options);
+  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
     const auto wish = hand.at(static_cast<double>(tick) * period_s);
-    path.position.push_back({wish.angle_rad});
-    path.velocity.push_back({wish.speed_rad_s});
+    path.sample[tick] = {.position = {wish.angle_rad}, .velocity = {wish.speed_rad_s}};
   }
-  return path;
 }
 
-ToolPath path_of(const drivers::PosePath::Options& options, std::size_t ticks, double period_s) {
+void follow(const drivers::PosePath::Options& options, double period_s, SampledMotion& path) {
   const drivers::PosePath hand(options);
-  ToolPath path{.period_s = period_s, .position = {}, .velocity = {}};
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
     const auto wish = hand.at(static_cast<double>(tick) * period_s);
-    path.position.push_back(wish.position);
-    path.velocity.push_back(wish.velocity);
+    path.sample[tick] = {.position = wish.position, .velocity = wish.velocity};
   }
-  return path;
 }
 
-ToolPath path_of(std::monostate, std::size_t, double) {
+void follow(std::monostate, double, SampledMotion&) {
   throw std::invalid_argument("the scene has no [trajectory]: it does not say what the hand does");
 }
 
@@ -49,14 +40,7 @@ ToolPath path_of(std::monostate, std::size_t, double) {
 Script script_of(const Scene& scene) {
   if (scene.trajectory.script.index() != 0) return scene.trajectory.script;
   drivers::Uri uri = drivers::parse_uri(device_of(scene));
-  if (uri.name == "sim:scissors") {
-    const drivers::HandOptions hand = drivers::SimulatedScissors::parse_options(std::move(uri)).hand;
-    return ScissorsStrokes{.open_rad = hand.open_rad,
-                           .close_rad = hand.close_rad,
-                           .stroke_s = hand.stroke_s,
-                           .pause_s = hand.pause_s,
-                           .variation = hand.variation};
-  }
+  if (uri.name == "sim:scissors") return drivers::SimulatedScissors::parse_options(std::move(uri)).hand;
   if (uri.name != "sim:pose6") return {};
   const drivers::SimulatedPose6::Options options = drivers::SimulatedPose6::parse_options(std::move(uri));
   if (options.path) return *options.path;
@@ -65,7 +49,7 @@ Script script_of(const Scene& scene) {
 
 }  // namespace
 
-ToolPath tool_path(const Scene& scene, double rate_hz) {
+SampledMotion tool_path(const Scene& scene, double rate_hz) {
   if (!(rate_hz >= 1.0 && rate_hz <= 1e6)) {
     throw std::invalid_argument(fmt::format("a rate of {} Hz is not from 1 Hz to 1 MHz", rate_hz));
   }
@@ -74,9 +58,10 @@ ToolPath tool_path(const Scene& scene, double rate_hz) {
     throw std::invalid_argument(fmt::format("{} s at {} Hz are {:.3g} ticks, more than {:.3g}",
                                             scene.trajectory.seconds, rate_hz, ticks, ticks_at_most));
   }
-  return std::visit(
-      [&](const auto& script) { return path_of(script, static_cast<std::size_t>(ticks), 1.0 / rate_hz); },
-      script_of(scene));
+  const Script script = script_of(scene);
+  SampledMotion path = ticks_at(rate_hz, static_cast<std::size_t>(ticks));
+  std::visit([&](const auto& one) { follow(one, 1.0 / rate_hz, path); }, script);
+  return path;
 }
 
 }  // namespace kerf::bench

@@ -7,18 +7,9 @@
 
 namespace kerf::bench {
 
-/// Scissors that open and close: a pause, a closing, a pause, an opening, and so on.
-struct ScissorsStrokes {
-  double open_rad = drivers::HandOptions{}.open_rad;
-  double close_rad = drivers::HandOptions{}.close_rad;
-  double stroke_s = drivers::HandOptions{}.stroke_s;
-  double pause_s = drivers::HandOptions{}.pause_s;
-  double variation = drivers::HandOptions{}.variation;  ///< from stroke to stroke, as a share
-};
-
-/// Strokes for scissors; keyframes, with those that an indentation is made of, for a tool that knows its
-/// pose; neither if nothing is said.
-using Script = std::variant<std::monostate, ScissorsStrokes, drivers::PosePath::Options>;
+/// Strokes for scissors (of HandOptions not how firmly it holds them); keyframes, with those that an
+/// indentation is made of, for a tool that knows its pose; neither if nothing is said.
+using Script = std::variant<std::monostate, drivers::HandOptions, drivers::PosePath::Options>;
 
 /// What the hand does with the tool.
 struct Trajectory {

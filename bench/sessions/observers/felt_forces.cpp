@@ -10,10 +10,10 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/fitting/jnd.h>
 
 #include "laws/placement.h"
 #include "protocol/samples.h"
-#include "regress/suite.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -52,7 +52,8 @@ class FeltRows {
   FeltRows(const drivers::DeviceInfo& device, std::size_t ticks, FeltForces& felt) : felt_(felt) {
     felt_.axes = device.axes.size();
     felt_.force_n.reserve(felt_.force_n.size() + ticks * felt_.axes);
-    for (const drivers::AxisInfo& axis : device.axes) newtons_.push_back(felt_newtons(axis.force_unit));
+    for (const drivers::AxisInfo& axis : device.axes)
+      newtons_.push_back(1.0 / fitting::felt_lever(axis.force_unit));
   }
   void take(const schema::Row& row) {
     if (row.time_s < soft_start_s || felt_.force_n.size() + felt_.axes > felt_.force_n.capacity()) return;
@@ -103,7 +104,7 @@ FeltRenderer::FeltRenderer(const Protocol& protocol, const FeltOptions& options)
                     "device; add one, or give --device sim:...",
                     protocol.name));
   }
-  if (protocol.motion) seconds_ = protocol.motion->seconds;
+  if (protocol.motion) seconds_ = protocol.motion->seconds.value_or(seconds_);
   if (options.seconds > 0.0) seconds_ = options.seconds;
   if (device_uri_.find("seed=") == std::string::npos)
     renderings_ = std::max<std::size_t>(1, options.renderings);
@@ -123,7 +124,6 @@ FeltForces FeltRenderer::rendered(const PlayedLaw& law) const {
 }
 
 void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, FeltForces& felt) const {
-  std::optional<LawRendering> rendering;
   std::optional<FeltRows> rows;
   const std::atomic<bool> stop{false};
   const RunOptions options{
@@ -133,13 +133,8 @@ void FeltRenderer::render_once(const PlayedLaw& law, const std::string& uri, Fel
       .virtual_time = true,
       .rendering =
           [&](const drivers::DeviceInfo& device) {
-            rendering.emplace(law.law.law, law.law.contact, axes_for(law.law, device));
             rows.emplace(device, static_cast<std::size_t>(seconds_ * protocol_->rate_hz) + 1, felt);
-            return OtherRendering{.step = [&](const drivers::Sample& now, double period_s) {
-              Command command = (*rendering)(now, period_s);
-              for (double& force : command.force) force *= law.gain;
-              return command;
-            }};
+            return rendering_of(law, device);
           },
       .each_row = [&](const schema::Row& row) { rows->take(row); },
       .ramp_s = std::min(protocol_->ramp_s, soft_start_s),
@@ -155,7 +150,7 @@ FeltForces FeltRenderer::along_motion(const PlayedLaw& law) const {
   const auto law_axes = axes_of(law.law);
   FeltForces felt{.axes = law_axes.size(), .force_n = forces_along(*protocol_, law)};
   for (std::size_t i = 0; i < felt.force_n.size(); ++i)
-    felt.force_n[i] *= felt_newtons(law_axes[i % felt.axes].force_unit);
+    felt.force_n[i] *= 1.0 / fitting::felt_lever(law_axes[i % felt.axes].force_unit);
   return felt;
 }
 

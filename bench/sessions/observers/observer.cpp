@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
 #include <kerf/psychophysics/dprime.h>
 
 namespace kerf::bench {
@@ -16,6 +17,10 @@ using psychophysics::Decision;
 using psychophysics::Random;
 using std::numbers::sqrt2;
 using Places = std::array<double, max_slots>;
+
+static_assert(Observer{}.jnd == fitting::force_jnd.weber_fraction &&
+                  Observer{}.least_jnd_n == fitting::force_jnd.threshold,
+              "observers feel what fits and charts take a person to feel");
 
 void require(bool holds, const char* what, double found, const char* expected) {
   if (holds) return;

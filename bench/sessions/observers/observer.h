@@ -23,7 +23,7 @@ namespace kerf::bench {
 /// w). On the axis of a decision everything lies d' = c u apart, c = sqrt2 z(criterion), with a noise of
 /// N(0, 1) every time that it is felt.
 struct Observer {
-  double jnd = 0.07;          ///< w, Weber fraction, above 0; [Pang1991]
+  double jnd = 0.07;          ///< w, Weber fraction, above 0; with the next one fitting::force_jnd
   double least_jnd_n = 0.05;  ///< f0 [N], above 0: the JND of weak forces
   /// Share of right answers in two intervals that lie one JND apart, in (0.5, 1): the JND belongs to it.
   double criterion = 0.75;

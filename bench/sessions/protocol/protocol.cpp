@@ -5,9 +5,8 @@
 
 #include "files/whole_file.h"
 #include "protocol/protocol_parts.h"
-#include "regress/suite.h"
 #include "replay/table.h"
-#include "scene/read_trajectory.h"
+#include "scene/read_motion.h"
 
 namespace kerf::bench {
 namespace {
@@ -16,12 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr double max_trials = 10000.0;
 constexpr double longest_session_part_s = 3600.0;
-
-double read_seconds(const Place& place, const toml::table& table, std::string_view key, double standard,
-                    double lower, double upper) {
-  return read_number(place, table,
-                     {.key = key, .unit = "s", .standard = standard, .lower = lower, .upper = upper});
-}
 
 Design read_design(const Place& place, const toml::table& root) {
   if (!root.contains("design")) {
@@ -138,8 +131,8 @@ std::string unit_of_strokes(const Place& place, const toml::table& table, const 
 void read_session_motion(const Place& place, const toml::table& root, Protocol& protocol) {
   if (!root.contains("motion")) return;
   const toml::table& table = place.table(root, "motion");
-  SessionMotion motion;
-  motion.seconds = read_seconds(place, table, "seconds", motion.seconds, 0.01, longest_session_part_s);
+  MotionSource motion;
+  motion.seconds = read_seconds(place, table, "seconds", 4.0, 0.01, longest_session_part_s);
   if (table.contains("scene")) {
     place.allow_only(table, {"scene", "seconds"}, "a [motion] of a scene");
     motion.scene = read_plain_text(place, table, "scene");
@@ -147,11 +140,14 @@ void read_session_motion(const Place& place, const toml::table& root, Protocol& 
   } else {
     place.allow_only(table, {"from", "to", "stroke", "pause", "seconds"}, "a [motion] of strokes");
     const std::string unit = unit_of_strokes(place, table, protocol);
-    motion.from = read_number(place, table, {.key = "from", .unit = unit, .required = true});
-    motion.to = read_number(place, table, {.key = "to", .unit = unit, .required = true});
-    if (motion.from == motion.to) place.refuse(*table.get("to"), "'to' is where 'from' is: nothing moves");
-    motion.stroke_s = read_seconds(place, table, "stroke", motion.stroke_s, 0.01, 600.0);
-    motion.pause_s = read_seconds(place, table, "pause", motion.pause_s, 0.0, 600.0);
+    const StrokesToAndFro strokes = read_strokes(place, table,
+                                                 {.unit = unit,
+                                                  .standard = {.stroke_s = 0.8, .pause_s = 0.25},
+                                                  .shortest_s = 0.01,
+                                                  .longest_s = 600.0,
+                                                  .longest_pause_s = 600.0});
+    if (strokes.from == strokes.to) place.refuse(*table.get("to"), "'to' is where 'from' is: nothing moves");
+    motion.axes = {{.axis = 0, .script = strokes}};
   }
   protocol.motion = motion;
 }

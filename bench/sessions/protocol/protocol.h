@@ -15,6 +15,7 @@
 #include <kerf/psychophysics/staircase.h>
 
 #include "laws/law_file.h"
+#include "scene/motion.h"
 
 namespace kerf::bench {
 
@@ -78,16 +79,6 @@ enum class SwitchKind : std::uint8_t {
 /// What of the forces is made equal before a session.
 enum class Loudness : std::uint8_t { as_they_are, peak, rms };
 
-/// What the tool does where forces are rendered ahead of a session: to match loudness, to simulate observers.
-struct SessionMotion {
-  double from = 0.0;  ///< position on the law's axis
-  double to = 0.0;
-  double stroke_s = 0.8;
-  double pause_s = 0.25;
-  double seconds = 4.0;
-  std::filesystem::path scene;  ///< a script in place of strokes; of spatial laws
-};
-
 /// A blind comparison, as a file `NAME.protocol.toml` describes it; docs/sessions.md has the format.
 struct Protocol {
   std::string name;
@@ -113,7 +104,9 @@ struct Protocol {
   bool differencing = false;          ///< abx: the strategy that d' is reckoned for; else independent
   IntensityScale scale;               ///< where the design has levels
   Loudness loudness = Loudness::as_they_are;
-  std::optional<SessionMotion> motion;
+  /// What the tool does where forces are rendered ahead of a session, to match loudness or to simulate
+  /// observers: strokes along the one axis of the laws, or a scene's script.
+  std::optional<MotionSource> motion;
   std::string device_uri;  ///< empty: --device says it
   double rate_hz = 1000.0;
   std::string toml;  ///< as it was read

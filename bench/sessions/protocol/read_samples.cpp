@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "laws/placement.h"
 #include "protocol/protocol_parts.h"
-#include "regress/suite.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,37 +6,15 @@
 
 #include <fmt/core.h>
 
-#include "regress/forces.h"
-#include "regress/path.h"
+#include <kerf/fitting/jnd.h>
+
+#include "laws/placement.h"
+#include "laws/render.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr double largest_gain = 20.0;
-
-RegressionPath path_along(const Protocol& protocol, const LawFile& law) {
-  if (!protocol.motion) {
-    throw std::invalid_argument(fmt::format(
-        "protocol '{}' has no [motion], so it does not say along what forces are rendered", protocol.name));
-  }
-  const SessionMotion& motion = *protocol.motion;
-  RegressionCase one{.law = law, .rate_hz = protocol.rate_hz, .seconds = motion.seconds};
-  if (motion.scene.empty()) {
-    if (law.law.is_spatial()) {
-      throw std::invalid_argument(
-          fmt::format("law '{}' acts on several axes; the [motion] of protocol '{}' has to be a 'scene'",
-                      law.law.model(), protocol.name));
-    }
-    one.motion = {
-        {.axis = 0,
-         .script = StrokesToAndFro{
-             .from = motion.from, .to = motion.to, .stroke_s = motion.stroke_s, .pause_s = motion.pause_s}}};
-  }
-  one.scene = motion.scene;
-  return trajectory_of(one);
-}
-
-/// N; a torque as the force at a lever.
 
 /// Peak or root mean square of the force of a sample, at a gain of 1 [N].
 double strength_of(const Protocol& protocol, std::size_t sample) {
@@ -48,7 +26,7 @@ double strength_of(const Protocol& protocol, std::size_t sample) {
   for (std::size_t i = 0; i < forces.size(); i += axes.size()) {
     double squared = 0.0;
     for (std::size_t axis = 0; axis < axes.size(); ++axis)
-      squared += std::pow(felt_newtons(axes[axis].force_unit) * forces[i + axis], 2);
+      squared += std::pow(1.0 / fitting::felt_lever(axes[axis].force_unit) * forces[i + axis], 2);
     sum += squared;
     peak = std::max(peak, squared);
   }
@@ -112,18 +90,43 @@ std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial) 
   return {played(protocol, trial.pair[0], as_it_is), played(protocol, trial.pair[1], trial.level)};
 }
 
-std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law) {
-  const models::Law& model = law.law.law;
-  const RenderedForces rendered = render_forces(model, law.law.contact, path_along(protocol, law.law));
-  if (rendered.first_fault) {
-    throw std::invalid_argument(
-        fmt::format("law '{}' faults along the [motion] of protocol '{}', first at {:.4g} s", model.model(),
-                    protocol.name, static_cast<double>(*rendered.first_fault) / protocol.rate_hz));
+OtherRendering rendering_of(const PlayedLaw& law, const drivers::DeviceInfo& device) {
+  return {.step = [rendering = LawRendering(law.law.law, law.law.contact, axes_for(law.law, device)),
+                   gain = law.gain](const drivers::Sample& now, double period_s) mutable {
+    Command command = rendering(now, period_s);
+    for (double& force : command.force) force *= gain;
+    return command;
+  }};
+}
+
+SampledMotion motion_along(const Protocol& protocol, const LawFile& law) {
+  if (!protocol.motion) {
+    throw std::invalid_argument(fmt::format(
+        "protocol '{}' has no [motion], so it does not say along what forces are rendered", protocol.name));
   }
-  // A scalar law tells what resists; on the axis that pushes back.
-  const double sense = model.is_spatial() ? 1.0 : -law.law.contact.direction;
-  std::vector<double> forces = rendered.force;
-  for (double& force : forces) force *= sense * law.gain;
+  MotionSource motion = *protocol.motion;
+  motion.rate_hz = protocol.rate_hz;
+  if (motion.scene.empty() && law.law.is_spatial()) {
+    throw std::invalid_argument(
+        fmt::format("law '{}' acts on several axes; the [motion] of protocol '{}' has to be a 'scene'",
+                    law.law.model(), protocol.name));
+  }
+  return sampled(motion, law);
+}
+
+std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law) {
+  const std::vector<std::size_t> axes = own_axes(law.law);
+  const RenderedMotion rendered = render(law.law, axes, motion_along(protocol, law.law));
+  if (rendered.first_fault) {
+    throw std::invalid_argument(fmt::format(
+        "law '{}' faults along the [motion] of protocol '{}', first at {:.4g} s", law.law.law.model(),
+        protocol.name, static_cast<double>(*rendered.first_fault) / protocol.rate_hz));
+  }
+  std::vector<double> forces;
+  forces.reserve(rendered.force.size() * axes.size());
+  for (const drivers::Axes& force : rendered.force) {
+    for (const std::size_t axis : axes) forces.push_back(law.gain * force[axis]);
+  }
   return forces;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "protocol/plan.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 
@@ -13,6 +14,9 @@ struct PlayedLaw {
   LawFile law;
   double gain = 1.0;
 };
+
+/// The force of a law on a device times its gain, which the law alone does not have. @throws as axes_for().
+[[nodiscard]] OtherRendering rendering_of(const PlayedLaw& law, const drivers::DeviceInfo& device);
 
 /// What a sample renders at a level of the scale; NaN: as it is.
 /// @throws std::invalid_argument where a parameter leaves its bounds at that level, naming both.
@@ -24,12 +28,13 @@ struct PlayedLaw {
 /// The two of a trial, in the order of its pair: pair[1] at the trial's level.
 [[nodiscard]] std::vector<PlayedLaw> played(const Protocol& protocol, const TrialPlan& trial);
 
+/// The protocol's motion on the axes of a law. @throws std::invalid_argument: it has none, or one axis for a
+/// law of several; as sampled().
+[[nodiscard]] SampledMotion motion_along(const Protocol& protocol, const LawFile& law);
+
 /// Force on the law's axes along the protocol's motion, tick by tick from a fresh state: ticks x axes.
 /// @throws std::invalid_argument: the protocol has no motion, or the law faults along it.
 [[nodiscard]] std::vector<double> forces_along(const Protocol& protocol, const PlayedLaw& law);
-
-/// Newtons that a unit of force or torque is felt as: a torque at a lever of 10 mm.
-[[nodiscard]] inline double felt_newtons(std::string_view unit) { return unit == "N·m" ? 100.0 : 1.0; }
 
 /// Sets the gains of the samples so that peak or root mean square of the force along the protocol's motion
 /// (over the axes, torques at a lever of 10 mm) is that of the first sample of each tissue. Nothing where the

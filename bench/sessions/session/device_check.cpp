@@ -49,15 +49,16 @@ std::vector<NamedSample> all_samples(const Protocol& protocol) {
 }
 
 /// Every axis through the middle half of its range and back.
-std::vector<drivers::Sample> sweep(const drivers::DeviceInfo& device, double period_s) {
-  std::vector<drivers::Sample> path(static_cast<std::size_t>(sweep_s / period_s));
-  for (std::size_t tick = 0; tick < path.size(); ++tick) {
+SampledMotion sweep(const drivers::DeviceInfo& device, double rate_hz) {
+  const double period_s = 1.0 / rate_hz;
+  SampledMotion path = ticks_at(rate_hz, static_cast<std::size_t>(sweep_s / period_s));
+  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
     const double phase = 2.0 * std::numbers::pi * static_cast<double>(tick) * period_s / sweep_s;
     for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
       const double middle = 0.5 * (device.axes[axis].lower + device.axes[axis].upper);
       const double reach = 0.25 * (device.axes[axis].upper - device.axes[axis].lower);
-      path[tick].position[axis] = middle - reach * std::cos(phase);
-      path[tick].velocity[axis] = reach * 2.0 * std::numbers::pi / sweep_s * std::sin(phase);
+      path.sample[tick].position[axis] = middle - reach * std::cos(phase);
+      path.sample[tick].velocity[axis] = reach * 2.0 * std::numbers::pi / sweep_s * std::sin(phase);
     }
   }
   return path;
@@ -66,12 +67,11 @@ std::vector<drivers::Sample> sweep(const drivers::DeviceInfo& device, double per
 void require_in_time(const Protocol& protocol, const std::vector<NamedSample>& samples,
                      const drivers::DeviceInfo& device) {
   const double period_s = 1.0 / protocol.rate_hz;
-  const auto path = sweep(device, period_s);
+  const SampledMotion path = sweep(device, protocol.rate_hz);
   std::vector<TimedLaw> timed;
   for (const NamedSample& one : samples) {
     const LawFile& law = one.played.law;
-    timed.push_back(
-        {.rendering = {law.law, law.contact, axes_for(law, device)}, .path = path, .period_s = period_s});
+    timed.push_back({.rendering = {law.law, law.contact, axes_for(law, device)}, .path = &path});
   }
   std::vector<double> costs_ns;
   for (const TickCost& cost : tick_costs(timed, {.rounds = 5, .cold_ticks = 0}))
@@ -89,23 +89,12 @@ void require_in_time(const Protocol& protocol, const std::vector<NamedSample>& s
 
 void require_rendered(const NamedSample& sample, const Protocol& protocol, const std::string& uri,
                       const std::atomic<bool>& stop) {
-  // With its gain, which a law alone does not have.
-  LawRendering rendering(sample.played.law.law, sample.played.law.contact, {});
   const RunOptions options{
       .device_uri = uri,
       .seconds = watched_s,
       .rate_hz = protocol.rate_hz,
       .virtual_time = true,
-      .rendering =
-          [&](const drivers::DeviceInfo& device) {
-            const LawFile& law = sample.played.law;
-            rendering = {law.law, law.contact, axes_for(law, device)};
-            return OtherRendering{.step = [&](const drivers::Sample& now, double period_s) {
-              Command command = rendering(now, period_s);
-              for (double& force : command.force) force *= sample.played.gain;
-              return command;
-            }};
-          },
+      .rendering = [&](const drivers::DeviceInfo& on) { return rendering_of(sample.played, on); },
       .ramp_s = protocol.ramp_s,
   };
   const LoopReport report = run_on_device(options, stop).report;
@@ -127,10 +116,9 @@ void require_rendered(const NamedSample& sample, const Protocol& protocol, const
 }
 
 /// How far the protocol's motion goes into a law; 0, which is not judged, where it says none.
-double deepest(const Protocol& protocol, const LawFile& law) {
-  if (!protocol.motion) return 0.0;
-  const auto depth = [&](double position) { return law.contact.motion(position, 0.0).penetration; };
-  return std::max({0.0, depth(protocol.motion->from), depth(protocol.motion->to)});
+double depth_in(const Protocol& protocol, const LawFile& law) {
+  if (!protocol.motion || law.law.is_spatial()) return 0.0;
+  return deepest(motion_along(protocol, law), 0, law.contact);
 }
 
 }  // namespace
@@ -152,7 +140,7 @@ std::vector<std::string> check_samples(const Protocol& protocol, const std::stri
   for (const NamedSample& sample : samples) {
     if (device.simulated) require_rendered(sample, protocol, device_uri, stop);
     if (const auto limit_cycle = limit_cycle_in_hand(sample.played.law, device, protocol.rate_hz,
-                                                     grip_named(grip), deepest(protocol, sample.played.law)))
+                                                     grip_named(grip), depth_in(protocol, sample.played.law)))
       remarks.push_back(fmt::format("sample '{}': {}", sample.name, *limit_cycle));
   }
   return remarks;

@@ -2,7 +2,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "chart/speed_accuracy.h"
+#include <kerf/fitting/jnd.h>
+
 #include "editor/segment_editor.h"
 #include "fits/fit_recording.h"
 #include "laws/render.h"
@@ -22,9 +23,9 @@ models::Contact contact_with(const schema::Recording& recording, std::size_t axi
   return contact_of(about, axis);
 }
 
-fitting::ForceJnd jnd_of_axis(const schema::Axis& axis) {
-  fitting::ForceJnd jnd;
-  if (axis.force_unit == "N·m") jnd.threshold_n *= axis.lever != 1.0 ? axis.lever : fingers_m;
+fitting::Jnd jnd_of_axis(const schema::Axis& axis) {
+  fitting::Jnd jnd = fitting::force_jnd;
+  jnd.threshold *= fitting::felt_lever(axis.force_unit, axis.lever);
   return jnd;
 }
 

@@ -17,7 +17,7 @@ nlohmann::ordered_json curve_as_json(const EditorCurve& curve, const std::string
           {"penetration", curve.penetration},
           {"closing", json_numbers(curve.closing)},
           {"opening", json_numbers(curve.opening)},
-          {"jnd", {{"weber_fraction", curve.jnd.weber_fraction}, {"threshold_n", curve.jnd.threshold_n}}}};
+          {"jnd", {{"weber_fraction", curve.jnd.weber_fraction}, {"threshold_n", curve.jnd.threshold}}}};
 }
 
 nlohmann::ordered_json knots_as_json(const Knots& knots) {

@@ -29,7 +29,7 @@ struct EditorCurve {
   std::vector<double> opening;
   /// In the unit of the force: the threshold of a torque is that of a force at the axis' lever, or at 10 mm
   /// where it names none.
-  fitting::ForceJnd jnd;
+  fitting::Jnd jnd;
 };
 
 /// Breakpoints of a law of segments.

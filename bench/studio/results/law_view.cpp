@@ -87,18 +87,16 @@ LawCurve curve_of(const LawFile& file) {
     return curve;
   }
   const auto [end, why] = range_of(file);
-  const double period_s = 1.0 / static_cast<double>(steps);
   curve.speed = end;  // per second
   curve.range = why;
-  const models::Law law = without_rendering_aids(file.law);
-  models::Law::State state = law.initial_state();
-  std::vector<double> force;
+  std::vector<models::Motion> motion;
   for (std::size_t tick = 0; tick <= 2 * steps; ++tick) {
     const bool is_inwards = tick <= steps;
     const auto at = static_cast<double>(is_inwards ? tick : 2 * steps - tick) / static_cast<double>(steps);
-    const models::Motion motion{.penetration = end * at, .velocity = is_inwards ? end : -end};
-    force.push_back(law.step(state, motion, period_s).force);
+    motion.push_back({.penetration = end * at, .velocity = is_inwards ? end : -end});
   }
+  const auto force = without_rendering_aids(file.law).along(
+      motion, std::vector(motion.size(), 1.0 / static_cast<double>(steps)));
   for (std::size_t tick = 0; tick <= steps; tick += shown_every) {
     curve.penetration.push_back(end * static_cast<double>(tick) / static_cast<double>(steps));
     curve.closing.push_back(force[tick]);

@@ -8,7 +8,8 @@
 
 #include <fmt/core.h>
 
-#include "fits/choice.h"
+#include <kerf/fitting/jnd.h>
+
 #include "laws/render.h"
 #include "recordings/axis_series.h"
 
@@ -129,7 +130,7 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
               {"rows", residual.size()},
               {"rmse", std::sqrt(squares / static_cast<double>(residual.size()))},
               {"worst", worst},
-              {"jnd_n", jnd_of(series.force, {})}};
+              {"jnd_n", fitting::force_jnd.at(fitting::rms_of(series.force))}};
   add_over_time(series, residual, columns, result);
   add_over_penetration(series, force, result);
   return result;

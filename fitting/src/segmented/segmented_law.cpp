@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -90,10 +89,7 @@ void prepare_segments(models::Options& law_options, const FitOptions& options, c
     const double correlation = correlation_time(residuals_of(curves.back(), samples, branch));
     chosen = choose_by_bic(curves, static_cast<double>(samples.size()) / correlation);
   } else {
-    const double squares =
-        std::inner_product(samples.force.begin(), samples.force.end(), samples.force.begin(), 0.0);
-    const double force_rms = std::sqrt(squares / static_cast<double>(samples.size()));
-    chosen = fewest_within(curves, options.jnd.at(force_rms)).value_or(chosen);
+    chosen = fewest_within(curves, options.jnd.at(rms_of(samples.force))).value_or(chosen);
   }
   law_options["segments"] = static_cast<double>(curves[chosen].segments());
 }

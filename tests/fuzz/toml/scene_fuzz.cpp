@@ -18,11 +18,10 @@ void fuzz_scene(Bytes bytes) {
     promise(scene->device_uri.empty(), "a scene that names its device is read with it");
     return;
   }
-  bench::ToolPath path;
+  bench::SampledMotion path;
   if (!is_taken<std::invalid_argument>([&] { path = bench::tool_path(*scene, 10.0); })) return;
-  promise(path.position.size() == path.velocity.size(), "a velocity for every position");
-  for (std::size_t tick = 0; tick < path.position.size(); ++tick) {
-    for (const auto* values : {&path.position[tick], &path.velocity[tick]}) {
+  for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
+    for (const auto* values : {&path.sample[tick].position, &path.sample[tick].velocity}) {
       for (const double value : *values) promise(std::isfinite(value), "the tool moves by finite numbers");
     }
   }

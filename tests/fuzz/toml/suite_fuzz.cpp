@@ -4,6 +4,7 @@
 #include "fuzz/scratch_folder.h"
 #include "fuzz/target.h"
 #include "fuzz/toml/examples.h"
+#include "laws/placement.h"
 #include "regress/suite.h"
 
 namespace kerf::fuzz {
@@ -31,9 +32,11 @@ void fuzz_suite(Bytes bytes) {
   for (const bench::RegressionCase& one : suite.cases) {
     promise(names.insert(one.name).second, "a case has a name of its own");
     const std::size_t axes = bench::axes_of(one.law).size();
-    for (const bench::ScriptedAxis& motion : one.motion)
+    for (const bench::ScriptedAxis& motion : one.motion.axes)
       promise(motion.axis < axes, "an axis of the law moves");
-    promise(one.recording.empty() + one.scene.empty() + one.motion.empty() == 2, "a case has one trajectory");
+    const bench::MotionSource& from = one.motion;
+    promise(from.recording.empty() + from.scene.empty() + from.axes.empty() == 2,
+            "a case has one trajectory");
   }
   promise(bench::only(suite, {suite.cases.front().name}).cases.size() == 1, "a case is found by its name");
 }

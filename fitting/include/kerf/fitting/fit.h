@@ -10,6 +10,8 @@
 
 #include <kerf/models/law.h>
 
+#include "kerf/fitting/jnd.h"
+
 namespace kerf::fitting {
 
 /// The samples of one recording as a law sees them. All spans have one length.
@@ -20,14 +22,6 @@ struct Series {
   std::span<const double> force;         ///< resisting force [N]
   std::span<const std::uint32_t> cycle;  ///< cycle of each sample, 0 for none; empty if not segmented
   double noise_n = 0.0;                  ///< standard deviation of the force's noise; 0: not known [N]
-};
-
-/// What a person can feel: the larger of a Weber fraction of the force and an absolute threshold.
-/// Source of the defaults: [Pang1991] (7 %); order of magnitude at the fingertips (0.05 N).
-struct ForceJnd {
-  double weber_fraction = 0.07;
-  double threshold_n = 0.05;
-  [[nodiscard]] double at(double force_n) const noexcept;
 };
 
 /// What a residual r costs, in units of a scale s: r^2 (least squares), or less for those far off.
@@ -60,7 +54,7 @@ class SegmentedMemory;
 struct FitOptions {
   models::Options
       law_options;  ///< integrator, thickness, segments, points, loop, ...; the rest from the data
-  ForceJnd jnd;
+  Jnd jnd;
   std::size_t folds =
       5;  ///< of the cross-validation: by cycle, or by blocks of time where there are no cycles; 0: none
   std::size_t threads = 1;   ///< among which the folds are shared out; the result does not depend on it
@@ -154,15 +148,17 @@ void check_model(std::string_view model);
 /// Root mean square error of the straight line of force over penetration: what any law has to beat [N].
 [[nodiscard]] double line_rmse(const Series& series);
 
-/// Which law to take, and why.
+/// Which of several fitted laws describes the recordings best, and why.
 struct Choice {
   std::string model;
   std::string why;
 };
 
-/// The law with fewest parameters whose error on held-out cycles stays within the JND at the recording's own
+/// The law with fewest parameters whose error on held-out data stays within the JND at the recording's own
 /// force (root mean square), or within 5 % of the best; where none is within the JND, the reason says so.
+/// Held out are the cycles or blocks of the cross-validation, else the share that was kept back for a test.
+/// Where there is neither, the law with the least BIC.
 [[nodiscard]] Choice choose_simplest(std::span<const FitResult> results, const Series& series,
-                                     const ForceJnd& jnd);
+                                     const FitOptions& options);
 
 }  // namespace kerf::fitting

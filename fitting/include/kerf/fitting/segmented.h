@@ -85,7 +85,7 @@ struct SegmentedCurve {
                                         double effective_points = 0.0);
 
 /// Where in the curves the fewest segments are whose root mean square error is at most a limit, such as
-/// ForceJnd::at the root mean square force; nothing if there is none.
+/// Jnd::at the root mean square force; nothing if there is none.
 [[nodiscard]] std::optional<std::size_t> fewest_within(std::span<const SegmentedCurve> curves,
                                                        double limit_n);
 

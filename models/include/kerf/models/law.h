@@ -91,6 +91,10 @@ class Law {
   [[nodiscard]] SpatialResponse step(State& state, const SpatialMotion& motion,
                                      double period_s) const noexcept;
 
+  /// The force of a scalar law along a motion, tick by tick from a fresh state: one period for each tick.
+  [[nodiscard]] std::vector<double> along(std::span<const Motion> motion,
+                                          std::span<const double> period_s) const;
+
  private:
   Law(std::shared_ptr<const AnyLaw> law, std::vector<double> values, Options options);
 

@@ -24,13 +24,13 @@ ScriptedPath strokes_along(const std::string& axis, double depth) {
   ScriptedPath path;
   path.device.axes = {{.name = axis, .position_unit = "m", .force_unit = "N"}};
   path.at = [depth](double rate_hz) {
-    ToolPath ticks{.period_s = 1.0 / rate_hz, .position = {}, .velocity = {}};
-    for (int i = 0; i < static_cast<int>(2.0 * rate_hz); ++i) {
+    SampledMotion motion = ticks_at(rate_hz, static_cast<std::size_t>(2.0 * rate_hz));
+    for (std::size_t i = 0; i < motion.ticks(); ++i) {
       const double phase = std::acos(-1.0) * static_cast<double>(i) / rate_hz;
-      ticks.position.push_back({depth * std::sin(phase)});
-      ticks.velocity.push_back({depth * std::acos(-1.0) * std::cos(phase)});
+      motion.sample[i] = {.position = {depth * std::sin(phase)},
+                          .velocity = {depth * std::acos(-1.0) * std::cos(phase)}};
     }
-    return ticks;
+    return motion;
   };
   return path;
 }
@@ -44,13 +44,13 @@ ScriptedPath turning_blade() {
         {.name = name, .position_unit = turns ? "rad" : "m", .force_unit = turns ? "N·m" : "N"});
   }
   path.at = [](double rate_hz) {
-    ToolPath ticks{.period_s = 1.0 / rate_hz, .position = {}, .velocity = {}};
-    for (int i = 0; i < static_cast<int>(rate_hz); ++i) {
+    SampledMotion motion = ticks_at(rate_hz, static_cast<std::size_t>(rate_hz));
+    for (std::size_t i = 0; i < motion.ticks(); ++i) {
       const double angle = 2.0 * static_cast<double>(i) / rate_hz;
-      ticks.position.push_back({0.0, 0.0, 0.1, 0.0, 0.0, angle});
-      ticks.velocity.push_back({0.0, 0.0, 0.0, 0.0, 0.0, 2.0});
+      motion.sample[i] = {.position = {0.0, 0.0, 0.1, 0.0, 0.0, angle},
+                          .velocity = {0.0, 0.0, 0.0, 0.0, 0.0, 2.0}};
     }
-    return ticks;
+    return motion;
   };
   return path;
 }
@@ -79,7 +79,7 @@ TEST(SpeedAccuracy, StripsOfABladeConvergeWithTheSquareOfTheirNumber) {
   EXPECT_NEAR(point(chart, "blade", "exact").error_jnd, 0.0, 1e-9);
   EXPECT_EQ(point(chart, "blade", "paper 64").axis, "rz") << "the paper's blade turns without a torque";
   // Kn w^3 l / 12 w_z = 4e-3 N·m (T2 with 100 times the Kn), at the fingers 10 mm from the axis.
-  EXPECT_NEAR(point(chart, "blade", "paper 64").error_n, 4e-3 / fingers_m, 1e-9);
+  EXPECT_NEAR(point(chart, "blade", "paper 64").error_n, 4e-3 / fitting::fingers_m, 1e-9);
 }
 
 TEST(SpeedAccuracy, CrossesEulerOutPastTwiceTheRelaxationTime) {

@@ -11,12 +11,12 @@ namespace kerf::bench {
 namespace {
 
 /// A blade that goes back and forth in the tissue and turns about itself.
-std::vector<drivers::Sample> strokes_of_a_blade(std::size_t ticks) {
-  std::vector<drivers::Sample> path(ticks);
+SampledMotion strokes_of_a_blade(std::size_t ticks) {
+  SampledMotion path = ticks_at(1000.0, ticks);
   for (std::size_t i = 0; i < ticks; ++i) {
     const double phase = 0.01 * static_cast<double>(i);
-    path[i].position = {0.02 * std::sin(phase), 0.0, 0.1, 0.0, 0.0, 0.2 * std::sin(phase)};
-    path[i].velocity = {0.2 * std::cos(phase), 0.0, 0.0, 0.0, 0.0, 2.0 * std::cos(phase)};
+    path.sample[i].position = {0.02 * std::sin(phase), 0.0, 0.1, 0.0, 0.0, 0.2 * std::sin(phase)};
+    path.sample[i].velocity = {0.2 * std::cos(phase), 0.0, 0.0, 0.0, 0.0, 2.0 * std::cos(phase)};
   }
   return path;
 }
@@ -36,10 +36,12 @@ LawRendering spring() {
 
 TEST(TickCost, IsGreaterForALawThatDoesMore) {
   const auto path = strokes_of_a_blade(500);
-  const std::vector<TimedLaw> laws{{blade_of("strips", 256.0), path}, {spring(), path}};
+  const std::vector<TimedLaw> laws{{blade_of("strips", 256.0), &path}, {spring(), &path}};
   const auto costs = tick_costs(laws, {.rounds = 3, .cold_ticks = 16});
   ASSERT_EQ(costs.size(), 2U);
   EXPECT_GT(costs[0].p50_ns, costs[1].p50_ns);
+  EXPECT_GT(costs[1].mean_rounds, 0.0);
+  EXPECT_GT(costs[0].mean_rounds, costs[1].mean_rounds);
   for (const TickCost& cost : costs) {
     EXPECT_LE(cost.p50_ns, cost.p999_ns);
     EXPECT_LE(cost.cold_p50_ns, cost.cold_p999_ns);
@@ -49,7 +51,7 @@ TEST(TickCost, IsGreaterForALawThatDoesMore) {
 
 TEST(TickCost, KeepsTheOrderInWhichLawsWereGiven) {
   const auto path = strokes_of_a_blade(300);
-  const std::vector<TimedLaw> laws{{spring(), path}, {blade_of("strips", 256.0), path}, {spring(), path}};
+  const std::vector<TimedLaw> laws{{spring(), &path}, {blade_of("strips", 256.0), &path}, {spring(), &path}};
   const auto costs = tick_costs(laws, {.rounds = 2, .cold_ticks = 0});
   ASSERT_EQ(costs.size(), 3U);
   EXPECT_GT(costs[1].p50_ns, costs[0].p50_ns);
@@ -58,9 +60,9 @@ TEST(TickCost, KeepsTheOrderInWhichLawsWereGiven) {
 }
 
 TEST(TickCost, TimesALawThatNeverPushes) {
-  std::vector<drivers::Sample> in_the_air(100);
-  for (drivers::Sample& sample : in_the_air) sample.position[0] = -1.0;
-  const std::vector<TimedLaw> laws{{spring(), in_the_air}};
+  SampledMotion in_the_air = ticks_at(1000.0, 100);
+  for (models::SpatialMotion& sample : in_the_air.sample) sample.position[0] = -1.0;
+  const std::vector<TimedLaw> laws{{spring(), &in_the_air}};
   const auto costs = tick_costs(laws, {.rounds = 1, .cold_ticks = 4});
   ASSERT_EQ(costs.size(), 1U);
   EXPECT_TRUE(std::isfinite(costs[0].p50_ns) && std::isfinite(costs[0].cold_p50_ns));
@@ -68,7 +70,7 @@ TEST(TickCost, TimesALawThatNeverPushes) {
 
 TEST(TickCost, CountsItsStepsAndStopsWithoutAResult) {
   const auto path = strokes_of_a_blade(50);
-  const std::vector<TimedLaw> laws{{spring(), path}, {spring(), path}};
+  const std::vector<TimedLaw> laws{{spring(), &path}, {spring(), &path}};
   std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
   const TickCostOptions options{.rounds = 2, .cold_ticks = 4, .stop = &stop, .done = &done};
@@ -79,10 +81,12 @@ TEST(TickCost, CountsItsStepsAndStopsWithoutAResult) {
 }
 
 TEST(TickCost, RefusesAPathWithoutSamplesAndAPeriodThatIsNotPositive) {
-  const std::vector<TimedLaw> no_path{{spring(), {}}};
+  const SampledMotion nothing;
+  const std::vector<TimedLaw> no_path{{spring(), &nothing}};
   EXPECT_THROW((void)tick_costs(no_path), std::invalid_argument);
-  const auto path = strokes_of_a_blade(2);
-  const std::vector<TimedLaw> no_period{{spring(), path, 0.0}};
+  SampledMotion path = strokes_of_a_blade(2);
+  path.period_s[1] = 0.0;
+  const std::vector<TimedLaw> no_period{{spring(), &path}};
   EXPECT_THROW((void)tick_costs(no_period), std::invalid_argument);
 }
 

@@ -168,7 +168,7 @@ TEST(Choose, NamesNoneWhereNoneOfThoseWithinTheJndIsStable) {
 
 TEST(Choose, NamesTheBestAndWhatNobodyWouldMissWhereNoneIsWithinTheJnd) {
   ChooseOptions options = small();
-  options.fit.jnd = {.weber_fraction = 0.0, .threshold_n = 0.015};
+  options.fit.jnd = {.weber_fraction = 0.0, .threshold = 0.015};
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
   EXPECT_FALSE(choice.serves);
   EXPECT_THAT(choice.why, HasSubstr("None is within the JND of 0.015 N"));
@@ -194,7 +194,7 @@ TEST(Choose, IsTheSameForAnyNumberOfThreads) {
 TEST(Choose, FindsTheCurvesOfAllCountsAtOnceAsWellAsOneByOne) {
   const schema::Recording recording = cut_of(known_kelvin());
   ChooseOptions options = small();
-  options.fit.jnd = {.weber_fraction = 0.0, .threshold_n = 1e-3};  // so that every law is fitted both ways
+  options.fit.jnd = {.weber_fraction = 0.0, .threshold = 1e-3};  // so that every law is fitted both ways
   const LawChoice at_once = choose(recording, options);
   options.richer_too = false;
   const LawChoice one_by_one = choose(recording, options);

@@ -29,12 +29,6 @@ const Candidate& named(const LawChoice& choice, const std::string& name) {
   throw std::logic_error("no candidate " + name);
 }
 
-TEST(TorqueJnd, IsAShareOfTheTorqueAboveAThreshold) {
-  EXPECT_DOUBLE_EQ(TorqueJnd{}.at(0.06), 0.127 * 0.06);
-  EXPECT_DOUBLE_EQ(TorqueJnd{}.at(-1.0), 0.127);
-  EXPECT_DOUBLE_EQ(TorqueJnd{}.at(1e-5), 5e-4);
-}
-
 TEST(ChooseFidelity, LeavesRotationOutWhereTheBladeDoesNotTurn) {
   const LawChoice choice = choose_fidelity(scalpel("t1", 1.0), {}, go_on);
   EXPECT_TRUE(choice.serves);

@@ -217,7 +217,7 @@ TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
     const double by_time = fitting::fit("kelvin", fitted_view(series), {.folds = 12}).cv_rmse;
     EXPECT_EQ(by_way < by_time ? "piecewise" : "kelvin", law) << name << ": " << by_way << " " << by_time;
     // Neither is good enough to be taken for the recording by a hand.
-    EXPECT_GT(std::min(by_way, by_time), fitting::ForceJnd{}.at(rms(series.force))) << name;
+    EXPECT_GT(std::min(by_way, by_time), fitting::force_jnd.at(rms(series.force))) << name;
   }
 }
 

@@ -58,7 +58,7 @@ TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {
   EXPECT_EQ(rows[5].tick, worst);
   EXPECT_EQ(rows[0].tick, worst - 5);
   EXPECT_DOUBLE_EQ(rows[5].time_s, 1e-3 * static_cast<double>(worst));
-  EXPECT_EQ(rows[5].position, outcome_.cases[0].path.position[worst][0]);
+  EXPECT_EQ(rows[5].position, outcome_.cases[0].path.sample[worst].position[0]);
   EXPECT_EQ(rows[5].expected, outcome_.cases[0].stored.force[worst]);
   EXPECT_EQ(rows[5].got, outcome_.cases[0].got.force[worst]);
   EXPECT_THAT(context_table(outcome_.cases[0]), AllOf(HasSubstr("theta [rad]"), HasSubstr("speed [rad/s]"),

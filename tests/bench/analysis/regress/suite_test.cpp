@@ -40,9 +40,9 @@ TEST_F(SuiteFile, NamesLawTrajectoryAndTolerance) {
   const RegressionCase& one = suite.cases[0];
   EXPECT_EQ(one.law.law.model(), "kelvin");
   EXPECT_TRUE(one.tolerance.exact);
-  EXPECT_EQ(one.rate_hz, 1000.0);
-  ASSERT_THAT(one.motion, SizeIs(1));
-  const auto& strokes = std::get<StrokesToAndFro>(one.motion[0].script);
+  EXPECT_EQ(one.motion.rate_hz, 1000.0);
+  ASSERT_THAT(one.motion.axes, SizeIs(1));
+  const auto& strokes = std::get<StrokesToAndFro>(one.motion.axes[0].script);
   EXPECT_NEAR(strokes.from, 0.610865, 1e-6);
   EXPECT_EQ(strokes.pause_s, 0.05);
 }
@@ -62,7 +62,7 @@ TEST_F(SuiteFile, TakesTolerancesInForceAndTorqueApart) {
 TEST_F(SuiteFile, LetsACaseDepartFromTheDefaults) {
   folder_.write_suite("[defaults]\nexact = true\ntick_cost = 4\nrate = { value = 500, unit = \"Hz\" }\n" +
                       std::string(test::one_case).substr(std::string(test::one_case).find("[[case]]")));
-  EXPECT_EQ(read_suite(folder_.suite()).cases[0].rate_hz, 500.0);
+  EXPECT_EQ(read_suite(folder_.suite()).cases[0].motion.rate_hz, 500.0);
   EXPECT_EQ(read_suite(folder_.suite()).cases[0].tick_cost, 4.0);
   folder_.write_suite(
       "[defaults]\nexact = true\n" +

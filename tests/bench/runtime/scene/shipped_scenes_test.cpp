@@ -81,13 +81,13 @@ TEST_F(ShippedScenes, SayWhatTheToolDoesAndKeepItWithinReach) {
     EXPECT_FALSE(scene.name.empty());
     EXPECT_FALSE(scene.tool.empty());
     const drivers::DeviceInfo device = drivers::open_device(device_of(scene))->info();
-    const ToolPath path = tool_path(scene, 1000.0);
-    ASSERT_GT(path.position.size(), 1000U) << one.name;
-    for (std::size_t tick = 0; tick < path.position.size(); ++tick) {
+    const SampledMotion path = tool_path(scene, 1000.0);
+    ASSERT_GT(path.ticks(), 1000U) << one.name;
+    for (std::size_t tick = 0; tick < path.ticks(); ++tick) {
       for (std::size_t axis = 0; axis < device.axes.size(); ++axis) {
-        ASSERT_TRUE(std::isfinite(path.velocity[tick][axis]));
-        ASSERT_GE(path.position[tick][axis], device.axes[axis].lower) << one.name;
-        ASSERT_LE(path.position[tick][axis], device.axes[axis].upper) << one.name;
+        ASSERT_TRUE(std::isfinite(path.sample[tick].velocity[axis]));
+        ASSERT_GE(path.sample[tick].position[axis], device.axes[axis].lower) << one.name;
+        ASSERT_LE(path.sample[tick].position[axis], device.axes[axis].upper) << one.name;
       }
     }
   }
@@ -128,10 +128,10 @@ TEST_F(ShippedScenes, OfTheTurningScalpelAreFeltAboutItsAxis) {
   options["fidelity"] = std::string("paper");
   scene.tissue.law = models::Law::make("blade", scene.tissue.law.values(), options);
   const drivers::Surroundings around = surroundings_of(scene, drivers::open_device("sim:pose6")->info());
-  const ToolPath path = tool_path(scene, 1000.0);
+  const SampledMotion path = tool_path(scene, 1000.0);
   double most = 0.0;
-  for (std::size_t tick = 0; tick < path.position.size(); ++tick) {
-    most = std::max(most, std::abs(around.tissue_of_axes(path.position[tick], path.velocity[tick], 1e-3)[5]));
+  for (const auto& [position, velocity] : path.sample) {
+    most = std::max(most, std::abs(around.tissue_of_axes(position, velocity, 1e-3)[5]));
   }
   EXPECT_LT(most, 1e-9);
 }
@@ -140,12 +140,12 @@ TEST_F(ShippedScenes, OfTheScalpelAreThePathsOfThePaper) {
   for (const auto& [name, keyframes] :
        {std::pair{"scalpel-t1", scalpel_t1()}, std::pair{"scalpel-t2", scalpel_t2()}}) {
     const drivers::PosePath paper({.keyframes = keyframes});
-    const ToolPath path = tool_path(shipped(name), 1000.0);
+    const SampledMotion path = tool_path(shipped(name), 1000.0);
     for (std::size_t tick = 0; 1e-3 * static_cast<double>(tick) < keyframes.back().at_s; ++tick) {
       const auto expected = paper.at(1e-3 * static_cast<double>(tick));
       for (std::size_t axis = 0; axis < drivers::max_axes; ++axis) {
-        ASSERT_NEAR(path.position[tick][axis], expected.position[axis], 1e-12) << name;
-        ASSERT_NEAR(path.velocity[tick][axis], expected.velocity[axis], 1e-12) << name;
+        ASSERT_NEAR(path.sample[tick].position[axis], expected.position[axis], 1e-12) << name;
+        ASSERT_NEAR(path.sample[tick].velocity[axis], expected.velocity[axis], 1e-12) << name;
       }
     }
   }

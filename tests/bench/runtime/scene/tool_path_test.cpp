@@ -66,50 +66,49 @@ position = { x = { value = 0, unit = "m" }, rz = { value = 0, unit = "rad" } }
 )");
 
 TEST(ToolPath, OfStrokesIsHalfwayInTheMiddleOfAStroke) {
-  const ToolPath path = tool_path(strokes, 1000.0);
-  EXPECT_EQ(path.period_s, 1e-3);
-  ASSERT_EQ(path.position.size(), 4000U);
-  ASSERT_EQ(path.velocity.size(), 4000U);
-  EXPECT_NEAR(path.position[100][0], 30.0 * degree, 1e-15) << "open during the pause";
+  const SampledMotion path = tool_path(strokes, 1000.0);
+  EXPECT_EQ(path.period_s[7], 1e-3);
+  ASSERT_EQ(path.ticks(), 4000U);
+  EXPECT_NEAR(path.sample[100].position[0], 30.0 * degree, 1e-15) << "open during the pause";
   // Minimum jerk in the middle: half of the way, at 1.875 times the mean speed.
-  EXPECT_NEAR(path.position[500][0], 20.0 * degree, 1e-12);
-  EXPECT_NEAR(path.velocity[500][0], -1.875 * 20.0 * degree / 0.5, 1e-12);
-  EXPECT_NEAR(path.position[850][0], 10.0 * degree, 1e-12) << "closed, and without the variation";
-  EXPECT_NEAR(path.velocity[1250][0], 1.875 * 20.0 * degree / 0.5, 1e-12) << "opening";
+  EXPECT_NEAR(path.sample[500].position[0], 20.0 * degree, 1e-12);
+  EXPECT_NEAR(path.sample[500].velocity[0], -1.875 * 20.0 * degree / 0.5, 1e-12);
+  EXPECT_NEAR(path.sample[850].position[0], 10.0 * degree, 1e-12) << "closed, and without the variation";
+  EXPECT_NEAR(path.sample[1250].velocity[0], 1.875 * 20.0 * degree / 0.5, 1e-12) << "opening";
 }
 
 TEST(ToolPath, OfAnIndentationHoldsAtTheDepth) {
-  const ToolPath path = tool_path(indentation, 1000.0);
-  ASSERT_EQ(path.position.size(), 7200U) << "two cycles";
-  EXPECT_NEAR(path.position[700][2], -2.5e-3, 1e-15);
-  EXPECT_NEAR(path.velocity[700][2], -1.875 * 15e-3 / 0.6, 1e-12);
+  const SampledMotion path = tool_path(indentation, 1000.0);
+  ASSERT_EQ(path.ticks(), 7200U) << "two cycles";
+  EXPECT_NEAR(path.sample[700].position[2], -2.5e-3, 1e-15);
+  EXPECT_NEAR(path.sample[700].velocity[2], -1.875 * 15e-3 / 0.6, 1e-12);
   for (const std::size_t tick : {1000U, 2000U, 3000U}) {
-    EXPECT_EQ(path.position[tick][2], -0.01);
-    EXPECT_EQ(path.velocity[tick][2], 0.0);
+    EXPECT_EQ(path.sample[tick].position[2], -0.01);
+    EXPECT_EQ(path.sample[tick].velocity[2], 0.0);
   }
-  EXPECT_EQ(path.position[3600][2], 0.005);
-  EXPECT_EQ(path.position[700][0], 0.0);
+  EXPECT_EQ(path.sample[3600].position[2], 0.005);
+  EXPECT_EQ(path.sample[700].position[0], 0.0);
 }
 
 TEST(ToolPath, OfKeyframesMovesEveryAxisAtOnceAndRepeats) {
-  const ToolPath path = tool_path(keyframes, 1000.0);
-  ASSERT_EQ(path.position.size(), 3000U);
-  EXPECT_NEAR(path.position[400][0], -0.02, 1e-15);
-  EXPECT_NEAR(path.velocity[400][5], 1.875 * 60.0 * degree / 0.8, 1e-12);
-  EXPECT_EQ(path.position[800][2], 0.1) << "an axis that is not named stays";
-  EXPECT_NEAR(path.position[2400][0], -0.02, 1e-12) << "and again";
+  const SampledMotion path = tool_path(keyframes, 1000.0);
+  ASSERT_EQ(path.ticks(), 3000U);
+  EXPECT_NEAR(path.sample[400].position[0], -0.02, 1e-15);
+  EXPECT_NEAR(path.sample[400].velocity[5], 1.875 * 60.0 * degree / 0.8, 1e-12);
+  EXPECT_EQ(path.sample[800].position[2], 0.1) << "an axis that is not named stays";
+  EXPECT_NEAR(path.sample[2400].position[0], -0.02, 1e-12) << "and again";
 }
 
 TEST(ToolPath, HasTheDerivativeOfItsPositionAsVelocity) {
   constexpr double rate_hz = 20000.0;
   for (const Scene* scene : {&strokes, &indentation, &keyframes}) {
-    const ToolPath path = tool_path(*scene, rate_hz);
+    const SampledMotion path = tool_path(*scene, rate_hz);
     double worst = 0.0;
-    for (std::size_t tick = 1; tick + 1 < path.position.size(); ++tick) {
+    for (std::size_t tick = 1; tick + 1 < path.ticks(); ++tick) {
       for (std::size_t axis = 0; axis < drivers::max_axes; ++axis) {
         const double difference =
-            0.5 * rate_hz * (path.position[tick + 1][axis] - path.position[tick - 1][axis]);
-        worst = std::max(worst, std::abs(difference - path.velocity[tick][axis]));
+            0.5 * rate_hz * (path.sample[tick + 1].position[axis] - path.sample[tick - 1].position[axis]);
+        worst = std::max(worst, std::abs(difference - path.sample[tick].velocity[axis]));
       }
     }
     EXPECT_LT(worst, 1e-6);
@@ -117,16 +116,16 @@ TEST(ToolPath, HasTheDerivativeOfItsPositionAsVelocity) {
 }
 
 TEST(ToolPath, IsThatOfTheDeviceIfTheSceneHasNoTrajectory) {
-  const ToolPath path = tool_path(default_scene(), 1000.0);
-  EXPECT_EQ(path.position.size(), 10000U);
-  EXPECT_NEAR(path.position[650][0], 0.5 * drivers::HandOptions{}.open_rad, 1e-12);
-  const ToolPath named =
+  const SampledMotion path = tool_path(default_scene(), 1000.0);
+  EXPECT_EQ(path.ticks(), 10000U);
+  EXPECT_NEAR(path.sample[650].position[0], 0.5 * drivers::HandOptions{}.open_rad, 1e-12);
+  const SampledMotion named =
       tool_path(scene_on("theta", "rad", "[device]\nuri = \"sim:scissors?open=20deg\"\n"), 1000.0);
-  EXPECT_NEAR(named.position[650][0], 10.0 * degree, 1e-12);
-  const ToolPath poses = tool_path(
+  EXPECT_NEAR(named.sample[650].position[0], 10.0 * degree, 1e-12);
+  const SampledMotion poses = tool_path(
       scene_on("z", "m", "[device]\nuri = \"sim:pose6?path=0s:0:0:0mm:0:0:0deg,1s:0:0:8mm:0:0:0deg\"\n"),
       1000.0);
-  EXPECT_NEAR(poses.position[500][2], 4e-3, 1e-15);
+  EXPECT_NEAR(poses.sample[500].position[2], 4e-3, 1e-15);
 }
 
 TEST(ToolPath, IsRefusedWhereNothingIsKnownOfIt) {

@@ -96,10 +96,11 @@ TEST(SessionProtocol, SaysHowSamplesAreRendered) {
   EXPECT_EQ(protocol.switching, SwitchKind::through_zero);
   EXPECT_EQ(protocol.ramp_s, 0.1);
   ASSERT_TRUE(protocol.motion);
-  EXPECT_NEAR(protocol.motion->from, 0.523599, 1e-6);
-  EXPECT_EQ(protocol.motion->to, 0.1);
-  EXPECT_EQ(protocol.motion->stroke_s, 0.5);
-  EXPECT_EQ(protocol.motion->pause_s, 0.0);
+  const auto strokes = std::get<StrokesToAndFro>(protocol.motion->axes.at(0).script);
+  EXPECT_NEAR(strokes.from, 0.523599, 1e-6);
+  EXPECT_EQ(strokes.to, 0.1);
+  EXPECT_EQ(strokes.stroke_s, 0.5);
+  EXPECT_EQ(strokes.pause_s, 0.0);
   EXPECT_EQ(protocol.motion->seconds, 2.0);
 }
 

@@ -126,10 +126,10 @@ TEST(SampleForces, OfASpatialLawFollowAScene) {
   Protocol protocol = protocol_from(protocol_text("design = \"abx\""));
   const auto examples = std::filesystem::path(KERF_SOURCE_DIR) / "examples";
   protocol.samples[0].law = read_law_file(examples / "fuzzy_kelvin_3d.law.toml");
-  protocol.motion = SessionMotion{.seconds = 2.0, .scene = examples / "scenes" / "palpation.scene.toml"};
+  protocol.motion = MotionSource{.scene = examples / "scenes" / "palpation.scene.toml", .seconds = 2.0};
   const std::vector<double> forces = forces_of(protocol, 0);
   const Scene scene = read_scene(protocol.motion->scene);
-  const ToolPath path = tool_path(scene, 1000.0);
+  const SampledMotion path = tool_path(scene, 1000.0);
   const LawFile& law = protocol.samples[0].law;
   const std::size_t axes = law.law.axes().size();
   const auto device = drivers::open_device(device_of(scene))->info();
@@ -137,10 +137,7 @@ TEST(SampleForces, OfASpatialLawFollowAScene) {
   LawRendering loop(law.law, law.contact, places);
   ASSERT_THAT(forces, SizeIs(2000 * axes));
   for (std::size_t tick = 0; tick < 2000; ++tick) {
-    drivers::Sample sample;
-    sample.position = path.position[tick];
-    sample.velocity = path.velocity[tick];
-    const Command command = loop(sample, 1e-3);
+    const Command command = loop(path.sample[tick], 1e-3);
     for (std::size_t axis = 0; axis < axes; ++axis)
       ASSERT_EQ(forces[tick * axes + axis], command.force[places[axis]]) << tick;
   }
@@ -189,7 +186,7 @@ TEST(Loudness, RefusesASampleThatWouldNeedTwoGains) {
 TEST(Loudness, RefusesASampleWithoutForceAndOneThatIsFarTooWeak) {
   Protocol protocol = protocol_from(protocol_text("design = \"abx\"\nloudness = \"rms\"", strokes));
   Protocol silent = protocol;
-  silent.motion->to = 0.52;
+  std::get<StrokesToAndFro>(silent.motion->axes.at(0).script).to = 0.52;
   EXPECT_THAT([&] { match_loudness(silent); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("has no force along the [motion]")));
   protocol.samples[1].law.law = models::Law::make("kelvin", std::vector{1e-3, 1e-3, 1e-3});

@@ -97,11 +97,11 @@ TEST(EditorCurve, ClosesWhereTheContactSaysThatPenetrationGrows) {
 
 TEST(EditorCurve, HasTheThresholdOfATorqueAtItsLever) {
   schema::Recording recording = recording_along(1.0, 0.0, loop_of_four());
-  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold_n, 0.05 * 0.01);
+  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold, 0.05 * 0.01);
   recording.axes[0].lever = 0.08;
-  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold_n, 0.05 * 0.08);
+  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold, 0.05 * 0.08);
   recording.axes[0].force_unit = "N";
-  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold_n, 0.05);
+  EXPECT_DOUBLE_EQ(editor_curve(recording, 0).jnd.threshold, 0.05);
 }
 
 TEST(DrawnLaw, GivesTheSameForcesWhenItIsReadBack) {

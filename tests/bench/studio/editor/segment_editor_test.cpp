@@ -102,7 +102,7 @@ TEST(LawError, IsThatOfTheTableThatThePageIsHeldToToo) {
     };
     EditorCurve curve{
         .penetration = of["penetration"], .closing = forces("closing"), .opening = forces("opening")};
-    curve.jnd = {.weber_fraction = of["jnd"]["weber_fraction"], .threshold_n = of["jnd"]["threshold_n"]};
+    curve.jnd = {.weber_fraction = of["jnd"]["weber_fraction"], .threshold = of["jnd"]["threshold_n"]};
     const LawError error = law_error(curve, knots_in(one, "knots"));
     const auto expected = one["error"];
     EXPECT_THAT(error.rmse_n, near(expected["rmse_n"])) << one["name"];
