@@ -1,8 +1,32 @@
 #include "chart/limit_cycle_check.h"
 
+#include <algorithm>
+
+#include "laws/placement.h"
 #include "stability/in_hand.h"
 
 namespace kerf::bench {
+namespace {
+
+/// How deep the tool goes by the scene's script, past the tissue's contact.
+double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) {
+  if (scene.tissue.law.is_spatial()) return 0.0;
+  const std::size_t axis = axis_for(scene.tissue, path.device);
+  double deepest = 0.0;
+  for (const drivers::Axes& position : path.at(rate_hz).position)
+    deepest = std::max(deepest, scene.tissue.contact.motion(position[axis], 0.0).penetration);
+  return deepest;
+}
+
+}  // namespace
+
+DeviceInHand held_in(const Scene& scene, const ScriptedPath& path, double rate_hz) {
+  return {.device = path.device,
+          .hand_mass_kg = scene.hand.mass_kg,
+          .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
+          .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
+          .deepest = deepest_of(scene, path, rate_hz)};
+}
 
 std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
     const DeviceInHand& held) {

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "tables/json_number.h"
+#include "files/json_number.h"
 
 namespace kerf::bench {
 namespace {
