@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -139,7 +140,8 @@ void require_readable(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, ignored)) {
     throw std::invalid_argument(file.string() + ": not a file; expected a recording");
   }
-  const Descriptor opened(file);
+  if (::access(file.c_str(), R_OK) != 0)
+    throw std::invalid_argument(file.string() + ": cannot be read: " + std::strerror(errno));
 }
 
 }  // namespace kerf::schema

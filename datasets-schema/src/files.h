@@ -69,8 +69,8 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 /// What a user can act on when writing `file` failed.
 [[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 
-/// @throws std::invalid_argument if there is no such file or it is a folder (the caller named it wrongly),
-///         std::system_error if it cannot be opened.
+/// @throws std::invalid_argument if there is no such file, it is a folder or it may not be read: the caller
+///         named it wrongly.
 void require_readable(const std::filesystem::path& file);
 
 }  // namespace kerf::schema

@@ -37,8 +37,8 @@ struct DamageError : FormatError {
 };
 
 /// Texts need no look where the same file was looked through before and has not changed.
-/// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file,
-///         std::system_error if it cannot be opened.
+/// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file or
+///         it may not be read.
 [[nodiscard]] Inspection inspect(const std::filesystem::path& file, bool look_through_texts = true);
 
 /// As inspect(). @throws also FormatError that names the first finding for which the recording cannot be

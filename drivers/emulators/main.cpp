@@ -6,10 +6,12 @@
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 #include <sched.h>
 #include <sys/prctl.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/version.h>
 
 #include "attach.h"
 #include "faults.h"
@@ -20,6 +22,7 @@ namespace {
 
 using namespace kerf::emulators;
 
+constexpr int bad_input = 2;
 constexpr int device_error = 3;
 std::atomic<bool> stop{false};
 
@@ -112,14 +115,19 @@ int main(int count, char** texts) {
   app.add_option("--pause", arguments.pause_s, "Between unplugging and plugging in again [s]")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
-  CLI11_PARSE(app, count, texts);
+  app.set_version_flag("--version", fmt::format("kerf-emulate {} ({})", kerf::version(), kerf::commit()));
+  try {
+    app.parse(count, texts);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : bad_input;
+  }
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop = true; });
   try {
     be_prompt();
     return run(arguments);
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "kerf-emulate: %s\n", error.what());
-    return 2;
+    return bad_input;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "kerf-emulate: %s\n", error.what());
     return device_error;

@@ -4,8 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <vector>
 
 #include <fmt/format.h>
@@ -105,10 +107,11 @@ bool runs(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& setup)
 
 std::vector<std::uint8_t> read_image(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    fail(fmt::format("firmware={} cannot be read ({}); give the path of the image that came with your Falcon",
-                     path, std::strerror(errno)));
-  }
+  const bool is_folder = std::filesystem::is_directory(path);
+  if (!file || is_folder)
+    throw std::invalid_argument(
+        fmt::format("firmware={} cannot be read ({}); give the path of the image that came with your Falcon",
+                    path, std::strerror(is_folder ? EISDIR : errno)));
   std::vector<std::uint8_t> image;
   std::vector<char> piece(4096);
   while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {

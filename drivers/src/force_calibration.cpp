@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <initializer_list>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
 
 #include <Eigen/LU>
@@ -222,8 +224,8 @@ ForceCalibration read_force_calibration(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
-  if (!in) {
-    throw DeviceError(
+  if (!in || std::filesystem::is_directory(file)) {
+    throw std::invalid_argument(
         fmt::format("{}: the force calibration cannot be read; is the path right? "
                     "examples/u6.calibration.toml is an example",
                     file));

@@ -87,7 +87,7 @@ TEST(ForceCalibration, NamesTheFileAndWhatToDoIfThereIsNone) {
   try {
     (void)read_force_calibration("/nowhere/c.toml");
     FAIL();
-  } catch (const DeviceError& error) {
+  } catch (const std::invalid_argument& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("/nowhere/c.toml"), HasSubstr("examples/u6.calibration.toml")));
   }
 }

@@ -1,4 +1,5 @@
 #include <cstdint>
+#include <filesystem>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -65,6 +66,22 @@ TEST(SimulatedCut, CheckAccountsForEveryTick) {
     stages_us += result.at(stage).at("mean").get<double>();
   }
   EXPECT_NEAR(stages_us / result.at("cycle_us").at("mean").get<double>(), 1.0, 1e-3);
+}
+
+TEST(Demo, GoesOnFromALabsTextFile) {
+  const test::TemporaryFolder folder;
+  const std::string out = (folder / "demo").string();
+  const auto outcome =
+      run_kerf({"demo", "--text", KERF_SOURCE_DIR "/examples/data/punch.txt", "-o", out, "--seconds", "0.2"});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, testing::HasSubstr("5. And now a text file, as a lab has it: "));
+  EXPECT_THAT(outcome.output,
+              testing::HasSubstr("force_measured: column 2 'force [gf]', in gf as the file says"));
+  EXPECT_THAT(outcome.output, testing::HasSubstr("what is wrong with it: 1 lines are not data: 1802"));
+  EXPECT_THAT(outcome.output, testing::HasSubstr("4666 samples in SI, 7 closings"));
+  for (const char* file :
+       {"report.html", "punch.h5", "punch.html", "punch-fits/fit.json", "punch-fits/kelvin.law.toml"})
+    EXPECT_TRUE(std::filesystem::exists(folder / "demo" / file)) << file;
 }
 
 }  // namespace

@@ -9,10 +9,11 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "files/json_file.h"
+#include "files/json_number.h"
 #include "files/whole_file.h"
 #include "html/html.h"
 #include "tables/csv.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -210,7 +211,7 @@ void write_chart(const SpeedAccuracy& chart, const std::filesystem::path& folder
   write_whole_file(folder / "chart.svg", svg);
   write_whole_file(folder / "chart.csv", chart_csv(chart));
   write_whole_file(folder / "chart.html", page);
-  write_whole_file(folder / "chart.json", chart_as_json(chart).dump(2) + "\n");
+  write_json_file(folder / "chart.json", chart_as_json(chart));
 }
 
 Chart chart_picture(const SpeedAccuracy& chart) {

@@ -6,6 +6,7 @@
 
 #include <kerf/drivers/device.h>
 
+#include "chart/speed_accuracy.h"
 #include "laws/law_file.h"
 
 namespace kerf::bench {
@@ -18,6 +19,9 @@ struct DeviceInHand {
   double hand_stiffness_n_per_m = 0.0;
   double deepest = 0.0;  ///< penetration, in the unit of the law's axis
 };
+
+/// The device and the hand of a scene, which presses as deep as the scene's script goes.
+[[nodiscard]] DeviceInHand held_in(const Scene& scene, const ScriptedPath& path, double rate_hz);
 
 /// Says of a law at a rate why it would have a limit cycle in that hand (stability/in_hand.h); nothing if it
 /// would not, or if it cannot be judged.

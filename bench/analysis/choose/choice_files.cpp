@@ -5,10 +5,11 @@
 #include <fmt/core.h>
 
 #include "choose/choice_page.h"
+#include "files/json_file.h"
+#include "files/json_number.h"
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
 #include "tables/csv.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {
@@ -123,7 +124,7 @@ std::string choice_csv(const LawChoice& choice) {
 
 void refuse_to_replace_choice(const std::filesystem::path& folder, bool replace) {
   for (const auto* name : {"choose.json", "choose.csv", "choose.html"})
-    refuse_to_replace(folder / name, replace);
+    require_output(folder / name, replace);
 }
 
 void write_choice(LawChoice& choice, const json& json, const std::filesystem::path& recording,
@@ -137,7 +138,7 @@ void write_choice(LawChoice& choice, const json& json, const std::filesystem::pa
   }
   write_whole_file(folder / "choose.csv", choice_csv(choice));
   write_whole_file(folder / "choose.html", choice_page(json, recording, choice));
-  write_whole_file(folder / "choose.json", json.dump(2) + "\n");
+  write_json_file(folder / "choose.json", json);
 }
 
 }  // namespace kerf::bench

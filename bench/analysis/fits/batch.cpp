@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "files/named_file.h"
 #include "fits/fit_files.h"
 
 namespace kerf::bench {
@@ -41,9 +42,7 @@ void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch,
 }  // namespace
 
 std::vector<fs::path> recordings_in(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
-    throw std::invalid_argument(fmt::format("{}: there is no such folder", folder.string()));
-  }
+  require_named_folder(folder);
   std::vector<fs::path> files;
   for (const auto& file : fs::recursive_directory_iterator(folder)) {
     if (file.is_regular_file() && file.path().extension() == ".h5") files.push_back(file.path());

@@ -4,10 +4,10 @@
 
 #include <fmt/core.h>
 
+#include "files/json_number.h"
 #include "fits/batch.h"
 #include "fits/fit_files.h"
 #include "tables/csv.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -11,9 +11,9 @@
 
 #include <kerf/models/blade.h>
 
+#include "files/json_number.h"
 #include "recordings/provenance.h"
 #include "signal/signal.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
 #include "tables/csv.h"
@@ -46,8 +47,8 @@ std::vector<std::string> law_file_names(const RecordingFit& fit, const FittedLaw
 }
 
 void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder) {
-  for (const std::string& model : models_of(options)) refuse_to_replace(folder / law_file_name(model), false);
-  for (const auto* table : {csv_name, json_name}) refuse_to_replace(folder / table, false);
+  for (const std::string& model : models_of(options)) require_output(folder / law_file_name(model), false);
+  for (const auto* table : {csv_name, json_name}) require_output(folder / table, false);
 }
 
 void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
@@ -64,7 +65,7 @@ void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
     }
   }
   write_whole_file(folder / csv_name, as_csv(fit));
-  write_whole_file(folder / json_name, fits_as_json(fit).dump(2) + "\n");
+  write_json_file(folder / json_name, fits_as_json(fit));
 }
 
 void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std::filesystem::path& folder) {

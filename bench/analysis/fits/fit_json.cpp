@@ -2,8 +2,8 @@
 #include <span>
 #include <variant>
 
+#include "files/json_number.h"
 #include "fits/fit_files.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

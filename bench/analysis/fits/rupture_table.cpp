@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "files/whole_file.h"
+#include "files/named_file.h"
 #include "import/text_layout.h"
 #include "import/text_table.h"
 #include "units/units.h"
@@ -58,7 +58,7 @@ fitting::RuptureSamples liver_ruptures() {
 }
 
 fitting::RuptureSamples read_ruptures(const std::filesystem::path& file) {
-  const std::string text = read_whole_file(file);
+  const std::string text = read_named_file(file);
   const TextLayout layout = find_layout(text, file.string());
   constexpr Wanted wanted[] = {{"depth", "m"}, {"speed", "m/s"}, {"force", "N"}};
   std::vector<std::size_t> columns;

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "html/html.h"
 #include "laws/placement.h"
@@ -108,7 +109,7 @@ std::vector<Figure> figures_of(const RegressionOutcome& outcome) {
 void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
                         const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  write_whole_file(folder / "regress.json", outcome_as_json(suite, outcome).dump(2) + '\n');
+  write_json_file(folder / "regress.json", outcome_as_json(suite, outcome));
   std::vector<Figure> figures;
   for (const RegressionOutcome& one : outcome.cases) {
     if (one.passed()) continue;

@@ -8,7 +8,7 @@
 
 #include <fmt/ranges.h>
 
-#include "files/whole_file.h"
+#include "files/named_file.h"
 #include "laws/law_toml.h"
 #include "laws/placement.h"
 #include "scene/read_motion.h"
@@ -144,7 +144,7 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
 
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());
-  const toml::table root = parse_toml(read_whole_file(file), file.string());
+  const toml::table root = parse_toml(read_named_file(file), file.string());
   place.allow_only(root, {"name", "defaults", "case"}, "a suite");
   Suite suite{
       .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 
@@ -160,6 +161,19 @@ AxisComparison compare(const Source& source, const LawTrace& trace, std::size_t 
 }
 
 }  // namespace
+
+std::vector<NamedLaw> read_named_laws(const std::vector<std::string>& files) {
+  std::vector<NamedLaw> laws;
+  for (const std::string& file : files) {
+    std::string stem = std::filesystem::path(file).filename().string();
+    stem = stem.substr(0, stem.find(".law.toml"));
+    const auto same = std::ranges::count_if(
+        laws, [&](const NamedLaw& law) { return law.name.substr(0, law.name.find('#')) == stem; });
+    laws.push_back(
+        {.name = same > 0 ? fmt::format("{}#{}", stem, same + 1) : stem, .file = read_law_file(file)});
+  }
+  return laws;
+}
 
 OpenLoopResult run_open_loop(const Source& source, const std::vector<NamedLaw>& laws,
                              const OpenLoopOptions& options, const std::atomic<bool>& stop) {

@@ -23,6 +23,10 @@ struct NamedLaw {
   LawFile file;
 };
 
+/// Reads law files, each named as its file, with a number where two are the same.
+/// @throws as read_law_file() does.
+[[nodiscard]] std::vector<NamedLaw> read_named_laws(const std::vector<std::string>& files);
+
 struct OpenLoopOptions {
   double contact = 0.0;     ///< of ForceEventOptions
   double window_s = 0.005;  ///< of ForceEventOptions

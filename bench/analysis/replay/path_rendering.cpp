@@ -69,6 +69,10 @@ std::array<Coupling, drivers::max_axes> couplings(const CouplingOptions& options
   return all;
 }
 
+double PathReport::error_rms(std::size_t axis) const noexcept {
+  return std::sqrt(axes[axis].squares / (playing > 0 ? static_cast<double>(playing) : 1.0));
+}
+
 Command PathRendering::operator()(const drivers::Sample& sample, double elapsed_s) noexcept {
   const auto ticks = static_cast<std::uint64_t>(std::llround(elapsed_s / path_->period_s));
   const Reference reference = player_.step(ticks, sample.position);

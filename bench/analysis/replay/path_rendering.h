@@ -48,6 +48,9 @@ struct PathReport {
   std::array<Axis, drivers::max_axes> axes;
   std::uint64_t playing = 0;  ///< ticks
   bool finished = false;      ///< the path was played to its end
+
+  /// Root mean square of reference less position along an axis of the device.
+  [[nodiscard]] double error_rms(std::size_t axis) const noexcept;
 };
 
 /// Holds a device to a path by a virtual coupling:

@@ -1,9 +1,8 @@
 #include "replay/replay_files.h"
 
-#include <cmath>
-
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "recordings/provenance.h"
 #include "replay/replay_page.h"
@@ -88,10 +87,9 @@ json path_as_json(const Path& path, const PathReport& report, const drivers::Dev
               {"played_to_its_end", report.finished}};
   for (const std::size_t axis : path.axes) {
     const PathReport::Axis& one = report.axes[axis];
-    const double ticks = report.playing > 0 ? static_cast<double>(report.playing) : 1.0;
     result["axes"].push_back({{"axis", device.axes[axis].name},
                               {"unit", device.axes[axis].position_unit},
-                              {"error_rms", std::sqrt(one.squares / ticks)},
+                              {"error_rms", report.error_rms(axis)},
                               {"error_worst", one.worst},
                               {"largest_reference_speed", one.largest_step / path.period_s},
                               {"speed_limit", device.axes[axis].speed_limit},
@@ -102,8 +100,8 @@ json path_as_json(const Path& path, const PathReport& report, const drivers::Dev
 
 void write_open_loop(const fs::path& folder, const Source& source, const OpenLoopResult& result,
                      const json& all, bool replace) {
-  refuse_to_replace(folder / "replay.json", replace);
-  for (const LawTrace& trace : result.laws) refuse_to_replace(folder / (trace.name + ".h5"), replace);
+  require_output(folder / "replay.json", replace);
+  for (const LawTrace& trace : result.laws) require_output(folder / (trace.name + ".h5"), replace);
   fs::create_directories(folder);
   for (const LawTrace& trace : result.laws)
     schema::write_recording(folder / (trace.name + ".h5"), recording_of(source, trace));
@@ -113,7 +111,7 @@ void write_open_loop(const fs::path& folder, const Source& source, const OpenLoo
     write_whole_file(folder / name, charts[i]);
   }
   write_whole_file(folder / "replay.html", replay_page(all, charts));
-  write_whole_file(folder / "replay.json", all.dump(2) + "\n");
+  write_json_file(folder / "replay.json", all);
 }
 
 }  // namespace kerf::bench

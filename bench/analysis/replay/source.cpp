@@ -166,6 +166,20 @@ Source select_rows(schema::Recording recording, const SelectOptions& options, co
   return source;
 }
 
+Source along_axis(Source source, std::size_t axis) {
+  schema::Recording& recording = source.recording;
+  const std::size_t axes = recording.dimensions();
+  for (auto* column :
+       {&recording.position, &recording.velocity, &recording.force_commanded, &recording.force_measured}) {
+    for (std::size_t row = 0; row < column->size() / axes; ++row)
+      (*column)[row] = (*column)[row * axes + axis];
+    column->resize(column->size() / axes);
+  }
+  recording.axes = {recording.axes[axis]};
+  recording.cycles.reset();
+  return source;
+}
+
 Source bridged(const Source& source) {
   if (source.gaps.empty()) return source;
   const schema::Recording& from = source.recording;

@@ -42,6 +42,9 @@ struct Source {
 [[nodiscard]] Source select_rows(schema::Recording recording, const SelectOptions& options,
                                  const std::string& name);
 
+/// The recording with one of its axes alone.
+[[nodiscard]] Source along_axis(Source source, std::size_t axis);
+
 /// Fills every gap by straight lines on the ticks that are missing, flagged as resampled. What nobody
 /// recorded there is no recorded force: the forces are NaN.
 [[nodiscard]] Source bridged(const Source& source);

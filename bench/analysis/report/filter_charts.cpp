@@ -54,4 +54,17 @@ Chart phase_chart(const FilterReport& report) {
   return chart;
 }
 
+std::string filter_response_svg(const FilterReport& report) {
+  const Chart gain = gain_chart(report);
+  const Chart phase = phase_chart(report);
+  const auto placed = [](std::string drawing, int y_px) {
+    const auto at = drawing.find("<svg");
+    return drawing.insert(at + 4, fmt::format(" y=\"{}\"", y_px));
+  };
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\">\n{}\n{}\n</svg>\n",
+      gain.width_px, gain.height_px + phase.height_px, placed(draw(gain), 0),
+      placed(draw(phase), gain.height_px));
+}
+
 }  // namespace kerf::bench

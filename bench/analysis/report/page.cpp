@@ -8,7 +8,7 @@
 
 #include <kerf/schema/recording.h>
 
-#include "files/whole_file.h"
+#include "files/named_file.h"
 #include "html/html.h"
 #include "recordings/axes.h"
 #include "recordings/summary.h"
@@ -23,7 +23,7 @@ using json = nlohmann::ordered_json;
 
 json read_json(const std::filesystem::path& file) {
   try {
-    return json::parse(read_whole_file(file));
+    return json::parse(read_named_file(file));
   } catch (const json::exception& error) {
     throw std::invalid_argument(fmt::format("{}: not JSON: {}", file.string(), error.what()));
   }

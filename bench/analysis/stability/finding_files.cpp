@@ -1,3 +1,4 @@
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "html/html.h"
 #include "stability/findings.h"
@@ -6,7 +7,7 @@ namespace kerf::bench {
 
 void refuse_to_replace_findings(const std::filesystem::path& folder, bool replace) {
   for (const auto* name : {"stability.json", "stability.csv", "stability.html"})
-    refuse_to_replace(folder / name, replace);
+    require_output(folder / name, replace);
 }
 
 void write_findings(const Findings& findings, const std::filesystem::path& folder) {
@@ -16,7 +17,7 @@ void write_findings(const Findings& findings, const std::filesystem::path& folde
   write_whole_file(folder / "stability.csv", findings.csv);
   write_whole_file(folder / "stability.html",
                    html_page("Stability", "<h1>Where it breaks</h1>\n" + page_body(findings)));
-  write_whole_file(folder / "stability.json", findings.json.dump(2) + "\n");
+  write_json_file(folder / "stability.json", findings.json);
 }
 
 }  // namespace kerf::bench

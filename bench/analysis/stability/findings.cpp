@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "files/json_number.h"
 #include "html/html.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -78,10 +78,11 @@ void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {
   nlohmann::ordered_json json = analysis_as_json(analysis);
   if (!context.result.is_null()) json.update(context.result);
   context.result = std::move(json);
-  for (const std::string& line : summary_lines(analysis)) say(line);
+  for (const std::string& line : summary_lines(analysis)) context.say(line);
   if (arguments.output.empty()) return;
   write_analysis(study, analysis, arguments.output, arguments.replace);
-  say(fmt::format("analysis.html, analysis.json, answers.csv and the charts are in {}", arguments.output));
+  context.say(
+      fmt::format("analysis.html, analysis.json, answers.csv and the charts are in {}", arguments.output));
 }
 
 }  // namespace

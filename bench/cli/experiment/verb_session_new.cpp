@@ -60,7 +60,7 @@ void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
   match_loudness(protocol);
   for (const SessionSample& sample : protocol.samples) {
     if (sample.gain != 1.0)
-      say(fmt::format("  {:24} forces times {:.4g}, to be as strong", sample.name, sample.gain));
+      context.say(fmt::format("  {:24} forces times {:.4g}, to be as strong", sample.name, sample.gain));
   }
   check_on_device(arguments, protocol);
   if (context.seed_given)
@@ -75,7 +75,7 @@ void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
                     : fs::path(arguments.output);
   };
   for (std::size_t subject = 0; subject < subjects; ++subject)
-    refuse_to_replace(file_of(subject), arguments.replace);
+    require_output(file_of(subject), arguments.replace);
   if (is_study) fs::create_directories(arguments.output);
   context.result = {{"protocol", arguments.protocol}, {"sessions", nlohmann::ordered_json::array()}};
   for (std::size_t subject = 0; subject < subjects; ++subject) {
@@ -91,8 +91,8 @@ void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
                          key, derivation, arguments.replace);
     context.result["sessions"].push_back(
         {{"file", file_of(subject).string()}, {"subject", code}, {"trials", plans[subject].size()}});
-    say(fmt::format("{}: subject {}, {}{} trials, sealed", file_of(subject).string(), code,
-                    is_adaptive(protocol.design) ? "at most " : "", plans[subject].size()));
+    context.say(fmt::format("{}: subject {}, {}{} trials, sealed", file_of(subject).string(), code,
+                            is_adaptive(protocol.design) ? "at most " : "", plans[subject].size()));
   }
 }
 
@@ -108,7 +108,7 @@ void add_session_key(CLI::App& session, Context& context) {
       [file, &context] {
         write_new_key_file(*file);
         context.result = {{"key_file", *file}};
-        say(fmt::format("{}: 32 random bytes, readable by you alone", *file));
+        context.say(fmt::format("{}: 32 random bytes, readable by you alone", *file));
       });
   verb.add_option("FILE", *file, "The key file to be made").required();
 }

@@ -32,8 +32,8 @@ void open(SessionOpenVerbArguments& arguments, Context& context) {
                     {"finished", store.finished()},
                     {"early_openings", store.early_openings()}};
   for (const std::string& opening : store.early_openings()) warn("opened before its end: " + opening);
-  say(fmt::format("{}: trials.csv and a recording of each of {} trials", arguments.output,
-                  store.trials().size()));
+  context.say(fmt::format("{}: trials.csv and a recording of each of {} trials", arguments.output,
+                          store.trials().size()));
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ Answering answering_of(const SessionRunVerbArguments& arguments, std::uint64_t s
     answering.parts.push_back(std::make_unique<RehearsalSubject>(seed));
   } else if (arguments.page) {
     auto page = std::make_unique<ServedSubject>(static_cast<std::uint16_t>(arguments.port));
-    say(fmt::format("The subject's page: {}", page->url()));
+    note(fmt::format("The subject's page: {}", page->url()));
     answering.parts.push_back(std::move(page));
   } else {
     answering.parts.push_back(std::make_unique<TerminalSubject>());
@@ -78,7 +78,7 @@ SessionRunOptions run_options_of(const SessionRunVerbArguments& arguments, const
   if (arguments.page) {
     const std::string_view of = is_adaptive(protocol.design) ? "at most " : "";
     options.progress = [of](std::size_t answered, std::size_t at_most) {
-      say(fmt::format("{} of {}{} trials are done", answered, of, at_most));
+      note(fmt::format("{} of {}{} trials are done", answered, of, at_most));
     };
   }
   if (buttons != nullptr) {
@@ -101,18 +101,19 @@ void report(const SessionRunVerbArguments& arguments, Context& context, const Se
                     {"missed", result.run.report.missed()}};
   switch (result.end) {
     case SessionEnd::finished:
-      say(fmt::format("The session is finished: {} trials. 'kerf session analyze' opens it.",
-                      result.answered));
+      context.say(fmt::format("The session is finished: {} trials. 'kerf session analyze' opens it.",
+                              result.answered));
       break;
     case SessionEnd::declined:
-      say("Consent was not given; nothing was felt.");
+      context.say("Consent was not given; nothing was felt.");
       break;
     default:
-      say(fmt::format("{} of {} trials are done; 'kerf session run {}' goes on", result.answered,
-                      result.at_most, arguments.file));
+      context.say(fmt::format("{} of {} trials are done; 'kerf session run {}' goes on", result.answered,
+                              result.at_most, arguments.file));
   }
   if (!arguments.rehearse)
-    say(fmt::format("{} ticks, {} deadlines missed", result.run.report.ticks(), result.run.report.missed()));
+    context.say(
+        fmt::format("{} ticks, {} deadlines missed", result.run.report.ticks(), result.run.report.missed()));
 }
 
 void run(SessionRunVerbArguments& arguments, Context& context) {

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "experiment/verb_session.h"
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
@@ -61,14 +62,16 @@ void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptio
                      name_of(protocol.design)));
 }
 
-void write_files(const SessionSimulateVerbArguments& arguments, const Simulation& simulation) {
+void write_files(const SessionSimulateVerbArguments& arguments, const Simulation& simulation,
+                 Context& context) {
   const fs::path folder = arguments.output;
   write_whole_file(folder / "simulate.html", simulation_page(simulation));
-  write_whole_file(folder / "simulate.json", simulation_json(simulation).dump(2) + "\n");
+  write_json_file(folder / "simulate.json", simulation_json(simulation));
   write_whole_file(folder / "simulate.csv", simulation_csv(simulation));
   for (const Figure& figure : simulation_charts(simulation))
     write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart) + "\n");
-  say(fmt::format("{}: the charts, and all numbers as JSON and CSV", (folder / "simulate.html").string()));
+  context.say(
+      fmt::format("{}: the charts, and all numbers as JSON and CSV", (folder / "simulate.html").string()));
 }
 
 void run(const SessionSimulateVerbArguments& arguments, Context& context) {
@@ -79,7 +82,7 @@ void run(const SessionSimulateVerbArguments& arguments, Context& context) {
   warn_of_what_has_no_bearing(protocol, options);
   if (!arguments.output.empty()) {
     for (const char* file : {"simulate.html", "simulate.json", "simulate.csv"})
-      refuse_to_replace(fs::path(arguments.output) / file, arguments.replace);
+      require_output(fs::path(arguments.output) / file, arguments.replace);
     fs::create_directories(arguments.output);
   }
   Simulation simulation;
@@ -87,9 +90,9 @@ void run(const SessionSimulateVerbArguments& arguments, Context& context) {
     Progress progress("simulating " + protocol.name, simulated_experiments(protocol, options));
     simulation = simulate(protocol, options, progress.done);
   }
-  for (const std::string& line : simulation_lines(simulation)) say(line);
+  for (const std::string& line : simulation_lines(simulation)) context.say(line);
   context.result = simulation_json(simulation);
-  if (!arguments.output.empty()) write_files(arguments, simulation);
+  if (!arguments.output.empty()) write_files(arguments, simulation, context);
 }
 
 }  // namespace

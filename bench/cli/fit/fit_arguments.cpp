@@ -107,11 +107,7 @@ void add_law_options(Verb& verb, FitArguments& arguments) {
 
 void add_data_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--axis", arguments.axis, "Axis to fit (default: the first)");
-  verb.add_option("--contact", arguments.contact,
-                  "Position where the penetration is zero, in m or rad (default: from the recording)");
-  verb.add_option("--direction", arguments.direction,
-                  "Direction into the tissue (default: from the recording)")
-      .one_of({"increasing", "decreasing"});
+  add_contact_options(verb, arguments.contact, "from the recording");
   verb.add_option("--noise", arguments.noise,
                   "Standard deviation of the force's noise, one or one a recording [N] (default: estimated)")
       .separated_by(',')
@@ -191,10 +187,7 @@ void check(const FitArguments& arguments) {
 FitSource source_of(const FitArguments& arguments, const schema::Recording& recording,
                     const std::string& name, std::size_t place) {
   FitSource source{.recording = &recording, .name = name, .axis = find_axis(recording, arguments.axis)};
-  source.contact = contact_of(recording, source.axis);
-  if (arguments.contact) source.contact.position = *arguments.contact;
-  if (!arguments.direction.empty())
-    source.contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+  source.contact = arguments.contact.over(contact_of(recording, source.axis));
   const auto& noise = arguments.noise;
   if (!noise.empty()) source.noise_n = noise.size() == 1 ? noise.front() : noise.at(place);
   return source;

@@ -7,6 +7,7 @@
 #include <kerf/schema/recording.h>
 
 #include "fits/fit_recording.h"
+#include "program/contact_arguments.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
@@ -20,8 +21,7 @@ struct FitArguments {
   bool force = false;
 
   std::string axis;
-  std::string direction;
-  std::optional<double> contact;
+  ContactArguments contact;
   std::vector<double> noise;
 
   std::string segments = "5";

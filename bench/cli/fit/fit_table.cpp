@@ -4,8 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "program/app.h"
-
 namespace kerf::bench {
 namespace {
 
@@ -13,18 +11,19 @@ constexpr std::size_t parameters_said = 16;  ///< of a law; fit.csv has them all
 
 std::string newtons(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
 
-void say_comparison(const RecordingFit& fit) {
+void say_comparison(const RecordingFit& fit, Context& context) {
   const bool tested = fit.settings.test_share > 0.0;
-  say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}{} {:>6} {:>9}", "law", "free", "rmse N", "max N",
-                  "R2", "held-out", tested ? "      test" : "", "> JND", "converged"));
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}{} {:>6} {:>9}", "law", "free", "rmse N",
+                          "max N", "R2", "held-out", tested ? "      test" : "", "> JND", "converged"));
   for (const FittedLaw& law : fit.laws) {
     const fitting::FitResult& result = law.result;
-    say(fmt::format("  {:17} {:4} {:9.4f} {:9.4f} {:7.4f} {:>9}{} {:5.1f}% {:>9}", result.model,
-                    result.free_parameters, result.rmse, result.max_abs, result.r2, newtons(result.cv_rmse),
-                    tested ? fmt::format(" {:>9}", newtons(result.test_rmse)) : "",
-                    100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
+    context.say(fmt::format("  {:17} {:4} {:9.4f} {:9.4f} {:7.4f} {:>9}{} {:5.1f}% {:>9}", result.model,
+                            result.free_parameters, result.rmse, result.max_abs, result.r2,
+                            newtons(result.cv_rmse),
+                            tested ? fmt::format(" {:>9}", newtons(result.test_rmse)) : "",
+                            100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
   }
-  say(fmt::format("  {:17} {:4} {:9.4f}", "straight line", 2, fit.line_rmse_n));
+  context.say(fmt::format("  {:17} {:4} {:9.4f}", "straight line", 2, fit.line_rmse_n));
 }
 
 std::string interval_of(const fitting::Estimate& estimate) {
@@ -33,20 +32,20 @@ std::string interval_of(const fitting::Estimate& estimate) {
   return fmt::format("{:.5g} to {:.5g}", estimate.lower, estimate.upper);
 }
 
-void say_parameters(const RecordingFit& fit, const FittedLaw& law) {
+void say_parameters(const RecordingFit& fit, const FittedLaw& law, Context& context) {
   const auto& parameters = law.result.parameters;
   if (parameters.size() > parameters_said) {
-    say(fmt::format("  {}: {} parameters, in fit.csv", law.result.model, parameters.size()));
+    context.say(fmt::format("  {}: {} parameters, in fit.csv", law.result.model, parameters.size()));
     return;
   }
-  say(fmt::format("  {}, with {:g} % intervals", law.result.model, 100.0 * fit.settings.confidence));
+  context.say(fmt::format("  {}, with {:g} % intervals", law.result.model, 100.0 * fit.settings.confidence));
   const auto say_one = [&](const fitting::Estimate& estimate) {
     const bool shared = estimate.recording == fitting::Estimate::shared;
     const std::string unit =
         models::unit_of(estimate.info.quantity, law.file.force_unit, law.file.position_unit);
-    say(fmt::format("    {:22} {:>12.6g}  {:28} {}{}", estimate.info.name, estimate.value,
-                    interval_of(estimate), unit,
-                    shared ? "" : "  of " + fit.recordings.at(estimate.recording).name));
+    context.say(fmt::format("    {:22} {:>12.6g}  {:28} {}{}", estimate.info.name, estimate.value,
+                            interval_of(estimate), unit,
+                            shared ? "" : "  of " + fit.recordings.at(estimate.recording).name));
   };
   for (const fitting::Estimate& estimate : parameters) say_one(estimate);
   for (const fitting::Estimate& estimate : law.result.others) say_one(estimate);
@@ -54,18 +53,18 @@ void say_parameters(const RecordingFit& fit, const FittedLaw& law) {
     const auto end = [](double value) {
       return std::isfinite(value) ? fmt::format("{:.5g}", value) : "open";
     };
-    say(fmt::format("    {:22} {:>12}  {} to {}", profile.parameter, "by profile", end(profile.lower),
-                    end(profile.upper)));
+    context.say(fmt::format("    {:22} {:>12}  {} to {}", profile.parameter, "by profile", end(profile.lower),
+                            end(profile.upper)));
   }
 }
 
 }  // namespace
 
-void say_fit(const RecordingFit& fit) {
-  say_comparison(fit);
-  for (const FittedLaw& law : fit.laws) say_parameters(fit, law);
-  say(fit.choice.model.empty() ? fit.choice.why
-                               : fmt::format("choice: {}: {}", fit.choice.model, fit.choice.why));
+void say_fit(const RecordingFit& fit, Context& context) {
+  say_comparison(fit, context);
+  for (const FittedLaw& law : fit.laws) say_parameters(fit, law, context);
+  context.say(fit.choice.model.empty() ? fit.choice.why
+                                       : fmt::format("choice: {}: {}", fit.choice.model, fit.choice.why));
 }
 
 void warn_of(const RecordingFit& fit) {

@@ -22,28 +22,29 @@ struct BladeVerbArguments {
   fitting::BladeFitOptions options;
 };
 
-void print_parameters(const fitting::BladeFit& fit, double confidence) {
-  say(fmt::format("  {:22} {:>11} {:>10}   {:25} {}", "parameter", "value", "std error",
-                  fmt::format("{:g} % interval", 100.0 * confidence), "unit"));
+void say_parameters(const fitting::BladeFit& fit, double confidence, Context& context) {
+  context.say(fmt::format("  {:22} {:>11} {:>10}   {:25} {}", "parameter", "value", "std error",
+                          fmt::format("{:g} % interval", 100.0 * confidence), "unit"));
   for (const fitting::Estimate& estimate : fit.parameters) {
-    say(fmt::format("  {:22} {:11.5g} {:10.3g}   {:25} {}", estimate.info.name, estimate.value,
-                    estimate.std_error, fmt::format("{:.5g} to {:.5g}", estimate.lower, estimate.upper),
-                    models::unit_of(estimate.info.quantity, "N", "m")));
+    context.say(fmt::format("  {:22} {:11.5g} {:10.3g}   {:25} {}", estimate.info.name, estimate.value,
+                            estimate.std_error,
+                            fmt::format("{:.5g} to {:.5g}", estimate.lower, estimate.upper),
+                            models::unit_of(estimate.info.quantity, "N", "m")));
   }
 }
 
-void print_errors(const BladeRecordingFit& all) {
+void say_errors(const BladeRecordingFit& all, Context& context) {
   const fitting::BladeFit& fit = all.fit;
-  say(fmt::format("  {:6} {:>12} {:>12}   {}", "axis", "rms error", "rms force", "unit"));
+  context.say(fmt::format("  {:6} {:>12} {:>12}   {}", "axis", "rms error", "rms force", "unit"));
   for (std::size_t axis = 0; axis < 6; ++axis) {
     if (!std::isfinite(fit.rmse[axis])) continue;
-    say(fmt::format("  {:6} {:12.4g} {:12.4g}   {}", all.axes[axis], fit.rmse[axis], fit.rms[axis],
-                    axis < 3 ? "N" : "N·m"));
+    context.say(fmt::format("  {:6} {:12.4g} {:12.4g}   {}", all.axes[axis], fit.rmse[axis], fit.rms[axis],
+                            axis < 3 ? "N" : "N·m"));
   }
 }
 
 void run_blade(const BladeVerbArguments& arguments, Context& context) {
-  if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.force);
+  if (!arguments.output.empty()) require_output(arguments.output, arguments.force);
   fitting::BladeFitOptions options = arguments.options;
   options.law_options = blade_shape_of(read_law_file(arguments.shape), arguments.shape);
   if (!arguments.fidelity.empty()) set_blade_fidelity(options.law_options, arguments.fidelity);
@@ -54,11 +55,11 @@ void run_blade(const BladeVerbArguments& arguments, Context& context) {
   if (std::ranges::none_of(fit.parameters, [](const auto& p) { return std::isfinite(p.std_error); })) {
     context.exit = Exit::check_failed;
   }
-  say(fmt::format("{} of {} samples in the tissue", fit.rows_in_tissue, fit.rows));
-  print_parameters(fit, options.confidence);
-  print_errors(all);
+  context.say(fmt::format("{} of {} samples in the tissue", fit.rows_in_tissue, fit.rows));
+  say_parameters(fit, options.confidence, context);
+  say_errors(all, context);
   if (options.thresholds) {
-    say(fmt::format(
+    context.say(fmt::format(
         "{} ruptures with a spread of {:.3g} N, {} releases with {:.3g} N; stepped along the "
         "recording, the law is in the same phase {:.1f} % of the time",
         fit.phases.ruptures.force_n.size(), fit.phases.ruptures.spread_n, fit.phases.releases.force_n.size(),
@@ -67,7 +68,7 @@ void run_blade(const BladeVerbArguments& arguments, Context& context) {
   if (arguments.output.empty()) return;
   all.file.fit.recording_sha256 = sha256_of(std::filesystem::path(arguments.recording));
   write_law_file(arguments.output, all.file);
-  say(fmt::format("{}: law 'blade'", arguments.output));
+  context.say(fmt::format("{}: law 'blade'", arguments.output));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "fit/fit_arguments.h"
 #include "fit/fit_table.h"
@@ -54,15 +55,15 @@ void run_together(const FitArguments& arguments, Context& context) {
   }
   const std::vector<fs::path> files(arguments.recordings.begin(), arguments.recordings.end());
   write_fits(fit, files, folder);
-  say_fit(fit);
-  say(fmt::format("law files, fit.json and fit.csv are in {}", folder.string()));
+  say_fit(fit, context);
+  context.say(fmt::format("law files, fit.json and fit.csv are in {}", folder.string()));
 }
 
 void say_batch(const std::vector<BatchEntry>& entries, const fs::path& folder, Context& context) {
   std::size_t failed = 0;
   for (const BatchEntry& entry : entries) {
     if (entry.failure.empty()) {
-      say(fmt::format("  {:40} {}", entry.recording, entry.fit.choice.model));
+      context.say(fmt::format("  {:40} {}", entry.recording, entry.fit.choice.model));
     } else {
       ++failed;
     }
@@ -71,13 +72,13 @@ void say_batch(const std::vector<BatchEntry>& entries, const fs::path& folder, C
     if (!entry.failure.empty()) warn(fmt::format("{}: {}", entry.recording, entry.failure));
   }
   if (failed > 0) context.exit = Exit::check_failed;
-  say(fmt::format("{} of {} recordings fitted; batch.csv, batch.json and a folder for each are in {}",
-                  entries.size() - failed, entries.size(), folder.string()));
+  context.say(fmt::format("{} of {} recordings fitted; batch.csv, batch.json and a folder for each are in {}",
+                          entries.size() - failed, entries.size(), folder.string()));
 }
 
 void run_batch_of(const FitArguments& arguments, Context& context) {
   const fs::path folder = arguments.output;
-  for (const auto* table : {"batch.csv", "batch.json"}) refuse_to_replace(folder / table, arguments.force);
+  for (const auto* table : {"batch.csv", "batch.json"}) require_output(folder / table, arguments.force);
   const auto recordings = recordings_in(arguments.batch);
   const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
   const BatchOptions options{
@@ -97,7 +98,7 @@ void run_batch_of(const FitArguments& arguments, Context& context) {
   fs::create_directories(folder);
   write_whole_file(folder / "batch.csv", batch_csv(entries, confidence));
   context.result = batch_json(entries, confidence);
-  write_whole_file(folder / "batch.json", context.result.dump(2) + "\n");
+  write_json_file(folder / "batch.json", context.result);
   say_batch(entries, folder, context);
 }
 

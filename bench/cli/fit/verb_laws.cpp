@@ -44,9 +44,9 @@ void list_laws(Context& context) {
     context.result["laws"].push_back(entry);
     std::string axes;
     for (const auto& axis : entry["axes"]) axes += (axes.empty() ? "" : ", ") + axis.get<std::string>();
-    say(fmt::format("{:18} {:22} {}", law.name, axes.empty() ? "any axis" : axes, law.equation));
+    context.say(fmt::format("{:18} {:22} {}", law.name, axes.empty() ? "any axis" : axes, law.equation));
   }
-  say("kerf laws NAME says more of one");
+  context.say("kerf laws NAME says more of one");
 }
 
 void describe_law(const std::string& name, Context& context) {
@@ -54,20 +54,21 @@ void describe_law(const std::string& name, Context& context) {
   for (const models::LawInfo& law : models::registry()) {
     if (law.name == name) context.result = summary(law);
   }
-  say(fmt::format("{}: {}", name, context.result["equation"].get<std::string>()));
-  say("parameters (axis in m, force in N, options at their standard):");
+  context.say(fmt::format("{}: {}", name, context.result["equation"].get<std::string>()));
+  context.say("parameters (axis in m, force in N, options at their standard):");
   for (const models::ParameterInfo& info : parameters) {
     const std::string unit = models::unit_of(info.quantity, "N", "m");
-    say(fmt::format("  {:22} {:10} {:g} to {:g}: {}", info.name, unit, info.lower, info.upper, info.meaning));
+    context.say(
+        fmt::format("  {:22} {:10} {:g} to {:g}: {}", info.name, unit, info.lower, info.upper, info.meaning));
     context.result["parameters"].push_back({{"name", info.name},
                                             {"unit", unit},
                                             {"lower", info.lower},
                                             {"upper", info.upper},
                                             {"meaning", info.meaning}});
   }
-  say("options, under [fidelity] in a law file:");
+  context.say("options, under [fidelity] in a law file:");
   for (const models::OptionInfo& option : models::Law::options(name)) {
-    say(fmt::format("  {:22} {:10} {}", option.name, as_text(option.standard), option.meaning));
+    context.say(fmt::format("  {:22} {:10} {}", option.name, as_text(option.standard), option.meaning));
     context.result["options"].push_back(
         {{"name", option.name}, {"standard", to_json(option.standard)}, {"meaning", option.meaning}});
   }

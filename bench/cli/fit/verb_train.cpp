@@ -36,10 +36,10 @@ models::Law law_of(const TrainVerbArguments& arguments, const models::Law& thres
 }
 
 void run_train(const TrainVerbArguments& arguments, Context& context) {
-  refuse_to_replace(arguments.output, arguments.force);
+  require_output(arguments.output, arguments.force);
   if (arguments.example) {
     write_whole_file(arguments.output, as_csv(liver_ruptures()));
-    say(fmt::format("{}: a table made from a formula, to begin with", arguments.output));
+    context.say(fmt::format("{}: a table made from a formula, to begin with", arguments.output));
     context.result = {{"written", arguments.output}};
     return;
   }
@@ -64,11 +64,11 @@ void run_train(const TrainVerbArguments& arguments, Context& context) {
                     {"seconds", fit.seconds},
                     {"converged", fit.converged},
                     {"message", fit.message}};
-  say(fmt::format(
+  context.say(fmt::format(
       "{} samples, {} parameters: error {:.3g} N rms, {:.3g} N at most, after {} iterations in {:.2f} s",
       samples.force_n.size(), fit.law.values().size(), fit.rmse_n, fit.max_abs_n, fit.iterations,
       fit.seconds));
-  say(fmt::format("{}: law '{}'", arguments.output, file.law.model()));
+  context.say(fmt::format("{}: law '{}'", arguments.output, file.law.model()));
 }
 
 }  // namespace

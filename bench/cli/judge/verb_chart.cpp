@@ -14,7 +14,6 @@
 #include "chart/limit_cycle_check.h"
 #include "chart/speed_accuracy.h"
 #include "files/whole_file.h"
-#include "laws/placement.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "run/run.h"
@@ -50,7 +49,7 @@ void check(const ChartVerbArguments& arguments) {
     throw std::invalid_argument("--rate is for a scene; a recording is charted at its own rate");
   }
   for (const auto* name : names) {
-    if (!arguments.output.empty()) refuse_to_replace(fs::path(arguments.output) / name, arguments.force);
+    if (!arguments.output.empty()) require_output(fs::path(arguments.output) / name, arguments.force);
   }
 }
 
@@ -64,22 +63,11 @@ SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, const Char
   }
 }
 
-/// How deep the tool goes by the scene's script, past the tissue's contact.
-double deepest_of(const Scene& scene, const ScriptedPath& path, double rate_hz) {
-  if (scene.tissue.law.is_spatial()) return 0.0;
-  return deepest(path.at(rate_hz), axis_for(scene.tissue, path.device), scene.tissue.contact);
-}
-
 SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions options) {
   const Scene scene = read_scene(arguments.scene);
   try {
     const ScriptedPath path = scripted_path(scene);
-    if (!arguments.no_hold)
-      options.unstable = limit_cycle_check({.device = path.device,
-                                            .hand_mass_kg = scene.hand.mass_kg,
-                                            .hand_damping_n_s_per_m = scene.hand.damping_n_s_per_m,
-                                            .hand_stiffness_n_per_m = scene.hand.stiffness_n_per_m,
-                                            .deepest = deepest_of(scene, path, options.rate_hz)});
+    if (!arguments.no_hold) options.unstable = limit_cycle_check(held_in(scene, path, options.rate_hz));
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
     if (!scene.deeper.empty())
@@ -90,21 +78,21 @@ SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions o
   }
 }
 
-void print(const SpeedAccuracy& chart) {
-  say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
-  say(fmt::format("  {:1} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity", "par.",
-                  "p50 us", "p99.9 us", "cold us", "error N", "JND"));
+void say_chart(const SpeedAccuracy& chart, Context& context) {
+  context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
+  context.say(fmt::format("  {:1} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity",
+                          "par.", "p50 us", "p99.9 us", "cold us", "error N", "JND"));
   for (const ChartPoint& point : chart.points) {
     const double cold_us = 1e-3 * point.cost.cold_p50_ns;
     const std::string cold = std::isfinite(cold_us) ? fmt::format("{:.3f}", cold_us) : "-";
-    say(fmt::format("  {:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
-                    point.on_front ? "*"
-                    : point.stable ? ""
-                                   : "x",
-                    point.law, point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
-                    1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
+    context.say(fmt::format("  {:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
+                            point.on_front ? "*"
+                            : point.stable ? ""
+                                           : "x",
+                            point.law, point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
+                            1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
   }
-  say("  * on the front, x not stable");
+  context.say("  * on the front, x not stable");
 }
 
 void run_chart(const ChartVerbArguments& arguments, Context& context) {
@@ -126,16 +114,16 @@ void run_chart(const ChartVerbArguments& arguments, Context& context) {
   if (chart.stopped) {
     context.exit = Exit::check_failed;
     context.result = {{"stopped", true}};
-    say("stopped; nothing was written");
+    context.say("stopped; nothing was written");
     return;
   }
   for (const std::string& note : chart.notes) warn(note);
   context.result = chart_as_json(chart);
-  print(chart);
+  say_chart(chart, context);
   if (arguments.output.empty()) return;
   write_chart(chart, arguments.output);
-  say(fmt::format("chart.svg, chart.csv, chart.json, chart.html and the points' laws are in {}",
-                  arguments.output));
+  context.say(fmt::format("chart.svg, chart.csv, chart.json, chart.html and the points' laws are in {}",
+                          arguments.output));
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
+#include "program/contact_arguments.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
-#include "run/check.h"
+#include "run/check_text.h"
 
 namespace kerf::bench {
 namespace {
@@ -18,24 +20,9 @@ struct CheckVerbArguments {
   std::string law;
   std::string record;
   std::string output;
-  std::string direction;
-  std::optional<double> contact;
+  ContactArguments contact;
   std::optional<double> floor;
 };
-
-void print_table(const nlohmann::ordered_json& json) {
-  say(fmt::format("  {:11} {:>9} {:>9} {:>9} {:>9} {:>9}  {:>7}", "us", "mean", "p50", "p99", "p99.9", "max",
-                  "missed"));
-  for (const auto* stage : {"wake", "read", "compute", "compute_cpu", "write", "record", "cycle"}) {
-    const auto& row = json[std::string(stage) + "_us"];
-    const std::string missed = json["missed_by"].contains(stage)
-                                   ? fmt::format("{:9}", json["missed_by"][stage].get<std::uint64_t>())
-                                   : "";
-    say(fmt::format("  {:11} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}{}", stage, row["mean"].get<double>(),
-                    row["p50"].get<double>(), row["p99"].get<double>(), row["p999"].get<double>(),
-                    row["max"].get<double>(), missed));
-  }
-}
 
 /// The law to run. In a scene it is felt in place of the tissue, which is the law itself if none is given.
 void choose_law(const std::string& file, RunOptions& options) {
@@ -51,49 +38,34 @@ void choose_law(const std::string& file, RunOptions& options) {
 }
 
 void run_check(const CheckVerbArguments& arguments, Context& context) {
-  if (!arguments.output.empty()) refuse_to_replace(arguments.output, arguments.loop.options.replace);
+  if (!arguments.output.empty()) require_output(arguments.output, arguments.loop.options.replace);
   RunOptions options = run_options(arguments.loop);
   options.floor_s = arguments.floor.value_or(3.0);
   options.floor_anew = arguments.floor.has_value();
   choose_law(arguments.law, options);
-  if (options.law->law.is_spatial() && (arguments.contact || !arguments.direction.empty())) {
+  if (options.law->law.is_spatial() && arguments.contact.given()) {
     throw std::invalid_argument(fmt::format(
         "law '{}' acts on axes of its own; --contact and --direction are for a law along one axis",
         options.law->law.model()));
   }
   if (!arguments.record.empty()) options.record = arguments.record;
-  if (arguments.contact) options.law->contact.position = *arguments.contact;
-  if (!arguments.direction.empty())
-    options.law->contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+  options.law->contact = arguments.contact.over(options.law->contact);
   const StopOnSignal signals;
   const RunResult result = run_on_device(options, signals.requested());
   const Verdict verdict = judge(result);
   context.result = check_as_json(result, verdict);
   context.result["law"] = std::string(options.law->law.model());
-  if (!arguments.output.empty()) write_whole_file(arguments.output, context.result.dump(2) + "\n");
+  if (!arguments.output.empty()) write_json_file(arguments.output, context.result);
   if (!verdict.passed) context.exit = Exit::check_failed;
-  if (!result.recording_failure.empty()) context.exit = Exit::file_error;
+  if (!result.recording_failure.empty()) {
+    context.exit = Exit::file_error;
+    warn(result.recording_failure);
+  }
 
-  for (const RealtimeMeasure& measure : result.realtime) {
-    say(fmt::format("  {} {}: {}", measure.obtained ? "+" : "-", measure.name, measure.detail));
-  }
-  print_table(context.result);
-  if (result.floor) {
-    say(fmt::format(
-        "  an empty loop here: woken {:.1f} us late at the median, {:.1f} us at 99.9 %, {:.0f} us at "
-        "worst; {} of {} deadlines missed (measured {})",
-        result.floor->wake.p50_us, result.floor->wake.p999_us, result.floor->wake.max_us,
-        result.floor->missed, result.floor->ticks, result.floor->measured));
-  }
-  if (!options.virtual_time) {
-    say(fmt::format(
-        "  {} page faults and {} involuntary context switches in the loop; it spins for {:.0f} us",
-        context.result["page_faults"].get<std::int64_t>(), result.usage.involuntary_switches,
-        1e-3 * static_cast<double>(result.spin_ns)));
-  }
-  for (const std::string& reason : verdict.reasons) say("  " + reason);
-  say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", verdict.passed ? "pass" : "FAIL",
-                  options.law->law.model(), options.rate_hz, result.device.uri, result.report.ticks()));
+  for (const std::string& line : check_lines(result, verdict)) context.say(line);
+  context.say(fmt::format("{}: {} at {:.0f} Hz on {}, {} ticks", verdict.passed ? "pass" : "FAIL",
+                          options.law->law.model(), options.rate_hz, result.device.uri,
+                          result.report.ticks()));
 }
 
 }  // namespace
@@ -110,10 +82,7 @@ void add_check(CLI::App& app, Context& context) {
   verb.add_option("LAW", arguments->law, "Law file (default: the tissue of --scene)");
   add_loop_options(verb, arguments->loop,
                    "Scene file: its device, hand and trajectory; the law is felt in place of its tissue");
-  verb.add_option("--contact", arguments->contact,
-                  "Position of first contact instead of the law file's, in its unit");
-  verb.add_option("--direction", arguments->direction, "Direction of engagement instead of the law file's")
-      .one_of({"increasing", "decreasing"});
+  add_contact_options(verb, arguments->contact, "the law file's");
   verb.add_option("--record", arguments->record, "Record the closed loop to this file");
   verb.add_option("-o,--output", arguments->output, "Write the JSON to this file");
   verb.add_option(

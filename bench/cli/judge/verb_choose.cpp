@@ -15,6 +15,7 @@
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
 #include "files/whole_file.h"
+#include "program/contact_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
 #include "run/run.h"
@@ -29,8 +30,7 @@ struct ChooseVerbArguments {
   std::string scene;
   std::string output;
   std::string axis;
-  std::string direction;
-  std::optional<double> contact;
+  ContactArguments contact;
   bool no_loop = false;
   bool force = false;
   std::optional<double> record_s;
@@ -38,34 +38,27 @@ struct ChooseVerbArguments {
   ChooseOptions choose;
 };
 
-models::Contact contact_for(const ChooseVerbArguments& arguments, const schema::Recording& recording,
-                            std::size_t axis) {
-  models::Contact contact = contact_of(recording, axis);
-  if (arguments.contact) contact.position = *arguments.contact;
-  if (!arguments.direction.empty()) contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
-  return contact;
-}
-
 std::string deadline_in_short(const std::optional<Deadline>& deadline) {
   if (!deadline) return "-";
   if (deadline->held) return fmt::format("{:.1f} us", deadline->p999_us);
   return deadline->machine_late ? "machine" : "NO";
 }
 
-void say_choice(const LawChoice& choice) {
-  say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>6}  {}", "law", "free", "held-out N", "JND",
-                  "tick us", "deadline", "stable", "why passed over"));
+void say_choice(const LawChoice& choice, Context& context) {
+  context.say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>6}  {}", "law", "free", "held-out N",
+                          "JND", "tick us", "deadline", "stable", "why passed over"));
   for (const Candidate& one : choice.candidates) {
     const std::string error = one.file ? fmt::format("{:.4g}", one.error_n) : "-";
     const std::string jnd = one.file ? fmt::format("{:.3g}", one.error_jnd) : "-";
-    say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>6}  {}", one.law.name, one.law.parameters,
-                    error, jnd, one.tick_us, deadline_in_short(one.deadline),
-                    one.stable ? (*one.stable ? "yes" : "NO") : "-", one.why.empty() ? "taken" : one.why));
+    context.say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>6}  {}", one.law.name,
+                            one.law.parameters, error, jnd, one.tick_us, deadline_in_short(one.deadline),
+                            one.stable ? (*one.stable ? "yes" : "NO") : "-",
+                            one.why.empty() ? "taken" : one.why));
   }
-  say("");
+  context.say("");
   for (const EffectVerdict& effect : choice.effects)
-    say(fmt::format("  {:12} {:15} {}", name_of(effect.effect), name_of(effect.matter), effect.why));
-  say("");
+    context.say(fmt::format("  {:12} {:15} {}", name_of(effect.effect), name_of(effect.matter), effect.why));
+  context.say("");
 }
 
 /// Says, keeps and prints what was chosen.
@@ -73,18 +66,18 @@ void finish(const ChooseVerbArguments& arguments, Context& context, LawChoice& c
             const nlohmann::ordered_json& json, const fs::path& recording) {
   context.result = json;
   for (const std::string& warning : choice.warnings) warn(warning);
-  say_choice(choice);
-  say(choice.why);
+  say_choice(choice, context);
+  context.say(choice.why);
   if (!arguments.output.empty()) {
     write_choice(choice, context.result, recording, arguments.output);
-    say(fmt::format("choose.json, choose.csv, choose.html{} are in {}",
-                    choice.taken ? " and the law's file" : "", arguments.output));
+    context.say(fmt::format("choose.json, choose.csv, choose.html{} are in {}",
+                            choice.taken ? " and the law's file" : "", arguments.output));
   }
   if (!choice.serves) context.exit = Exit::check_failed;
 }
 
 void say_begins(const std::string& law, const std::string& device_uri) {
-  say(fmt::format("{} in closed loop with {} ...", law, device_uri));
+  note(fmt::format("{} in closed loop with {} ...", law, device_uri));
 }
 
 void choose_for_recording(const ChooseVerbArguments& arguments, Context& context,
@@ -95,7 +88,7 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
                               .tried_by = arguments.no_loop ? TriedBy::data : TriedBy::wall_clock,
                               .begins = say_begins};
   options.choose.axis = find_cut_axis(recording, arguments.axis);
-  options.choose.contact = contact_for(arguments, recording, options.choose.axis);
+  options.choose.contact = arguments.contact.over(contact_of(recording, options.choose.axis));
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
   DeviceChoice made = choose_on_device(recording, file, std::move(options), stop);
   finish(arguments, context, made.choice, made.json, file);
@@ -127,14 +120,14 @@ void choose_for_scene(const ChooseVerbArguments& arguments, Context& context, co
   if (arguments.output.empty())
     throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
   const fs::path file = fs::path(arguments.output) / "cut.h5";
-  refuse_to_replace(file, arguments.force);
+  require_output(file, arguments.force);
   fs::create_directories(file.parent_path());
   const SceneCut cut{.device_uri = arguments.loop.device_uri,
                      .seconds = arguments.record_s.value_or(0.0),
                      .seed = context.seed};
   const schema::Recording recording = record_scene(scene, cut, file, stop);
-  say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.string(), scene.name,
-                  recording.time.empty() ? 0.0 : recording.time.back(), recording.header.device_uri));
+  context.say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.string(), scene.name,
+                          recording.time.empty() ? 0.0 : recording.time.back(), recording.header.device_uri));
   choose_for_recording(arguments, context, recording, file, stop);
 }
 
@@ -173,11 +166,7 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("-o,--output", arguments->output,
                   "Folder for choose.json, choose.csv, choose.html and the law file");
   verb.add_option("--axis", arguments->axis, "Axis (default: that of the cycles, or the first)");
-  verb.add_option("--contact", arguments->contact,
-                  "Position where the penetration is zero, in m or rad (default: from the recording)");
-  verb.add_option("--direction", arguments->direction,
-                  "Direction into the tissue (default: from the recording)")
-      .one_of({"increasing", "decreasing"});
+  add_contact_options(verb, arguments->contact, "from the recording");
   verb.add_option("--device", arguments->loop.device_uri,
                   "Device for the closed loop (default: that of the recording if it was simulated, else the "
                   "first simulated one with such an axis)");

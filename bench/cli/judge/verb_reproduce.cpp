@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "program/verbs.h"
 #include "reproduce/reproduce.h"
@@ -22,7 +23,7 @@ struct ReproduceVerbArguments {
 
 void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   const std::filesystem::path folder = arguments.output;
-  for (const auto* name : {"claims.json", "claims.md"}) refuse_to_replace(folder / name, arguments.force);
+  for (const auto* name : {"claims.json", "claims.md"}) require_output(folder / name, arguments.force);
   const Reproduction result = reproduce(arguments.paper, context.seed);
   std::filesystem::create_directories(folder);
   for (const Figure& figure : result.figures) {
@@ -32,13 +33,14 @@ void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   }
   context.result = to_json(result);
   write_whole_file(folder / "claims.md", as_markdown(result));
-  write_whole_file(folder / "claims.json", context.result.dump(2) + "\n");
-  say(fmt::format("[{}]: {}", result.key, result.title));
+  write_json_file(folder / "claims.json", context.result);
+  context.say(fmt::format("[{}]: {}", result.key, result.title));
   for (const Claim& claim : result.claims) {
-    say(fmt::format("  {:13}  {} ({})", name_of(claim.verdict), claim.claim, claim.where));
-    say(fmt::format("                 {}", claim.measured));
+    context.say(fmt::format("  {:13}  {} ({})", name_of(claim.verdict), claim.claim, claim.where));
+    context.say(fmt::format("                 {}", claim.measured));
   }
-  say(fmt::format("{} figures, claims.md and claims.json are in {}", result.figures.size(), folder.string()));
+  context.say(
+      fmt::format("{} figures, claims.md and claims.json are in {}", result.figures.size(), folder.string()));
 }
 
 }  // namespace

@@ -53,11 +53,11 @@ void run_stability(const StabilityVerbArguments& given, Context& context) {
   if (!given.output.empty()) refuse_to_replace_findings(given.output, given.force);
   const Findings findings = study(given, context);
   context.result = findings.json;
-  for (const std::string& line : findings.lines) say(line);
+  for (const std::string& line : findings.lines) context.say(line);
   if (given.output.empty()) return;
   write_findings(findings, given.output);
-  say(fmt::format("stability.json, stability.csv, stability.html and {} picture{} are in {}",
-                  findings.figures.size(), findings.figures.size() == 1 ? "" : "s", given.output));
+  context.say(fmt::format("stability.json, stability.csv, stability.html and {} picture{} are in {}",
+                          findings.figures.size(), findings.figures.size() == 1 ? "" : "s", given.output));
 }
 
 }  // namespace

@@ -1,6 +1,4 @@
 #include <chrono>
-#include <cstdio>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -14,6 +12,7 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
+#include "program/standard_streams.h"
 #include "program/verbs.h"
 #include "recordings/summary.h"
 #include "regress/stored_facts.h"
@@ -39,7 +38,7 @@ void print_schema(Context& context) {
                       {"markdown", markdown},
                       {"markdown_of_sessions", schema::session_schema_as_markdown()}};
   } else {
-    std::cout << markdown << std::flush;
+    context.print(markdown);
   }
 }
 
@@ -71,10 +70,9 @@ void follow(const std::string& name) {
     try {
       const schema::Tail tail = schema::read_tail(place.file);
       if (terminal) {
-        fmt::print(stderr, "\r{}\033[K", in_one_line(tail));
-        std::fflush(stderr);
+        write_error_text(fmt::format("\r{}\033[K", in_one_line(tail)));
       } else if (tail.rows != shown) {
-        say(in_one_line(tail));
+        note(in_one_line(tail));
       }
       shown = tail.rows;
     } catch (const std::exception&) {
@@ -82,13 +80,13 @@ void follow(const std::string& name) {
       if (std::filesystem::exists(place.file) && !place.being_written) throw;
     }
     if (!place.being_written) {
-      if (terminal) say("");
+      if (terminal) note("");
       warn(fmt::format("{}: nobody writes it any more; 'kerf repair' closes it", place.file.string()));
       return;
     }
     std::this_thread::sleep_for(refresh);
   }
-  if (terminal) say("");
+  if (terminal) note("");
 }
 
 void run_info(const InfoVerbArguments& arguments, Context& context) {
@@ -102,13 +100,13 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
   const std::string schema = schema::schema_of(file);
   if (schema == schema::session_schema_name) {
     context.result = session_facts(file);
-    say(session_facts_table(context.result));
+    context.say(session_facts_table(context.result));
   } else if (schema == schema::regression_schema_name) {
     context.result = stored_facts(schema::read_regression(file));
-    say(stored_facts_table(context.result));
+    context.say(stored_facts_table(context.result));
   } else {
     context.result = recording_summary(schema::read_recording(file));
-    say(summary_table(context.result));
+    context.say(summary_table(context.result));
   }
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
 }
@@ -117,12 +115,11 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
 
 void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<InfoVerbArguments>();
-  Verb verb =
-      add_verb(app, context, "info",
-               "Say what is in a recording, also in one that is still written, a session or stored forces",
-               "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
-               "info --schema",
-               [arguments, &context] { run_info(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "info", "Say what is in a recording, also while it is made, a session or stored forces",
+      "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
+      "info --schema",
+      [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording,
                   "The recording, or the NAME.partial of one not closed; a session, stored forces");
   verb.add_flag("--follow", arguments->follow,

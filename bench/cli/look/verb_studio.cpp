@@ -47,8 +47,8 @@ void run_studio(const StudioVerbArguments& arguments, Context& context) {
                     "files once they know the address below, which crosses the network in the clear",
                     arguments.listen));
   }
-  say(fmt::format("The studio of {}: {}", arguments.folder, studio.url()));
-  say("Ctrl-C ends it.");
+  note(fmt::format("The studio of {}: {}", arguments.folder, studio.url()));
+  note("Ctrl-C ends it.");
   std::optional<BrowserLink> link;
   if (arguments.open) open_link(studio.url(), link);
   while (!signals.requested()) std::this_thread::sleep_for(std::chrono::milliseconds(50));

@@ -19,11 +19,12 @@ void run_validate(const std::string& file, Context& context) {
   context.result["violations"] = nlohmann::ordered_json::array();
   for (const auto& [where, found, expected] : violations) {
     context.result["violations"].push_back({{"where", where}, {"found", found}, {"expected", expected}});
-    say(fmt::format("{}: {}: found {}, expected {}", file, where, found, expected));
+    context.say(fmt::format("{}: {}: found {}, expected {}", file, where, found, expected));
   }
   if (violations.empty()) {
     const bool is_sealed = schema == schema::session_schema_name;
-    say(fmt::format("{}: valid{}", file,
+    context.say(
+        fmt::format("{}: valid{}", file,
                     is_sealed ? "; whether its seals hold is seen by who opens it with its key" : ""));
   } else {
     context.exit = Exit::check_failed;

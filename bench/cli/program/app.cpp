@@ -1,56 +1,188 @@
 #include "program/app.h"
 
-#include <iostream>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
+#include <kerf/version.h>
 
+#include "files/json_file.h"
+#include "program/nearest_word.h"
+#include "program/standard_streams.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
 
+/// The verbs of one thing that a person wants to do; bench/cli has a folder for each.
+struct Group {
+  const char* name;
+  std::vector<void (*)(CLI::App&, Context&)> add;
+};
+
+std::vector<Group> groups() {
+  return {{"start", {add_demo}},
+          {"devices", {add_devices}},
+          {"record", {add_record, add_import, add_repair, add_prepare, add_segment}},
+          {"look",
+           {add_info, add_validate,
+#ifdef KERF_STUDIO
+            add_studio
+#endif
+           }},
+          {"fit", {add_laws, add_fit, add_blade, add_train}},
+          {"judge", {add_choose, add_check, add_chart, add_stability, add_reproduce}},
+          {"replay", {add_replay, add_regress}},
+          {"experiment", {add_session}},
+          {"share", {add_report}}};
+}
+
+/// `kerf --help`: every verb in a line, by group.
+std::string overview(const CLI::App& app) {
+  std::string text = fmt::format("{}\n\nUsage: kerf VERB [OPTIONS]\n\n", app.get_description());
+  std::string group;
+  for (const CLI::App* const verb : app.get_subcommands({})) {
+    text += fmt::format("{:12}{:11}{}\n", verb->get_group() == group ? "" : verb->get_group(),
+                        verb->get_name(), verb->get_description());
+    group = verb->get_group();
+  }
+  return text +
+         "\n'kerf help VERB' says more of a verb; all have --json. 'kerf --version' names version and commit.\n";
+}
+
+void add_verbs(CLI::App& app, Context& context) {
+  for (const Group& group : groups()) {
+    for (const auto add : group.add) {
+      add(app, context);
+      app.get_subcommands([](CLI::App*) { return true; }).back()->group(group.name);
+    }
+  }
+  // Now, since verbs take over the formatter that is there when they are added.
+  app.formatter_fn(
+      [](const CLI::App* all, const std::string&, CLI::AppFormatMode) { return overview(*all); });
+}
+
+std::vector<std::string> verbs_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* const verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  return names;
+}
+
+std::string did_you_mean(const std::string& typed, const std::vector<std::string>& words) {
+  const auto nearest = nearest_word(typed, words);
+  return nearest ? fmt::format("; did you mean '{}'?", *nearest) : ";";
+}
+
+/// A verb that was typed.
+struct Typed {
+  const CLI::App* verb;
+  std::string name;  ///< with the verbs that it belongs to, and a blank before each: " session new"
+};
+
+/// Follows the words down to a verb that has none of its own, or to the first option.
+/// @throws std::invalid_argument for a word that is no verb, and where one is missing.
+Typed typed_verb(const CLI::App& app, const std::vector<std::string>& words) {
+  Typed typed{.verb = &app, .name = ""};
+  for (const std::string& word : words) {
+    if (word.starts_with('-') || typed.verb->get_subcommands({}).empty()) return typed;
+    const auto same = [&](const CLI::App* verb) { return verb->get_name() == word; };
+    const auto found = typed.verb->get_subcommands(same);
+    if (found.empty())
+      throw std::invalid_argument(fmt::format("there is no verb '{}'{} 'kerf help{}' lists them", word,
+                                              did_you_mean(word, verbs_of(*typed.verb)), typed.name));
+    typed = {.verb = found.front(), .name = typed.name + " " + word};
+  }
+  if (!typed.verb->get_subcommands({}).empty())
+    throw std::invalid_argument(fmt::format("'kerf{0}' needs a verb; 'kerf help{0}' lists them", typed.name));
+  return typed;
+}
+
+/// What is wrong with the options: one that does not exist is said before one that is missing.
+std::string wrong_options(const Typed& typed, const CLI::ParseError& error) {
+  const std::string more = fmt::format("'kerf help{}' says more", typed.name);
+  std::vector<std::string> options;
+  for (const CLI::Option* const option : typed.verb->get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  for (const std::string& word : typed.verb->remaining()) {
+    const std::string option = word.substr(0, word.find('='));
+    if (option.starts_with('-'))
+      return fmt::format("there is no option {}{} {}", option, did_you_mean(option, options), more);
+  }
+  return fmt::format("{}; {}", error.what(), more);
+}
+
 int fail(Exit status, std::string_view message) {
-  fmt::print(stderr, "kerf: {}\n", message);
+  write_error_text(fmt::format("kerf: {}\n", message));
   return static_cast<int>(status);
+}
+
+/// After a verb has run to its end.
+int finish(Context& context) {
+  if (context.output_error == EPIPE) end_by_closed_pipe();
+  if (context.output_error != 0)
+    return fail(Exit::file_error,
+                fmt::format("standard output: cannot write: {}", std::strerror(context.output_error)));
+  return static_cast<int>(context.exit);
+}
+
+int run_words(std::vector<std::string> words) {
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  CLI::App app{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
+  app.set_version_flag("--version", software());
+  app.require_subcommand(1);
+  Context context;
+  add_verbs(app, context);
+  const Typed typed = typed_verb(app, words);
+  try {
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(words);
+    if (context.json) context.print(json_text(context.result));
+  } catch (const CLI::Success& help) {
+    std::ostringstream text;
+    app.exit(help, text, text);
+    context.print(text.str());
+  } catch (const CLI::ParseError& error) {
+    return fail(Exit::bad_input, wrong_options(typed, error));
+  }
+  return finish(context);
 }
 
 }  // namespace
 
-void say(std::string_view line) { fmt::print(stderr, "{}\n", line); }
+void Context::say(std::string_view line) {
+  if (!json) print(fmt::format("{}\n", line));
+}
 
-void warn(std::string_view line) { fmt::print(stderr, "warning: {}\n", line); }
+void Context::print(std::string_view text) {
+  if (output_error != 0) return;
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+    output_error = errno != 0 ? errno : EIO;
+}
+
+void note(std::string_view line) { write_error_text(fmt::format("{}\n", line)); }
+
+void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", line)); }
 
 int run_program(int argc, char** argv) {
-  CLI::App app{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
-  app.set_version_flag("--version", std::string("kerf " KERF_VERSION));
-  app.require_subcommand(1);
-  Context context;
-  for (const auto add :
-       {add_blade,  add_chart,   add_check,     add_choose,  add_demo,    add_devices,   add_fit,
-        add_import, add_info,    add_laws,      add_prepare, add_record,  add_regress,   add_repair,
-        add_replay, add_report,  add_reproduce, add_segment, add_session, add_stability,
-#ifdef KERF_STUDIO
-        add_studio,
-#endif
-        add_train,  add_validate}) {
-    add(app, context);
-  }
+  keep_standard_streams();
   try {
-    app.parse(argc, argv);
-    if (context.json) std::cout << context.result.dump(2) << '\n' << std::flush;
-    if (!std::cout) return fail(Exit::file_error, "standard output: could not write the JSON");
-    return static_cast<int>(context.exit);
-  } catch (const CLI::Success& help) {
-    return app.exit(help);
-  } catch (const CLI::ParseError& error) {
-    return fail(Exit::bad_input,
-                fmt::format("{}; 'kerf --help' and 'kerf VERB --help' say more", error.what()));
+    return run_words({argv + 1, argv + argc});
   } catch (const drivers::DeviceError& error) {
     return fail(Exit::device_error, error.what());
   } catch (const std::system_error& error) {

@@ -7,7 +7,7 @@
 
 namespace kerf::bench {
 
-/// Exit status of the program, as documented in the README.
+/// Exit status of the program; docs/command-line.md has the table.
 enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error = 3, file_error = 4 };
 
 /// What every verb is given beside its own options.
@@ -17,14 +17,22 @@ struct Context {
   bool seed_given = false;        ///< by --seed
   Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
   nlohmann::ordered_json result;  ///< printed at the end with --json
+  int output_error = 0;           ///< errno of the first write to standard output that failed
+
+  /// A line of the result for people, to standard output; nothing with --json.
+  void say(std::string_view line);
+  /// To standard output, at once. After a write that failed nothing more is written: the verb goes on, keeps
+  /// its files, and run_program() says what there is to say.
+  void print(std::string_view text);
 };
 
-/// Text for people: to standard error, never mixed into the JSON.
-void say(std::string_view line);
+/// A line on standard error about what goes on.
+void note(std::string_view line);
 /// A warning, likewise.
 void warn(std::string_view line);
 
-/// Runs `kerf VERB ...` and returns the exit status.
+/// Runs `kerf VERB ...` and returns the exit status. If whoever read standard output is gone, the process
+/// ends as any other at a closed pipe does: by SIGPIPE, but not before the verb is done.
 int run_program(int argc, char** argv);
 
 }  // namespace kerf::bench

@@ -5,7 +5,7 @@
 
 namespace kerf::bench {
 
-// One function a verb, each in the file cli/verb_NAME.cpp.
+// One function a verb, each in the file GROUP/verb_NAME.cpp.
 void add_blade(CLI::App& app, Context& context);
 void add_chart(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);

@@ -9,9 +9,9 @@
 
 #include "files/whole_file.h"
 #include "import/import.h"
+#include "import/imported_text.h"
 #include "program/progress.h"
 #include "program/verbs.h"
-#include "recordings/summary.h"
 
 namespace kerf::bench {
 namespace {
@@ -24,39 +24,6 @@ struct ImportVerbArguments {
   bool force = false;
 };
 
-std::string name_of(char separator) {
-  switch (separator) {
-    case '\t':
-      return "tab";
-    case ' ':
-      return "blanks";
-    default:
-      return {separator};
-  }
-}
-
-nlohmann::ordered_json to_json(const Imported& imported) {
-  nlohmann::ordered_json result = recording_summary(imported.recording);
-  for (const std::string& warning : imported.warnings) result["warnings"].push_back(warning);
-  result["bad_lines"] = imported.bad_lines.size();
-  result["bad_line_numbers"] = imported.bad_lines;
-  result["misplaced_lines"] = imported.misplaced_lines.size();
-  result["misplaced_line_numbers"] = imported.misplaced_lines;
-  for (const MappedColumn& column : imported.columns) {
-    result["columns"][column.channel] = {{"number", column.index + 1},
-                                         {"heading", imported.layout.columns[column.index].heading},
-                                         {"unit", column.unit_text},
-                                         {"unit_from_file", column.unit_from_file}};
-  }
-  result["layout"] = {{"separator", name_of(imported.layout.separator)},
-                      {"decimal", std::string(1, imported.layout.point)},
-                      {"preamble_lines", imported.layout.preamble_lines},
-                      {"header_line", imported.layout.header_line},
-                      {"units_line", imported.layout.units_line}};
-  result["parse_seconds"] = imported.parse_seconds;
-  return result;
-}
-
 void run_import(const ImportVerbArguments& arguments, Context& context) {
   if (arguments.maps.empty()) {
     throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}",
@@ -68,7 +35,7 @@ void run_import(const ImportVerbArguments& arguments, Context& context) {
   if (std::filesystem::equivalent(arguments.data, arguments.output, absent))
     throw std::invalid_argument(
         fmt::format("{}: -o names the data itself; give another name", arguments.data));
-  refuse_to_replace(arguments.output, arguments.force);
+  require_output(arguments.output, arguments.force);
   ImportOptions options = arguments.options;
   std::string map;
   for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
@@ -77,14 +44,11 @@ void run_import(const ImportVerbArguments& arguments, Context& context) {
 
   const Imported imported = import_text(arguments.data, options);
   schema::write_recording(arguments.output, imported.recording);
-  context.result = to_json(imported);
+  context.result = imported_as_json(imported);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
-  for (const MappedColumn& column : imported.columns) {
-    if (column.unit_from_file)
-      say(fmt::format("{}: unit {} taken from the file", column.channel, column.unit_text));
-  }
-  say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
-                  imported.recording.time.back()));
+  for (const std::string& line : imported_lines(imported)) context.say(line);
+  context.say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
+                          imported.recording.time.back()));
 }
 
 }  // namespace
@@ -93,7 +57,7 @@ void add_import(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ImportVerbArguments>();
   Verb verb = add_verb(
       app, context, "import", "Turn CSV, TSV or an instrument's text file into a recording, in SI",
-      "kerf import punch.txt --map 'time=5[ms],position=4[deg],force=2[gf]' -o punch.h5\n\n"
+      "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
       "raw\n"
       "counts: position=2[0.0439453125 deg]. Without a unit, the one in the file is taken. Channels: time, "

@@ -42,9 +42,9 @@ void run_record(const RecordVerbArguments& arguments, Context& context) {
   context.result["rows_lost"] = result.rows_lost;
   context.result["device_figures"] = figures_as_json(result.figures);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
-  say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
-                  recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),
-                  result.report.missed(), result.rows_lost));
+  context.say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
+                          recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),
+                          result.report.missed(), result.rows_lost));
 }
 
 }  // namespace

@@ -21,8 +21,8 @@ void run_repair(const RepairVerbArguments& arguments, Context& context) {
       schema::repair(arguments.recording, {.output = arguments.output, .replace = arguments.force});
   context.result = {
       {"recording", repaired.file.string()}, {"samples", repaired.rows}, {"duration_s", repaired.duration_s}};
-  say(fmt::format("{}: closed with {} samples over {:.3f} s", repaired.file.string(), repaired.rows,
-                  repaired.duration_s));
+  context.say(fmt::format("{}: closed with {} samples over {:.3f} s", repaired.file.string(), repaired.rows,
+                          repaired.duration_s));
 }
 
 }  // namespace

@@ -29,21 +29,21 @@ struct RegressVerbArguments {
   bool yes = false;
 };
 
-void say_case(const RegressionOutcome& one) {
+void say_case(const RegressionOutcome& one, Context& context) {
   const auto& worst = one.comparison.worst;
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
                                   : "none";
   const std::string cost = one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : "";
-  say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
-                  one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
-  if (!one.note.empty()) say(fmt::format("      {}", one.note));
+  context.say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
+                          one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
+  if (!one.note.empty()) context.say(fmt::format("      {}", one.note));
   if (one.passed()) return;
-  for (const std::string& message : one.messages) say(fmt::format("      {}", message));
-  say(fmt::format("      {}", one.why));
+  for (const std::string& message : one.messages) context.say(fmt::format("      {}", message));
+  context.say(fmt::format("      {}", one.why));
   std::string table = context_table(one);
   if (!table.empty()) table.pop_back();
-  if (!table.empty()) say(table);
+  if (!table.empty()) context.say(table);
 }
 
 void refuse(bool given, std::string_view option, std::string_view action) {
@@ -55,20 +55,21 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
   refuse(arguments.yes, "--yes", "update");
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
-  for (const RegressionOutcome& one : outcome.cases) say_case(one);
+  for (const RegressionOutcome& one : outcome.cases) say_case(one, context);
   for (const std::string& name : outcome.dropped) {
-    say(fmt::format("  {:24} FAILED", name));
-    say("      its forces are stored, and the suite has no such case any more; 'kerf regress update' removes "
+    context.say(fmt::format("  {:24} FAILED", name));
+    context.say(
+        "      its forces are stored, and the suite has no such case any more; 'kerf regress update' removes "
         "them");
   }
   const std::size_t all = outcome.cases.size() + outcome.dropped.size();
-  say(outcome.failed() == 0
-          ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
-          : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
+  context.say(outcome.failed() == 0
+                  ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
+                  : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
   if (!arguments.junit.empty()) write_whole_file(arguments.junit, junit_xml(suite, outcome));
   if (!arguments.output.empty()) {
     write_regress_page(suite, outcome, arguments.output);
-    say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
+    context.say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;
 }
@@ -87,10 +88,11 @@ std::string_view name_of(ChangeKind kind) {
   return "stays";
 }
 
-bool confirmed(bool yes) {
+/// Asks whoever has seen what would change.
+bool confirmed(bool yes, Context& context) {
   if (yes) return true;
-  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDERR_FILENO) == 0) return false;
-  fmt::print(stderr, "Store this? [y/N] ");
+  if (context.json || ::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0) return false;
+  context.print("Store this? [y/N] ");
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
 }
@@ -107,20 +109,20 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
     if (!one.asked) continue;
     context.result["changes"].push_back(
         {{"name", one.name}, {"change", name_of(one.kind)}, {"what", one.what}, {"why", one.why}});
-    say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what, one.why.empty() ? "" : "; ",
-                    one.why));
+    context.say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what,
+                            one.why.empty() ? "" : "; ", one.why));
   }
   if (!changes_anything(changes)) {
-    say(fmt::format("{} stays as it is", suite.stored.string()));
+    context.say(fmt::format("{} stays as it is", suite.stored.string()));
     return;
   }
-  if (!confirmed(arguments.yes))
+  if (!confirmed(arguments.yes, context))
     throw std::invalid_argument(
         fmt::format("{} was not touched; --yes stores what is shown", suite.stored.string()));
   write_update(suite, changes, arguments.reason);
   context.result["written"] = true;
-  say(fmt::format("{} is written, {:.1f} kB", suite.stored.string(),
-                  1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
+  context.say(fmt::format("{} is written, {:.1f} kB", suite.stored.string(),
+                          1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
 }
 
 void run_regress(RegressVerbArguments& arguments, Context& context) {

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,14 +7,14 @@
 
 #include <fmt/core.h>
 
+#include "files/json_file.h"
 #include "files/whole_file.h"
-#include "laws/render.h"
 #include "prepare/rows.h"
+#include "program/contact_arguments.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
-#include "replay/open_loop.h"
-#include "replay/path_rendering.h"
+#include "replay/replay.h"
 #include "replay/replay_files.h"
 #include "replay/source.h"
 #include "replay/table.h"
@@ -35,8 +34,7 @@ struct ReplayVerbArguments {
   std::string record;
   std::string axis;
   std::string cycles;
-  std::string direction;
-  std::optional<double> contact;
+  ContactArguments contact;
   std::optional<double> from_s;
   std::optional<double> to_s;
   PathOptions path;
@@ -64,7 +62,7 @@ void check_mode(const ReplayVerbArguments& arguments) {
   refuse_where(table && arguments.path.speed != 1.0, "--speed", mode);
   refuse_where(table && arguments.path.bridge, "--bridge", mode);
   refuse_where(!through && arguments.open_loop.realtime, "--realtime", mode);
-  refuse_where(path && (arguments.contact || !arguments.direction.empty()), "--contact or --direction", mode);
+  refuse_where(path && arguments.contact.given(), "--contact or --direction", mode);
   refuse_where(!loop.changes.empty(), "--switch", mode);
   refuse_where(through && (!loop.device.empty() || !loop.scene.empty() || loop.seconds), "a device", mode);
   refuse_where(through && !arguments.record.empty(), "--record",
@@ -78,88 +76,38 @@ Source source_of(const ReplayVerbArguments& arguments) {
   return select_rows(schema::read_recording(arguments.recording), select, arguments.recording);
 }
 
-/// A law under another contact than its file says.
-void place(const ReplayVerbArguments& arguments, LawFile& law) {
-  if (arguments.contact) law.contact.position = *arguments.contact;
-  if (!arguments.direction.empty()) law.contact.direction = arguments.direction == "increasing" ? 1.0 : -1.0;
+fs::path json_in(const std::string& folder) { return fs::path(folder) / "replay.json"; }
+
+void say_lines(const std::vector<std::string>& lines, Context& context) {
+  for (const std::string& line : lines) context.say(line);
 }
 
-std::vector<NamedLaw> laws_of(const ReplayVerbArguments& arguments) {
-  std::vector<NamedLaw> laws;
-  for (const std::string& file : arguments.through) {
-    std::string stem = fs::path(file).filename().string();
-    stem = stem.substr(0, stem.find(".law.toml"));
-    const auto same = std::ranges::count_if(
-        laws, [&](const NamedLaw& law) { return law.name.substr(0, law.name.find('#')) == stem; });
-    laws.push_back(
-        {.name = same > 0 ? fmt::format("{}#{}", stem, same + 1) : stem, .file = read_law_file(file)});
-    place(arguments, laws.back().file);
-  }
-  return laws;
-}
-
-void say_open_loop(const nlohmann::ordered_json& json) {
-  say(fmt::format("  {:20} {:8} {:>9} {:>8} {:>9} {:>9} {:>8}  {}", "law", "axis", "rms", "JND", "worst",
-                  "at s", "JND", "events matched: contact, release, drop"));
-  for (const auto& law : json.at("laws")) {
-    for (const auto& one : law.at("axes")) {
-      std::string events;
-      for (const auto& [kind, match] : one.at("events").items()) {
-        events += fmt::format("{}{}/{}", events.empty() ? "" : ", ",
-                              match.at("matched").template get<std::size_t>(),
-                              match.at("recorded").template get<std::size_t>());
-        if (!match.at("worst_late_ms").is_null())
-          events += fmt::format(" ({:+.1f} ms)", match.at("worst_late_ms").template get<double>());
-      }
-      say(fmt::format("  {:20} {:8} {:9.3g} {:8.2f} {:9.3g} {:9.3f} {:8.2f}  {}",
-                      law.at("name").get<std::string>(), one.at("axis").get<std::string>(),
-                      one.at("rms").get<double>(), one.at("rms_jnd").get<double>(),
-                      one.at("worst").get<double>(), one.at("worst_at_s").get<double>(),
-                      one.at("worst_jnd").get<double>(), events));
-      if (!one.contains("identical_rows")) continue;
-      say(fmt::format("  {:20} {} of {} commands that no safety touched are identical to the last bit", "",
-                      one.at("identical_rows").get<std::size_t>(),
-                      one.at("untouched_rows").get<std::size_t>()));
-    }
-  }
-}
-
-void replay_through(const ReplayVerbArguments& arguments, Context& context, Source source) {
-  const std::vector<NamedLaw> laws = laws_of(arguments);
-  if (!arguments.output.empty())
-    refuse_to_replace(fs::path(arguments.output) / "replay.json", arguments.loop.options.replace);
-  const std::string gaps = gaps_in_words(source, arguments.path.bridge);
-  if (arguments.path.bridge) source = bridged(source);
-  source = at_speed(source, arguments.path.speed);
-  OpenLoopOptions options = arguments.open_loop;
-  options.contact = arguments.contact_force.value_or(0.0);
-  options.window_s = 1e-3 * arguments.window_ms;
-  options.match_s = 1e-3 * arguments.match_ms;
+void play_through(const ReplayVerbArguments& arguments, Context& context, Source source) {
+  std::vector<NamedLaw> laws = read_named_laws(arguments.through);
+  for (NamedLaw& law : laws) law.file.contact = arguments.contact.over(law.file.contact);
+  const bool replace = arguments.loop.options.replace;
+  if (!arguments.output.empty()) require_output(json_in(arguments.output), replace);
+  ThroughOptions options{
+      .bridge = arguments.path.bridge, .speed = arguments.path.speed, .open_loop = arguments.open_loop};
+  options.open_loop.contact = arguments.contact_force.value_or(0.0);
+  options.open_loop.window_s = 1e-3 * arguments.window_ms;
+  options.open_loop.match_s = 1e-3 * arguments.match_ms;
   const StopOnSignal signals;
-  const OpenLoopResult result = run_open_loop(source, laws, options, signals.requested());
-  context.result = open_loop_as_json(source, result);
+  const ThroughReplay replay = replay_through(std::move(source), laws, options, signals.requested());
+  context.result = open_loop_as_json(replay.source, replay.result);
   context.result["recording"] = arguments.recording;
   context.result["speed"] = arguments.path.speed;
-  context.result["notes"] = nlohmann::ordered_json::array();
-  if (!gaps.empty()) context.result["notes"].push_back(gaps);
-  if (!source.on_grid) {
-    context.result["notes"].push_back(
-        "the times are no whole ticks of one period, as a loop would give them; each step takes the time "
-        "since "
-        "the row before");
-  }
-  for (const auto& note : context.result["notes"]) warn(note.get<std::string>());
-  say_open_loop(context.result);
-  if (result.punctuality) {
-    say(fmt::format("  by the wall clock: {} of {} ticks a period late or more, {:.2f} ms at worst",
-                    result.punctuality->late, result.rows, result.punctuality->worst_ms));
-  }
-  if (result.rows < source.recording.rows())
-    warn(fmt::format("ended by a signal after {} of {} rows", result.rows, source.recording.rows()));
-  if (!arguments.output.empty()) {
-    write_open_loop(arguments.output, source, result, context.result, arguments.loop.options.replace);
-    say(fmt::format("replay.html, replay.json and a recording of each law are in {}", arguments.output));
-  }
+  context.result["notes"] = replay.notes;
+  for (const std::string& line : replay.notes) warn(line);
+  const std::size_t rows = replay.source.recording.rows();
+  if (replay.result.rows < rows)
+    warn(fmt::format("ended by a signal after {} of {} rows", replay.result.rows, rows));
+  if (!arguments.output.empty())
+    write_open_loop(arguments.output, replay.source, replay.result, context.result, replace);
+  say_lines(through_lines(replay), context);
+  if (!arguments.output.empty())
+    context.say(
+        fmt::format("replay.html, replay.json and a recording of each law are in {}", arguments.output));
 }
 
 /// What both closed loops tell of the run.
@@ -168,123 +116,81 @@ void finish_run(const ReplayVerbArguments& arguments, Context& context, const Ru
   context.result["check"] = check_as_json(result, verdict);
   context.result["recording"] = arguments.recording;
   if (!arguments.record.empty()) context.result["record"] = arguments.record;
-  for (const std::string& reason : verdict.reasons) say("  " + reason);
+  for (const std::string& reason : verdict.reasons) context.say("  " + reason);
   if (!verdict.passed) context.exit = Exit::check_failed;
-  if (!result.recording_failure.empty()) context.exit = Exit::file_error;
+  if (!result.recording_failure.empty()) {
+    context.exit = Exit::file_error;
+    warn(result.recording_failure);
+  }
   if (!arguments.output.empty()) {
     fs::create_directories(arguments.output);
-    write_whole_file(fs::path(arguments.output) / "replay.json", context.result.dump(2) + "\n");
+    write_json_file(json_in(arguments.output), context.result);
   }
-  say(fmt::format("{}: {} ticks on {}, {} deadlines missed", verdict.passed ? "pass" : "FAIL",
-                  result.report.ticks(), result.device.uri, result.report.missed()));
+  context.say(fmt::format("{}: {} ticks on {}, {} deadlines missed", verdict.passed ? "pass" : "FAIL",
+                          result.report.ticks(), result.device.uri, result.report.missed()));
 }
 
 RunOptions run_options_of(const ReplayVerbArguments& arguments) {
   RunOptions options = run_options(arguments.loop);
   if (!arguments.record.empty()) options.record = arguments.record;
-  if (!arguments.output.empty())
-    refuse_to_replace(fs::path(arguments.output) / "replay.json", options.replace);
+  if (!arguments.output.empty()) require_output(json_in(arguments.output), options.replace);
   return options;
 }
 
-void replay_as_table(const ReplayVerbArguments& arguments, Context& context, const Source& source) {
+void play_table(const ReplayVerbArguments& arguments, Context& context, const Source& source) {
   RunOptions options = run_options_of(arguments);
   options.scene.reset();  // the table is felt in place of its tissue
   const schema::Recording& recording = source.recording;
-  std::optional<models::Contact> contact;
-  if (arguments.contact || !arguments.direction.empty()) {
-    const std::size_t axis = arguments.axis.empty() && recording.cycles
-                                 ? recording.cycles->axis
-                                 : find_axis(recording, arguments.axis);
-    contact = contact_of(recording, axis);
-    if (arguments.contact) contact->position = *arguments.contact;
-    if (!arguments.direction.empty()) contact->direction = arguments.direction == "increasing" ? 1.0 : -1.0;
-  }
+  const models::Contact contact =
+      arguments.contact.over(contact_of(recording, find_cut_axis(recording, arguments.axis)));
   const FittedLaw table = table_of(recording, arguments.recording, arguments.axis, contact);
   if (!recording.cycles)
     warn(
         "the recording has no cycles, so that one table serves both directions, without smoothing; 'kerf "
-        "segment' "
-        "finds "
-        "them");
+        "segment' finds them");
   options.law = table.file;
-  say(fmt::format("a table of {} rows: rms {:.3g} {} beside what was recorded, {:.3g} with its smoothing",
+  context.say(
+      fmt::format("a table of {} rows: rms {:.3g} {} beside what was recorded, {:.3g} with its smoothing",
                   recording.rows(), table.result.rmse, table.file.force_unit, table.rmse_rendered));
   const StopOnSignal signals;
   const RunResult result = run_on_device(options, signals.requested());
-  context.result = {{"mode", "table"},
-                    {"rows", recording.rows()},
-                    {"axis", table.file.axis},
-                    {"rmse", table.result.rmse},
-                    {"rmse_rendered", table.rmse_rendered}};
-  for (const auto& [name, value] : table.file.law.options()) {
-    std::visit([&, key = name](const auto& held) { context.result["law_options"][key] = held; }, value);
-  }
+  context.result = table_as_json(table, recording.rows());
   finish_run(arguments, context, result);
   if (!arguments.output.empty()) write_law_file(fs::path(arguments.output) / "table.law.toml", table.file);
 }
 
-/// The recording with one of its axes alone.
-schema::Recording one_axis(schema::Recording recording, std::size_t axis) {
-  const std::size_t axes = recording.dimensions();
-  for (auto* column :
-       {&recording.position, &recording.velocity, &recording.force_commanded, &recording.force_measured}) {
-    for (std::size_t row = 0; row < column->size() / axes; ++row)
-      (*column)[row] = (*column)[row * axes + axis];
-    column->resize(column->size() / axes);
-  }
-  recording.axes = {recording.axes[axis]};
-  recording.cycles.reset();
-  return recording;
-}
-
-void replay_as_path(const ReplayVerbArguments& arguments, Context& context, Source source) {
-  RunOptions options = run_options_of(arguments);
+void play_path(const ReplayVerbArguments& arguments, Context& context, Source source) {
+  PathReplayOptions options{
+      .path = arguments.path, .coupling = arguments.coupling, .run = run_options_of(arguments)};
   if (!arguments.loop.seconds) {
-    if (arguments.path.loop && options.virtual_time)
+    if (options.path.loop && options.run.virtual_time)
       throw std::invalid_argument("--loop in virtual time never ends; give --seconds");
-    options.seconds = 1e6;
+    options.run.seconds = 1e6;
   }
-  if (!arguments.axis.empty())
-    source.recording = one_axis(std::move(source.recording), find_axis(source.recording, arguments.axis));
-  const std::string gaps = gaps_in_words(source, arguments.path.bridge);
+  if (!arguments.axis.empty()) {
+    const std::size_t axis = find_axis(source.recording, arguments.axis);
+    source = along_axis(std::move(source), axis);
+  }
+  const std::string gaps = gaps_in_words(source, options.path.bridge);
   if (!gaps.empty())
-    warn(gaps + (arguments.path.bridge ? "" : ": the device waits for as long, and then moves on softly"));
-  Path path;
-  PathReport report;
-  std::optional<PathRendering> rendering;
-  options.rendering = [&](const drivers::DeviceInfo& device) {
-    const double period_s = 1.0 / options.rate_hz;
-    path = make_path(source, device, period_s, arguments.path);
-    rendering.emplace(path, couplings(arguments.coupling, device), options.ramp_s, report);
-    const auto fade = static_cast<std::uint64_t>(std::ceil(options.ramp_s / period_s)) + 2;
-    return OtherRendering{.step = [&](const drivers::Sample& sample,
-                                      double elapsed_s) { return (*rendering)(sample, elapsed_s); },
-                          .finished = [&] { return rendering->finished(); },
-                          .max_ticks = path.loop ? 0 : path.max_ticks + fade};
-  };
+    warn(gaps + (options.path.bridge ? "" : ": the device waits for as long, and then moves on softly"));
   const StopOnSignal signals;
-  const RunResult result = run_on_device(options, signals.requested());
-  context.result = {{"mode", "path"}, {"speed", arguments.path.speed}};
-  context.result.update(path_as_json(path, report, result.device));
+  const PathReplay replay = replay_path(source, options, signals.requested());
+  context.result = {{"mode", "path"}, {"speed", options.path.speed}};
+  context.result.update(path_as_json(replay.path, replay.report, replay.run.device));
   if (!gaps.empty()) context.result["gaps"] = gaps;
-  for (const auto& one : context.result["axes"]) {
-    say(fmt::format(
-        "  {}: {:.3g} {} off the path (rms), {:.3g} at worst; {} ticks at the coupling's force limit",
-        one["axis"].get<std::string>(), one["error_rms"].get<double>(), one["unit"].get<std::string>(),
-        one["error_worst"].get<double>(), one["ticks_at_force_limit"].get<std::uint64_t>()));
-  }
-  if (!report.finished && result.report.end == LoopEnd::completed && !path.loop)
+  say_lines(path_lines(replay), context);
+  if (!replay.report.finished && replay.run.report.end == LoopEnd::completed && !replay.path.loop)
     warn("the time was over before the path was played to its end");
-  finish_run(arguments, context, result);
+  finish_run(arguments, context, replay.run);
 }
 
 void run_replay(const ReplayVerbArguments& arguments, Context& context) {
   check_mode(arguments);
   Source source = source_of(arguments);
-  if (!arguments.through.empty()) return replay_through(arguments, context, std::move(source));
-  if (arguments.as == "table") return replay_as_table(arguments, context, source);
-  replay_as_path(arguments, context, std::move(source));
+  if (!arguments.through.empty()) return play_through(arguments, context, std::move(source));
+  if (arguments.as == "table") return play_table(arguments, context, source);
+  play_path(arguments, context, std::move(source));
 }
 
 void add_path_options(Verb& verb, ReplayVerbArguments& arguments) {
@@ -330,9 +236,7 @@ void add_replay(CLI::App& app, Context& context) {
   verb.add_option("--axis", arguments->axis,
                   "One axis of the recording (--as table: default its cycles' one)");
   add_path_options(verb, *arguments);
-  verb.add_option("--contact", arguments->contact, "Position of first contact instead of the law's own");
-  verb.add_option("--direction", arguments->direction, "Direction of engagement instead of the law's own")
-      .one_of({"increasing", "decreasing"});
+  add_contact_options(verb, arguments->contact, "the law's own");
   verb.add_flag("--realtime", arguments->open_loop.realtime, "--through: each tick at its time by the clock");
   verb.add_option("--contact-force", arguments->contact_force,
                   "Force above which there is contact (default: twice the JND's threshold) [N, N·m]")

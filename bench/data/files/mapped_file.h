@@ -9,8 +9,7 @@ namespace kerf::bench {
 /// A file's content in memory, mapped for reading while the object lives.
 class MappedFile {
  public:
-  /// @throws std::invalid_argument if there is no such file or it is a folder (the caller named it wrongly),
-  ///         std::system_error if it cannot be opened or mapped.
+  /// @throws as NamedFile does, and for what is no regular file; std::system_error if it cannot be mapped.
   explicit MappedFile(const std::filesystem::path& file);
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;

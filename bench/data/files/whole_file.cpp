@@ -42,10 +42,19 @@ void write_whole_file(const std::filesystem::path& file, std::string_view conten
   }
 }
 
-void refuse_to_replace(const std::filesystem::path& file, bool replace) {
+void require_output(const std::filesystem::path& file, bool replace) {
   if (!replace && std::filesystem::exists(file)) {
     throw std::invalid_argument(fmt::format("{} exists; --force replaces it", file.string()));
   }
+  std::filesystem::path folder = file.parent_path();
+  std::error_code ignored;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
+    folder = folder.parent_path();
+  if (folder.empty()) folder = ".";
+  const int reason = !std::filesystem::is_directory(folder, ignored) ? ENOTDIR
+                     : access(folder.c_str(), W_OK | X_OK) != 0      ? errno
+                                                                     : 0;
+  if (reason != 0) throw std::system_error(reason, std::generic_category(), "cannot write " + file.string());
 }
 
 }  // namespace kerf::bench

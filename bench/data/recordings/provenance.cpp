@@ -10,8 +10,6 @@
 
 namespace kerf::bench {
 
-std::string software() { return "kerf " KERF_VERSION; }
-
 void add_history(schema::Header& header, std::string_view step) {
   std::string line(step);
   std::replace(line.begin(), line.end(), '\n', ' ');

@@ -5,11 +5,9 @@
 #include <string_view>
 
 #include <kerf/schema/recording.h>
+#include <kerf/version.h>
 
 namespace kerf::bench {
-
-/// "kerf 0.1.0", as recordings and law files name the program that wrote them.
-[[nodiscard]] std::string software();
 
 /// Appends one line to a recording's history: time (UTC), program and what was done; line breaks in it become
 /// blanks.

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "recordings/provenance.h"
 #include "signal/quantiles.h"
 #include "signal/signal.h"
 #include "signal/uniform_samples.h"
@@ -241,6 +242,18 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
   cycles.closing_mean = mean_of(cycles.closing, options.points);
   cycles.opening_mean = mean_of(cycles.opening, options.points);
   return cycles;
+}
+
+void segment_recording(schema::Recording& recording, const SegmentOptions& options, const std::string& name) {
+  try {
+    recording.cycles = find_cycles(recording, options);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
+  }
+  add_history(recording.header,
+              fmt::format("segment: {} cycles along {}, prominence {:g}, zero-phase low-pass {:g} Hz",
+                          recording.cycles->closing.size(), recording.axes[options.axis].name,
+                          options.prominence, recording.cycles->filter_corner_hz));
 }
 
 }  // namespace kerf::bench

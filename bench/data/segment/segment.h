@@ -33,6 +33,10 @@ struct SegmentOptions {
 ///         saying which.
 [[nodiscard]] schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options);
 
+/// Finds the cycles of a recording, keeps them in it and adds a line to its history; `name` stands for it in
+/// messages. @throws as find_cycles() does.
+void segment_recording(schema::Recording& recording, const SegmentOptions& options, const std::string& name);
+
 /// "open_to_close", as the schema has it.
 [[nodiscard]] constexpr std::string_view name_of(schema::Phase phase) noexcept {
   constexpr std::array<std::string_view, 5> names{"", "opening", "open_to_close", "closing", "close_to_open"};

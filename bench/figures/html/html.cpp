@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/version.h>
+
 namespace kerf::bench {
 namespace {
 
@@ -80,9 +82,10 @@ std::string html_page(std::string_view title, std::string_view body) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, "
-      "initial-scale=1\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}"
+      "initial-scale=1\">\n<meta name=\"generator\" "
+      "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}"
       "</body>\n</html>\n",
-      escaped(title), style, body);
+      escaped(software()), escaped(title), style, body);
 }
 
 }  // namespace kerf::bench

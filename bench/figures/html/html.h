@@ -15,7 +15,8 @@ namespace kerf::bench {
 /// A drawing, such as what draw() returns, as a figure of a page.
 [[nodiscard]] std::string html_figure(std::string_view svg);
 
-/// A whole page that needs nothing but itself: styles inline, no script, no resource from elsewhere.
+/// A whole page that needs nothing but itself: styles inline, no script, no resource from elsewhere. It
+/// names the program that made it.
 [[nodiscard]] std::string html_page(std::string_view title, std::string_view body);
 
 }  // namespace kerf::bench

@@ -10,6 +10,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <kerf/version.h>
+
+#include "files/named_file.h"
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
 #include "units/units.h"
@@ -230,7 +233,7 @@ LawFile parse_law_file(const std::string& text, const std::string& name) {
 }
 
 LawFile read_law_file(const std::filesystem::path& file) {
-  return parse_law_file(read_whole_file(file), file.string());
+  return parse_law_file(read_named_file(file), file.string());
 }
 
 std::string to_toml(const LawFile& file) {
@@ -253,7 +256,7 @@ std::string to_toml(const LawFile& file) {
 }
 
 void write_law_file(const std::filesystem::path& file, const LawFile& law) {
-  write_whole_file(file, to_toml(law));
+  write_whole_file(file, fmt::format("# {}\n{}", software(), to_toml(law)));
 }
 
 }  // namespace kerf::bench

@@ -14,7 +14,7 @@ struct FitProvenance {
   std::string recording_sha256;
   double rmse_n = 0.0;
   std::string date;      ///< ISO 8601, UTC
-  std::string software;  ///< "kerf 0.1.0"
+  std::string software;  ///< kerf::software()
 };
 
 /// A law with everything that it takes to render it on an axis: `NAME.law.toml`.
@@ -34,7 +34,7 @@ struct LawFile {
 /// @throws std::system_error if it cannot be read.
 [[nodiscard]] LawFile read_law_file(const std::filesystem::path& file);
 
-/// Writes a law file under a temporary name and renames it. @throws std::system_error.
+/// Writes a law file under a comment that names the program, whole or not at all. @throws std::system_error.
 void write_law_file(const std::filesystem::path& file, const LawFile& law);
 
 /// A law file as TOML text, and back; `name` stands for the file in messages.

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "files/whole_file.h"
+#include "files/named_file.h"
 #include "laws/law_toml.h"
 #include "laws/placement.h"
 #include "scene/read_trajectory.h"
@@ -175,7 +175,7 @@ Scene parse_scene(const std::string& text, const std::string& name) {
 }
 
 Scene read_scene(const std::filesystem::path& file) {
-  return parse_scene(read_whole_file(file), file.string());
+  return parse_scene(read_named_file(file), file.string());
 }
 
 Scene default_scene() { return parse_scene(default_scene_toml, "the default scene"); }

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
-#include "tables/json_number.h"
+#include "files/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -9,6 +9,7 @@
 #include "answer_pages/analysis_json.h"
 #include "answer_pages/analysis_words.h"
 #include "answers/answers_table.h"
+#include "files/json_file.h"
 #include "files/whole_file.h"
 #include "html/html.h"
 
@@ -210,7 +211,7 @@ std::string analysis_page(const Analysis& analysis, std::span<const std::string>
 
 std::vector<std::string> write_analysis(const Study& study, const Analysis& analysis,
                                         const std::filesystem::path& folder, bool replace) {
-  refuse_to_replace(folder / "analysis.html", replace);
+  require_output(folder / "analysis.html", replace);
   std::filesystem::create_directories(folder);
   const std::vector<Figure> figures = analysis_figures(study, analysis);
   std::vector<Chart> charts;
@@ -222,7 +223,7 @@ std::vector<std::string> write_analysis(const Study& study, const Analysis& anal
     write_whole_file(folder / names.back(), drawings[i] + "\n");
   }
   write_whole_file(folder / "answers.csv", answers_csv(study));
-  write_whole_file(folder / "analysis.json", analysis_as_json(analysis).dump(2) + "\n");
+  write_json_file(folder / "analysis.json", analysis_as_json(analysis));
   write_whole_file(folder / "analysis.html", analysis_page(analysis, drawings));
   return names;
 }

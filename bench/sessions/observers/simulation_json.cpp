@@ -1,8 +1,8 @@
 #include <fmt/core.h>
 
+#include "files/json_number.h"
 #include "observers/simulation_report.h"
 #include "tables/csv.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "files/whole_file.h"
+#include "files/named_file.h"
 #include "protocol/protocol_parts.h"
 #include "replay/table.h"
 #include "scene/read_motion.h"
@@ -215,10 +215,10 @@ Protocol read_protocol(const fs::path& file) {
   };
   const auto law_text = [&](const std::string& named) {
     const fs::path found = existing(named);
-    if (found.extension() != ".h5") return read_whole_file(found);
+    if (found.extension() != ".h5") return read_named_file(found);
     return to_toml(table_of(schema::read_recording(found), found.string()).file);
   };
-  Protocol protocol = parse_protocol(read_whole_file(file), file.string(), law_text);
+  Protocol protocol = parse_protocol(read_named_file(file), file.string(), law_text);
   if (protocol.motion && !protocol.motion->scene.empty()) {
     try {
       protocol.motion->scene = existing(protocol.motion->scene);

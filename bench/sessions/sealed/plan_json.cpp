@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "tables/json_number.h"
+#include "files/json_number.h"
 
 namespace kerf::bench {
 

@@ -12,6 +12,7 @@
 #include <sodium.h>
 #include <unistd.h>
 
+#include "files/named_file.h"
 #include "sealed/journal.h"
 
 namespace kerf::bench {
@@ -51,13 +52,14 @@ SecretBytes secret(std::size_t size) {
   throw std::system_error(errno, std::generic_category(), fmt::format("cannot {} {}", doing, file.string()));
 }
 
-class KeyFile {
+/// A key file to be made.
+class NewKeyFile {
  public:
-  KeyFile(const std::filesystem::path& file, int access)
-      : number_(::open(file.c_str(), access | O_CLOEXEC, S_IRUSR | S_IWUSR)) {}
-  KeyFile(const KeyFile&) = delete;
-  KeyFile& operator=(const KeyFile&) = delete;
-  ~KeyFile() {
+  explicit NewKeyFile(const std::filesystem::path& file)
+      : number_(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR)) {}
+  NewKeyFile(const NewKeyFile&) = delete;
+  NewKeyFile& operator=(const NewKeyFile&) = delete;
+  ~NewKeyFile() {
     if (number_ >= 0) ::close(number_);
   }
   [[nodiscard]] int number() const noexcept { return number_; }
@@ -68,11 +70,10 @@ class KeyFile {
 
 /// Reads until the end, also from a pipe. @returns how many bytes there were; `room` if there may be more.
 std::size_t read_all(const std::filesystem::path& file, std::uint8_t* bytes, std::size_t room) {
-  const KeyFile opened(file, O_RDONLY);
-  if (opened.number() < 0) throw_errno(file, "read");
+  const NamedFile named(file);
   std::size_t size = 0;
   while (size < room) {
-    const ssize_t count = ::read(opened.number(), bytes + size, room - size);
+    const ssize_t count = ::read(named.descriptor(), bytes + size, room - size);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw_errno(file, "read");
     if (count == 0) break;
@@ -170,7 +171,7 @@ schema::KeyDerivation new_derivation(bool passphrase) {
 void write_new_key_file(const std::filesystem::path& file) {
   const SecretBytes content = secret(least_key_file);
   randombytes_buf(content.get(), least_key_file);
-  const KeyFile opened(file, O_WRONLY | O_CREAT | O_EXCL);
+  const NewKeyFile opened(file);
   if (opened.number() < 0 && errno == EEXIST) {
     throw std::invalid_argument(fmt::format(
         "{} exists; a key is never replaced, as all that it sealed would be lost: name another file",

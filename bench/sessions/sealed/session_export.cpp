@@ -138,8 +138,8 @@ schema::Recording recording_of(const SessionStore& store, std::size_t index) {
 void export_session(const SessionStore& store, const fs::path& folder, bool replace) {
   const fs::path table = folder / "trials.csv";
   const auto file_of = [&](std::size_t trial) { return folder / fmt::format("trial-{:03}.h5", trial + 1); };
-  refuse_to_replace(table, replace);
-  for (std::size_t i = 0; i < store.trials().size(); ++i) refuse_to_replace(file_of(i), replace);
+  require_output(table, replace);
+  for (std::size_t i = 0; i < store.trials().size(); ++i) require_output(file_of(i), replace);
   fs::create_directories(folder);
   for (std::size_t i = 0; i < store.trials().size(); ++i) {
     const schema::Recording recording = recording_of(store, i);

@@ -5,9 +5,9 @@
 
 #include <fmt/core.h>
 
+#include "files/json_number.h"
 #include "sealed/bytes.h"
 #include "sealed/plan_json.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

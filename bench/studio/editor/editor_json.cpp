@@ -1,7 +1,7 @@
 #include "editor/editor_json.h"
 
+#include "files/json_number.h"
 #include "http/routes.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 

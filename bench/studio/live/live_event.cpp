@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "tables/json_number.h"
+#include "files/json_number.h"
 
 namespace kerf::bench {
 namespace {

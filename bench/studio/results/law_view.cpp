@@ -7,8 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "files/json_number.h"
 #include "laws/render.h"
-#include "tables/json_number.h"
 
 namespace kerf::bench {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "files/json_number.h"
 #include "segment/segment.h"
-#include "tables/json_number.h"
 #include "views/hysteresis_loops.h"
 
 namespace kerf::bench {

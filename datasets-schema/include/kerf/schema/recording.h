@@ -176,8 +176,8 @@ struct Row {
 
 /// Reads a whole recording, also the `NAME.partial` of a writer that is still at work or has died: then the
 /// rows are those that reached every dataset.
-/// @throws FormatError; std::invalid_argument (there is no such file), std::system_error (it cannot be
-/// opened).
+/// @throws FormatError; std::invalid_argument (the caller named it wrongly: there is no such file, or it may
+/// not be read).
 [[nodiscard]] Recording read_recording(const std::filesystem::path& file);
 
 /// Writes a whole recording: to a temporary name beside `file`, then renamed, so that a half-written file

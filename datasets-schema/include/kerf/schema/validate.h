@@ -20,8 +20,8 @@ struct Violation {
 /// Checks a file against the schema that it names (a recording's if it names none of them) and lists every
 /// violation; none means that it is valid. Whether the seals of a session hold is not asked: that takes the
 /// key. A `NAME.partial` may have columns of different lengths, as they grow one after the other.
-/// @throws FormatError if it is no HDF5 file at all, std::invalid_argument if there is no such file,
-///         std::system_error if it cannot be opened.
+/// @throws FormatError if it is no HDF5 file at all, std::invalid_argument if there is no such file or it may
+///         not be read.
 [[nodiscard]] std::vector<Violation> validate(const std::filesystem::path& file);
 
 /// The schema of recordings as Markdown tables, made from the same table that the writer and the validator

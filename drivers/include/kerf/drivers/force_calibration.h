@@ -45,7 +45,7 @@ inline constexpr std::array<const char*, max_axes> wrench_names{"fx", "fy", "fz"
 ///
 /// Forces in N, mN or lbf, torques in N·m, N·mm or lbf·in, signals in V or mV. A lever [m] stands between a
 /// torque and an axis whose force is in N (F = t / lever) or a force and an axis in N·m (t = F lever).
-/// @throws DeviceError in one line with file, line and key.
+/// @throws DeviceError in one line with file, line and key; std::invalid_argument if the file cannot be read.
 [[nodiscard]] ForceCalibration read_force_calibration(const std::string& file);
 /// The same from a text; `name` for the messages.
 [[nodiscard]] ForceCalibration parse_force_calibration(const std::string& text, const std::string& name);

@@ -76,8 +76,10 @@ TEST_F(ProgramChoose, RunsTheLawInClosedLoop) {
 
 TEST_F(ProgramChoose, ExitsWithOneWhereNoneIsWithinTheJnd) {
   const std::string cut = write(test::cut_of(test::known_kelvin()));
-  expect_refusal({cut, "--no-loop", "--most-segments", "1", "--weber", "0", "--threshold", "0.01"}, 1,
-                 "None is within the JND of 0.01 N");
+  const Outcome outcome =
+      run_kerf({"choose", cut, "--no-loop", "--most-segments", "1", "--weber", "0", "--threshold", "0.01"});
+  EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("None is within the JND of 0.01 N"));
 }
 
 TEST_F(ProgramChoose, MakesARecordingOfAScene) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/version.h>
+
 #include "bench/analysis/regress/small_suite.h"
 #include "regress/context.h"
 #include "regress/regress_page.h"
@@ -48,7 +50,7 @@ TEST_F(SilentLaw, IsAFailureInJUnit) {
       AllOf(HasSubstr("<testsuite name=\"a small suite\" tests=\"1\" failures=\"1\" errors=\"0\" time=\""),
             HasSubstr("<testcase classname=\"a small suite\" name=\"kelvin\" time=\""),
             HasSubstr("<failure message=\"the force differs in "),
-            HasSubstr("kerf 0.1.0: &lt;first&gt; &amp; best"), HasSubstr("</testsuites>\n")));
+            HasSubstr(software() + ": &lt;first&gt; &amp; best"), HasSubstr("</testsuites>\n")));
 }
 
 TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/version.h>
+
 #include "bench/analysis/regress/small_suite.h"
 #include "regress/run.h"
 
@@ -56,7 +58,7 @@ TEST_F(Update, SaysWhyAndByHowMuchAndKeepsTheReasons) {
   store("nothing new");
   const auto stored = schema::read_regression(suite().stored);
   EXPECT_EQ(stored[0].reason, "the liver was stiffer") << "what does not change keeps its reason";
-  EXPECT_THAT(stored[0].history, HasSubstr("kerf 0.1.0: first forces\n"));
+  EXPECT_THAT(stored[0].history, HasSubstr(software() + ": first forces\n"));
   EXPECT_EQ(run_suite(suite(), {}).failed(), 0U);
 }
 

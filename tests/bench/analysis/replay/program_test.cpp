@@ -139,7 +139,7 @@ TEST_F(ProgramReplay, RefusesBadInputInOneLine) {
   expect_refusal({file, "--through", law, "--loop"}, 2, "--loop says nothing to --through");
   expect_refusal({file, "--through", law, "--cycles", "2"}, 2, "kerf segment");
   expect_refusal({file, "--through", law, "--from", "9"}, 2, "from 0 to 2 s");
-  expect_refusal({file, "--through", path("no.law.toml")}, 4, "no.law.toml");
+  expect_refusal({file, "--through", path("no.law.toml")}, 2, "no.law.toml");
   expect_refusal({file, "--as", "path", "--virtual", "--loop"}, 2, "give --seconds");
   expect_refusal({file, "--as", "path", "--speed", "11"}, 2, "--speed");
   expect_refusal({file, "--as", "path", "--limit", "theta=8"}, 2, "may exert, 7.58");

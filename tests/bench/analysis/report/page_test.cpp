@@ -115,7 +115,7 @@ TEST_F(ReportProgram, RefusesWhatIsNoFitOrNoCheck) {
   const Outcome outcome = report({"--check", check()});
   EXPECT_EQ(outcome.exit_status, 2);
   EXPECT_THAT(outcome.errors, HasSubstr("check.json: not JSON"));
-  EXPECT_EQ(report({"--fits", (folder_ / "none").string()}).exit_status, 4);
+  EXPECT_EQ(report({"--fits", (folder_ / "none").string()}).exit_status, 2);
   EXPECT_FALSE(std::filesystem::exists(page()));
 }
 

@@ -50,10 +50,19 @@ TEST(WholeFile, AFailedRenameLeavesNothingBehind) {
 
 TEST(WholeFile, ReplacesOnlyWhenAsked) {
   const test::TemporaryFolder folder;
-  EXPECT_NO_THROW(refuse_to_replace(folder / "x", false));
+  EXPECT_NO_THROW(require_output(folder / "x", false));
   write_whole_file(folder / "x", "");
-  EXPECT_THROW(refuse_to_replace(folder / "x", false), std::invalid_argument);
-  EXPECT_NO_THROW(refuse_to_replace(folder / "x", true));
+  EXPECT_THROW(require_output(folder / "x", false), std::invalid_argument);
+  EXPECT_NO_THROW(require_output(folder / "x", true));
+}
+
+TEST(WholeFile, KnowsBeforeTheWorkThatNothingCanBeWritten) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "file", "");
+  EXPECT_NO_THROW(require_output(folder / "to" / "be" / "made", false));
+  EXPECT_NO_THROW(require_output("beside_us", false));
+  EXPECT_THROW(require_output(folder / "file" / "x", false), std::system_error);
+  EXPECT_THROW(require_output(folder / "file" / "below" / "x", true), std::system_error);
 }
 
 }  // namespace

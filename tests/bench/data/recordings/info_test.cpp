@@ -33,14 +33,14 @@ TEST(Info, PrintsOneJsonObject) {
   EXPECT_EQ(json["events"], 1);
 }
 
-TEST(Info, ShowsPeopleATableOnStandardError) {
+TEST(Info, ShowsPeopleATable) {
   const test::TemporaryFolder folder;
   schema::write_recording(folder / "r.h5", test::small_recording());
   const auto outcome = test::run_kerf({"info", (folder / "r.h5").string()});
   EXPECT_EQ(outcome.exit_status, 0);
-  EXPECT_THAT(outcome.output, IsEmpty());
-  EXPECT_THAT(outcome.errors, HasSubstr("11 over 0.010 s at 1000 Hz"));
-  EXPECT_THAT(outcome.errors, HasSubstr("force_measured"));
+  EXPECT_THAT(outcome.errors, IsEmpty());
+  EXPECT_THAT(outcome.output, HasSubstr("11 over 0.010 s at 1000 Hz"));
+  EXPECT_THAT(outcome.output, HasSubstr("force_measured"));
 }
 
 TEST(Info, LooksIntoARecordingThatIsStillWritten) {

@@ -36,7 +36,8 @@ TEST(ValidateVerb, FailsWithEveryViolationOnItsLine) {
   EXPECT_EQ(json["violations"][0]["found"], "'none'");
   EXPECT_EQ(json["violations"][1]["where"], "/samples/tick");
   EXPECT_EQ(json["violations"][1]["expected"], "ticks that increase strictly");
-  EXPECT_THAT(outcome.errors, HasSubstr("r.h5: /samples/tick: found 4 after 4 in row 5, expected ticks"));
+  EXPECT_THAT(test::run_kerf({"validate", (folder / "r.h5").string()}).output,
+              HasSubstr("r.h5: /samples/tick: found 4 after 4 in row 5, expected ticks"));
 }
 
 TEST(ValidateVerb, FailsAFileThatWasCutShort) {

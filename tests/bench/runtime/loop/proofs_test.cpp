@@ -210,7 +210,7 @@ TEST(FollowedRecording, IsShownUntilItIsClosed) {
                                      "sh", KERF_PROGRAM, folder / "r.h5"});
   EXPECT_EQ(outcome.exit_status, 0);
   EXPECT_THAT(outcome.errors, HasSubstr("samples  theta"));
-  EXPECT_THAT(outcome.errors, HasSubstr("status      complete")) << "and then summed up";
+  EXPECT_THAT(outcome.output, HasSubstr("status      complete")) << "and then summed up";
 }
 
 TEST(FullDisk, LetsTheLoopGoOnAndKeepsWhatFitted) {

@@ -1,10 +1,12 @@
-#include "run/check.h"
-
+#include <array>
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "run/check_text.h"
 
 namespace kerf::bench {
 namespace {
@@ -55,6 +57,26 @@ TEST(Verdict, ToleratesOneDeadlineInAHundredAndTellsOfIt) {
   EXPECT_TRUE(verdict.passed);
   EXPECT_THAT(verdict.reasons,
               ElementsAre("10 of 1010 deadlines missed: 10 by wake (the machine woke the loop late)"));
+}
+
+TEST(CheckLines, ShowTheTimesOfTheJsonAStageALine) {
+  RunResult result = run_of(10'000, 8'000);
+  result.report.charge(Stage::write, 3);
+  const Verdict verdict = judge(result);
+  const auto lines = check_lines(result, verdict);
+  ASSERT_EQ(lines.size(), 1U + 7U + verdict.reasons.size());
+  const auto json = check_as_json(result, verdict);
+  const std::array names{"wake", "read", "compute", "compute_cpu", "write", "record", "cycle"};
+  for (std::size_t row = 0; row < names.size(); ++row) {
+    const auto& times = json.at(std::string(names[row]) + "_us");
+    EXPECT_THAT(lines[row + 1],
+                testing::StartsWith(fmt::format("  {:11} {:9.2f} {:9.2f} {:9.2f} {:9.2f} {:9.2f}", names[row],
+                                                times["mean"].get<double>(), times["p50"].get<double>(),
+                                                times["p99"].get<double>(), times["p999"].get<double>(),
+                                                times["max"].get<double>())));
+  }
+  EXPECT_THAT(lines[5], testing::EndsWith("        3")) << "deadlines missed by writing";
+  EXPECT_THAT(lines.back(), HasSubstr(verdict.reasons.back()));
 }
 
 struct Blame {

@@ -130,8 +130,8 @@ TEST(SessionProgram, AnswersAtAKeyboardThatIsAPipe) {
                        fmt::format("{} session run {} --key-file {} <{}", KERF_PROGRAM, folder.path("s.h5"),
                                    folder.path("k.key"), folder.path("keys"))});
   EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
-  EXPECT_THAT(outcome.errors, HasSubstr("The session is finished: 1 trials"));
-  EXPECT_THAT(folder.analyze().errors, HasSubstr("1 trial"));
+  EXPECT_THAT(outcome.output, HasSubstr("The session is finished: 1 trials"));
+  EXPECT_THAT(folder.analyze().output, HasSubstr("1 trial"));
 }
 
 TEST(SessionProgram, MakesTheSessionsOfAWholeStudy) {
@@ -147,7 +147,7 @@ TEST(SessionProgram, MakesTheSessionsOfAWholeStudy) {
                                          folder.path("study")};
   ASSERT_EQ(run_kerf(command).exit_status, 0);
   for (const char* name : {"S01.h5", "S02.h5", "S03.h5"}) {
-    EXPECT_THAT(run_kerf({"info", folder.path(std::string("study/") + name)}).errors, HasSubstr("of 3"));
+    EXPECT_THAT(run_kerf({"info", folder.path(std::string("study/") + name)}).output, HasSubstr("of 3"));
   }
   expect_refused(run_kerf(command), "S01.h5");
 }
@@ -160,7 +160,7 @@ TEST(SessionProgram, IsOpenedEarlyOnlyWithAReasonThatItKeeps) {
   EXPECT_EQ(early.exit_status, 0) << early.errors;
   ASSERT_EQ(folder.run().exit_status, 0);
   EXPECT_THAT(folder.analyze().errors, HasSubstr("opened before its end"));
-  EXPECT_THAT(run_kerf({"info", folder.path("s.h5")}).errors, HasSubstr("the study was stopped"));
+  EXPECT_THAT(run_kerf({"info", folder.path("s.h5")}).output, HasSubstr("the study was stopped"));
 }
 
 TEST(SessionProgram, RefusesAProtocolThatCannotBe) {
@@ -264,7 +264,7 @@ TEST(SessionProgram, GoesOnAfterTheDeviceWasLost) {
 
 TEST(SessionProgram, SaysWhatIsMissingOnTheCommandLine) {
   const SessionFolder folder;
-  expect_refused(run_kerf({"session"}), "subcommand");
+  expect_refused(run_kerf({"session"}), "needs a verb");
   expect_refused(run_kerf({"session", "new", folder.protocol(), "-o", folder.path("s.h5"), "--key-file",
                            folder.path("k.key")}),
                  "--subject");

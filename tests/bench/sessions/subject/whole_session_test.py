@@ -72,8 +72,8 @@ def main():
         key, session = str(folder / "k.key"), str(folder / "s.h5")
         kerf(program, "key", key)
         kerf(program, "new", str(folder / "p.protocol.toml"), "--subject", "S01", "--key-file", key, "-o", session)
-        running = subprocess.Popen([program, "session", "run", session, "--key-file", key, "--page"], stderr=subprocess.PIPE,
-                                   text=True)
+        running = subprocess.Popen([program, "session", "run", session, "--key-file", key, "--page"], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
         page = None
         try:
             seen = []
@@ -83,7 +83,7 @@ def main():
                     break
             page = browser.Browser(str(folder / "profile"))
             answers_all(page, found[1])
-            seen += list(running.stderr)
+            seen += list(running.stderr) + list(running.stdout)
             assert running.wait(timeout=20) == 0, seen
         finally:
             running.kill()

@@ -1,4 +1,4 @@
-#include "tables/json_number.h"
+#include "files/json_number.h"
 
 #include <cmath>
 #include <optional>

@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include <fmt/core.h>
@@ -9,7 +8,6 @@
 #include "files/whole_file.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
-#include "recordings/provenance.h"
 #include "report/charts.h"
 #include "segment/segment.h"
 
@@ -47,28 +45,21 @@ nlohmann::ordered_json to_json(const schema::Recording& recording) {
 }
 
 void run_segment(const SegmentVerbArguments& arguments, Context& context) {
+  const std::filesystem::path charts = arguments.charts;
+  if (!arguments.charts.empty()) require_output(charts / "cycles.svg", true);
   schema::Recording recording = schema::read_recording(arguments.recording);
   SegmentOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);
   if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
-  try {
-    recording.cycles = find_cycles(recording, options);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(fmt::format("{}: {}", arguments.recording, error.what()));
-  }
-  add_history(recording.header,
-              fmt::format("segment: {} cycles along {}, prominence {:g}, zero-phase low-pass {:g} Hz",
-                          recording.cycles->closing.size(), recording.axes[options.axis].name,
-                          options.prominence, recording.cycles->filter_corner_hz));
+  segment_recording(recording, options, arguments.recording);
   schema::write_recording(arguments.recording, recording);
   if (!arguments.charts.empty()) {
-    std::filesystem::create_directories(arguments.charts);
-    const std::filesystem::path folder = arguments.charts;
-    write_whole_file(folder / "cycles.svg", draw(position_chart(recording, options.axis)));
-    write_whole_file(folder / "loops.svg", draw(loop_chart(recording, options.axis)));
+    std::filesystem::create_directories(charts);
+    write_whole_file(charts / "cycles.svg", draw(position_chart(recording, options.axis)));
+    write_whole_file(charts / "loops.svg", draw(loop_chart(recording, options.axis)));
   }
   context.result = to_json(recording);
-  say(fmt::format(
+  context.say(fmt::format(
       "{}: {} closings and {} openings; closing {}", arguments.recording,
       context.result["closings"].get<int>(), context.result["openings"].get<int>(),
       recording.cycles->closing_direction > 0.0 ? "increases the position" : "decreases the position"));

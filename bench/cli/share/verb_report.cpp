@@ -20,13 +20,13 @@ struct ReportVerbArguments {
 };
 
 void run_report(const ReportVerbArguments& arguments, Context& context) {
-  refuse_to_replace(arguments.output, arguments.force);
+  require_output(arguments.output, arguments.force);
   ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
   if (!arguments.fits.empty()) input.fits = arguments.fits;
   if (!arguments.check.empty()) input.check = arguments.check;
   write_whole_file(arguments.output, report_page(input));
   context.result = {{"report", arguments.output}};
-  say(arguments.output);
+  context.say(arguments.output);
 }
 
 }  // namespace

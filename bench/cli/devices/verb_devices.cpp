@@ -35,25 +35,23 @@ void list_attached(Context& context) {
   const auto attached = drivers::list_attached();
   for (const drivers::AttachedDevice& device : attached) {
     context.result["devices"].push_back(to_json(device));
-    if (context.json) continue;
-    fmt::print("{}  {}; {}{}\n", device.uri, device.about, device.node, device.emulated ? ", emulated" : "");
-    if (!device.problem.empty()) fmt::print("  {}\n", device.problem);
+    context.say(fmt::format("{}  {}; {}{}", device.uri, device.about, device.node,
+                            device.emulated ? ", emulated" : ""));
+    if (!device.problem.empty()) context.say(fmt::format("  {}", device.problem));
   }
-  if (attached.empty() && !context.json) {
-    fmt::print("On the USB: none that Kerf knows. kerf-emulate plays one; docs/devices.md says how.\n");
-  }
+  if (attached.empty())
+    context.say("On the USB: none that Kerf knows. kerf-emulate plays one; docs/devices.md says how.");
 }
 
 void run_devices(Context& context) {
   context.result["devices"] = nlohmann::ordered_json::array();
   for (const drivers::DeviceInfo& device : drivers::list_devices()) {
     context.result["devices"].push_back(to_json(device));
-    if (context.json) continue;
-    fmt::print("{}  {}\n", device.uri, device.about);
+    context.say(fmt::format("{}  {}", device.uri, device.about));
     for (const drivers::AxisInfo& axis : device.axes) {
-      fmt::print("  {:6} {:.4g} to {:.4g} {}, step {:.3g} {}, force up to {:.4g} {}\n", axis.name, axis.lower,
-                 axis.upper, axis.position_unit, axis.resolution, axis.position_unit, axis.force_limit,
-                 axis.force_unit);
+      context.say(fmt::format("  {:6} {:.4g} to {:.4g} {}, step {:.3g} {}, force up to {:.4g} {}", axis.name,
+                              axis.lower, axis.upper, axis.position_unit, axis.resolution, axis.position_unit,
+                              axis.force_limit, axis.force_unit));
     }
   }
   list_attached(context);
@@ -63,8 +61,7 @@ void run_devices(Context& context) {
 
 void add_devices(CLI::App& app, Context& context) {
   add_verb(
-      app, context, "devices",
-      "List the devices that can be opened: simulated ones, and what is on the USB, real or emulated",
+      app, context, "devices", "List the devices that can be opened, simulated or on the USB",
       "kerf devices --json\n\n"
       "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
       "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"

@@ -1,0 +1,18 @@
+#include "files/json_file.h"
+
+#include <kerf/version.h>
+
+#include "files/whole_file.h"
+
+namespace kerf::bench {
+
+std::string json_text(nlohmann::ordered_json result) {
+  result["software"] = software();
+  return result.dump(2) + "\n";
+}
+
+void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& result) {
+  write_whole_file(file, json_text(result));
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace kerf::bench {
+
+/// A result as text, indented, with the program that made it under "software".
+[[nodiscard]] std::string json_text(nlohmann::ordered_json result);
+
+/// Writes it as write_whole_file() does.
+void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& result);
+
+}  // namespace kerf::bench
