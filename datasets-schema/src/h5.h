@@ -119,6 +119,16 @@ class WritableFile {
 // Types. A file's type is compared by its name: "float64", "uint32", "text", "{time float64, text text}".
 template <typename T>
 [[nodiscard]] hid_t native();
+template <>
+hid_t native<double>();
+template <>
+hid_t native<float>();
+template <>
+hid_t native<std::uint64_t>();
+template <>
+hid_t native<std::uint32_t>();
+template <>
+hid_t native<std::uint8_t>();
 [[nodiscard]] std::string type_name(hid_t type);
 struct Field {
   std::string name;

@@ -13,7 +13,6 @@
 namespace kerf::schema {
 namespace {
 
-std::string quoted(const std::string& text) { return std::string("'").append(text).append("'"); }
 
 std::string listed(const std::vector<std::string>& texts) {
   std::string line;

@@ -12,6 +12,8 @@
 
 namespace kerf::schema {
 
+[[nodiscard]] inline std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
 /// A way in which a file's tree departs from the tables; `fatal` if the recording cannot be read for it.
 struct Finding {
   Violation violation;

@@ -11,7 +11,7 @@
 namespace kerf::schema {
 namespace {
 
-constexpr hsize_t chunk_rows = 8192;
+constexpr hsize_t force_chunk_rows = 8192;
 
 void require_sound(const std::vector<StoredForces>& cases) {
   std::set<std::string> names;
@@ -46,7 +46,7 @@ void write_case(hid_t cases, const StoredForces& one) {
   const h5::Extent extent{one.rows(), one.channels.size()};
   const auto dataset = h5::create_dataset(
       group.id(), "force", h5::native<double>(),
-      {.extent = extent, .chunk_rows = std::min<hsize_t>(extent[0], chunk_rows), .compressed = true});
+      {.extent = extent, .chunk_rows = std::min<hsize_t>(extent[0], force_chunk_rows), .compressed = true});
   h5::write_attribute(dataset.id(), "channels", gather(one.channels, &ForceChannel::name));
   h5::write_attribute(dataset.id(), "units", gather(one.channels, &ForceChannel::unit));
   if (!one.force.empty()) h5::write(dataset.id(), h5::native<double>(), one.force.data());

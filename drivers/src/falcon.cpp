@@ -19,7 +19,7 @@
 namespace kerf::drivers {
 namespace {
 
-constexpr std::size_t axes = 3;
+constexpr std::size_t axis_count = 3;
 constexpr std::chrono::milliseconds pause(2);
 constexpr std::array<std::pair<std::string_view, Falcon::Led>, 4> leds{{{"off", Falcon::Led::off},
                                                                         {"red", Falcon::Led::red},
@@ -142,7 +142,7 @@ Status Falcon::read(double now_s, Sample& sample) noexcept {
   const FalconLink::Reading& reading = link_->take();
   const std::int64_t age_ns = usb::now_ns() - reading.at_ns;
   if (link_->lost() || age_ns > max_silence_ns) return Status::lost;
-  for (std::size_t at = 0; at < axes; ++at) {
+  for (std::size_t at = 0; at < axis_count; ++at) {
     sample.position[at] = reading.knob[at];
     sample.velocity[at] = velocity_.update(at, reading.knob[at], now_s);
   }
@@ -150,7 +150,7 @@ Status Falcon::read(double now_s, Sample& sample) noexcept {
   const falcon::Report& report = reading.report;
   sample.channels[0] =
       (report.plus ? 1 : 0) | (report.forward ? 2 : 0) | (report.centre ? 4 : 0) | (report.minus ? 8 : 0);
-  for (std::size_t i = 0; i < axes; ++i) sample.channels[1 + i] = reading.motor[i];
+  for (std::size_t i = 0; i < axis_count; ++i) sample.channels[1 + i] = reading.motor[i];
   sample.channels[4] = 1e-9 * static_cast<double>(age_ns);
   sample.faults = limited_ ? force_was_limited : 0U;
   const bool knows_where = reading.reachable && (!options_.homing || link_->homed());
@@ -160,7 +160,7 @@ Status Falcon::read(double now_s, Sample& sample) noexcept {
 Status Falcon::write(const Axes& force) noexcept {
   const bool finite = std::ranges::all_of(force, [](double one) { return std::isfinite(one); });
   Eigen::Vector3d wanted;
-  for (std::size_t at = 0; at < axes; ++at) {
+  for (std::size_t at = 0; at < axis_count; ++at) {
     const double limit = info_.axes[at].force_limit;
     wanted[static_cast<Eigen::Index>(at)] = std::clamp(force[at], -limit, limit);
   }

@@ -23,7 +23,7 @@ constexpr std::array<UnitOfText, 1> times{{{"s", 1.0}}};
 constexpr std::array<UnitOfText, 2> lengths{{{"mm", 1e-3}, {"m", 1.0}}};
 constexpr std::array<UnitOfText, 2> angles{{{"deg", std::numbers::pi / 180.0}, {"rad", 1.0}}};
 
-[[noreturn]] void refuse(std::string_view keyframe) {
+[[noreturn]] void refuse_keyframe(std::string_view keyframe) {
   throw DeviceError("keyframe '" + std::string(keyframe) +
                     "': expected TIME:X:Y:Z:RX:RY:RZ, joined by ',', such as 0.8s:0:-40:100mm:0:0:30deg");
 }
@@ -50,14 +50,14 @@ PoseKeyframe parse_keyframe(const std::string_view whole) {
   std::string_view text = whole;
   PoseKeyframe keyframe;
   const auto colon = [&] {
-    if (!text.starts_with(':')) refuse(whole);
+    if (!text.starts_with(':')) refuse_keyframe(whole);
     text.remove_prefix(1);
   };
-  if (!take(text, {&keyframe.at_s, 1}, times)) refuse(whole);
+  if (!take(text, {&keyframe.at_s, 1}, times)) refuse_keyframe(whole);
   colon();
-  if (!take(text, {keyframe.position.data(), 3}, lengths)) refuse(whole);
+  if (!take(text, {keyframe.position.data(), 3}, lengths)) refuse_keyframe(whole);
   colon();
-  if (!take(text, {keyframe.position.data() + 3, 3}, angles) || !text.empty()) refuse(whole);
+  if (!take(text, {keyframe.position.data() + 3, 3}, angles) || !text.empty()) refuse_keyframe(whole);
   return keyframe;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t waypoints_drawn = 64;
 
-[[noreturn]] void refuse(std::string_view waypoint) {
+[[noreturn]] void refuse_waypoint(std::string_view waypoint) {
   throw DeviceError("waypoint '" + std::string(waypoint) +
                     "': expected X:Y:Z with the unit mm or m, joined by ',', such as 0:0:0mm,30:-20:0mm");
 }
@@ -24,14 +24,14 @@ Eigen::Vector3d parse_waypoint(std::string_view text) {
   const char* from = text.data();
   const char* const end = text.data() + text.size();
   for (int at = 0; at < 3; ++at) {
-    if (at > 0 && (from == end || *from++ != ':')) refuse(text);
+    if (at > 0 && (from == end || *from++ != ':')) refuse_waypoint(text);
     const auto [stop, error] = std::from_chars(from, end, place[at]);
-    if (error != std::errc{} || !(std::abs(place[at]) <= 1e6)) refuse(text);
+    if (error != std::errc{} || !(std::abs(place[at]) <= 1e6)) refuse_waypoint(text);
     from = stop;
   }
   const std::string_view unit(from, static_cast<std::size_t>(end - from));
   if (unit == "mm") return 1e-3 * place;
-  if (unit != "m") refuse(text);
+  if (unit != "m") refuse_waypoint(text);
   return place;
 }
 

@@ -56,7 +56,7 @@ std::vector<const ChartPoint*> front_of(const SpeedAccuracy& chart) {
   return front;
 }
 
-std::string name_of(const ChartPoint& point) { return point.law + ", " + point.fidelity; }
+std::string point_name(const ChartPoint& point) { return point.law + ", " + point.fidelity; }
 
 void add_laws(const SpeedAccuracy& chart, const Scale& scale, Chart& picture) {
   std::vector<std::string> laws;
@@ -104,7 +104,7 @@ void add_front(const SpeedAccuracy& chart, const Scale& scale, Chart& picture) {
     rare.y.push_back(std::max(cost_us(*point), 1e-3 * point->cost.p999_ns));
     const bool near_left = std::log(right / picture.x_range.begin) <
                            0.45 * std::log(picture.x_range.end / picture.x_range.begin);
-    picture.labels.push_back({.x = right, .y = cost_us(*point), .text = name_of(*point), .left = !near_left});
+    picture.labels.push_back({.x = right, .y = cost_us(*point), .text = point_name(*point), .left = !near_left});
   }
   stairs.x.push_back(right);
   stairs.y.push_back(picture.y_range.end);
@@ -165,7 +165,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"why_not_stable", point.why},
                                 {"on_front", point.on_front}});
   }
-  for (const ChartPoint* point : front_of(chart)) result["front"].push_back(name_of(*point));
+  for (const ChartPoint* point : front_of(chart)) result["front"].push_back(point_name(*point));
   return result;
 }
 
@@ -260,7 +260,7 @@ std::string chart_page(const SpeedAccuracy& chart) {
       enough == front.end()
           ? std::string("<p class=\"answer bad\">No stable point is within the JND.</p>\n")
           : fmt::format("<p class=\"answer\">The cheapest within the JND: {}, {} us, {:.3g} N.</p>\n",
-                        escaped(name_of(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n);
+                        escaped(point_name(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n);
   body +=
       "<p class=\"soft\">Costs are medians and 99.9th percentiles of single ticks, with warm caches and with "
       "caches that were flushed before each tick. Costs within 15 % and 3 ns of each other, and errors "

@@ -17,8 +17,6 @@ namespace {
 constexpr std::size_t max_timed_ticks = 4000;
 constexpr double runaway = 10.0;  // times the largest force recorded
 
-bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
-
 /// The stretch of a recording that laws are timed along: that with most contact.
 SampledMotion timed_stretch(const AxisSeries& series, const FitSource& source, double period_s) {
   const std::size_t rows = series.time_s.size();
@@ -86,13 +84,13 @@ class RecordingChart {
                                           : "the recording itself, with nothing held out";
     const auto plans = fit_plans(options_.models);
     for (const FitPlan& plan : plans) {
-      if (stopped(options_)) break;
+      if (options_.stopped()) break;
       add(plan);
       if (options_.done != nullptr) *options_.done += 900 / plans.size();
     }
-    if (!stopped(options_) && chart_.points.empty()) refuse();
-    if (!stopped(options_)) time();
-    if (stopped(options_)) {
+    if (!options_.stopped() && chart_.points.empty()) refuse();
+    if (!options_.stopped()) time();
+    if (options_.stopped()) {
       chart_.stopped = true;
       chart_.points.clear();
       return chart_;

@@ -21,8 +21,6 @@ namespace {
 constexpr std::size_t max_fit_samples = 4000;
 constexpr double shown_from_jnd = 1e-3;
 
-bool stopped(const ChartOptions& options) { return options.stop != nullptr && options.stop->load(); }
-
 /// The motion along the path, by rate, each made once.
 class Motions {
  public:
@@ -89,7 +87,7 @@ void add_aids(LawFile& file, const SampledMotion& path, std::size_t axis) {
 void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions& options,
                 SpeedAccuracy& chart) {
   for (const FitPlan& plan : fit_plans(options.models)) {
-    if (stopped(options)) return;
+    if (options.stopped()) return;
     const bool fits = units_fit(models::law_info(plan.model), law.position_unit, law.force_unit);
     if (plan.model == law.law.model() || !fits) continue;
     try {
@@ -178,7 +176,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
         fmt::format("other laws are not fitted to law '{}', which has axes of its own", law.law.model()));
   }
   for (ChartPoint& point : chart.points) {
-    if (stopped(options)) break;
+    if (options.stopped()) break;
     reference.compare(render(point.file, reference.axes(), motions.at(point.rate_hz)), point);
     if (!law.law.is_spatial()) add_aids(point.file, motions.at(options.rate_hz), reference.axes().front());
     if (!point.stable || !options.unstable) continue;
@@ -187,8 +185,8 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
       point.why = *why;
     }
   }
-  if (!stopped(options)) time_points(reference.axes(), motions, options, chart);
-  chart.stopped = chart.stopped || stopped(options);
+  if (!options.stopped()) time_points(reference.axes(), motions, options, chart);
+  chart.stopped = chart.stopped || options.stopped();
   if (chart.stopped) {
     chart.points.clear();
     return chart;

@@ -56,6 +56,8 @@ struct ChartOptions {
   TickCostOptions timing;
   const std::atomic<bool>* stop = nullptr;
   std::atomic<std::size_t>* done = nullptr;  ///< counts up to chart_steps
+
+  [[nodiscard]] bool stopped() const { return stop != nullptr && stop->load(); }
 };
 inline constexpr std::size_t chart_steps = 1000;
 

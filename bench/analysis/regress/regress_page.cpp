@@ -47,7 +47,7 @@ Chart chart_of(const RegressionOutcome& outcome, std::size_t begin, std::size_t 
                         .label_after = 2 * (worst.tick - begin) < end - begin}}};
 }
 
-std::string cell(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
+std::string number_or_empty(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
 
 std::string context_section(const RegressionOutcome& outcome) {
   const auto context = context_of(outcome);
@@ -58,8 +58,9 @@ std::string context_section(const RegressionOutcome& outcome) {
        fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),
        fmt::format("got [{}]", axis.force_unit), fmt::format("apart [{}]", axis.force_unit)}};
   for (const ContextRow& row : context) {
-    rows.push_back({fmt::format("{}", row.tick), cell(row.time_s), cell(row.position), cell(row.velocity),
-                    cell(row.expected), cell(row.got), cell(row.got - row.expected)});
+    rows.push_back({fmt::format("{}", row.tick), number_or_empty(row.time_s), number_or_empty(row.position),
+                    number_or_empty(row.velocity), number_or_empty(row.expected), number_or_empty(row.got),
+                    number_or_empty(row.got - row.expected)});
   }
   return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }

@@ -94,7 +94,7 @@ bool any_force(const std::vector<double>& force, std::size_t axis, std::size_t a
   return false;
 }
 
-bool same_bits(double one, double other) noexcept {
+bool bitwise_equal(double one, double other) noexcept {
   return std::bit_cast<std::uint64_t>(one) == std::bit_cast<std::uint64_t>(other);
 }
 
@@ -104,7 +104,7 @@ void compare_exactly(const schema::Recording& recording, const LawTrace& trace, 
     const double commanded = recording.force_commanded[row * recording.dimensions() + result.axis];
     if ((flags_of(recording, row) & touched) != 0 || !std::isfinite(commanded)) continue;
     ++exact.untouched;
-    if (same_bits(commanded, trace.force[row][result.axis])) ++exact.identical;
+    if (bitwise_equal(commanded, trace.force[row][result.axis])) ++exact.identical;
   }
   result.exact = exact;
 }

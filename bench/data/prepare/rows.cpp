@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 
 #include <fmt/core.h>
+
+#include "segment/segment.h"
 
 namespace kerf::bench {
 namespace {
@@ -20,22 +21,6 @@ void keep(std::vector<T>& values, const std::vector<bool>& rows, std::size_t wid
     if (rows[i / width]) values[kept++] = values[i];
   }
   values.resize(kept);
-}
-
-std::vector<double> mean_of(const std::vector<std::vector<double>>& branches, std::size_t points) {
-  std::vector<double> mean(points, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t point = 0; point < points; ++point) {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const auto& branch : branches) {
-      if (std::isnan(branch[point])) continue;
-      sum += branch[point];
-      ++count;
-    }
-    // As `kerf segment` does: where half of the cycles reached.
-    if (count > 0 && 2 * count >= branches.size()) mean[point] = sum / static_cast<double>(count);
-  }
-  return mean;
 }
 
 /// The pieces of a list separated by commas.
@@ -130,8 +115,8 @@ void keep_cycles(schema::Recording& recording, const std::vector<std::uint32_t>&
     for (const std::uint32_t cycle : chosen) kept.push_back((*branches)[cycle - 1]);
     *branches = std::move(kept);
   }
-  cycles.closing_mean = mean_of(cycles.closing, cycles.grid.size());
-  cycles.opening_mean = mean_of(cycles.opening, cycles.grid.size());
+  cycles.closing_mean = mean_branch(cycles.closing, cycles.grid.size());
+  cycles.opening_mean = mean_branch(cycles.opening, cycles.grid.size());
   keep_rows(recording, rows);
 }
 

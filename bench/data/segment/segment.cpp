@@ -122,21 +122,6 @@ std::vector<double> on_grid(const Motion& motion, const Stroke& stroke, const st
   return force;
 }
 
-std::vector<double> mean_of(const std::vector<std::vector<double>>& cycles, std::size_t points) {
-  std::vector<double> mean(points, nothing);
-  for (std::size_t point = 0; point < points; ++point) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const auto& cycle : cycles) {
-      if (std::isnan(cycle[point])) continue;
-      sum += cycle[point];
-      count += 1.0;
-    }
-    if (2.0 * count >= static_cast<double>(cycles.size())) mean[point] = sum / count;
-  }
-  return mean;
-}
-
 void check(const schema::Recording& recording, const SegmentOptions& options,
            const std::vector<double>& position, const std::vector<double>& force) {
   if (options.axis >= recording.dimensions()) {
@@ -193,6 +178,21 @@ void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<
 
 }  // namespace
 
+std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches, std::size_t points) {
+  std::vector<double> mean(points, nothing);
+  for (std::size_t point = 0; point < points; ++point) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (const auto& branch : branches) {
+      if (std::isnan(branch[point])) continue;
+      sum += branch[point];
+      ++count;
+    }
+    if (count > 0 && 2 * count >= branches.size()) mean[point] = sum / static_cast<double>(count);
+  }
+  return mean;
+}
+
 schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options) {
   const auto position = axis_of(recording.position, recording, options.axis);
   const auto force =
@@ -239,8 +239,8 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
   }
   if (cycles.closing_direction < 0.0) std::reverse(cycles.grid.begin(), cycles.grid.end());
   add_cycles(cycles, motion, turns, options.dwell);
-  cycles.closing_mean = mean_of(cycles.closing, options.points);
-  cycles.opening_mean = mean_of(cycles.opening, options.points);
+  cycles.closing_mean = mean_branch(cycles.closing, options.points);
+  cycles.opening_mean = mean_branch(cycles.opening, options.points);
   return cycles;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <kerf/schema/recording.h>
 
@@ -38,6 +39,11 @@ struct SegmentOptions {
 void segment_recording(schema::Recording& recording, const SegmentOptions& options, const std::string& name);
 
 /// "open_to_close", as the schema has it.
+/// The mean of branches that were resampled to as many points, where at least half of them reached; NaN
+/// elsewhere.
+[[nodiscard]] std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches,
+                                              std::size_t points);
+
 [[nodiscard]] constexpr std::string_view name_of(schema::Phase phase) noexcept {
   constexpr std::array<std::string_view, 5> names{"", "opening", "open_to_close", "closing", "close_to_open"};
   const auto at = static_cast<std::size_t>(phase);

@@ -48,7 +48,7 @@ SecretBytes secret(std::size_t size) {
   return bytes;
 }
 
-[[noreturn]] void throw_errno(const std::filesystem::path& file, const char* doing) {
+[[noreturn]] void throw_cannot(const std::filesystem::path& file, const char* doing) {
   throw std::system_error(errno, std::generic_category(), fmt::format("cannot {} {}", doing, file.string()));
 }
 
@@ -75,7 +75,7 @@ std::size_t read_all(const std::filesystem::path& file, std::uint8_t* bytes, std
   while (size < room) {
     const ssize_t count = ::read(named.descriptor(), bytes + size, room - size);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw_errno(file, "read");
+    if (count < 0) throw_cannot(file, "read");
     if (count == 0) break;
     size += static_cast<std::size_t>(count);
   }
@@ -177,7 +177,7 @@ void write_new_key_file(const std::filesystem::path& file) {
         "{} exists; a key is never replaced, as all that it sealed would be lost: name another file",
         file.string()));
   }
-  if (opened.number() < 0) throw_errno(file, "write");
+  if (opened.number() < 0) throw_cannot(file, "write");
   const ssize_t written = ::write(opened.number(), content.get(), least_key_file);
   if (written == static_cast<ssize_t>(least_key_file) && ::fsync(opened.number()) == 0) {
     return bring_to_disk(file.parent_path());

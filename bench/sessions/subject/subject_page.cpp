@@ -50,12 +50,12 @@ struct PageAction {
 };
 
 std::optional<PageAction> read_action(const std::string& body) {
-  using Kind = SubjectAction::Kind;
-  constexpr std::array<std::pair<std::string_view, Kind>, 5> kinds{{{"go_on", Kind::go_on},
-                                                                    {"decline", Kind::decline},
-                                                                    {"play", Kind::play},
-                                                                    {"answer", Kind::answer},
-                                                                    {"quit", Kind::quit}}};
+  using Action = SubjectAction::Kind;
+  constexpr std::array<std::pair<std::string_view, Action>, 5> kinds{{{"go_on", Action::go_on},
+                                                                      {"decline", Action::decline},
+                                                                      {"play", Action::play},
+                                                                      {"answer", Action::answer},
+                                                                      {"quit", Action::quit}}};
   const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
   const auto has = [&](const char* key, auto is) { return json.contains(key) && (json[key].*is)(); };
   if (!json.is_object() || !has("kind", &nlohmann::json::is_string) ||

@@ -3,17 +3,17 @@
 namespace kerf::bench {
 
 bool permits(const SubjectView& view, const SubjectAction& action) noexcept {
-  using Kind = SubjectAction::Kind;
+  using Action = SubjectAction::Kind;
   switch (action.kind) {
-    case Kind::go_on:
+    case Action::go_on:
       return view.may_go_on;
-    case Kind::decline:
+    case Action::decline:
       return view.stage == SessionStage::consent;
-    case Kind::play:
+    case Action::play:
       return view.may_switch && action.slot < view.labels.size();
-    case Kind::answer:
+    case Action::answer:
       return view.may_answer && action.slot < view.answers;
-    case Kind::quit:
+    case Action::quit:
       return true;
   }
   return false;

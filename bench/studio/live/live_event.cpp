@@ -12,7 +12,7 @@ namespace kerf::bench {
 namespace {
 
 // What a frame costs: the viewer that catches up takes a few more of them instead.
-constexpr std::uint64_t max_columns = 600;
+constexpr std::uint64_t max_columns_at_once = 600;
 constexpr std::uint64_t max_ticks = 6000;
 
 /// [[..],[..]], trace by trace.
@@ -123,7 +123,7 @@ std::string live_event(const LiveLoop& loop, LiveCursor& cursor) {
     cursor = {.calls = cursor.calls, .ticks_per_column = cursor.ticks_per_column, .run = watched.run};
   const RowHistory& history = watched.history();
   const std::uint64_t columns = std::clamp<std::uint64_t>(
-      max_ticks / std::max<std::uint64_t>(cursor.ticks_per_column, 1), 1, max_columns);
+      max_ticks / std::max<std::uint64_t>(cursor.ticks_per_column, 1), 1, max_columns_at_once);
   const LiveFrame frame = history.frame_since(cursor.tick, cursor.ticks_per_column, columns);
   cursor.tick = frame.next;
   if (frame.columns == 0) return {};

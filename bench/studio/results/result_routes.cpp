@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uintmax_t largest_result = 64U << 20U;
 constexpr std::size_t max_models = 40;
-constexpr std::size_t max_columns = 4000;
+constexpr std::size_t max_residual_columns = 4000;
 
 std::size_t whole_number_in(const nlohmann::json& object, const std::string& name, double lower,
                             double upper) {
@@ -143,7 +143,7 @@ HttpResponse law(const HttpRequest& request, Workspace& workspace) {
 HttpResponse residuals(const HttpRequest& request, Workspace& workspace) {
   const WorkspaceEntry file = workspace.find(text_in_query(request, "id"), FileKind::recording);
   const WorkspaceEntry law_file = workspace.find(text_in_query(request, "law"), FileKind::law);
-  const std::size_t columns = count_in_query(request, "columns", max_columns);
+  const std::size_t columns = count_in_query(request, "columns", max_residual_columns);
   const schema::Recording recording = schema::read_recording(file.path);
   const std::size_t axis = find_axis(recording, text_in_query(request, "axis"));
   return json_response(residuals_of(recording, axis, read_law_file(law_file.path), columns));

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int deepest = 4;
+constexpr int max_depth = 4;
 constexpr std::size_t max_files = 10'000;
 constexpr std::size_t longest_name = 80;
 
@@ -99,7 +99,7 @@ std::vector<WorkspaceEntry> Workspace::scan() {
   const auto known = known_files();
   for (; !error && at != fs::recursive_directory_iterator() && all.size() < max_files; at.increment(error)) {
     const bool is_hidden = at->path().filename().string().starts_with('.');
-    if (at->is_symlink(error) || is_hidden || at.depth() >= deepest) at.disable_recursion_pending();
+    if (at->is_symlink(error) || is_hidden || at.depth() >= max_depth) at.disable_recursion_pending();
     if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;
     const auto kind = kind_of(at->path().filename().string());
     if (!kind) continue;

@@ -17,8 +17,7 @@ namespace {
 
 using std::numbers::sqrt2;
 using std::numbers::sqrt3;
-constexpr double largest = 14.0;  ///< d' beyond which a proportion is 1 in double precision
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double largest_dprime = 14.0;  ///< d' beyond which a proportion is 1 in double precision
 
 /// The trapezium rule converges faster than any power for what falls off as a normal density does.
 template <typename Function>
@@ -113,9 +112,9 @@ Interval likelihood_interval(Count hits, Count false_alarms, double confidence) 
   const auto excess = [&](double d) { return 2.0 * (best - profile(hits, false_alarms, d)) - z * z; };
   const double middle = std::clamp(
       normal_quantile(std::clamp(h, 1e-9, 1.0 - 1e-9)) - normal_quantile(std::clamp(f, 1e-9, 1.0 - 1e-9)),
-      -largest, largest);
-  return {.lower = excess(-largest) <= 0.0 ? -infinite : root(excess, -largest, middle),
-          .upper = excess(largest) <= 0.0 ? infinite : root(excess, middle, largest)};
+      -largest_dprime, largest_dprime);
+  return {.lower = excess(-largest_dprime) <= 0.0 ? -infinite : root(excess, -largest_dprime, middle),
+          .upper = excess(largest_dprime) <= 0.0 ? infinite : root(excess, middle, largest_dprime)};
 }
 
 /// Two rates whose z lie `scale` d' apart.
@@ -145,7 +144,7 @@ double proportion_correct(const Task& task, double d) {
   require(!std::isnan(d) && (d >= 0.0 || task.decision == Decision::forced_choice),
           "d' is " + std::to_string(d) +
               "; it must be a number, and only that of a forced choice may be negative");
-  d = std::clamp(d, -2.0 * largest, 2.0 * largest);
+  d = std::clamp(d, -2.0 * largest_dprime, 2.0 * largest_dprime);
   switch (task.decision) {
     case Decision::forced_choice:
       return forced_choice(d, task.intervals);
@@ -168,10 +167,10 @@ double d_prime(const Task& task, double proportion) {
   if (!is_signed && proportion <= chance_of(task)) return 0.0;
   if (is_signed && task.intervals == 2) return sqrt2 * normal_quantile(proportion);
   const auto excess = [&](double d) { return proportion_correct(task, d) - proportion; };
-  const double least = is_signed ? -largest : 0.0;
-  if (proportion >= 1.0 || excess(largest) <= 0.0) return infinite;
+  const double least = is_signed ? -largest_dprime : 0.0;
+  if (proportion >= 1.0 || excess(largest_dprime) <= 0.0) return infinite;
   if (proportion <= 0.0 || excess(least) >= 0.0) return is_signed ? -infinite : 0.0;
-  return root(excess, least, largest);
+  return root(excess, least, largest_dprime);
 }
 
 DPrime estimate_d_prime(const Task& task, Count correct, double confidence) {
@@ -211,7 +210,8 @@ Detection same_different(Count hits, Count false_alarms, Correction correction, 
                    .criterion_standard_error = criterion_error,
                    .interval = {.lower = 0.0, .upper = infinite}};
   if (h <= f) return result;
-  const double d = root([&](double trial) { return hit_rate(trial, criterion) - h; }, 0.0, 4.0 * largest);
+  const double d =
+      root([&](double trial) { return hit_rate(trial, criterion) - h; }, 0.0, 4.0 * largest_dprime);
   const double near = normal_density((d - criterion) / sqrt2) / sqrt2;
   const double far = normal_density((-d - criterion) / sqrt2) / sqrt2;
   const double dd_dh = 1.0 / (near - far);

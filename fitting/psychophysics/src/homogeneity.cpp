@@ -11,7 +11,7 @@ namespace kerf::psychophysics {
 namespace {
 
 constexpr double max_tables = 200'000.0;
-constexpr double as_likely = 1e-7;  ///< of log probabilities
+constexpr double as_likely_log = 1e-7;  ///< of log probabilities
 
 double log_choose(int n, int k) {
   return std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0);
@@ -57,14 +57,14 @@ class Tables {
         }
         log_ways += log_ways_[i][here];
       }
-      as_extreme += log_ways <= seen_ + as_likely ? 1 : 0;
+      as_extreme += log_ways <= seen_ + as_likely_log ? 1 : 0;
     }
     return as_extreme / (1.0 + options.samples);
   }
 
  private:
   [[nodiscard]] double sum(std::size_t group, int left, double log_p, double log_ways) const {
-    if (group == trials_.size()) return log_ways <= seen_ + as_likely ? std::exp(log_p) : 0.0;
+    if (group == trials_.size()) return log_ways <= seen_ + as_likely_log ? std::exp(log_p) : 0.0;
     double total = 0.0;
     for (int k = std::max(0, left - room_[group + 1]); k <= std::min(left, trials_[group]); ++k) {
       const double ways = log_ways_[group][static_cast<std::size_t>(k)];

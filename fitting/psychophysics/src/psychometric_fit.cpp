@@ -11,6 +11,7 @@
 
 #include "checks.h"
 #include "likelihood.h"
+#include "normal.h"
 #include "profile.h"
 #include "psychometric_problem.h"
 #include "shape.h"
@@ -18,7 +19,6 @@
 namespace kerf::psychophysics {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double max_dispersion = 9.0;  ///< rho = 0.9
 
 /// Twice the loss of log-likelihood at the ends of an interval. A dispersion that is itself estimated makes
