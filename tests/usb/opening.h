@@ -13,7 +13,8 @@
 
 namespace kerf::test {
 
-/// Why a device cannot be opened; "it was opened" if it can.
+/// Why a device cannot be opened; "it was opened" if it can. Begins with "bad input: " where not the device
+/// is to blame.
 inline std::string refusal(const std::string& uri, const std::atomic<bool>* stop = nullptr) {
   try {
     drivers::Surroundings surroundings;
@@ -21,6 +22,8 @@ inline std::string refusal(const std::string& uri, const std::atomic<bool>* stop
     (void)drivers::open_device(uri, std::move(surroundings));
   } catch (const drivers::DeviceError& error) {
     return error.what();
+  } catch (const std::invalid_argument& error) {
+    return std::string("bad input: ") + error.what();
   }
   return "it was opened";
 }

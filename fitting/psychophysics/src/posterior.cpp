@@ -12,9 +12,9 @@
 namespace kerf::psychophysics {
 namespace {
 
-constexpr std::size_t thresholds = 121;
-constexpr std::size_t slopes = 15;
-constexpr std::size_t lapses = 4;
+constexpr std::size_t threshold_count = 121;
+constexpr std::size_t slope_count = 15;
+constexpr std::size_t lapse_count = 4;
 constexpr double least_slope = 0.5;
 constexpr double largest_slope = 10.0;
 constexpr double beyond = 10.0;  ///< how far the thresholds go past the levels
@@ -35,8 +35,8 @@ void require_question(std::span<const Level> levels, const FitOptions& options) 
 std::vector<double> lapses_of(const FitOptions& options) {
   if (options.lapse) return {*options.lapse};
   std::vector<double> rates;
-  for (std::size_t i = 0; i < lapses; ++i)
-    rates.push_back(options.largest_lapse * static_cast<double>(i) / (lapses - 1.0));
+  for (std::size_t i = 0; i < lapse_count; ++i)
+    rates.push_back(options.largest_lapse * static_cast<double>(i) / (lapse_count - 1.0));
   return rates;
 }
 
@@ -44,19 +44,19 @@ std::vector<double> lapses_of(const FitOptions& options) {
 struct Marginal {
   double first = 0.0;
   double step = 0.0;
-  std::vector<double> weights = std::vector<double>(thresholds, 0.0);
+  std::vector<double> weights = std::vector<double>(threshold_count, 0.0);
 
   [[nodiscard]] double at(std::size_t place) const { return first + step * static_cast<double>(place); }
 
   /// Every grid point stands for the step about it.
   [[nodiscard]] double quantile(double share) const {
     double below = 0.0;
-    for (std::size_t place = 0; place < thresholds; ++place) {
+    for (std::size_t place = 0; place < threshold_count; ++place) {
       if (below + weights[place] >= share && weights[place] > 0.0)
         return at(place) + step * ((share - below) / weights[place] - 0.5);
       below += weights[place];
     }
-    return at(thresholds - 1) + 0.5 * step;
+    return at(threshold_count - 1) + 0.5 * step;
   }
 };
 
@@ -85,18 +85,18 @@ Marginal marginal_of(const std::vector<std::array<double, 3>>& rows, double crit
   const auto [least, most] =
       std::minmax_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
   Marginal marginal{.first = (*least)[0] - std::log(beyond)};
-  marginal.step = ((*most)[0] + std::log(beyond) - marginal.first) / (thresholds - 1.0);
-  std::vector<std::vector<double>> logs(thresholds);
+  marginal.step = ((*most)[0] + std::log(beyond) - marginal.first) / (threshold_count - 1.0);
+  std::vector<std::vector<double>> logs(threshold_count);
   double largest = -std::numeric_limits<double>::infinity();
   for (const double lapse : lapses_of(options)) {
     if (criterion <= options.guess || criterion >= 1.0 - lapse) continue;  // no such curve reaches it
     const double share = (criterion - options.guess) / (1.0 - options.guess - lapse);
-    for (std::size_t i = 0; i < slopes; ++i) {
+    for (std::size_t i = 0; i < slope_count; ++i) {
       CurveOnAxis curve{.lapse = lapse};
       curve.slope =
-          least_slope * std::pow(largest_slope / least_slope, static_cast<double>(i) / (slopes - 1.0));
+          least_slope * std::pow(largest_slope / least_slope, static_cast<double>(i) / (slope_count - 1.0));
       curve.shift = shape_quantile(options.shape, share) / curve.slope;
-      for (std::size_t place = 0; place < thresholds; ++place) {
+      for (std::size_t place = 0; place < threshold_count; ++place) {
         logs[place].push_back(log_likelihood(rows, curve, marginal.at(place), options));
         largest = std::max(largest, logs[place].back());
       }
@@ -104,7 +104,7 @@ Marginal marginal_of(const std::vector<std::array<double, 3>>& rows, double crit
   }
   require(std::isfinite(largest), "the criterion lies beyond what the curve reaches");
   double total = 0.0;
-  for (std::size_t place = 0; place < thresholds; ++place) {
+  for (std::size_t place = 0; place < threshold_count; ++place) {
     for (const double log : logs[place]) marginal.weights[place] += std::exp(log - largest);
     total += marginal.weights[place];
   }
@@ -127,7 +127,7 @@ Threshold posterior_threshold(std::span<const Level> levels, const FitOptions& o
   const double upper = marginal.quantile(1.0 - tail);
   // Within two steps of its end it is the grid that ends the interval, and not the answers.
   const bool open_below = lower < marginal.at(2);
-  const bool open_above = upper > marginal.at(thresholds - 3);
+  const bool open_above = upper > marginal.at(threshold_count - 3);
   return {.value = std::exp(marginal.quantile(0.5)),
           .criterion = criterion,
           .interval = {.lower = open_below ? 0.0 : std::exp(lower),
