@@ -21,6 +21,8 @@
 namespace kerf::bench {
 namespace {
 
+using Pace = Routes::Pace;
+
 constexpr std::uintmax_t largest_result = 64U << 20U;
 constexpr std::size_t max_models = 40;
 constexpr std::size_t max_residual_columns = 4000;
@@ -157,7 +159,6 @@ HttpResponse stop(const HttpRequest& request, Jobs& jobs) {
 }  // namespace
 
 void add_result_routes(Routes& routes, Workspace& workspace, Jobs& jobs) {
-  using Pace = Routes::Pace;
   using Order = HttpResponse (*)(const HttpRequest&, Workspace&, Jobs&);
   using View = HttpResponse (*)(const HttpRequest&, Workspace&);
   routes.get("/api/jobs", Pace::at_once, [&jobs](const HttpRequest&) { return json_response(jobs.list()); });

@@ -5,6 +5,8 @@
 namespace kerf::bench {
 namespace {
 
+using Pace = Routes::Pace;
+
 nlohmann::ordered_json as_json(const SessionProgress& progress) {
   return {
       {"running", progress.running},   {"name", progress.name},       {"subject_url", progress.subject_url},
@@ -16,7 +18,6 @@ nlohmann::ordered_json as_json(const SessionProgress& progress) {
 
 void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
                         std::filesystem::path key_file, std::function<void()> prepare) {
-  using Pace = Routes::Pace;
   routes.get("/api/session", Pace::at_once,
              [&host](const HttpRequest&) { return json_response(as_json(host.progress())); });
   routes.post("/api/session/start", Pace::action,
