@@ -133,7 +133,7 @@ TEST(RowHistory, TellsEveryEventOnceWhateverTheFramesAreCutInto) {
   }
   std::vector<std::string> seen;
   std::uint64_t next = 0;
-  for (const std::uint64_t ticks : {3, 10, 7, 100, 1, 1, 13}) {
+  for (const std::uint64_t ticks : {3U, 10U, 7U, 100U, 1U, 1U, 13U}) {
     const LiveFrame frame = history.frame_since(next, ticks, ticks == 13 ? 1000 : 20);
     for (const schema::Event& it : frame.events) seen.push_back(fmt::format("{} {:.3f}", it.kind, it.time_s));
     next = frame.next;
