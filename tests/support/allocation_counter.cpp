@@ -22,7 +22,16 @@ std::size_t kerf::test::allocations() noexcept { return count; }
 kerf::test::NoAllocation::NoAllocation() noexcept { forbidden = true; }
 kerf::test::NoAllocation::~NoAllocation() { forbidden = false; }
 
+// GCC says by macros what Clang says by features.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define KERF_SANITIZER_MALLOC 1
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define KERF_SANITIZER_MALLOC 1
+#endif
+#endif
+
+#ifdef KERF_SANITIZER_MALLOC
 // The sanitizers have a malloc of their own, and tell of each call.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
                                                          void (*on_free)(const volatile void*));
