@@ -13,7 +13,6 @@
 namespace kerf::schema {
 namespace {
 
-
 std::string listed(const std::vector<std::string>& texts) {
   std::string line;
   for (const auto& text : texts) line.append(line.empty() ? "" : ", ").append(quoted(text));

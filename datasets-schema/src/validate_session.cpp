@@ -12,7 +12,6 @@ bool is_subject_code(const std::string& text) {
   return !text.empty() && text.size() <= longest && text.find_first_not_of(allowed) == std::string::npos;
 }
 
-
 /// What the tree cannot say.
 class SessionContentCheck {
  public:

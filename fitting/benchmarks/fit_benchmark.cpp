@@ -45,11 +45,19 @@ struct Recording {
   }
 };
 
+/// The laws whose force can be made, and what a fit of them is told.
+struct Truth {
+  std::string name;
+  std::vector<double> values;
+  models::Options options;
+};
+const std::vector<Truth> truths{{"kelvin", {500.0, 800.0, 160.0}, {}},
+                                {"exponential", {0.3, 2.5, 4.0}, {{"thickness", 0.01}}}};
+
 models::Law truth_of(const std::string& name) {
-  if (name == "kelvin") return models::Law::make(name, std::vector{500.0, 800.0, 160.0});
-  if (name == "exponential")
-    return models::Law::make(name, std::vector{0.3, 2.5, 4.0}, {{"thickness", 0.01}});
-  throw std::invalid_argument("kelvin and exponential can be made, not '" + name + "'");
+  const auto found = std::ranges::find(truths, name, &Truth::name);
+  if (found == truths.end()) throw std::invalid_argument("there is no force of '" + name + "' to be made");
+  return models::Law::make(name, found->values, found->options);
 }
 
 /// Strokes of a hand, 12 mm deep, and the force of a law there, with white noise.
@@ -119,7 +127,9 @@ void fit_one(const std::string& law, const std::string& path, int turns, bool wh
   const Recording recording = read(path);
   fitting::FitOptions options{.folds = 0};
   if (white) options.intervals = fitting::Intervals::white;
-  if (law == "exponential") options.law_options["thickness"] = 0.01;
+  if (const auto told = std::ranges::find(truths, law, &Truth::name); told != truths.end()) {
+    options.law_options = told->options;
+  }
   fitting::FitResult result;
   std::vector<double> seconds;
   for (int i = 0; i < turns; ++i) {

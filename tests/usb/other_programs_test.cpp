@@ -46,7 +46,8 @@ TEST(OtherPrograms, UsbipListsAttachesAndDetachesWhatIsEmulated) {
 
 // scripts/set-up unpacks it and does not install it: it would take a SpaceMouse from whoever uses one.
 TEST(OtherPrograms, SpacenavdUsesTheSpaceNavigator) {
-  if (std::system("command -v spacenavd >/dev/null") != 0) GTEST_SKIP() << "spacenavd is not installed, nor unpacked";
+  if (std::system("command -v spacenavd >/dev/null") != 0)
+    GTEST_SKIP() << "spacenavd is not installed, nor unpacked";
   const Emulator emulator("spacemouse");
   ASSERT_TRUE(becomes_attached("spacemouse:0"));
   const std::string said = output_of("stdbuf -oL timeout -s INT 3 spacenavd -d -v");

@@ -104,7 +104,8 @@ void add_front(const SpeedAccuracy& chart, const Scale& scale, Chart& picture) {
     rare.y.push_back(std::max(cost_us(*point), 1e-3 * point->cost.p999_ns));
     const bool near_left = std::log(right / picture.x_range.begin) <
                            0.45 * std::log(picture.x_range.end / picture.x_range.begin);
-    picture.labels.push_back({.x = right, .y = cost_us(*point), .text = point_name(*point), .left = !near_left});
+    picture.labels.push_back(
+        {.x = right, .y = cost_us(*point), .text = point_name(*point), .left = !near_left});
   }
   stairs.x.push_back(right);
   stairs.y.push_back(picture.y_range.end);

@@ -58,7 +58,8 @@ std::string overview(const CLI::App& app) {
     group = verb->get_group();
   }
   return text +
-         "\n'kerf help VERB' says more of a verb; all have --json. 'kerf --version' names version and commit.\n";
+         "\n'kerf help VERB' says more of a verb; all have --json. 'kerf --version' names version and "
+         "commit.\n";
 }
 
 void add_verbs(CLI::App& app, Context& context) {

@@ -43,8 +43,8 @@ struct StoredForces {
 };
 
 /// Reads the stored forces of a suite, in the order in which they were written.
-/// @throws FormatError in one line; std::invalid_argument (the caller named it wrongly: there is no such file,
-/// or it may not be read).
+/// @throws FormatError in one line; std::invalid_argument (the caller named it wrongly: there is no such
+/// file, or it may not be read).
 [[nodiscard]] std::vector<StoredForces> read_regression(const std::filesystem::path& file);
 
 /// Writes the stored forces of a suite, compressed without loss: to a temporary name beside `file`, then

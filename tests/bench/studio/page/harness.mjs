@@ -64,6 +64,12 @@ export class Studio {
     this.kerfOrThrow("segment", name);
   }
 
+  /** A session S01.h5 of a protocol, not yet run. */
+  makeSession(protocol) {
+    const given = ["--subject", "S01", "--key-file", "keeper.key", "-o", "S01.h5", "--no-check"];
+    this.kerfOrThrow("session", "new", protocol, ...given);
+  }
+
   async serve(...words) {
     this.process = spawn(this.program, ["studio", this.folder, ...words], { stdio: ["ignore", "ignore", "pipe"] });
     this.said = "";

@@ -13,18 +13,7 @@ async function furnish(studio) {
   studio.record("another_cut.h5", 10);
   studio.kerfOrThrow("session", "key", "keeper.key");
   const protocol = new URL("../../../../examples/sessions/abx.protocol.toml", import.meta.url).pathname;
-  studio.kerfOrThrow(
-    "session",
-    "new",
-    protocol,
-    "--subject",
-    "S01",
-    "--key-file",
-    "keeper.key",
-    "-o",
-    "S01.h5",
-    "--no-check",
-  );
+  studio.makeSession(protocol);
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
   const recording = await studio.id("recordings", "cut.h5");
   const work = async (path, body) => {

@@ -32,18 +32,7 @@ async function prepare(studio) {
   await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
   await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
   studio.kerfOrThrow("session", "key", "keeper.key");
-  studio.kerfOrThrow(
-    "session",
-    "new",
-    "abx.protocol.toml",
-    "--subject",
-    "S01",
-    "--key-file",
-    "keeper.key",
-    "-o",
-    "S01.h5",
-    "--no-check",
-  );
+  studio.makeSession("abx.protocol.toml");
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
 }
 

@@ -59,5 +59,6 @@ export function pointInWords(at: PlacedPoint): string {
   const cost = `${withUnit(1e-9 * (point.p50_ns ?? 0), "s")} a tick, 99.9 % within ${withUnit(1e-9 * (point.p999_ns ?? NaN), "s")}`;
   const error = `error ${withUnit(point.error_n, "N")} (${plain(point.error_jnd, 2)} JND)`;
   const stable = point.stable ? "" : `; not stable: ${point.why_not_stable}`;
-  return `${point.law}, ${point.fidelity}: ${cost}; ${error}; ${point.parameters} parameters${point.on_front ? "; on the front" : ""}${stable}`;
+  const front = point.on_front ? "; on the front" : "";
+  return `${point.law}, ${point.fidelity}: ${cost}; ${error}; ${point.parameters} parameters${front}${stable}`;
 }

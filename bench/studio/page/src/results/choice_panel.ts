@@ -41,7 +41,8 @@ export class ChoicePanel {
       element(
         "p",
         { class: "quiet" },
-        "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes the first law within what a hand can feel, that is stable.",
+        "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes " +
+          "the first law within what a hand can feel, that is stable.",
       ),
     );
   }

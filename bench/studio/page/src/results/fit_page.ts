@@ -44,7 +44,8 @@ export class FitPage {
       element(
         "p",
         { class: "quiet" },
-        `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. JND ${withUnit(fit.jnd, "N")}; a straight line leaves ${withUnit(fit.line_rmse, "N")}.`,
+        `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
+          `JND ${withUnit(fit.jnd, "N")}; a straight line leaves ${withUnit(fit.line_rmse, "N")}.`,
       ),
       this.table.root,
       element(

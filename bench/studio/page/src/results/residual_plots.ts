@@ -65,7 +65,8 @@ export class ResidualPlots {
 
   show(of: Residuals): void {
     this.residuals = of;
-    this.words.textContent = `Error ${withUnit(of.rmse, of.force_unit)} (${plain(of.rmse / of.jnd_n, 2)} JND), largest ${withUnit(of.worst, of.force_unit)}, over ${of.rows} rows. JND ${withUnit(of.jnd_n, of.force_unit)}.`;
+    const [error, worst, jnd] = [of.rmse, of.worst, of.jnd_n].map((it) => withUnit(it, of.force_unit));
+    this.words.textContent = `Error ${error} (${plain(of.rmse / of.jnd_n, 2)} JND), largest ${worst}, over ${of.rows} rows. JND ${jnd}.`;
     const over_time: Limits = { x: ends(of.time_s), y: aboutZero(of, [...of.smallest, ...of.largest]) };
     this.time.show([], over_time);
     const over_depth: Limits = { x: ends(of.penetration), y: aboutZero(of, [...of.low, ...of.high]) };

@@ -142,7 +142,8 @@ export class TimeStack {
     const decimals = Math.min(6, Math.max(2, Math.ceil(3 - Math.log10(Math.max(span, 1e-9)))));
     const at = (t: number): string => `${(t - origin).toFixed(decimals).replace("-", "−")} s`;
     const seen = cursor !== null && cursor >= from && cursor <= to;
-    const text = `${at(from)} to ${at(to)} (${span < 1 ? withUnit(span, "s", 3) : `${plain(span, 5)} s`})${seen ? `, cursor at ${at(cursor)}` : ""}`;
+    const length = span < 1 ? withUnit(span, "s", 3) : `${plain(span, 5)} s`;
+    const text = `${at(from)} to ${at(to)} (${length})${seen ? `, cursor at ${at(cursor)}` : ""}`;
     if (this.reading.textContent !== text) this.reading.textContent = text;
   }
 

@@ -37,7 +37,8 @@ function form(context: Context, workspace: Workspace, laws: FittedLaw[], chosen:
     element(
       "p",
       { class: "quiet" },
-      "Every law is fitted in every size, and its tick is timed: a chart takes a minute. A choice tries every law that fits the axis, whatever is ticked.",
+      "Every law is fitted in every size, and its tick is timed: a chart takes a minute. " +
+        "A choice tries every law that fits the axis, whatever is ticked.",
     ),
     element(
       "div",

@@ -91,7 +91,8 @@ function edit(
     choice.value = String(axis); // until there is a curve of the other one
     change(Number(value));
   });
-  const cycles = `${curve.cycles} ${curve.cycles === 1 ? "cycle" : "cycles"}${curve.segmented_here ? ", found here: the recording is not segmented" : ""}`;
+  const found = curve.segmented_here ? ", found here: the recording is not segmented" : "";
+  const cycles = `${curve.cycles} ${curve.cycles === 1 ? "cycle" : "cycles"}${found}`;
   canvas.plot.svg.setAttribute("aria-describedby", "editor_keys");
   root.append(
     element(
