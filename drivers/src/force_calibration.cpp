@@ -15,6 +15,8 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
+#include "kerf/drivers/toml_text.h"
+
 namespace kerf::drivers {
 namespace {
 
@@ -191,14 +193,8 @@ class Reader {
 
 std::string row_text(const Eigen::Matrix<double, 1, 6>& row) {
   std::string text;
-  for (const double number : row) text += fmt::format("{}{}", text.empty() ? "[" : ", ", number);
+  for (const double number : row) text += (text.empty() ? "[" : ", ") + toml_number(number);
   return text + "]";
-}
-
-std::string in_quotes(const std::string& text) {
-  std::ostringstream quoted;
-  quoted << toml::value<std::string>(text);
-  return quoted.str();
 }
 
 }  // namespace
@@ -234,7 +230,7 @@ ForceCalibration read_force_calibration(const std::string& file) {
 }
 
 std::string to_toml(const ForceCalibration& calibration) {
-  std::string text = fmt::format("provenance = {}\n", in_quotes(calibration.provenance));
+  std::string text = fmt::format("provenance = {}\n", toml_text(calibration.provenance));
   if (calibration.serial) text += fmt::format("serial = {}\n", *calibration.serial);
   text += "units = { force = \"N\", torque = \"N·m\", signal = \"V\" }\nmatrix = [\n";
   for (Eigen::Index row = 0; row < 6; ++row)
@@ -243,9 +239,9 @@ std::string to_toml(const ForceCalibration& calibration) {
   if (calibration.mounts.empty()) return text;
   std::string mounts;
   for (const ForceMount& mount : calibration.mounts) {
-    const std::string lever = mount.lever_m > 0.0 ? fmt::format(", lever_m = {}", mount.lever_m) : "";
+    const std::string lever = mount.lever_m > 0.0 ? ", lever_m = " + toml_number(mount.lever_m) : "";
     mounts +=
-        fmt::format("{}{} = {{ component = \"{}{}\"{} }}", mounts.empty() ? "" : ", ", in_quotes(mount.axis),
+        fmt::format("{}{} = {{ component = \"{}{}\"{} }}", mounts.empty() ? "" : ", ", toml_text(mount.axis),
                     mount.sign < 0.0 ? "-" : "", wrench_names[mount.component], lever);
   }
   return text + fmt::format("axes = {{ {} }}\n", mounts);

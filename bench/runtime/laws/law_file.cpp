@@ -4,12 +4,12 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <kerf/drivers/toml_text.h>
 #include <kerf/version.h>
 
 #include "files/named_file.h"
@@ -19,6 +19,9 @@
 
 namespace kerf::bench {
 namespace {
+
+using drivers::toml_number;
+using drivers::toml_text;
 
 models::Options read_options(const Place& place, const toml::table& root) {
   models::Options options;
@@ -136,32 +139,26 @@ Measured read_parameters(const Place& place, const toml::table& root,
   return all;
 }
 
-std::string quoted(const std::string& text) {
-  std::ostringstream stream;
-  stream << toml::value<std::string>(text);
-  return stream.str();
-}
-
 std::string option_text(const models::OptionValue& value) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
-  return quoted(std::get<std::string>(value));
+  if (const double* number = std::get_if<double>(&value)) return toml_number(*number);
+  return toml_text(std::get<std::string>(value));
 }
 
 /// `value` or `[a, b, c]`
 std::string value_text(const std::vector<double>& all, std::size_t begin, std::size_t end, bool is_array) {
-  if (!is_array) return fmt::format("{}", all[begin]);
-  return fmt::format("[{}]", fmt::join(all.begin() + static_cast<std::ptrdiff_t>(begin),
-                                       all.begin() + static_cast<std::ptrdiff_t>(end), ", "));
+  std::string text;
+  for (std::size_t i = begin; i < end; ++i) text += (i == begin ? "" : ", ") + toml_number(all[i]);
+  return is_array ? "[" + text + "]" : text;
 }
 
 /// Where a scalar law goes; a spatial one brings its axes with it.
 std::string contact_text(const LawFile& file) {
   std::string text;
-  if (!file.axis.empty()) text += fmt::format("axis = {}\n", quoted(file.axis));
+  if (!file.axis.empty()) text += fmt::format("axis = {}\n", toml_text(file.axis));
   text += fmt::format("position_unit = \"{}\"\nforce_unit = \"{}\"\n", file.position_unit, file.force_unit);
   return text + fmt::format("\n[contact]\nposition = {{ value = {}, unit = \"{}\" }}\ndirection = \"{}\"\n",
-                            file.contact.position, file.position_unit,
+                            toml_number(file.contact.position), file.position_unit,
                             file.contact.direction > 0.0 ? "increasing" : "decreasing");
 }
 
@@ -249,8 +246,8 @@ std::string to_toml(const LawFile& file) {
     text += fmt::format(
         "\n[fit]\nrecording = {}\nsha256 = {}\nrmse = {{ value = {}, unit = \"N\" }}\ndate = {}\nsoftware = "
         "{}\n",
-        quoted(file.fit.recording_uuid), quoted(file.fit.recording_sha256), file.fit.rmse_n,
-        quoted(file.fit.date), quoted(file.fit.software));
+        toml_text(file.fit.recording_uuid), toml_text(file.fit.recording_sha256),
+        toml_number(file.fit.rmse_n), toml_text(file.fit.date), toml_text(file.fit.software));
   }
   return text;
 }
