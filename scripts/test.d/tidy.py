@@ -4,7 +4,8 @@
     scripts/test.d/tidy.py [--all] BUILD        BUILD: a folder that Clang has compiled, for example build/dev
 
 What has changed is said in changed_files.py: a changed source is read by itself; a changed header alone, or in a source that
-includes it. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
+includes it. Where everything is read, sources that clash in no name are read together, since most of the time goes into what
+they all include. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
 NOLINTs), the command, the checks and the version of clang-tidy.
 
 Exit status: 0 if nothing was found, 1 if something was, 2 for bad usage.
@@ -65,6 +66,42 @@ def source_that_includes(header: Path, units: list[Unit]) -> Unit | None:
     return None
 
 
+BROUGHT = re.compile(r"^using (?:\w+::)+(\w+);", re.MULTILINE)
+DEFINED = re.compile(r"""^(?:(?:inline|static|constexpr|const|\[\[nodiscard\]\]|template\ <[^>]*>)\ +)*
+    (?:(?:struct|class|enum(?:\ class)?|using)\ (\w+)\b(?!::)
+    |(?!\s|using|namespace|return|TEST|INSTANTIATE)[\w:<>,&*\[\]\ ]+?\b(\w+)(?:\(|\{|\ =|\[|;))""", re.MULTILINE | re.VERBOSE)
+MOST_TOGETHER, MOST_BYTES_TOGETHER = 10, 60_000
+
+
+def together(units: list[Unit], folder: Path) -> list[Unit]:
+    """Sources that are compiled alike and define no name twice, as sources that include them, written into `folder`."""
+    groups: list[tuple[set[str], set[str], list[Unit]]] = []
+    for unit in sorted(units, key=lambda unit: -unit.source.stat().st_size):
+        text = unit.source.read_text()
+        names = {name for match in DEFINED.findall(text) for name in match if name}
+        brought = set(BROUGHT.findall(text))
+        for all_names, all_brought, group in groups:
+            if (group[0].arguments == unit.arguments and len(group) < MOST_TOGETHER
+                    and sum(one.source.stat().st_size for one in [*group, unit]) < MOST_BYTES_TOGETHER
+                    and all_names.isdisjoint(names | brought) and all_brought.isdisjoint(names)):
+                all_names |= names
+                all_brought |= brought
+                group.append(unit)
+                break
+        else:
+            groups.append((names, brought, [unit]))
+    return [group[0] if len(group) == 1 else joint(group, folder) for _, _, group in groups]
+
+
+def joint(group: list[Unit], folder: Path) -> Unit:
+    sources = tuple(unit.source for unit in group)
+    text = "".join(f'#include "{source}"\n' for source in sources)
+    folder.mkdir(parents=True, exist_ok=True)
+    source = folder / f"{hashlib.sha256(text.encode()).hexdigest()[:16]}.cpp"
+    source.write_text(text)
+    return dataclasses.replace(group[0], source=source, includes=sources)
+
+
 def without_precompiled_header(arguments: tuple[str, ...]) -> list[str]:
     """Its text is included instead: it may not be built, and what it holds must count in the hash."""
     words = list(arguments)
@@ -97,7 +134,15 @@ class Cache:
 
 
 def findings(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
-    """What clang-tidy says, and whether that was known."""
+    """What clang-tidy says, and whether that was known. What clashes after all is read one by one."""
+    text, known = findings_at_once(tidy, unit, cache)
+    if unit.includes and "[clang-diagnostic-error]" in text:
+        each = [findings_at_once(tidy, by_itself(unit, source), cache) for source in unit.includes]
+        return "".join(text for text, _ in each), all(known for _, known in each)
+    return text, known
+
+
+def findings_at_once(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
     entry = cache.entry(unit)
     if entry and entry.exists():
         os.utime(entry)
@@ -140,6 +185,8 @@ def main(arguments: list[str]) -> int:
     changed = None if everything else changed_files(ROOT)
     if changed is None:
         units = [unit for unit in units if not unit.is_header_alone]
+        lone = [unit for unit in units if not unit.includes]
+        units = [unit for unit in units if unit.includes] + together(lone, ROOT / "build" / "tidy-together")
     else:
         units = units_of_changes(units, changed)
     cache = Cache(ROOT / "build" / "tidy-cache", tidy)

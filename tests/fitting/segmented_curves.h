@@ -12,14 +12,14 @@
 
 #include <kerf/fitting/segmented.h>
 
-namespace kerf::fitting::test {
+namespace kerf::test {
 
 /// Points of a curve that own themselves.
 struct CurvePoints {
   std::vector<double> x, y, weight;
   std::vector<std::uint8_t> branch;
 
-  [[nodiscard]] Curve curve() const {
+  [[nodiscard]] fitting::Curve curve() const {
     return {.position = x, .force = y, .weight = weight, .branch = branch};
   }
 };
@@ -147,4 +147,4 @@ inline double exhaustive_error(const CurvePoints& points, std::size_t cells, std
   return best;
 }
 
-}  // namespace kerf::fitting::test
+}  // namespace kerf::test

@@ -31,7 +31,7 @@ inline schema::Recording punch(const Tissue& tissue = {}) {
   const models::Law law = models::Law::make("kelvin", values, {});
   models::Law::State state = law.initial_state();
   std::mt19937 generator(tissue.seed);
-  std::normal_distribution<double> noise(0.0, tissue.noise_n);
+  std::normal_distribution<double> normal;  // its deviation must not be 0
   schema::Recording recording;
   recording.header = schema::new_header("kerf test");
   recording.axes = {{.name = "z", .position_unit = "m", .force_unit = "N"}};
@@ -43,7 +43,8 @@ inline schema::Recording punch(const Tissue& tissue = {}) {
     const models::Motion motion{.penetration = 0.5 * tissue.depth_m * (1.0 - std::cos(turns)),
                                 .velocity = 0.5 * tissue.depth_m * rate * std::sin(turns)};
     const bool bad = tissue.bad_every > 0 && i % tissue.bad_every == tissue.bad_every - 1;
-    const double force = std::min(law.step(state, motion, 1e-3).force + noise(generator), tissue.limit_n);
+    const double force =
+        std::min(law.step(state, motion, 1e-3).force + tissue.noise_n * normal(generator), tissue.limit_n);
     recording.time.push_back(time_s);
     recording.tick.push_back(i);
     recording.position.push_back(motion.penetration);

@@ -26,7 +26,7 @@ struct KnownCut {
 /// end; the force of the law with white noise, the position in encoder steps.
 inline schema::Recording cut_of(const models::Law& law, const KnownCut& cut = {}) {
   std::mt19937_64 random(cut.seed);
-  std::normal_distribution<double> noise(0.0, cut.noise_n);
+  std::normal_distribution<double> normal;  // its deviation must not be 0
   std::uniform_real_distribution<double> vary(0.8, 1.2);
   schema::Recording recording;
   recording.header = schema::new_header("kerf test");
@@ -46,7 +46,8 @@ inline schema::Recording cut_of(const models::Law& law, const KnownCut& cut = {}
     recording.position.push_back(seen);
     recording.velocity.push_back((seen - x_before) / period_s);
     x_before = seen;
-    recording.force_measured.push_back(law.step(state, models::Motion{x, v}, period_s).force + noise(random));
+    recording.force_measured.push_back(law.step(state, models::Motion{x, v}, period_s).force +
+                                       cut.noise_n * normal(random));
   };
   const auto stroke = [&](std::uint32_t cycle, schema::Phase phase, double from, double to,
                           double duration_s) {

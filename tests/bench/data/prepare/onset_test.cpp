@@ -21,13 +21,14 @@ using testing::ThrowsMessage;
 /// noise.
 ContactSignal pressed(double noise, unsigned seed, int rise_rows) {
   std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal(0.0, noise);
+  std::normal_distribution<double> normal;  // its deviation must not be 0
   ContactSignal signal{.components = {{}}, .name = "x"};
   for (int i = 0; i < 2000; ++i) {
     const double x = 1e-5 * std::min(i, 1000 + rise_rows);
     signal.time_s.push_back(1e-3 * i);
     signal.position.push_back(x);
-    signal.components[0].push_back(std::max(0.0, (x - 10.0037e-3) / (1e-5 * rise_rows)) + normal(random));
+    signal.components[0].push_back(std::max(0.0, (x - 10.0037e-3) / (1e-5 * rise_rows)) +
+                                   noise * normal(random));
   }
   return signal;
 }

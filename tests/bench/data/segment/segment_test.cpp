@@ -28,7 +28,7 @@ struct Cutting {
     schema::Recording recording;
     recording.axes = {{.name = "theta", .position_unit = "rad"}};
     std::mt19937_64 random(5);
-    std::normal_distribution<double> normal(0.0, noise);
+    std::normal_distribution<double> normal;  // its deviation must not be 0
     const double cycle_s = stroke_s + pause_s;
     const auto rows = static_cast<int>(std::lround((strokes * cycle_s + pause_s) * 1000.0));
     for (int row = 0; row < rows; ++row) {
@@ -40,8 +40,9 @@ struct Cutting {
       const double closed = closing ? share : 1.0 - share;
       const bool moving = phase > 0.0 && phase < 1.0;
       recording.time.push_back(1e-3 * row);
-      recording.position.push_back(direction * 0.5 * closed + normal(random) * 0.5);
-      recording.force_measured.push_back(closed + (closing && moving ? 1.0 : 0.0) + normal(random) * 2.0);
+      recording.position.push_back(direction * 0.5 * closed + noise * normal(random) * 0.5);
+      recording.force_measured.push_back(closed + (closing && moving ? 1.0 : 0.0) +
+                                         noise * normal(random) * 2.0);
     }
     return recording;
   }

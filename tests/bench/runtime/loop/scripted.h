@@ -12,7 +12,7 @@
 
 #include "loop/loop.h"
 
-namespace kerf::bench::test {
+namespace kerf::test {
 
 inline constexpr double period_s = 1e-3;
 inline constexpr std::int64_t period_ns = 1'000'000;
@@ -20,12 +20,12 @@ inline constexpr std::int64_t period_ns = 1'000'000;
 /// Time that stands still but for the delays that a test asks for, by stage and tick.
 struct Script {
   std::int64_t now_ns = 0;
-  std::array<std::map<std::uint64_t, std::int64_t>, stage_names.size()> delays_ns;
+  std::array<std::map<std::uint64_t, std::int64_t>, bench::stage_names.size()> delays_ns;
 
-  void delay(Stage stage, std::uint64_t tick, double periods) {
+  void delay(bench::Stage stage, std::uint64_t tick, double periods) {
     delays_ns[static_cast<std::size_t>(stage)][tick] = std::llround(periods * static_cast<double>(period_ns));
   }
-  void pass(Stage stage, std::uint64_t tick) noexcept {
+  void pass(bench::Stage stage, std::uint64_t tick) noexcept {
     const auto& delays = delays_ns[static_cast<std::size_t>(stage)];
     if (const auto found = delays.find(tick); found != delays.end()) now_ns += found->second;
   }
@@ -39,7 +39,7 @@ struct ScriptedClock {
   [[nodiscard]] std::int64_t cpu_ns() const noexcept { return script.now_ns; }
   void sleep_until(std::int64_t deadline_ns) const noexcept {
     script.now_ns = std::max(script.now_ns, deadline_ns);
-    script.pass(Stage::wake, static_cast<std::uint64_t>(deadline_ns / period_ns - 1));
+    script.pass(bench::Stage::wake, static_cast<std::uint64_t>(deadline_ns / period_ns - 1));
   }
 };
 
@@ -69,7 +69,7 @@ class ScriptedDevice final : public drivers::Device {
   [[nodiscard]] drivers::Status read(double now_s, drivers::Sample& sample) noexcept override {
     tick_ = static_cast<std::uint64_t>(std::llround(now_s / period_s));
     was_read_ = true;
-    script_.pass(Stage::read, tick_);
+    script_.pass(bench::Stage::read, tick_);
     return answer ? answer(tick_, sample) : drivers::Status::ok;
   }
   [[nodiscard]] drivers::Status write(const drivers::Axes& force) noexcept override {
@@ -77,7 +77,7 @@ class ScriptedDevice final : public drivers::Device {
     const bool first_of_tick = was_read_;
     was_read_ = false;
     if (!first_of_tick) return drivers::Status::ok;
-    script_.pass(Stage::write, tick_);
+    script_.pass(bench::Stage::write, tick_);
     const auto found = write_answers.find(tick_);
     return found != write_answers.end() ? found->second : drivers::Status::ok;
   }
@@ -98,7 +98,7 @@ struct ScriptedRecorder {
 
   void push(const schema::Row& row) noexcept {
     rows.push_back(row);
-    script.pass(Stage::record, row.tick);
+    script.pass(bench::Stage::record, row.tick);
   }
 };
 
@@ -111,16 +111,16 @@ struct Bench {
   std::vector<double> periods_s;  ///< that the computation was given
   std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
-  Heartbeat heartbeat;
+  bench::Heartbeat heartbeat;
 
-  LoopReport run(std::uint64_t ticks, double soft_start_s = 0.0) {
+  bench::LoopReport run(std::uint64_t ticks, double soft_start_s = 0.0) {
     ScriptedClock clock{script};
     auto compute = [this](const drivers::Sample&, double elapsed_s) noexcept {
-      script.pass(Stage::compute, device.tick());
+      script.pass(bench::Stage::compute, device.tick());
       periods_s.push_back(elapsed_s);
-      return Command{.force = {force ? force(device.tick()) : 0.0}};
+      return bench::Command{.force = {force ? force(device.tick()) : 0.0}};
     };
-    LoopReport report;
+    bench::LoopReport report;
     run_loop(clock, device, compute, recorder,
              {.ticks = ticks, .safety = {.period_s = period_s, .soft_start_s = soft_start_s}},
              {.stop = stop, .done = done, .heartbeat = heartbeat}, report);
@@ -133,4 +133,4 @@ struct Bench {
   }
 };
 
-}  // namespace kerf::bench::test
+}  // namespace kerf::test

@@ -26,10 +26,10 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
 TEST(TheFigures, AreThoseThatTheStudyHasSomethingFor) {
   const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   EXPECT_THAT(names_of(analysis_figures(table, analyse(table))), ::testing::ElementsAre("proportions"));
-  Study levels = testing::study_with(Design::constant);
+  Study levels = test::study_with(Design::constant);
   levels.scale.levels = {0.05, 0.1, 0.2};
   psychophysics::Random random(1);
-  testing::add_observer(levels, "P1", {.threshold = 0.1}, 20, random);
+  test::add_observer(levels, "P1", {.threshold = 0.1}, 20, random);
   levels.judgements.front().response_s = 1.0;
   EXPECT_THAT(names_of(analysis_figures(levels, analyse(levels, {.bootstrap = 0}))),
               ::testing::ElementsAre("psychometric", "response-times"));
@@ -48,9 +48,9 @@ TEST(TheProportions, HaveALineForEachGroup) {
 }
 
 TEST(ThePage, SaysWhatIsShownAndWhatIsNotAndEscapesNames) {
-  Study study = testing::study_with(Design::abx, testing::abx_task());
+  Study study = test::study_with(Design::abx, test::abx_task());
   study.name = "<liver> & skin";
-  testing::add_answers(study, "P1", "", 12, 4);
+  test::add_answers(study, "P1", "", 12, 4);
   const std::string page = analysis_page(analyse(study), {});
   EXPECT_THAT(page, HasSubstr("&lt;liver&gt; &amp; skin"));
   EXPECT_THAT(page, HasSubstr("What the answers show"));

@@ -16,11 +16,11 @@ using psychophysics::Axis;
 using psychophysics::Psychometric;
 using psychophysics::Random;
 using psychophysics::Shape;
-using testing::add_answers;
-using testing::add_observer;
+using test::add_answers;
+using test::add_observer;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::study_with;
+using test::study_with;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 

@@ -13,12 +13,12 @@
 namespace kerf::bench {
 namespace {
 
-using testing::abx_task;
-using testing::add_answers;
-using testing::add_wins;
+using test::abx_task;
+using test::add_answers;
+using test::add_wins;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::study_with;
+using test::study_with;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 

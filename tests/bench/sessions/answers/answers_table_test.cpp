@@ -91,9 +91,9 @@ TEST(KerfsOwnTable, HasSlotsAndPractice) {
 }
 
 TEST(AnswersThatAreWritten, AreReadAgain) {
-  Study study = testing::study_with(Design::abx, {.decision = psychophysics::Decision::abx_differencing});
+  Study study = test::study_with(Design::abx, {.decision = psychophysics::Decision::abx_differencing});
   study.name = R"(the "cold" one, again)";
-  testing::add_answers(study, "P1", R"(liver, "raw")", 7, 3);
+  test::add_answers(study, "P1", R"(liver, "raw")", 7, 3);
   study.judgements[0].practice = true;
   study.judgements[1].response_s = 1.25;
   const Study again = parse_answers(answers_csv(study), "answers.csv");

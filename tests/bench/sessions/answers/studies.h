@@ -10,18 +10,18 @@
 
 // Studies that tests make by hand.
 
-namespace kerf::bench::testing {
+namespace kerf::test {
 
 inline psychophysics::Task abx_task() { return {.decision = psychophysics::Decision::abx_independent}; }
 
-inline Study study_with(Design design, psychophysics::Task task = {}) {
-  Study study{.name = "made up", .design = design, .samples = {"standard", "comparison"}};
-  if (design != Design::preference) study.task = task;
+inline bench::Study study_with(bench::Design design, psychophysics::Task task = {}) {
+  bench::Study study{.name = "made up", .design = design, .samples = {"standard", "comparison"}};
+  if (design != bench::Design::preference) study.task = task;
   return study;
 }
 
 /// Adds right answers, then wrong ones; the right slot goes from one to the other.
-inline void add_answers(Study& study, const std::string& subject, const std::string& tissue, int right,
+inline void add_answers(bench::Study& study, const std::string& subject, const std::string& tissue, int right,
                         int wrong) {
   for (int i = 0; i < right + wrong; ++i) {
     const std::size_t slot = static_cast<std::size_t>(i) % 2;
@@ -34,7 +34,7 @@ inline void add_answers(Study& study, const std::string& subject, const std::str
 }
 
 /// Adds wins of the first of two samples over the second, and losses.
-inline void add_wins(Study& study, std::size_t first, std::size_t second, int wins, int losses) {
+inline void add_wins(bench::Study& study, std::size_t first, std::size_t second, int wins, int losses) {
   for (int i = 0; i < wins + losses; ++i) {
     const std::size_t slot = static_cast<std::size_t>(i) % 2;
     study.judgements.push_back(
@@ -43,8 +43,9 @@ inline void add_wins(Study& study, std::size_t first, std::size_t second, int wi
 }
 
 /// Answers of an observer at fixed levels.
-inline void add_observer(Study& study, const std::string& subject, const psychophysics::Psychometric& truth,
-                         int trials, psychophysics::Random& random) {
+inline void add_observer(bench::Study& study, const std::string& subject,
+                         const psychophysics::Psychometric& truth, int trials,
+                         psychophysics::Random& random) {
   for (const double level : study.scale.levels) {
     for (int i = 0; i < trials; ++i) {
       const std::size_t slot = static_cast<std::size_t>(i) % 2;
@@ -58,4 +59,4 @@ inline void add_observer(Study& study, const std::string& subject, const psychop
   }
 }
 
-}  // namespace kerf::bench::testing
+}  // namespace kerf::test

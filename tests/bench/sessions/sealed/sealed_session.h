@@ -15,13 +15,13 @@
 #include "support/full_disk.h"
 #include "support/program.h"
 
-namespace kerf::bench::test {
+namespace kerf::test {
 
 /// A key that is always the same, from a file that is gone.
-inline SealKey key_of(char letter, const schema::KeyDerivation& derivation = {}) {
-  const kerf::test::TemporaryFolder folder;
-  kerf::test::write_text(folder / "key", std::string(32, letter));
-  return SealKey::from_file(folder / "key", derivation);
+inline bench::SealKey key_of(char letter, const schema::KeyDerivation& derivation = {}) {
+  const TemporaryFolder folder;
+  write_text(folder / "key", std::string(32, letter));
+  return bench::SealKey::from_file(folder / "key", derivation);
 }
 
 /// What is public of a session, without entries.
@@ -43,10 +43,10 @@ inline std::vector<std::uint8_t> bytes_of(std::string_view text) { return {text.
 inline void ignore(std::size_t, const schema::SessionEntry&, std::span<const std::uint8_t>) {}
 
 /// The entries as "kind: text: content".
-inline std::vector<std::string> entries_in(const std::filesystem::path& file, const SealKey& key) {
+inline std::vector<std::string> entries_in(const std::filesystem::path& file, const bench::SealKey& key) {
   std::vector<std::string> lines;
-  const SealedEntries entries(
-      file, key, SealedEntries::For::read,
+  const bench::SealedEntries entries(
+      file, key, bench::SealedEntries::For::read,
       [&](std::size_t, const schema::SessionEntry& entry, std::span<const std::uint8_t> content) {
         lines.push_back(
             fmt::format("{}: {}: {}", entry.kind, entry.text, std::string(content.begin(), content.end())));
@@ -59,19 +59,21 @@ class SealedSession {
  public:
   explicit SealedSession(const schema::Session& session = public_part(), char letter = 'k')
       : key_(key_of(letter)) {
-    SealedEntries::create(file_, session, bytes_of("the order"), key_, false);
+    bench::SealedEntries::create(file_, session, bytes_of("the order"), key_, false);
   }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  [[nodiscard]] std::filesystem::path journal() const { return journal_of(file_); }
-  [[nodiscard]] const SealKey& key() const { return key_; }
-  [[nodiscard]] SealedEntries run() const { return {file_, key_, SealedEntries::For::run, ignore}; }
+  [[nodiscard]] std::filesystem::path journal() const { return bench::journal_of(file_); }
+  [[nodiscard]] const bench::SealKey& key() const { return key_; }
+  [[nodiscard]] bench::SealedEntries run() const {
+    return {file_, key_, bench::SealedEntries::For::run, ignore};
+  }
   [[nodiscard]] std::vector<std::string> entries() const { return entries_in(file_, key_); }
   [[nodiscard]] bool has_journal() const { return std::filesystem::exists(journal()); }
 
  private:
-  kerf::test::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "s.session.h5";
-  SealKey key_;
+  bench::SealKey key_;
 };
 
-}  // namespace kerf::bench::test
+}  // namespace kerf::test

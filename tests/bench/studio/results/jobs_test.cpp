@@ -77,9 +77,9 @@ TEST(StudioJobs, OneThatFailsSaysWhyAndTheNextRuns) {
 }
 
 TEST(StudioJobs, StopWhereTheyAreAndBeforeTheyBegin) {
-  Jobs jobs;
   std::atomic<bool> go{false};
   bool ran = false;
+  Jobs jobs;
   const std::size_t running = jobs.add(waiting_for(go));
   const std::size_t waiting = jobs.add(quick([&] { ran = true; }));
   while (state_of(jobs, running) != "running") std::this_thread::yield();
@@ -109,8 +109,8 @@ TEST(StudioJobs, EndWithTheStudio) {
 }
 
 TEST(StudioJobs, NoMoreThanTwentyWait) {
-  Jobs jobs;
   std::atomic<bool> go{false};
+  Jobs jobs;
   const std::size_t running = jobs.add(waiting_for(go));
   while (state_of(jobs, running) != "running") std::this_thread::yield();
   for (int i = 0; i < 20; ++i) (void)jobs.add(quick([] {}));
