@@ -4,9 +4,9 @@
 
 #include <kerf/schema/regression.h>
 
-#include "files.h"
-#include "h5.h"
-#include "regression_layout.h"
+#include "hdf5/files.h"
+#include "hdf5/h5.h"
+#include "layout/regression_layout.h"
 
 namespace kerf::schema {
 namespace {

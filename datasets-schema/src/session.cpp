@@ -6,8 +6,8 @@
 
 #include <kerf/schema/session.h>
 
-#include "files.h"
-#include "session_layout.h"
+#include "hdf5/files.h"
+#include "layout/session_layout.h"
 
 namespace kerf::schema {
 namespace {

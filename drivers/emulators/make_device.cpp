@@ -3,10 +3,10 @@
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/uri.h>
 
-#include "falcon.h"
-#include "labjack_u6.h"
-#include "spacemouse.h"
-#include "woodenhaptics.h"
+#include "devices/falcon.h"
+#include "devices/labjack_u6.h"
+#include "devices/spacemouse.h"
+#include "devices/woodenhaptics.h"
 
 namespace kerf::emulators {
 

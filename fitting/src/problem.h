@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "law_kernel.h"
+#include "kernels/law_kernel.h"
 
 namespace kerf::fitting {
 

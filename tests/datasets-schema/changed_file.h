@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "datasets-schema/sample_recording.h"
-#include "h5.h"
+#include "datasets-schema/recording/sample_recording.h"
+#include "hdf5/h5.h"
 #include "support/program.h"
 
 namespace kerf::test {

@@ -11,8 +11,8 @@
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/changed_file.h"
-#include "datasets-schema/live_rows.h"
-#include "datasets-schema/read_by_column.h"
+#include "datasets-schema/recording/live_rows.h"
+#include "datasets-schema/recording/read_by_column.h"
 
 namespace kerf::schema {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <kerf/schema/recording_writer.h>
 
-#include "datasets-schema/sample_recording.h"
+#include "datasets-schema/recording/sample_recording.h"
 #include "support/program.h"
 
 namespace kerf::schema {

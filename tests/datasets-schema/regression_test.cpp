@@ -8,7 +8,7 @@
 #include <kerf/schema/regression.h>
 #include <kerf/schema/validate.h>
 
-#include "h5.h"
+#include "hdf5/h5.h"
 #include "sample_recording.h"
 #include "support/program.h"
 

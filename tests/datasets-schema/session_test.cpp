@@ -9,7 +9,7 @@
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/changed_file.h"
-#include "h5.h"
+#include "hdf5/h5.h"
 #include "sample_recording.h"
 #include "support/program.h"
 

@@ -1,7 +1,7 @@
 #include "chart/limit_cycle_check.h"
 
 #include "laws/placement.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {

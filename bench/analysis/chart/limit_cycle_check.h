@@ -23,8 +23,8 @@ struct DeviceInHand {
 /// The device and the hand of a scene, which presses as deep as the scene's script goes.
 [[nodiscard]] DeviceInHand held_in(const Scene& scene, const ScriptedPath& path, double rate_hz);
 
-/// Says of a law at a rate why it would have a limit cycle in that hand (stability/in_hand.h); nothing if it
-/// would not, or if it cannot be judged.
+/// Says of a law at a rate why it would have a limit cycle in that hand (stability/device/in_hand.h); nothing
+/// if it would not, or if it cannot be judged.
 [[nodiscard]] std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
     const DeviceInHand& held);
 

@@ -11,7 +11,7 @@
 #include "report/charts.h"
 #include "run/check.h"
 #include "run/run.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <kerf/models/law.h>
 
-#include "stability/sampled_loop.h"
+#include "stability/device/sampled_loop.h"
 
 namespace kerf::bench {
 

@@ -8,7 +8,7 @@
 
 #include "stability/bisection.h"
 #include "stability/strokes.h"
-#include "stability/wall_theory.h"
+#include "stability/wall/wall_theory.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <kerf/fitting/jnd.h>
 
+#include "stability/device/sampled_device.h"
 #include "stability/law_force.h"
-#include "stability/sampled_device.h"
 #include "stability/strokes.h"
 
 namespace kerf::bench {

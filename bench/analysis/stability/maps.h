@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stability/law_limits.h"
-#include "stability/wall_simulation.h"
+#include "stability/wall/wall_simulation.h"
 
 namespace kerf::bench {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "stability/sampled_loop.h"
+#include "stability/device/sampled_loop.h"
 
 namespace kerf::bench {
 

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "laws/placement.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "cases/devices.h"
 #include "cases/trace.h"
-#include "stability/passivity_controlled.h"
-#include "stability/wall_force.h"
+#include "stability/device/passivity_controlled.h"
+#include "stability/wall/wall_force.h"
 
 namespace kerf::bench {
 

@@ -5,7 +5,7 @@
 #include "cases/devices.h"
 #include "cases/each_case.h"
 #include "cases/trace.h"
-#include "stability/wall_force.h"
+#include "stability/wall/wall_force.h"
 
 namespace kerf::bench::cases {
 namespace {

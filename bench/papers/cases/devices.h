@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stability/sampled_device.h"
+#include "stability/device/sampled_device.h"
 
 namespace kerf::bench {
 

@@ -8,8 +8,8 @@
 #include "cases/each_case.h"
 #include "cases/trace.h"
 #include "stability/bisection.h"
-#include "stability/in_hand.h"
-#include "stability/wall_force.h"
+#include "stability/device/in_hand.h"
+#include "stability/wall/wall_force.h"
 
 namespace kerf::bench::cases {
 namespace {

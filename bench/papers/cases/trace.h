@@ -9,7 +9,7 @@
 #include <kerf/fitting/jnd.h>
 
 #include "plot/plot.h"
-#include "stability/sampled_loop.h"
+#include "stability/device/sampled_loop.h"
 
 namespace kerf::bench {
 

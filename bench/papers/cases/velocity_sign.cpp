@@ -10,7 +10,7 @@
 #include "cases/trace.h"
 #include "stability/bisection.h"
 #include "stability/law_force.h"
-#include "stability/wall_theory.h"
+#include "stability/wall/wall_theory.h"
 
 namespace kerf::bench::cases {
 namespace {

@@ -14,7 +14,7 @@
 #include "laws/placement.h"
 #include "protocol/samples.h"
 #include "run/run.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {

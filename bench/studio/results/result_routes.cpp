@@ -16,7 +16,7 @@
 #include "results/law_view.h"
 #include "results/residuals.h"
 #include "results/result_jobs.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "h5.h"
+#include "hdf5/h5.h"
 
 namespace kerf::fuzz {
 namespace {

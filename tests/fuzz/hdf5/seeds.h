@@ -10,7 +10,7 @@
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
 
-#include "datasets-schema/sample_recording.h"
+#include "datasets-schema/recording/sample_recording.h"
 #include "files/whole_file.h"
 #include "fuzz/scratch_folder.h"
 

@@ -21,7 +21,7 @@
 #include "cases/controlled_wall.h"
 #include "cases/document.h"
 #include "files/whole_file.h"
-#include "stability/in_hand.h"
+#include "stability/device/in_hand.h"
 #include "stability/law_force.h"
 
 namespace kerf::bench {

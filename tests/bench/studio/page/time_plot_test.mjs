@@ -16,11 +16,11 @@ const { build } = createRequire(join(page, "package.json"))("esbuild");
 const modules = [
   "requests",
   "ui/numbers",
-  "ui/time_limits",
-  "ui/time_line",
-  "ui/time_range",
-  "ui/stretch_loader",
-  "views/live_columns",
+  "ui/time/time_limits",
+  "ui/time/time_line",
+  "ui/time/time_range",
+  "ui/time/stretch_loader",
+  "scope/live_columns",
 ];
 const bundle = await build({
   stdin: { contents: modules.map((it) => `export * from "./src/${it}";`).join("\n"), resolveDir: page, loader: "ts" },

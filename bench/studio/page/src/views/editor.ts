@@ -2,18 +2,18 @@ import "./editor.css";
 
 import type { EditorCurve, Knots, Recording, Workspace } from "../api";
 import { Canvas } from "../editor/canvas";
-import { chooser } from "../editor/chooser";
+import { chooser } from "../editor/panels/chooser";
 import { Drawing } from "../editor/drawing";
-import { FeelPanel } from "../editor/feel_panel";
-import { Figures } from "../editor/figures";
+import { FeelPanel } from "../editor/panels/feel_panel";
+import { Figures } from "../editor/panels/figures";
 import { History } from "../editor/history";
 import { isUndo, takeKeys } from "../editor/keys";
-import { KnotTable } from "../editor/knot_table";
+import { KnotTable } from "../editor/panels/knot_table";
 import { startKnots } from "../editor/knots";
 import { takePointer } from "../editor/pointer";
-import { savePanel } from "../editor/save_panel";
-import { startFrom } from "../editor/start_from";
-import { optima, toolbar } from "../editor/tools";
+import { savePanel } from "../editor/panels/save_panel";
+import { startFrom } from "../editor/panels/start_from";
+import { optima, toolbar } from "../editor/panels/tools";
 import { element, labelled, select } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 

@@ -3,8 +3,8 @@ import "./recordings.css";
 import type { Recording, Workspace } from "../api";
 import { element } from "../ui/dom";
 import type { Context, View } from "../ui/view";
-import { recordingList } from "./recording_list";
-import { recordingPage } from "./recording_page";
+import { recordingList } from "../recordings/recording_list";
+import { recordingPage } from "../recordings/recording_page";
 
 export const recordings: View = {
   name: "recordings",

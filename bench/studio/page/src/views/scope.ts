@@ -5,11 +5,11 @@ import { button, element, labelled, select } from "../ui/dom";
 import { singleKeysOn } from "../ui/help";
 import { isTyping } from "../ui/keys";
 import type { Context, View } from "../ui/view";
-import { LastEvents, LiveStream } from "./live_stream";
-import { ScopeControls } from "./scope_controls";
-import { ScopeFigures } from "./scope_figures";
-import { ScopePicture } from "./scope_picture";
-import { axisOf } from "./trace_groups";
+import { LastEvents, LiveStream } from "../scope/live_stream";
+import { ScopeControls } from "../scope/scope_controls";
+import { ScopeFigures } from "../scope/scope_figures";
+import { ScopePicture } from "../scope/scope_picture";
+import { axisOf } from "../recordings/trace_groups";
 
 const channels = "(channels)"; // in place of an axis
 const windows_s = [1, 2, 5, 10, 30, 60];

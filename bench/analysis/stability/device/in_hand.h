@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <kerf/drivers/device.h>
+
+#include "laws/law_file.h"
+#include "stability/device/sampled_device.h"
+
+namespace kerf::bench {
+
+/// A stylus held in a light and in a firm grip, at the ends of the range of Fu and Cavusoglu
+/// [FuCavusoglu2012], and an arm on a force-controlled device [ScientificReports18004], fig. 3.
+inline constexpr HandImpedance light_grip{
+    .mass_kg = 0.1, .damping_n_s_per_m = 2.0, .stiffness_n_per_m = 200.0};
+inline constexpr HandImpedance firm_grip{
+    .mass_kg = 0.2, .damping_n_s_per_m = 8.0, .stiffness_n_per_m = 600.0};
+inline constexpr HandImpedance arm{.mass_kg = 0.554, .damping_n_s_per_m = 6.45, .stiffness_n_per_m = 135.0};
+
+/// "none", "light", "firm" or "arm". @throws std::invalid_argument for any other.
+[[nodiscard]] HandImpedance grip_named(std::string_view name);
+
+/// Why a law would have a limit cycle in a hand on a device, in words with the ripple of its force; nothing
+/// if it would not. The hand presses to a tenth, a half and all of the deepest penetration [m or rad] and
+/// holds (press()). Laws that act on several axes, axes whose mass and friction nobody knows, and depths of
+/// nothing are not judged: nothing.
+[[nodiscard]] std::optional<std::string> limit_cycle_in_hand(const LawFile& law,
+                                                             const drivers::DeviceInfo& device,
+                                                             double rate_hz, const HandImpedance& hand,
+                                                             double deepest);
+
+}  // namespace kerf::bench

@@ -1,0 +1,120 @@
+#include "stability/wall/wall_simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "stability/bisection.h"
+#include "stability/wall/wall_force.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr double lost_m = 10.0;            // farther than that nothing comes back
+constexpr double limit_cycle_decay = 0.5;  // of the energy, from the second to the last quarter
+constexpr double at_rest_share = 1e-9;     // of the first displacement
+constexpr double periods_of_soft_walls = 20.0;
+
+/// Sums over a stretch of time, for the energy about the mean.
+struct Stretch {
+  double position = 0.0, position_squared = 0.0, speed_squared = 0.0, force = 0.0, force_squared = 0.0;
+  std::size_t ticks = 0;
+
+  void add(const AxisMotion& motion, double force_n) noexcept {
+    force += force_n;
+    force_squared += force_n * force_n;
+    position += motion.position_m;
+    position_squared += motion.position_m * motion.position_m;
+    speed_squared += motion.speed_m_s * motion.speed_m_s;
+    ++ticks;
+  }
+  [[nodiscard]] double energy(double mass, double stiffness) const noexcept {
+    return mass * speed_squared / static_cast<double>(ticks) +
+           stiffness * variance(position, position_squared);
+  }
+  [[nodiscard]] double ripple_n() const noexcept { return std::sqrt(variance(force, force_squared)); }
+
+ private:
+  [[nodiscard]] double variance(double sum, double squares) const noexcept {
+    const auto count = static_cast<double>(ticks);
+    return std::max(0.0, squares / count - sum * sum / (count * count));
+  }
+};
+
+/// One wall's trial while it runs.
+class Trial {
+ public:
+  Trial(const SampledDevice& device, const std::shared_ptr<const DeviceMotion>& moves, const Wall& wall,
+        const WallTrial& trial)
+      : trial_(trial),
+        start_m_(trial.start_m + (trial.push_n > 0.0 ? trial.push_n / wall.stiffness_n_per_m : 0.0)),
+        loop_(device, moves, WallForce{wall, trial.push_n > 0.0}, {.position_m = start_m_}) {}
+
+  /// A tick of a quarter of the time; of no effect once the device is lost.
+  void step(int quarter) noexcept {
+    if (lost_) return;
+    loop_.step(trial_.push_n);
+    if (quarter == 1) second_.add(loop_.motion(), loop_.held_n());
+    if (quarter == 3) last_.add(loop_.motion(), loop_.held_n());
+    lost_ = !(std::abs(loop_.motion().position_m) < lost_m + start_m_);
+  }
+  [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
+    if (lost_) return false;
+    const bool exact = device.is_linear() && trial_.push_n == 0.0;
+    if (!exact && last_.ripple_n() <= trial_.felt_n) return true;
+    const double mass = device.moving_mass_kg();
+    const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
+    const double energy = last_.energy(mass, stiffness);
+    if (energy <= stiffness * std::pow(at_rest_share * trial_.start_m, 2)) return true;
+    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(mass, stiffness);
+  }
+
+ private:
+  WallTrial trial_;
+  double start_m_;
+  SampledLoop<WallForce> loop_;
+  Stretch second_;
+  Stretch last_;
+  bool lost_ = false;
+};
+
+}  // namespace
+
+WallSimulation::WallSimulation(const SampledDevice& device)
+    : device_(device), moves_(std::make_shared<const DeviceMotion>(device)) {}
+
+bool WallSimulation::comes_to_rest(const Wall& wall, const WallTrial& trial) const {
+  return come_to_rest(std::span(&wall, 1), trial).front();
+}
+
+std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, const WallTrial& trial) const {
+  constexpr std::size_t together = 8;  // more no longer fit beside each other
+  const auto quarter =
+      std::max<std::size_t>(static_cast<std::size_t>(0.25 * trial.seconds / device_.period_s), 4);
+  std::vector<bool> rest;
+  for (std::size_t begin = 0; begin < walls.size(); begin += together) {
+    std::vector<Trial> trials;
+    for (const Wall& wall : walls.subspan(begin, std::min(together, walls.size() - begin))) {
+      trials.emplace_back(device_, moves_, wall, trial);
+    }
+    for (int part = 0; part < 4; ++part) {
+      for (std::size_t tick = 0; tick < quarter; ++tick) {
+        for (Trial& one : trials) one.step(part);
+      }
+    }
+    for (Trial& one : trials) rest.push_back(one.came_to_rest(device_));
+  }
+  return rest;
+}
+
+double WallSimulation::boundary(double wall_damping, double softest, double stiffest, const WallTrial& trial,
+                                double share) const {
+  return first_change({.lower = softest, .upper = stiffest, .share = share}, [&](double stiffness) {
+    const double rate = std::sqrt((stiffness + device_.hand.stiffness_n_per_m) / device_.moving_mass_kg());
+    WallTrial longer = trial;
+    longer.seconds = std::max(trial.seconds, periods_of_soft_walls * 2.0 * std::numbers::pi / rate);
+    return comes_to_rest({.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}, longer);
+  });
+}
+
+}  // namespace kerf::bench

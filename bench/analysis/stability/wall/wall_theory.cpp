@@ -1,0 +1,113 @@
+#include "stability/wall/wall_theory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+
+#include "stability/bisection.h"
+#include "stability/device/sampled_loop.h"
+
+namespace kerf::bench {
+
+double colgate_schenkel(const SampledDevice& device, double wall_damping) {
+  return std::max(0.0, 2.0 * (device.viscous_n_s_per_m - std::abs(wall_damping)) / device.period_s);
+}
+
+double abbott_okamura(const SampledDevice& device) {
+  const double by_damping = 2.0 * device.viscous_n_s_per_m / device.period_s;
+  if (device.encoder_step_m == 0.0) return by_damping;
+  return std::min(by_damping, 2.0 * device.coulomb_n / device.encoder_step_m);
+}
+
+namespace {
+
+/// The two parts of the theorem at a frequency: what a unit of K and of B need of the device's friction.
+struct Needs {
+  double of_stiffness;
+  double of_damping;
+};
+
+Needs needs_at(const SampledDevice& device, double angle) {
+  using Complex = std::complex<double>;
+  const double gain = device.velocity_gain();
+  const double delay = std::ceil(device.delay_s / device.period_s - 1e-9);
+  const Complex back = std::polar(1.0, -angle);
+  const Complex held =
+      0.5 * device.period_s / (1.0 - std::cos(angle)) * (1.0 - back) * std::polar(1.0, -angle * delay);
+  const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
+  return {held.real(), (held * damper).real()};
+}
+
+constexpr int frequencies = 2000;
+double angle_of(int i) { return std::numbers::pi * i / frequencies; }  // w T
+
+}  // namespace
+
+double passive_stiffness(const SampledDevice& device, double wall_damping) {
+  double stiffest = std::numeric_limits<double>::infinity();
+  for (int i = 1; i <= frequencies; ++i) {
+    const Needs needs = needs_at(device, angle_of(i));
+    const double left = device.viscous_n_s_per_m - wall_damping * needs.of_damping;
+    if (left <= 0.0) return 0.0;
+    if (needs.of_stiffness > 0.0) stiffest = std::min(stiffest, left / needs.of_stiffness);
+  }
+  return stiffest;
+}
+
+double worst_of_damping(const SampledDevice& device) {
+  double most = 0.0;
+  for (int i = 1; i <= frequencies; ++i) most = std::max(most, needs_at(device, angle_of(i)).of_damping);
+  return most;
+}
+
+double spectral_radius(const SampledDevice& device, const Wall& wall) {
+  const SplitDelay delay(device);
+  const FreeMotion::Transition before = FreeMotion(device, delay.share * device.period_s).transition();
+  const FreeMotion::Transition after = FreeMotion(device, (1.0 - delay.share) * device.period_s).transition();
+  const double gain = device.velocity_gain();
+
+  // x, v, last reading, filtered velocity, what the motor holds, commands on their way from the newest on.
+  enum Place : Eigen::Index { place, speed, reading, velocity, held, first_command };
+  const auto commands = static_cast<Eigen::Index>(delay.ticks);
+  const Eigen::Index size = first_command + commands;
+  using Row = Eigen::RowVectorXd;
+  const auto unit = [&](Eigen::Index at) -> Row { return Row::Unit(size, at); };
+
+  const Row filtered = (1.0 - gain) * unit(velocity) + gain / device.period_s * (unit(place) - unit(reading));
+  const Row command = -wall.stiffness_n_per_m * unit(place) - wall.damping_n_s_per_m * filtered;
+  const Row arrived = commands == 0 ? command : unit(first_command + commands - 1);
+  Row x = unit(place);
+  Row v = unit(speed);
+  const auto move = [&](const FreeMotion::Transition& by, const Row& force) {
+    const Row x_then = by.xx * x + by.xv * v + by.xf * force;
+    v = Row(by.vx * x + by.vv * v + by.vf * force);
+    x = x_then;
+  };
+  if (delay.share > 0.0) move(before, unit(held));
+  move(after, arrived);
+
+  Eigen::MatrixXd system(size, size);
+  system.row(place) = x;
+  system.row(speed) = v;
+  system.row(reading) = unit(place);
+  system.row(velocity) = filtered;
+  system.row(held) = arrived;
+  for (Eigen::Index i = 0; i < commands; ++i) {
+    system.row(first_command + i) = i == 0 ? command : unit(first_command + i - 1);
+  }
+  return Eigen::EigenSolver<Eigen::MatrixXd>(system, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double eigenvalue_boundary(const SampledDevice& device, double wall_damping, double softest,
+                           double stiffest) {
+  SampledDevice linear = device;
+  linear.coulomb_n = 0.0;
+  return first_change({.lower = softest, .upper = stiffest, .share = 1e-6}, [&](double stiffness) {
+    return spectral_radius(linear, {.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}) < 1.0;
+  });
+}
+
+}  // namespace kerf::bench

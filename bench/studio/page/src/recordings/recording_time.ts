@@ -1,0 +1,155 @@
+import type { Api, CycleSpan, Recording, Trace } from "../api";
+import { element } from "../ui/dom";
+import { dashes } from "../ui/palette";
+import { StretchLoader } from "../ui/time/stretch_loader";
+import type { Span, TimeMarks } from "../ui/time/time_marks";
+import type { TimeLine } from "../ui/time/time_line";
+import { TimeStack, type PlotOrder } from "../ui/time/time_stack";
+import { emptyLine, inWords, plotsOf, takeView } from "./trace_groups";
+
+/** A recording that is drawn: the page's own first, then those laid over it. */
+export interface Drawn {
+  recording: Recording;
+  name: string;
+  shift_s: number; // added to its times, so that it lies over the first
+}
+
+interface Source {
+  drawn: Drawn;
+  traces: number[]; // indices in the recording, as many as lines
+  lines: TimeLine[];
+  loader: StretchLoader;
+}
+
+/** Recordings over time: any stretch at the screen's resolution, with cycles, gaps and events of the first. */
+export class RecordingTime {
+  readonly root: HTMLElement;
+  readonly stack: TimeStack;
+  private sources: Source[] = [];
+  private first: Recording | null = null;
+
+  constructor(
+    private readonly api: Api,
+    private readonly complain: (error: unknown) => void,
+  ) {
+    this.stack = new TimeStack({ name: "The recording over time", timeLabel: "time [s]", changed: () => this.want() });
+    this.root = element("div", { class: "recording_time" }, this.stack.root, legend());
+  }
+
+  end(): void {
+    for (const it of this.sources) it.loader.end();
+    this.stack.end();
+  }
+
+  /** Draws traces of these names; a recording that has none of them is left out. */
+  show(drawn: readonly Drawn[], names: ReadonlySet<string>): void {
+    const own = drawn[0]?.recording;
+    if (!own) return;
+    for (const it of this.sources) it.loader.end();
+    const traces = own.traces.filter((it) => names.has(it.name));
+    this.sources = drawn.map((it, k) => this.source(it, traces, drawn.length > 1 ? k : 0));
+    this.stack.build(drawn.length > 1 ? this.plotsForEach(traces) : plotsOf(traces, this.sources[0]?.lines ?? []));
+    this.bound(drawn, own);
+    this.want();
+  }
+
+  showAt(from_s: number, to_s: number): void {
+    this.stack.range.show(from_s, to_s);
+  }
+
+  private source(drawn: Drawn, traces: readonly Trace[], look: number): Source {
+    const { recording, shift_s } = drawn;
+    const indices = traces.map((trace) =>
+      recording.traces.findIndex((it) => it.name === trace.name && it.unit === trace.unit),
+    );
+    const lines = traces.map((trace) => ({ ...emptyLine(trace, look), shift_s }));
+    const asked = indices.filter((it) => it >= 0);
+    const fetch = (from: number, to: number, columns: number, signal: AbortSignal) =>
+      this.api.view(
+        "/api/recording/view",
+        { id: recording.id, traces: asked.join(","), from: from - shift_s, to: to - shift_s, columns },
+        signal,
+      );
+    const loader = new StretchLoader(
+      fetch,
+      (view) => {
+        indices.forEach((index, k) => {
+          if (index >= 0) takeView(lines[k] as TimeLine, view, asked.indexOf(index), recording.period_s);
+        });
+        this.stack.draw();
+      },
+      this.complain,
+    );
+    return { drawn, traces: asked, lines, loader };
+  }
+
+  /** With several recordings each trace has a plot, and each recording its colour and dash. */
+  private plotsForEach(traces: readonly Trace[]): PlotOrder[] {
+    return traces.map((trace, k) => ({
+      title: inWords(trace.name),
+      titled: true,
+      lines: this.sources
+        .filter((it) =>
+          it.drawn.recording.traces.some((other) => other.name === trace.name && other.unit === trace.unit),
+        )
+        .map((it) => {
+          const line = it.lines[k]!;
+          line.name = shortName(it.drawn.name);
+          return line;
+        }),
+    }));
+  }
+
+  private bound(drawn: readonly Drawn[], own: Recording): void {
+    const from = Math.min(...drawn.map((it) => it.recording.from_s + it.shift_s));
+    const to = Math.max(...drawn.map((it) => it.recording.from_s + it.shift_s + it.recording.seconds));
+    const { range } = this.stack;
+    range.bound(from, to, 10 * own.period_s);
+    if (own !== this.first) {
+      this.first = own;
+      range.whole();
+    } else range.show(range.from, range.to);
+    this.stack.marks = marksOf(own);
+  }
+
+  private want(): void {
+    for (const it of this.sources) if (it.traces.length > 0) it.loader.want(this.stack.range, this.stack.columns);
+  }
+}
+
+const words: Record<CycleSpan["phase"], string> = {
+  closing: "closing",
+  opening: "opening",
+  open_to_close: "",
+  close_to_open: "",
+};
+
+function marksOf(recording: Recording): TimeMarks {
+  const spans = (recording.cycles?.spans ?? []).map((it): Span => {
+    const shade = it.phase === "closing" ? "blue" : it.phase === "opening" ? "orange" : "plain";
+    return { from_s: it.from_s, to_s: it.to_s, shade, text: words[it.phase] && `${it.cycle} ${words[it.phase]}` };
+  });
+  return { spans, gaps: recording.gaps, events: recording.events };
+}
+
+function legend(): HTMLElement {
+  const item = (name: string, text: string): HTMLElement =>
+    element("li", {}, element("span", { class: `key ${name}`, "aria-hidden": "true" }), text);
+  return element(
+    "ul",
+    { class: "mark_legend", "aria-label": "What the marks mean" },
+    item("closing", "closing"),
+    item("opening", "opening"),
+    item("gap", "no rows"),
+    item("event", "event"),
+  );
+}
+
+/** How many recordings can be told apart. */
+export const atMostDrawn = Math.min(5, dashes.length);
+
+/** A file's name without its folder and ending, shortened in the middle. */
+function shortName(name: string): string {
+  const base = name.replace(/^.*\//, "").replace(/\.h5(\.partial)?$/, "");
+  return base.length <= 16 ? base : `${base.slice(0, 7)}…${base.slice(-8)}`;
+}

@@ -1,0 +1,147 @@
+#include "hdf5/files.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace kerf::schema {
+namespace {
+
+[[noreturn]] void throw_errno(const std::filesystem::path& file, const std::string& doing) {
+  throw std::system_error(errno, std::generic_category(), file.string() + ": cannot " + doing);
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(const std::filesystem::path& file, int access = O_RDONLY)
+      : number_(::open(file.c_str(), access | O_CLOEXEC)) {
+    if (number_ < 0) throw_errno(file, "open");
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { ::close(number_); }
+  [[nodiscard]] int number() const noexcept { return number_; }
+
+ private:
+  int number_;
+};
+
+struct flock whole_file_lock() noexcept {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(std::filesystem::path target) : target_(std::move(target)), path_(target_) {
+  path_ += ".writing-" + std::to_string(::getpid());
+  std::error_code ignored;
+  std::filesystem::remove(path_, ignored);
+}
+
+TemporaryFile::~TemporaryFile() {
+  std::error_code ignored;
+  if (!path_.empty()) std::filesystem::remove(path_, ignored);
+}
+
+void TemporaryFile::commit() {
+  // What replaces a recording must not be lost with the power; a new file can be made again.
+  if (std::filesystem::exists(target_)) synchronise(path_);
+  rename_file(path_, target_);
+  path_.clear();
+}
+
+WriteMark::WriteMark(const std::filesystem::path& file)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
+  // A lock of the open file description: unlike those of a process it survives HDF5 closing the file.
+  struct flock lock = whole_file_lock();
+  if (descriptor_ >= 0) static_cast<void>(::fcntl(descriptor_, F_OFD_SETLK, &lock));
+}
+
+WriteMark::~WriteMark() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool is_marked(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  struct flock lock = whole_file_lock();
+  const bool marked = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  ::close(descriptor);
+  return marked;
+}
+
+std::filesystem::path partial_name(std::filesystem::path file) {
+  file += ".partial";
+  return file;
+}
+
+void reserve(const std::filesystem::path& file, std::size_t bytes) {
+  const Descriptor descriptor(file, O_WRONLY);
+  const auto end = static_cast<off_t>(std::filesystem::file_size(file));
+  errno = ::posix_fallocate(descriptor.number(), end, static_cast<off_t>(bytes));
+  if (errno != 0) throw_errno(file, "write");
+}
+
+void synchronise(const std::filesystem::path& file) {
+  const Descriptor descriptor(file);
+  if (::fsync(descriptor.number()) != 0) throw_errno(file, "write to the disk");
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  std::filesystem::rename(from, to, error);
+  if (error) throw std::system_error(error, to.string() + ": cannot give the file its name");
+}
+
+bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno == EEXIST) return false;
+  if (errno != EINVAL) throw_errno(to, "give the file its name");
+  if (std::filesystem::exists(to)) return false;  // a file system that cannot do both at once
+  rename_file(from, to);
+  return true;
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return text;
+}
+
+std::system_error write_error(const std::filesystem::path& file, const h5::Error& error) {
+  if (error.system_error != 0) {
+    return std::system_error(error.system_error, std::generic_category(), file.string() + ": cannot write");
+  }
+  return std::system_error(EIO, std::generic_category(),
+                           file.string() + ": cannot write (" + error.what() + ')');
+}
+
+void require_readable(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) {
+    const auto partial = partial_name(file);
+    if (!std::filesystem::exists(partial, ignored)) {
+      throw std::invalid_argument(file.string() + ": there is no such file; expected a recording");
+    }
+    throw std::invalid_argument(file.string() + ": there is no such file; " + partial.string() +
+                                (is_marked(partial)
+                                     ? " is still written; 'kerf info --follow' shows it"
+                                     : " holds a recording that was not closed; 'kerf repair' closes it"));
+  }
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw std::invalid_argument(file.string() + ": not a file; expected a recording");
+  }
+  if (::access(file.c_str(), R_OK) != 0)
+    throw std::invalid_argument(file.string() + ": cannot be read: " + std::strerror(errno));
+}
+
+}  // namespace kerf::schema

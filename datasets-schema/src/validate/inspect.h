@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <kerf/schema/recording.h>
+#include <kerf/schema/validate.h>
+
+#include "hdf5/files.h"
+#include "hdf5/h5.h"
+
+namespace kerf::schema {
+
+[[nodiscard]] inline std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+/// A way in which a file's tree departs from the tables; `fatal` if the recording cannot be read for it.
+struct Finding {
+  Violation violation;
+  bool fatal = false;
+};
+
+/// A file whose tree was compared with the tables.
+struct Inspection {
+  h5::Handle file;
+  std::vector<Finding> findings;
+  bool live = false;  ///< still written, or left by a crash: rows may differ in number
+
+  [[nodiscard]] const Finding* first_fatal() const;
+};
+
+/// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
+struct DamageError : FormatError {
+  DamageError(const std::filesystem::path& file, const h5::Error& cause)
+      : FormatError(one_line(file.string() + ": damaged HDF5 file (" + cause.what() +
+                             "); expected a sound recording, take it from a copy")),
+        reason(cause.what()) {}
+  std::string reason;
+};
+
+/// Texts need no look where the same file was looked through before and has not changed.
+/// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file or
+///         it may not be read.
+[[nodiscard]] Inspection inspect(const std::filesystem::path& file, bool look_through_texts = true);
+
+/// As inspect(). @throws also FormatError that names the first finding for which the recording cannot be
+/// read.
+[[nodiscard]] Inspection inspect_readable(const std::filesystem::path& file, bool look_through_texts = true);
+
+/// Reads what was inspected; nothing in it may be fatal.
+[[nodiscard]] Recording read_inspected(const Inspection& inspection);
+
+}  // namespace kerf::schema

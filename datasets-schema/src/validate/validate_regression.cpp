@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include "layout/regression_layout.h"
+#include "validate/validators.h"
+
+namespace kerf::schema {
+namespace {
+
+void check_force(TreeCheck& tree, const std::string& path) {
+  const auto extent = tree.extent_of(path, "float64", 2);
+  if (!extent) return;
+  if ((*extent)[1] == 0) return tree.fail(path, "no column", "one an axis");
+  for (const char* name : {"channels", "units"}) {
+    static_cast<void>(tree.has_attribute(path, {.name = name, .type = "text", .list = (*extent)[1]}));
+  }
+  tree.only_attributes(path, {"channels", "units"});
+}
+
+void check_case(TreeCheck& tree, const std::string& name) {
+  const std::string path = group_of_cases + '/' + name;
+  if (!tree.has_group(path)) return;
+  std::vector<std::string_view> known{"faults", "tick_cost", "tick_cost_build"};
+  for (const CaseText& text : texts_of_a_case) {
+    known.emplace_back(text.name);
+    static_cast<void>(tree.has_attribute(path, {.name = text.name, .type = "text", .fatal = false}));
+  }
+  static_cast<void>(tree.has_attribute(path, {.name = "faults", .type = "uint64", .fatal = false}));
+  const bool timed =
+      tree.has_attribute(path, {.name = "tick_cost", .type = "float64", .required = false, .fatal = false});
+  static_cast<void>(tree.has_attribute(
+      path, {.name = "tick_cost_build", .type = "text", .required = timed, .fatal = false}));
+  tree.only_attributes(path, known);
+  tree.only_children(path, {"force"});
+  check_force(tree, path + "/force");
+}
+
+void check_content(const StoredForces& one, std::vector<Violation>& violations) {
+  const std::string path = group_of_cases + '/' + one.name;
+  if (!one.date.empty() && !is_utc_time(one.date)) {
+    violations.push_back(
+        {path + " attribute 'date'", '\'' + one.date + '\'', std::string(expected_utc_time)});
+  }
+  for (const ForceChannel& channel : one.channels) {
+    if (channel.unit == "N" || channel.unit == "N·m") continue;
+    violations.push_back({path + "/force attribute 'units'", '\'' + channel.unit + '\'', "'N' or 'N·m'"});
+  }
+  for (std::size_t i = 0; i < one.force.size(); ++i) {
+    if (std::isfinite(one.force[i])) continue;
+    violations.push_back({path + "/force",
+                          "no finite number in row " + std::to_string(i / one.channels.size()),
+                          "finite forces"});
+    return;
+  }
+}
+
+}  // namespace
+
+void validate_regression(const std::filesystem::path& file, std::vector<Violation>& violations) {
+  {
+    TreeCheck tree(file);
+    if (tree.is(regression_schema_name, regression_schema_version)) {
+      tree.only_attributes("/", {"schema", "schema_version"});
+      tree.only_children("/", {"cases"});
+      if (tree.has_group(group_of_cases)) {
+        tree.only_attributes(group_of_cases, {});
+        const auto names = h5::children(h5::open(tree.file(), group_of_cases).id());
+        for (const std::string& name : names) check_case(tree, name);
+      }
+    }
+    for (const Finding& finding : tree.findings()) violations.push_back(finding.violation);
+    if (tree.first_fatal() != nullptr) return;
+  }
+  for (const StoredForces& one : read_regression(file)) check_content(one, violations);
+}
+
+}  // namespace kerf::schema

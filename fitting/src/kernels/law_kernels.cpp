@@ -1,0 +1,24 @@
+#include <stdexcept>
+#include <string>
+
+#include "kernels/law_kernel_share.h"
+
+namespace kerf::fitting {
+
+RunView view_of(const Samples& samples, const Weights& weights, std::size_t run) {
+  const auto [begin, end, noise] = samples.runs[run];
+  return {.motion = &samples.motion[begin],
+          .period_s = &samples.period_s[begin],
+          .force = &samples.force[begin],
+          .weight = &weights[begin],
+          .count = end - begin};
+}
+
+const LawKernel& kernel_of(std::string_view model) {
+  const LawKernel* kernel = kernel_in_share<0>(model);
+  if (kernel == nullptr) kernel = kernel_in_share_2(model);
+  if (kernel == nullptr) throw std::invalid_argument("law '" + std::string(model) + "' has no fit");
+  return *kernel;
+}
+
+}  // namespace kerf::fitting
