@@ -16,17 +16,17 @@ struct Entry {
   NamedCase (*run)(std::uint64_t seed);
 };
 constexpr std::array all{
-    Entry{"velocity_sign", cases::velocity_sign},
-    Entry{"equal_thresholds", cases::equal_thresholds},
-    Entry{"euler_maxwell", cases::euler_maxwell},
-    Entry{"euler_lattice", cases::euler_lattice},
-    Entry{"fracture_at_low_rate", cases::fracture_at_low_rate},
-    Entry{"quantised_velocity", cases::quantised_velocity},
-    Entry{"delay", cases::delay},
-    Entry{"fast_contact", cases::fast_contact},
-    Entry{"stiff_grip", cases::stiff_grip},
-    Entry{"exponential_depth", cases::exponential_depth},
-    Entry{"passivity_control", cases::passivity_control},
+    Entry{"velocity_sign", cases::velocity_sign::run},
+    Entry{"equal_thresholds", cases::equal_thresholds::run},
+    Entry{"euler_maxwell", cases::euler::run_maxwell},
+    Entry{"euler_lattice", cases::euler::run_lattice},
+    Entry{"fracture_at_low_rate", cases::fracture_at_low_rate::run},
+    Entry{"quantised_velocity", cases::quantised_velocity::run},
+    Entry{"delay", cases::delay::run},
+    Entry{"fast_contact", cases::fast_contact::run},
+    Entry{"stiff_grip", cases::stiff_grip::run},
+    Entry{"exponential_depth", cases::exponential_depth::run},
+    Entry{"passivity_control", cases::passivity_control::run},
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "cases/trace.h"
 #include "stability/wall/wall_force.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::delay {
 namespace {
 
 constexpr double stiffness_n_per_m = 2000.0;
@@ -30,7 +30,7 @@ CaseOutcome judged(const CaseTrace& trace, std::string figure) {
 
 }  // namespace
 
-NamedCase delay(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   SampledDevice prompt = linear_handle();
   prompt.hand = drivers::usual_grip;
   SampledDevice late = prompt;
@@ -61,4 +61,4 @@ NamedCase delay(std::uint64_t) {
                             fmt::format("{:.0f} N/m", margin * boundary))};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::delay

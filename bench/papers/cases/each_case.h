@@ -4,19 +4,36 @@
 
 #include "cases/cases.h"
 
-namespace kerf::bench::cases {
-
-// One function a case; cases.cpp has their order.
-NamedCase velocity_sign(std::uint64_t seed);
-NamedCase equal_thresholds(std::uint64_t seed);
-NamedCase euler_maxwell(std::uint64_t seed);
-NamedCase euler_lattice(std::uint64_t seed);
-NamedCase fracture_at_low_rate(std::uint64_t seed);
-NamedCase quantised_velocity(std::uint64_t seed);
-NamedCase delay(std::uint64_t seed);
-NamedCase fast_contact(std::uint64_t seed);
-NamedCase stiff_grip(std::uint64_t seed);
-NamedCase exponential_depth(std::uint64_t seed);
-NamedCase passivity_control(std::uint64_t seed);
-
-}  // namespace kerf::bench::cases
+// A namespace a case, so that each has constants of its own under names of its own; cases.cpp has their
+// order.
+namespace kerf::bench::cases::velocity_sign {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::equal_thresholds {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::euler {
+NamedCase run_maxwell(std::uint64_t seed);
+NamedCase run_lattice(std::uint64_t seed);
+}  // namespace kerf::bench::cases::euler
+namespace kerf::bench::cases::fracture_at_low_rate {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::quantised_velocity {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::delay {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::fast_contact {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::stiff_grip {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::exponential_depth {
+NamedCase run(std::uint64_t seed);
+}
+namespace kerf::bench::cases::passivity_control {
+NamedCase run(std::uint64_t seed);
+}

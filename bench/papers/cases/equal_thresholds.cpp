@@ -9,7 +9,7 @@
 #include "cases/each_case.h"
 #include "cases/trace.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::equal_thresholds {
 namespace {
 
 constexpr double noise_n = 0.02;  // the force sensor of sim:scissors
@@ -49,7 +49,7 @@ CaseOutcome judged(const Ramp& ramp) {
 
 }  // namespace
 
-NamedCase equal_thresholds(std::uint64_t seed) {
+NamedCase run(std::uint64_t seed) {
   const Ramp failing = up_and_down({.release_n = threshold_n, .rupture_n = threshold_n}, 1.5, seed);
   const Ramp holding = up_and_down(
       {.release_n = threshold_n - 0.5 * gap_n, .rupture_n = threshold_n + 0.5 * gap_n}, 0.0, seed);
@@ -77,4 +77,4 @@ NamedCase equal_thresholds(std::uint64_t seed) {
       .picture = std::move(picture)};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::equal_thresholds

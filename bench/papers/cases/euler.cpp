@@ -11,7 +11,7 @@
 #include "cases/each_case.h"
 #include "cases/trace.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::euler {
 namespace {
 
 constexpr double period_s = 1e-3;
@@ -83,7 +83,7 @@ CaseTrace press_lattice(int substeps) {
 
 }  // namespace
 
-NamedCase euler_maxwell(std::uint64_t) {
+NamedCase run_maxwell(std::uint64_t) {
   constexpr std::size_t finer = 50;
   const CaseTrace reference = press_kelvin("exact", period_s / finer);
   const CaseTrace failing = press_kelvin("euler", period_s);
@@ -106,7 +106,7 @@ NamedCase euler_maxwell(std::uint64_t) {
       .picture = std::move(picture)};
 }
 
-NamedCase euler_lattice(std::uint64_t) {
+NamedCase run_lattice(std::uint64_t) {
   constexpr int finer = 8;
   const int needed = models::substeps(patch, period_s);
   const CaseTrace reference = press_lattice(finer * needed);
@@ -131,4 +131,4 @@ NamedCase euler_lattice(std::uint64_t) {
           .picture = std::move(picture)};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::euler

@@ -9,7 +9,7 @@
 #include "cases/trace.h"
 #include "stability/law_limits.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::exponential_depth {
 namespace {
 
 constexpr models::Exponential<double> intestine{.amplitude = 4.3e-7, .exponent = 13.0, .thickness = 0.1};
@@ -53,7 +53,7 @@ CaseOutcome judged(const CaseTrace& trace) {
 
 }  // namespace
 
-NamedCase exponential_depth(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   const double values[] = {intestine.amplitude, intestine.exponent};
   const AxisLaw law{models::Law::make("exponential", values, {{"viscous", false}})};
   const LawLimits limits = limits_of(weighted_handle(), law, tool, deepest_m);
@@ -86,4 +86,4 @@ NamedCase exponential_depth(std::uint64_t) {
                             fmt::format("limited at {:.0f} mm", 1e3 * kept_m))};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::exponential_depth

@@ -12,7 +12,7 @@
 #include "cases/trace.h"
 #include "stability/wall/wall_force.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::fast_contact {
 namespace {
 
 constexpr double stiffness_n_per_m = 1000.0;
@@ -75,7 +75,7 @@ CaseOutcome judged(double gained_j, std::string figure) {
 
 }  // namespace
 
-NamedCase fast_contact(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   const WallForce stiff{{.stiffness_n_per_m = stiffness_n_per_m}};
   const WallForce damped{{.stiffness_n_per_m = stiffness_n_per_m, .damping_n_s_per_m = damping_n_s_per_m}};
   const SampledDevice device = thrown_handle();
@@ -115,4 +115,4 @@ NamedCase fast_contact(std::uint64_t) {
       .picture = std::move(picture)};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::fast_contact

@@ -10,7 +10,7 @@
 #include "cases/each_case.h"
 #include "cases/trace.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::fracture_at_low_rate {
 namespace {
 
 using Tissue = models::Fracture<double>;
@@ -133,7 +133,7 @@ CaseOutcome judged(const std::array<Stroke, rates_hz.size()>& strokes) {
 
 }  // namespace
 
-NamedCase fracture_at_low_rate(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   std::array<Stroke, rates_hz.size()> failing;
   std::array<Stroke, rates_hz.size()> holding;
   for (std::size_t i = 0; i < rates_hz.size(); ++i) {
@@ -163,4 +163,4 @@ NamedCase fracture_at_low_rate(std::uint64_t) {
           .picture = std::move(picture)};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::fracture_at_low_rate

@@ -3,7 +3,7 @@
 #include "cases/controlled_wall.h"
 #include "cases/each_case.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::passivity_control {
 namespace {
 
 constexpr double share = 4.0;
@@ -18,7 +18,7 @@ CaseOutcome judged(const CaseTrace& trace, const std::string& also) {
 
 }  // namespace
 
-NamedCase passivity_control(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   const SampledDevice device = weighted_scissors();
   const double passive = 2.0 * device.viscous_n_s_per_m / device.period_s;
   const double stiffness = share * passive;
@@ -47,4 +47,4 @@ NamedCase passivity_control(std::uint64_t) {
                             "plain wall", holding, "under passivity control")};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::passivity_control

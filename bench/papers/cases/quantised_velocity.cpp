@@ -7,7 +7,7 @@
 #include "cases/trace.h"
 #include "stability/wall/wall_force.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::quantised_velocity {
 namespace {
 
 constexpr Wall wall{.stiffness_n_per_m = 500.0, .damping_n_s_per_m = 20.0};
@@ -46,7 +46,7 @@ CaseOutcome judged(double rms_n, std::string figure) {
 
 }  // namespace
 
-NamedCase quantised_velocity(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   SampledDevice device = scissors_handle();
   device.hand = drivers::usual_grip;
   device.velocity_corner_rad_s = 0.0;
@@ -80,4 +80,4 @@ NamedCase quantised_velocity(std::uint64_t) {
                             "filtered")};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::quantised_velocity

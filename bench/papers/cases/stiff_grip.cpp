@@ -11,7 +11,7 @@
 #include "stability/device/in_hand.h"
 #include "stability/wall/wall_force.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::stiff_grip {
 namespace {
 
 constexpr Wall tissue{.stiffness_n_per_m = 100.0, .damping_n_s_per_m = 14.2};
@@ -39,7 +39,7 @@ CaseOutcome judged(double ripple, std::string figure) {
 
 }  // namespace
 
-NamedCase stiff_grip(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   const double boundary = first_change({.lower = 0.5, .upper = 100.0, .share = 1e-4}, [](double damping) {
     const Wall wall{.stiffness_n_per_m = tissue.stiffness_n_per_m, .damping_n_s_per_m = damping};
     return spectral_radius(held(stiffened_grip), wall) < 1.0 && spectral_radius(held(light_grip), wall) < 1.0;
@@ -77,4 +77,4 @@ NamedCase stiff_grip(std::uint64_t) {
       .picture = std::move(picture)};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::stiff_grip

@@ -12,7 +12,7 @@
 #include "stability/law_force.h"
 #include "stability/wall/wall_theory.h"
 
-namespace kerf::bench::cases {
+namespace kerf::bench::cases::velocity_sign {
 namespace {
 
 constexpr double closing_n = 1.5;
@@ -78,7 +78,7 @@ NarrowestBands narrowest_bands() {
 
 }  // namespace
 
-NamedCase velocity_sign(std::uint64_t) {
+NamedCase run(std::uint64_t) {
   const CaseTrace failing = close_and_hold(0.0, 0.0);
   const CaseTrace holding = close_and_hold(band_rad_s, 0.0);
   const double scaled_n = ripple_n(close_and_hold(0.0, reversal_scale));
@@ -105,4 +105,4 @@ NamedCase velocity_sign(std::uint64_t) {
                             holding, "ramp band")};
 }
 
-}  // namespace kerf::bench::cases
+}  // namespace kerf::bench::cases::velocity_sign

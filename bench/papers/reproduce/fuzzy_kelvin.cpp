@@ -12,7 +12,7 @@
 #include "fits/rupture_table.h"
 #include "reproduce/reproduce.h"
 
-namespace kerf::bench {
+namespace kerf::bench::fuzzy_kelvin {
 namespace {
 
 constexpr double period_s = 1e-3;
@@ -128,7 +128,7 @@ void sweep(Reproduction& paper, const models::Law& threshold, const char* figure
 
 }  // namespace
 
-Reproduction reproduce_fuzzy_kelvin(std::uint64_t) {
+Reproduction run(std::uint64_t) {
   Reproduction paper{
       .paper = "002", .key = "FuzzyKelvin", .title = "Hybrid Kelvin and fuzzy model of tissue cutting"};
   const fitting::RuptureSamples samples = liver_ruptures();
@@ -162,4 +162,4 @@ Reproduction reproduce_fuzzy_kelvin(std::uint64_t) {
   return paper;
 }
 
-}  // namespace kerf::bench
+}  // namespace kerf::bench::fuzzy_kelvin

@@ -13,7 +13,7 @@
 #include "scene/scalpel_paths.h"
 #include "signal/quantiles.h"
 
-namespace kerf::bench {
+namespace kerf::bench::henry2004 {
 namespace {
 
 using Eigen::Vector3d;
@@ -288,7 +288,7 @@ void contact_and_states(Reproduction& paper, std::uint64_t seed) {
 
 }  // namespace
 
-Reproduction reproduce_henry2004(std::uint64_t seed) {
+Reproduction run(std::uint64_t seed) {
   Reproduction paper{
       .paper = "000", .key = "Henry2004", .title = "Haptic interaction of a blade with soft tissue"};
   cut_and_push(paper);
@@ -298,4 +298,4 @@ Reproduction reproduce_henry2004(std::uint64_t seed) {
   return paper;
 }
 
-}  // namespace kerf::bench
+}  // namespace kerf::bench::henry2004

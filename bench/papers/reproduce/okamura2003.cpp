@@ -17,7 +17,7 @@
 #include "segment/segment.h"
 #include "signal/quantiles.h"
 
-namespace kerf::bench {
+namespace kerf::bench::okamura2003 {
 namespace {
 
 constexpr double period_s = 1e-3;
@@ -340,7 +340,7 @@ void analytical(Reproduction& paper, const std::vector<schema::Recording>& recor
 
 }  // namespace
 
-Reproduction reproduce_okamura2003(std::uint64_t seed) {
+Reproduction run(std::uint64_t seed) {
   Reproduction paper{.paper = "004",
                      .key = "Okamura2003",
                      .title = "Haptic scissors: recordings, segmented and analytical models"};
@@ -353,4 +353,4 @@ Reproduction reproduce_okamura2003(std::uint64_t seed) {
   return paper;
 }
 
-}  // namespace kerf::bench
+}  // namespace kerf::bench::okamura2003

@@ -16,9 +16,9 @@ struct Paper {
 };
 
 constexpr std::array papers{
-    Paper{"000", "Henry2004", reproduce_henry2004}, Paper{"001", "Sepulveda2008", reproduce_sepulveda2008},
-    Paper{"002", "FuzzyKelvin", reproduce_fuzzy_kelvin}, Paper{"003", "Weiss2004", reproduce_weiss2004},
-    Paper{"004", "Okamura2003", reproduce_okamura2003}};
+    Paper{"000", "Henry2004", henry2004::run}, Paper{"001", "Sepulveda2008", sepulveda2008::run},
+    Paper{"002", "FuzzyKelvin", fuzzy_kelvin::run}, Paper{"003", "Weiss2004", weiss2004::run},
+    Paper{"004", "Okamura2003", okamura2003::run}};
 
 }  // namespace
 

@@ -37,12 +37,23 @@ struct Reproduction {
   }
 };
 
-// One paper each. Deterministic for a seed, but for the times that [Weiss2004] is answered with.
-[[nodiscard]] Reproduction reproduce_henry2004(std::uint64_t seed);      ///< blade and tissue
-[[nodiscard]] Reproduction reproduce_sepulveda2008(std::uint64_t seed);  ///< orthogonal decomposition
-[[nodiscard]] Reproduction reproduce_fuzzy_kelvin(std::uint64_t seed);   ///< fuzzy-Kelvin hybrid
-[[nodiscard]] Reproduction reproduce_weiss2004(std::uint64_t seed);      ///< two-mesh scissors
-[[nodiscard]] Reproduction reproduce_okamura2003(std::uint64_t seed);    ///< the haptic scissors
+// One paper each, in a namespace of its own. Deterministic for a seed, but for the times that [Weiss2004] is
+// answered with.
+namespace henry2004 {
+[[nodiscard]] Reproduction run(std::uint64_t seed);  ///< blade and tissue
+}
+namespace sepulveda2008 {
+[[nodiscard]] Reproduction run(std::uint64_t seed);  ///< orthogonal decomposition
+}
+namespace fuzzy_kelvin {
+[[nodiscard]] Reproduction run(std::uint64_t seed);  ///< fuzzy-Kelvin hybrid
+}
+namespace weiss2004 {
+[[nodiscard]] Reproduction run(std::uint64_t seed);  ///< two-mesh scissors
+}
+namespace okamura2003 {
+[[nodiscard]] Reproduction run(std::uint64_t seed);  ///< the haptic scissors
+}
 
 /// `paper`: its number or its key, the latter in brackets or not.
 /// @throws std::invalid_argument for any other.

@@ -13,7 +13,7 @@
 
 #include "reproduce/reproduce.h"
 
-namespace kerf::bench {
+namespace kerf::bench::sepulveda2008 {
 namespace {
 
 using Eigen::Vector3d;
@@ -285,7 +285,7 @@ void cutting(Reproduction& paper, std::uint64_t seed) {
 
 }  // namespace
 
-Reproduction reproduce_sepulveda2008(std::uint64_t seed) {
+Reproduction run(std::uint64_t seed) {
   Reproduction paper{
       .paper = "001", .key = "Sepulveda2008", .title = "Orthogonal decomposition on a 3-DOF haptic device"};
   deformation(paper, seed);
@@ -293,4 +293,4 @@ Reproduction reproduce_sepulveda2008(std::uint64_t seed) {
   return paper;
 }
 
-}  // namespace kerf::bench
+}  // namespace kerf::bench::sepulveda2008

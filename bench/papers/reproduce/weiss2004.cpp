@@ -10,7 +10,7 @@
 #include "reproduce/reproduce.h"
 #include "signal/quantiles.h"
 
-namespace kerf::bench {
+namespace kerf::bench::weiss2004 {
 namespace {
 
 constexpr double period_s = 1e-3;
@@ -139,11 +139,11 @@ void update_rate(Reproduction& paper) {
 
 }  // namespace
 
-Reproduction reproduce_weiss2004(std::uint64_t) {
+Reproduction run(std::uint64_t) {
   Reproduction paper{.paper = "003", .key = "Weiss2004", .title = "Two-mesh model of cutting with scissors"};
   one_cut(paper);
   update_rate(paper);
   return paper;
 }
 
-}  // namespace kerf::bench
+}  // namespace kerf::bench::weiss2004

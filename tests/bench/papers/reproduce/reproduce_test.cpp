@@ -35,14 +35,14 @@ void expect_drawable(const Reproduction& paper) {
 }
 
 TEST(Reproduce, BladeAndTissue) {
-  const Reproduction paper = reproduce_henry2004(1);
+  const Reproduction paper = henry2004::run(1);
   for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   EXPECT_EQ(paper.figures.size(), 6U);
   expect_drawable(paper);
 }
 
 TEST(Reproduce, OrthogonalDecomposition) {
-  const Reproduction paper = reproduce_sepulveda2008(1);
+  const Reproduction paper = sepulveda2008::run(1);
   for (const Claim& claim : paper.claims) {
     const bool of_paper = claim.claim.find("`paper` projection") != std::string::npos;
     EXPECT_EQ(claim.verdict == ClaimVerdict::fails, of_paper) << claim.claim << ": " << claim.measured;
@@ -51,13 +51,13 @@ TEST(Reproduce, OrthogonalDecomposition) {
 }
 
 TEST(Reproduce, FuzzyKelvin) {
-  const Reproduction paper = reproduce_fuzzy_kelvin(1);
+  const Reproduction paper = fuzzy_kelvin::run(1);
   for (const Claim& claim : paper.claims) EXPECT_NE(claim.verdict, ClaimVerdict::fails) << claim.claim;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, TwoMeshScissors) {
-  const Reproduction paper = reproduce_weiss2004(1);
+  const Reproduction paper = weiss2004::run(1);
   // The others measure this machine.
   EXPECT_EQ(paper.claims.at(0).verdict, ClaimVerdict::holds) << paper.claims.at(0).measured;
   EXPECT_EQ(paper.claims.at(1).verdict, ClaimVerdict::holds) << paper.claims.at(1).measured;
@@ -65,13 +65,13 @@ TEST(Reproduce, TwoMeshScissors) {
 }
 
 TEST(Reproduce, HapticScissors) {
-  const Reproduction paper = reproduce_okamura2003(1);
+  const Reproduction paper = okamura2003::run(1);
   for (const Claim& claim : paper.claims) EXPECT_EQ(claim.verdict, ClaimVerdict::holds) << claim.claim;
   expect_drawable(paper);
 }
 
 TEST(Reproduce, IsTheSameForOneSeed) {
-  for (const auto& run : {reproduce_henry2004, reproduce_sepulveda2008})
+  for (const auto& run : {henry2004::run, sepulveda2008::run})
     EXPECT_EQ(to_json(run(7)).dump(), to_json(run(7)).dump());
 }
 
