@@ -78,7 +78,7 @@ std::vector<Fault> parse_faults(std::string_view text) {
   }
 }
 
-FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, std::vector<Fault> faults,
+FaultyDevice::FaultyDevice(std::unique_ptr<Device> device, const std::vector<Fault>& faults,
                            std::function<void(double)> pass_time)
     : device_(std::move(device)), pass_time_(pass_time ? std::move(pass_time) : sleep_for) {
   for (const Fault& fault : faults) faults_.push_back({.fault = fault});

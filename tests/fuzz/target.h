@@ -22,7 +22,7 @@ struct BrokenPromise {
 
 inline void promise(bool kept, const std::string& what) {
   if (kept) return;
-  std::fprintf(stderr, "broken promise: %s\n", what.c_str());
+  (void)std::fprintf(stderr, "broken promise: %s\n", what.c_str());
   throw BrokenPromise{what};
 }
 

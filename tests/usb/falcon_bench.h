@@ -18,7 +18,7 @@ inline std::string firmware_file(const TemporaryFolder& folder, std::size_t word
   drivers::c2000::Block block{.destination = 0x3F8002, .words = {}};
   for (std::size_t i = 0; i < words; ++i) block.words.push_back(static_cast<std::uint16_t>(40503 * (i + 1)));
   const auto image = drivers::c2000::make_image(0x3F8002, std::array{block});
-  const std::string path = folder / ("firmware-" + std::to_string(words) + ".bin");
+  std::string path = folder / ("firmware-" + std::to_string(words) + ".bin");
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
   return path;

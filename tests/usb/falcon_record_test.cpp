@@ -120,7 +120,7 @@ void append(std::string& text, const char* name, const std::vector<T>& values) {
   text += name;
   for (const T value : values) {
     std::array<char, 64> line{};
-    std::snprintf(line.data(), line.size(), "\n%a", static_cast<double>(value));
+    (void)std::snprintf(line.data(), line.size(), "\n%a", static_cast<double>(value));
     text += line.data();
   }
   text += '\n';

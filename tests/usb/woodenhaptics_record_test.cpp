@@ -147,8 +147,8 @@ TEST(WoodenHapticsTwice, WritesTheSameRecordingInEachGuest) {
       std::array<char, 256> line{};
       const auto [x, y, z] = row_of(recording.position, row);
       const auto [fx, fy, fz] = row_of(recording.force_commanded, row);
-      std::snprintf(line.data(), line.size(), "%a %a %a %a %a %a %a %u\n", x, y, z, fx, fy, fz,
-                    recording.channels[0].values[row], recording.flags[row]);
+      (void)std::snprintf(line.data(), line.size(), "%a %a %a %a %a %a %a %u\n", x, y, z, fx, fy, fz,
+                          recording.channels[0].values[row], recording.flags[row]);
       text += line.data();
     }
     write_text(std::string(folder) + "/" + one.emulator.substr(one.emulator.size() - 2), text);

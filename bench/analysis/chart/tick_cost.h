@@ -22,7 +22,7 @@ struct TickCost {
 /// A law as the loop renders it, and the motion that it is shown, which must outlive the measurement.
 struct TimedLaw {
   LawRendering rendering;
-  const SampledMotion* path;
+  const SampledMotion* path = nullptr;
 };
 
 struct TickCostOptions {

@@ -93,7 +93,7 @@ void read_motions(const Place& place, const toml::node& node, RegressionCase& on
 
 /// A file that the suite names, as it is found from here.
 fs::path file_at(const Place& place, const toml::table& table, std::string_view key, const fs::path& folder) {
-  const fs::path file = folder / place.text(table, key, "");
+  fs::path file = folder / place.text(table, key, "");
   if (!fs::is_regular_file(file)) place.refuse(*table.get(key), "there is no file {}", file.string());
   return file;
 }

@@ -28,7 +28,7 @@ std::pair<std::size_t, bool> place_of(const schema::Recording& recording, const 
 }
 
 std::string law_file_of(const json& fit, std::size_t place) {
-  const std::string shared = fit.at("model").get<std::string>() + ".law.toml";
+  std::string shared = fit.at("model").get<std::string>() + ".law.toml";
   if (!fit.contains("law_files") || place >= fit.at("law_files").size()) return shared;
   return fit.at("law_files")[place].get<std::string>();
 }

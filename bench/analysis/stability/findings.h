@@ -20,6 +20,7 @@ struct StudiedAxis {
 };
 
 /// What a study leaves behind: the numbers, a table of them, pictures, a page, and lines for a terminal.
+// NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw
 struct Findings {
   nlohmann::ordered_json json;
   std::string csv;

@@ -45,10 +45,12 @@ double damping_error(const SampledDevice& device, const WallBoundary& at) {
   const auto is_stable = [&](double damping) {
     return spectral_radius(device, {at.simulated_linear, damping}) < 1.0;
   };
-  for (double share = 1e-3; share < 1.0; share *= 1.25) {
+  double share = 1e-3;
+  while (share < 1.0) {
     if (is_stable(at.damping_n_s_per_m * (1.0 - share)) != is_stable(at.damping_n_s_per_m * (1.0 + share))) {
       return share;
     }
+    share *= 1.25;
   }
   return 1.0;
 }

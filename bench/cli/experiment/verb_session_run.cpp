@@ -61,7 +61,7 @@ Answering answering_of(const SessionRunVerbArguments& arguments, std::uint64_t s
 }
 
 std::string uri_of(const SessionRunVerbArguments& arguments, const Protocol& protocol) {
-  const std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
+  std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
   if (uri.empty()) throw std::invalid_argument("the protocol names no device; give one with --device");
   if (arguments.rehearse && !uri.starts_with("sim:"))
     throw std::invalid_argument(

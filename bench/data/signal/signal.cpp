@@ -17,9 +17,10 @@ class SlopeFit {
  public:
   void add(double time, double value) noexcept {
     double power = 1.0;
-    for (std::size_t k = 0; k < moments_.size(); ++k, power *= time) {
+    for (std::size_t k = 0; k < moments_.size(); ++k) {
       moments_[k] += power;
       if (k < products_.size()) products_[k] += power * value;
+      power *= time;
     }
   }
 

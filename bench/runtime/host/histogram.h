@@ -46,7 +46,7 @@ class Histogram {
     return max_ns();
   }
 
-  static constexpr std::size_t bucket_count = 32 * 37;
+  static constexpr std::size_t bucket_count = std::size_t{32} * 37;
   [[nodiscard]] std::uint64_t count_in(std::size_t bucket) const noexcept { return counts_[bucket]; }
   [[nodiscard]] static double upper_edge_ns(std::size_t bucket) noexcept {
     if (bucket < 32) return static_cast<double>(bucket + 1);

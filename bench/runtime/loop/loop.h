@@ -168,7 +168,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
                 std::is_trivially_copyable_v<drivers::Sample>);
   const double period_s = options.safety.period_s;
-  const auto period_ns = static_cast<std::int64_t>(period_s * 1e9 + 0.5);
+  const auto period_ns = std::llround(1e9 * period_s);
   const std::int64_t silence_ns = watchdog_limit_ns(period_s);
   Safety safety(device.info().axes, options.safety);
   drivers::Sample sample;

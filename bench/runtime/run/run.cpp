@@ -255,11 +255,11 @@ StopOnSignal::StopOnSignal() {
   for (const int signal : stop_signals) {
     const auto before = std::signal(signal, [](int) { stop_requested = true; });
     // What was started with nohup stays alive without its terminal.
-    if (signal == SIGHUP && before == SIG_IGN) std::signal(signal, SIG_IGN);
+    if (signal == SIGHUP && before == SIG_IGN) (void)std::signal(signal, SIG_IGN);
   }
 }
 StopOnSignal::~StopOnSignal() {
-  for (const int signal : stop_signals) std::signal(signal, SIG_DFL);
+  for (const int signal : stop_signals) (void)std::signal(signal, SIG_DFL);
 }
 const std::atomic<bool>& StopOnSignal::requested() const noexcept { return stop_requested; }
 

@@ -59,7 +59,7 @@ struct Indentation {
   std::size_t axis = 0;
   StrokesToAndFro strokes{.stroke_s = 0.8, .pause_s = 0.5};
   double hold_s = 1.0;
-  double cycles = 1.0;
+  int cycles = 1;
 
   [[nodiscard]] drivers::PosePath::Options path() const {
     drivers::PosePath::Options path;
@@ -73,7 +73,7 @@ struct Indentation {
       path.keyframes.push_back(keyframe);
     };
     add(strokes.from, 0.0);
-    for (double cycle = 0.0; cycle < cycles; ++cycle) {
+    for (int cycle = 0; cycle < cycles; ++cycle) {
       add(strokes.from, strokes.pause_s);
       add(strokes.to, strokes.stroke_s);
       add(strokes.to, hold_s);
@@ -83,13 +83,13 @@ struct Indentation {
   }
 };
 
-double read_cycles(const Place& place, const toml::table& table) {
+int read_cycles(const Place& place, const toml::table& table) {
   const toml::node* node = table.get("cycles");
   if (node == nullptr) return Indentation{}.cycles;
   const double cycles = place.number(*node, "'cycles'");
   if (!(cycles >= 1.0 && cycles <= cycles_at_most && cycles == std::floor(cycles)))
     place.refuse(*node, "'cycles' is {}, expected a whole number from 1 to {}", cycles, cycles_at_most);
-  return cycles;
+  return static_cast<int>(cycles);
 }
 
 drivers::PosePath::Options read_indentation(const Place& place, const toml::table& table,

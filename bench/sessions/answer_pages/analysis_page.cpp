@@ -27,7 +27,7 @@ std::string list_of(const char* title, const std::vector<std::string>& sentences
   return html + "</ul>\n";
 }
 
-std::string bare(std::string p) {
+std::string bare(const std::string& p) {
   return p.starts_with("p = ") ? p.substr(4) : p.starts_with("p < ") ? p.substr(2) : "-";
 }
 

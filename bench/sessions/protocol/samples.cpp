@@ -30,8 +30,8 @@ double strength_of(const Protocol& protocol, std::size_t sample) {
     sum += squared;
     peak = std::max(peak, squared);
   }
-  const auto ticks = static_cast<double>(forces.size() / axes.size());
-  return std::sqrt(protocol.loudness == Loudness::peak ? peak : sum / ticks);
+  const std::size_t ticks = forces.size() / axes.size();
+  return std::sqrt(protocol.loudness == Loudness::peak ? peak : sum / static_cast<double>(ticks));
 }
 
 /// What a sample has to be multiplied with to be as strong as the first of its tissue.

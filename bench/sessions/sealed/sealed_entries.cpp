@@ -86,7 +86,8 @@ void SealedEntries::create(const std::filesystem::path& file, schema::Session se
   journal.remove();
 }
 
-SealedEntries::SealedEntries(std::filesystem::path file, const SealKey& key, For purpose, const Visit& visit)
+SealedEntries::SealedEntries(const std::filesystem::path& file, const SealKey& key, For purpose,
+                             const Visit& visit)
     : file_(resolved(file)), key_(key.copy()), runs_(purpose == For::run) {
   if (!std::filesystem::is_regular_file(file_)) {
     throw std::invalid_argument(fmt::format(

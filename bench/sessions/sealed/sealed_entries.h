@@ -42,7 +42,7 @@ class SealedEntries {
 
   /// Checks every seal. @throws std::invalid_argument: no such file, wrong key, tampered with (naming the
   /// entry), run by another process; schema::FormatError, std::system_error.
-  SealedEntries(std::filesystem::path file, const SealKey& key, For purpose, const Visit& visit);
+  SealedEntries(const std::filesystem::path& file, const SealKey& key, For purpose, const Visit& visit);
 
   /// All entries, without what is sealed.
   [[nodiscard]] const schema::Session& session() const noexcept { return session_; }

@@ -83,7 +83,7 @@ std::optional<SubjectAction> TerminalSubject::next() {
 }
 
 void TerminalSubject::take_input() {
-  std::array<char, 256> buffer;
+  std::array<char, 256> buffer{};
   pollfd polled{.fd = input_, .events = POLLIN, .revents = 0};
   while (!ended_ && typed_.size() < 4096 && poll(&polled, 1, 0) > 0) {
     const ssize_t count = read(input_, buffer.data(), buffer.size());

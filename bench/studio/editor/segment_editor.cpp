@@ -46,7 +46,8 @@ struct CurvePoints {
 
 CurvePoints points_of(const EditorCurve& curve, bool loop) {
   CurvePoints points;
-  for (std::uint8_t branch = 0; branch < (loop ? 2 : 1); ++branch) {
+  const std::uint8_t branches = loop ? 2 : 1;
+  for (std::uint8_t branch = 0; branch < branches; ++branch) {
     const std::vector<double>& force = branch == 0 ? curve.closing : curve.opening;
     for (std::size_t i = 0; i < curve.penetration.size(); ++i) {
       if (!std::isfinite(force[i])) continue;
@@ -61,7 +62,8 @@ CurvePoints points_of(const EditorCurve& curve, bool loop) {
 /// To fit to: at least one point on each branch.
 CurvePoints points_to_fit(const EditorCurve& curve, bool loop) {
   CurvePoints points = points_of(curve, loop);
-  for (std::uint8_t branch = 0; branch < (loop ? 2 : 1); ++branch) {
+  const std::uint8_t branches = loop ? 2 : 1;
+  for (std::uint8_t branch = 0; branch < branches; ++branch) {
     if (std::find(points.branch.begin(), points.branch.end(), branch) != points.branch.end()) continue;
     throw std::invalid_argument(branch == 0 ? "the averaged cycle has no closing to fit"
                                             : "the averaged cycle has no opening to fit; take one branch");

@@ -28,8 +28,8 @@ void add_bucket(const double* values, std::array<double, width>& smallest,
                 std::array<double, width>& largest) {
   constexpr std::size_t together = width == 1 ? 8 : width <= 3 ? 4 : 2;
   constexpr std::size_t lanes = together * width;
-  std::array<double, lanes> low;
-  std::array<double, lanes> high;
+  std::array<double, lanes> low{};
+  std::array<double, lanes> high{};
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t at = 0; at < bucket * width; at += lanes) {
@@ -55,8 +55,8 @@ using Finest = std::vector<std::pair<float*, float*>>;
 
 template <std::size_t width>
 void add_buckets(std::span<const double> values, std::size_t first_bucket, const Finest& finest) {
-  std::array<double, width> smallest;
-  std::array<double, width> largest;
+  std::array<double, width> smallest{};
+  std::array<double, width> largest{};
   for (std::size_t at = 0, to = first_bucket; at < values.size(); at += bucket * width, ++to) {
     add_bucket<width>(values.data() + at, smallest, largest);
     for (std::size_t column = 0; column < width; ++column) {

@@ -99,7 +99,7 @@ RowIndex::RowIndex(std::uint64_t rows, std::span<const double> numbers, std::sha
   const std::size_t buckets = buckets_of(rows);
   const std::size_t ends = numbers.size() - std::min(numbers.size(), 2 * buckets + 1);
   if (numbers.size() < 2 * buckets + 1 || ends % 2 != 0 || ends > 2 * max_gaps ||
-      !(numbers[2 * buckets] >= static_cast<double>(ends / 2) && numbers[2 * buckets] <= 1e18)) {
+      !(numbers[2 * buckets] >= 0.5 * static_cast<double>(ends) && numbers[2 * buckets] <= 1e18)) {
     throw std::invalid_argument("an index of rows whose parts do not fit together");
   }
   first_s_ = numbers.first(buckets);

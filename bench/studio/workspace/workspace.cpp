@@ -65,7 +65,7 @@ std::string_view name_of(FileKind kind) noexcept {
   return names[static_cast<std::size_t>(kind)];
 }
 
-Workspace::Workspace(fs::path folder) {
+Workspace::Workspace(const fs::path& folder) {
   std::error_code error;
   folder_ = fs::canonical(folder, error);
   if (error || !fs::is_directory(folder_))
@@ -141,7 +141,7 @@ fs::path Workspace::new_file(const std::string& name, std::string_view ending, b
     throw RequestError(400, fmt::format("a name has 1 to {} letters, digits, '_', '-' or '.', the first a "
                                         "letter or digit",
                                         longest_name));
-  const fs::path file = folder_ / fmt::format("{}{}", name, ending);
+  fs::path file = folder_ / fmt::format("{}{}", name, ending);
   std::error_code error;
   if (!replace && fs::exists(fs::symlink_status(file, error)))
     throw RequestError(409, fmt::format("{} is there already; choose another name, or replace it",

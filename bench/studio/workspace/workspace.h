@@ -42,7 +42,7 @@ struct WorkspaceEntry {
 class Workspace {
  public:
   /// @throws std::invalid_argument: no such folder.
-  explicit Workspace(std::filesystem::path folder);
+  explicit Workspace(const std::filesystem::path& folder);
 
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
   /// Looks again; in order of their names. Up to 10,000 files.

@@ -149,7 +149,7 @@ double EmulatedU6::volts(std::uint8_t channel, const Axes& inputs) noexcept {
 double EmulatedU6::code(double volts, unsigned gain) const noexcept {
   const auto positive = constants(gain < 2 ? 0 : 1);
   const auto negative = constants(gain < 2 ? 2 : 3);
-  const std::size_t at = 2 * (gain % 2U);
+  const std::size_t at = std::size_t{2} * (gain % 2U);
   return negative[at + 1] + (volts < 0.0 ? -volts / negative[at] : volts / positive[at]);
 }
 

@@ -53,7 +53,7 @@ Frame with_numbers(const std::array<int, 3>& numbers, unsigned bits) noexcept {
 }  // namespace
 
 Frame encode(const Command& command) noexcept {
-  std::array<int, 3> motor;
+  std::array<int, 3> motor{};
   for (std::size_t i = 0; i < 3; ++i) motor[i] = std::clamp(command.motor[i], -max_motor, max_motor);
   const unsigned bits = (command.homing ? 1U : 0U) | (command.green ? 2U : 0U) | (command.blue ? 4U : 0U) |
                         (command.red ? 8U : 0U);

@@ -137,7 +137,7 @@ void maximise(const Wins& wins, Scale scale, std::vector<double>& worth) {
     if (largest < 1e-12) return;
     double part = 1.0;
     std::vector<double> next(n);
-    for (int halving = 0; halving < 40; ++halving, part *= 0.5) {
+    for (int halving = 0; halving < 40; ++halving) {
       for (std::size_t i = 0; i < n; ++i) next[i] = worth[i] + part * step[i];
       const double there = log_likelihood(wins, scale, next);
       if (there >= now - 1e-12 * std::abs(now)) {
@@ -145,6 +145,7 @@ void maximise(const Wins& wins, Scale scale, std::vector<double>& worth) {
         worth = next;
         break;
       }
+      part *= 0.5;
     }
   }
 }

@@ -34,7 +34,7 @@ struct Fault {
 class FaultyDevice final : public Device {
  public:
   /// `pass_time` as in Surroundings; empty: the calling thread sleeps.
-  FaultyDevice(std::unique_ptr<Device> device, std::vector<Fault> faults,
+  FaultyDevice(std::unique_ptr<Device> device, const std::vector<Fault>& faults,
                std::function<void(double)> pass_time);
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return device_->info(); }

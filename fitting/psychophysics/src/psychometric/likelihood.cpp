@@ -217,7 +217,7 @@ Maximum maximise(const Problem& problem, const Point& start, const Held& held) {
 Maximum maximise_from_many(const Problem& problem, const Point& like, const Held& held) {
   constexpr std::size_t polished = 3;
   std::vector<Maximum> starts;
-  const auto values = [&](std::size_t i, std::vector<double> all) {
+  const auto values = [&](std::size_t i, const std::vector<double>& all) {
     return held[i] || problem.lower[i] == problem.upper[i] ? std::vector<double>{like[i]} : all;
   };
   for (const double threshold : values(threshold_index, {-0.2, 0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.1})) {

@@ -109,7 +109,9 @@ struct FuzzySurface {
 
   /// Normalised weights of the rules at inputs that are already within the box.
   void weights(double d, double s, std::span<T> weight) const noexcept {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled below, and zeros would cost the tick
     std::array<T, max_memberships> of_depth;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled below, and zeros would cost the tick
     std::array<T, max_memberships> of_speed;
     memberships_of(depth, d, of_depth);
     memberships_of(speed, s, of_speed);
