@@ -9,10 +9,13 @@
 namespace kerf::drivers {
 
 std::string toml_text(std::string_view text) {
-  std::ostringstream stream;
+  using Flags = toml::format_flags;
+  auto flags = toml::toml_formatter::default_flags;
+  if (text.find_first_of("\r\n") != std::string_view::npos)
+    flags &= ~(Flags::allow_multi_line_strings | Flags::allow_literal_strings);
   const toml::value<std::string> value{std::string(text)};
-  stream << toml::toml_formatter(
-      value, toml::toml_formatter::default_flags & ~toml::format_flags::allow_multi_line_strings);
+  std::ostringstream stream;
+  stream << toml::toml_formatter(value, flags);
   return stream.str();
 }
 

@@ -17,8 +17,8 @@
 namespace kerf::schema {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::HasSubstr;
+using testing::Not;
 
 template <typename Action>
 std::string line_of(const Action& action) {

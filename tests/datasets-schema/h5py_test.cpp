@@ -20,7 +20,7 @@ namespace {
 constexpr auto python = "/usr/bin/python3";
 constexpr auto script = KERF_SOURCE_DIR "/tests/datasets-schema/read_with_h5py.py";
 
-class H5py : public ::testing::Test {
+class H5py : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(python) || test::run({python, "-c", "import h5py"}).exit_status != 0) {

@@ -8,8 +8,8 @@
 #include <kerf/schema/regression.h>
 #include <kerf/schema/validate.h>
 
+#include "datasets-schema/recording/sample_recording.h"
 #include "hdf5/h5.h"
-#include "sample_recording.h"
 #include "support/program.h"
 
 namespace kerf::schema {

@@ -9,8 +9,8 @@
 #include <kerf/schema/validate.h>
 
 #include "datasets-schema/changed_file.h"
+#include "datasets-schema/recording/sample_recording.h"
 #include "hdf5/h5.h"
-#include "sample_recording.h"
 #include "support/program.h"
 
 namespace kerf::schema {

@@ -16,12 +16,12 @@ void PrintTo(const Violation& violation, std::ostream* stream) {
 
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 auto violation(const std::string& where, const std::string& found, const std::string& expected) {
   return AllOf(Field("where", &Violation::where, where), Field("found", &Violation::found, HasSubstr(found)),

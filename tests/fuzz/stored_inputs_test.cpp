@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class StoredInputs : public ::testing::TestWithParam<Target> {};
+class StoredInputs : public testing::TestWithParam<Target> {};
 
 /// Seeds, and what fuzzers once fell over.
 TEST_P(StoredInputs, BreakNoPromise) {
@@ -35,7 +35,7 @@ TEST_P(StoredInputs, BreakNoPromise) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Fuzzers, StoredInputs, ::testing::ValuesIn(targets()),
+INSTANTIATE_TEST_SUITE_P(Fuzzers, StoredInputs, testing::ValuesIn(targets()),
                          [](const auto& about) { return std::string(about.param.name); });
 
 }  // namespace

@@ -39,7 +39,7 @@ class PlainClient {
   /// Everything up to the end of the connection.
   [[nodiscard]] std::string answer() const {
     std::string text;
-    std::array<char, 4096> buffer;
+    std::array<char, 4096> buffer{};
     while (true) {
       const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
       if (count <= 0) return text;
@@ -49,7 +49,7 @@ class PlainClient {
 
   /// What comes next; empty at the end of the connection.
   [[nodiscard]] std::string some() const {
-    std::array<char, 4096> buffer;
+    std::array<char, 4096> buffer{};
     const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
     return count <= 0 ? std::string() : std::string(buffer.data(), static_cast<std::size_t>(count));
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <kerf/version.h>
+
 #include "html/html.h"
 #include "regress/context.h"
 
@@ -57,7 +59,9 @@ std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome) {
       fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.6f}\"", name, tests,
                   outcome.failed(), outcome.seconds);
   std::string xml = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n", counts, counts);
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n"
+      "    <properties><property name=\"software\" value=\"{}\"/></properties>\n",
+      counts, counts, xml_escaped(software()));
   for (const RegressionOutcome& one : outcome.cases) {
     xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"", name,
                        xml_escaped(one.about.name), one.seconds);

@@ -95,7 +95,8 @@ void add_session_analyze(CLI::App& session, Context& context) {
       "kerf session analyze study/S*.h5 --key-file keeper.key -o analysis\n"
       "  kerf session analyze examples/sessions/okamura2003-table-1.csv\n\n"
       "Takes the sessions of one protocol, or a table of answers. Margins belong in the protocol of\n"
-      "a study, before its first session. docs/sessions.md has every equation.",
+      "a study, before its first session. docs/sessions-analysis.md and docs/psychophysics.md have the "
+      "equations.",
       [arguments, &context] { analyze(*arguments, context); });
   verb.add_option("FILES", arguments->files, "Session files, or one table of answers (.csv)").required();
   add_key_options(verb, arguments->key);

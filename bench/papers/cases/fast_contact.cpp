@@ -94,7 +94,7 @@ NamedCase run(std::uint64_t) {
   picture.y_range = {-0.84, -0.6};
   picture.horizontal = {{.at = -speed_m_s}};
   return {
-      .where = "literature [AbbottOkamura2005]; models/precontact.h is of [Henry2004]",
+      .where = "literature [AbbottOkamura2005]; the law precontact is of [Henry2004]",
       .what =
           "A wall that Coulomb friction keeps passive when it is met slowly throws back a fast tool faster "
           "than it came.",

@@ -18,7 +18,7 @@ namespace kerf::drivers::usb {
 namespace {
 
 constexpr int control_timeout_ms = 1000;
-constexpr std::uint8_t to_device_by_vendor = 0x40;
+constexpr std::uint8_t vendor_out = 0x40;
 
 std::string node_of(libusb_device* device) {
   return fmt::format("/dev/bus/usb/{:03}/{:03}", libusb_get_bus_number(device),
@@ -148,8 +148,9 @@ void UsbDevice::fail(std::string_view doing, int error) const {
 }
 
 void UsbDevice::control_out(std::uint8_t request, std::uint16_t value, std::uint16_t index) {
-  const int error = libusb_control_transfer(handle_, to_device_by_vendor, request, value, index, nullptr, 0,
-                                            control_timeout_ms);
+  // NOLINTNEXTLINE(readability-suspicious-call-argument): both are of a request
+  const int error =
+      libusb_control_transfer(handle_, vendor_out, request, value, index, nullptr, 0, control_timeout_ms);
   if (error < 0) fail(fmt::format("control request {}", request), error);
 }
 

@@ -12,8 +12,8 @@
 namespace kerf::schema {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 TEST(ReadTail, FollowsARecordingWhileItGrows) {
   const test::TemporaryFolder folder;

@@ -14,9 +14,9 @@
 namespace kerf::schema {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::MatchesRegex;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::MatchesRegex;
 
 std::vector<std::string> files_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
@@ -73,7 +73,7 @@ TEST(Recording, ReplacesAnEarlierFileAndLeavesNothingBeside) {
   write_recording(folder / "r.h5", test::sample_recording(100));
   write_recording(folder / "r.h5", test::sample_recording(3));
   EXPECT_EQ(read_recording(folder / "r.h5").rows(), 3U);
-  EXPECT_THAT(files_in(folder.path()), ::testing::ElementsAre("r.h5"));
+  EXPECT_THAT(files_in(folder.path()), testing::ElementsAre("r.h5"));
 }
 
 TEST(Recording, RefusesAColumnOfAnotherLength) {

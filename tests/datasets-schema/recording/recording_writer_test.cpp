@@ -26,8 +26,8 @@
 namespace kerf::schema {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 Header header() { return test::sample_recording(0).header; }
 std::vector<Axis> axes() { return test::sample_recording(0).axes; }

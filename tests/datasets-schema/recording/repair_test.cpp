@@ -10,9 +10,9 @@
 namespace kerf::schema {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::StartsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
 
 /// A recording whose writer went away without closing it.
 void leave_open(const std::filesystem::path& file, std::size_t rows) {

@@ -133,6 +133,7 @@ struct FuzzySurface {
   [[nodiscard]] T operator()(double d, double s) const noexcept {
     d = std::clamp(d, depth.least, depth.most);
     s = std::clamp(s, speed.least, speed.most);
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): likewise
     std::array<T, max_memberships * max_memberships> weight;
     weights(d, s, weight);
     T force(0.0);

@@ -50,7 +50,9 @@ TEST_F(SilentLaw, IsAFailureInJUnit) {
       AllOf(HasSubstr("<testsuite name=\"a small suite\" tests=\"1\" failures=\"1\" errors=\"0\" time=\""),
             HasSubstr("<testcase classname=\"a small suite\" name=\"kelvin\" time=\""),
             HasSubstr("<failure message=\"the force differs in "),
-            HasSubstr(software() + ": &lt;first&gt; &amp; best"), HasSubstr("</testsuites>\n")));
+            HasSubstr(software() + ": &lt;first&gt; &amp; best"),
+            HasSubstr("<property name=\"software\" value=\"" + software() + "\"/>"),
+            HasSubstr("</testsuites>\n")));
 }
 
 TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {

@@ -13,9 +13,9 @@
 namespace kerf::bench {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
 
 TEST(Info, PrintsOneJsonObject) {
   const test::TemporaryFolder folder;

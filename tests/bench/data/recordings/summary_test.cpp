@@ -10,8 +10,8 @@
 namespace kerf::bench {
 namespace {
 
-using ::testing::Contains;
-using ::testing::HasSubstr;
+using testing::Contains;
+using testing::HasSubstr;
 
 std::vector<std::string> warnings_of(const schema::Recording& recording) {
   return recording_summary(recording)["warnings"].get<std::vector<std::string>>();

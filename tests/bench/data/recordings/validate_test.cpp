@@ -8,8 +8,8 @@
 namespace kerf::bench {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+using testing::HasSubstr;
+using testing::IsEmpty;
 
 TEST(ValidateVerb, PassesASoundRecording) {
   const test::TemporaryFolder folder;

@@ -14,8 +14,8 @@
 namespace kerf::bench {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
+using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> names_of(const std::vector<Figure>& figures) {
   std::vector<std::string> names;
@@ -25,14 +25,14 @@ std::vector<std::string> names_of(const std::vector<Figure>& figures) {
 
 TEST(TheFigures, AreThoseThatTheStudyHasSomethingFor) {
   const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
-  EXPECT_THAT(names_of(analysis_figures(table, analyse(table))), ::testing::ElementsAre("proportions"));
+  EXPECT_THAT(names_of(analysis_figures(table, analyse(table))), testing::ElementsAre("proportions"));
   Study levels = test::study_with(Design::constant);
   levels.scale.levels = {0.05, 0.1, 0.2};
   psychophysics::Random random(1);
   test::add_observer(levels, "P1", {.threshold = 0.1}, 20, random);
   levels.judgements.front().response_s = 1.0;
   EXPECT_THAT(names_of(analysis_figures(levels, analyse(levels, {.bootstrap = 0}))),
-              ::testing::ElementsAre("psychometric", "response-times"));
+              testing::ElementsAre("psychometric", "response-times"));
   EXPECT_TRUE(analysis_figures(Study{}, analyse(Study{})).empty());
 }
 
@@ -65,7 +65,7 @@ TEST(AnAnalysisThatIsWritten, IsNotReplacedUnasked) {
   const Study table = read_answers(KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv");
   const Analysis analysis = analyse(table);
   EXPECT_THAT(write_analysis(table, analysis, folder, false),
-              ::testing::ElementsAre("analysis.html", "analysis.json", "answers.csv", "proportions.svg"));
+              testing::ElementsAre("analysis.html", "analysis.json", "answers.csv", "proportions.svg"));
   EXPECT_THAT(read_whole_file(folder / "analysis.html"), HasSubstr("<svg"));
   EXPECT_EQ(read_answers(folder / "answers.csv").judgements.size(), 12U);
   EXPECT_THROW((void)write_analysis(table, analysis, folder, false), std::invalid_argument);

@@ -18,9 +18,9 @@ using psychophysics::Random;
 using psychophysics::Shape;
 using test::add_answers;
 using test::add_observer;
-using ::testing::Contains;
-using ::testing::HasSubstr;
 using test::study_with;
+using testing::Contains;
+using testing::HasSubstr;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 

@@ -16,9 +16,9 @@ namespace {
 using test::abx_task;
 using test::add_answers;
 using test::add_wins;
-using ::testing::Contains;
-using ::testing::HasSubstr;
 using test::study_with;
+using testing::Contains;
+using testing::HasSubstr;
 
 AnalysisOptions quick() { return {.bootstrap = 0}; }
 

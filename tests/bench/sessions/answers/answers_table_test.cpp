@@ -11,7 +11,7 @@
 namespace kerf::bench {
 namespace {
 
-using ::testing::HasSubstr;
+using testing::HasSubstr;
 
 std::string refusal(std::string_view text, std::optional<Design> design = {}) {
   try {

@@ -104,7 +104,7 @@ TEST(LawError, IsThatOfTheTableThatThePageIsHeldToToo) {
         .penetration = of["penetration"], .closing = forces("closing"), .opening = forces("opening")};
     curve.jnd = {.weber_fraction = of["jnd"]["weber_fraction"], .threshold = of["jnd"]["threshold_n"]};
     const LawError error = law_error(curve, knots_in(one, "knots"));
-    const auto expected = one["error"];
+    const auto& expected = one["error"];
     EXPECT_THAT(error.rmse_n, near(expected["rmse_n"])) << one["name"];
     EXPECT_THAT(error.worst_n, near(expected["worst_n"])) << one["name"];
     EXPECT_EQ(error.worst_penetration, expected["worst_penetration"].get<double>()) << one["name"];

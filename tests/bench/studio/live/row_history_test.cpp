@@ -157,14 +157,14 @@ std::vector<schema::Row> spiky_rows(std::mt19937& random, std::size_t count) {
   return rows;
 }
 
-struct Range {
+struct Extremes {
   double smallest = not_a_number;
   double largest = not_a_number;
 };
 
 template <typename Inside>
-Range range_of(const std::vector<schema::Row>& rows, Inside inside) {
-  Range range;
+Extremes range_of(const std::vector<schema::Row>& rows, Inside inside) {
+  Extremes range;
   for (const schema::Row& row : rows) {
     if (!inside(row) || !std::isfinite(row.position[0])) continue;
     range.smallest = std::fmin(range.smallest, row.position[0]);
@@ -194,7 +194,7 @@ TEST(RowHistory, LosesNoSpikeWhateverTheRowsAndTheFramesAreCutInto) {
         ASSERT_TRUE(frame.columns == 0 || frame.from == next) << "no column is left out";
         for (std::size_t column = 0; column < frame.columns; ++column, ++columns) {
           const std::uint64_t from = frame.from + column * ticks;
-          const Range expected = range_of(
+          const Extremes expected = range_of(
               rows, [&](const schema::Row& it) { return it.tick >= from && it.tick < from + ticks; });
           ASSERT_TRUE(same(frame.smallest[column], expected.smallest)) << "tick " << from;
           ASSERT_TRUE(same(frame.largest[column], expected.largest)) << "tick " << from;
@@ -220,10 +220,10 @@ TEST(RowHistory, LosesNoSpikeInAView) {
     const std::size_t columns = std::uniform_int_distribution<std::size_t>(1, 900)(random);
     const TraceView view = history.view(trace, from_s, to_s, columns);
     ASSERT_LE(view.time_s.size(), columns);
-    Range seen;
+    Extremes seen;
     for (std::size_t column = 0; column < view.time_s.size(); ++column) {
       const double end_s = column + 1 < view.time_s.size() ? view.time_s[column + 1] : to_s + 1e-9;
-      const Range expected = range_of(
+      const Extremes expected = range_of(
           kept, [&](const schema::Row& it) { return it.time_s >= view.time_s[column] && it.time_s < end_s; });
       const double smallest = view.traces[0].smallest[column];
       const double largest = view.traces[0].largest[column];
@@ -235,7 +235,7 @@ TEST(RowHistory, LosesNoSpikeInAView) {
       seen.smallest = std::fmin(seen.smallest, smallest);
       seen.largest = std::fmax(seen.largest, largest);
     }
-    const Range whole =
+    const Extremes whole =
         range_of(kept, [&](const schema::Row& it) { return it.time_s >= from_s && it.time_s <= to_s; });
     ASSERT_FALSE(seen.smallest > whole.smallest) << "seed " << seed;
     ASSERT_FALSE(seen.largest < whole.largest);
