@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "chart/speed_accuracy.h"
-#include "plot/plot.h"
 
 namespace kerf::bench {
 
@@ -16,11 +15,6 @@ namespace kerf::bench {
 
 /// One row a point, its units in the head.
 [[nodiscard]] std::string chart_csv(const SpeedAccuracy& chart);
-
-/// Cost of a tick [us] over error ([N], or [JND] where several axes are judged), both logarithmic: a colour a
-/// law, crosses over what is not stable, the front as stairs with its points named, the JND, the tick and
-/// half of it as lines. Errors under a ten-thousandth of the JND stand at the left border.
-[[nodiscard]] Chart chart_picture(const SpeedAccuracy& chart);
 
 /// One self-contained page: the picture, the front, every point, and what was left out.
 [[nodiscard]] std::string chart_page(const SpeedAccuracy& chart);

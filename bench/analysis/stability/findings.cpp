@@ -7,6 +7,7 @@
 
 #include "files/json_number.h"
 #include "html/html.h"
+#include "stability/map_pictures.h"
 
 namespace kerf::bench {
 namespace {
@@ -16,41 +17,6 @@ using json = nlohmann::ordered_json;
 std::string text_of(const std::optional<double>& value, double factor, const char* unit,
                     const char* without) {
   return value ? fmt::format("{:.4g} {}", factor * *value, unit) : std::string(without);
-}
-
-/// Where the cells of a row or column begin and end: half-way between their middles.
-std::vector<double> edges_of(const std::vector<double>& middles, bool logarithmic_scale) {
-  std::vector<double> edges;
-  const auto between = [&](double a, double b) {
-    return logarithmic_scale ? std::sqrt(a * b) : 0.5 * (a + b);
-  };
-  edges.push_back(middles.front());
-  for (std::size_t i = 1; i < middles.size(); ++i) edges.push_back(between(middles[i - 1], middles[i]));
-  edges.push_back(middles.back());
-  return edges;
-}
-
-/// A map as boxes, runs of equal cells along the columns' number merged. That number is drawn upwards where
-/// `upwards`, else to the right.
-std::vector<Box> boxes_of(const Grid2& grid, const std::vector<Cell>& cells, bool upwards, bool log_first,
-                          bool log_second) {
-  std::vector<Box> boxes;
-  const auto first = edges_of(grid.first, log_first);
-  const auto second = edges_of(grid.second, log_second);
-  const std::size_t columns = grid.first.size();
-  for (std::size_t row = 0; row < grid.second.size(); ++row) {
-    const auto at = cells.begin() + static_cast<std::ptrdiff_t>(row * columns);
-    for (std::size_t begin = 0, end = 0; begin < columns; begin = end) {
-      const bool stable = at[static_cast<std::ptrdiff_t>(begin)].stable;
-      while (end < columns && at[static_cast<std::ptrdiff_t>(end)].stable == stable) ++end;
-      const Range along{first[begin], first[end]};
-      const Range across{second[row], second[row + 1]};
-      const Range& x = upwards ? across : along;
-      const Range& y = upwards ? along : across;
-      boxes.push_back({x.begin, x.end, y.begin, y.end, stable ? Colour::sky : Colour::orange});
-    }
-  }
-  return boxes;
 }
 
 std::string device_table(const SampledDevice& device) {
@@ -68,44 +34,6 @@ std::string device_table(const SampledDevice& device) {
                      row("mass of the hand", device.hand.mass_kg, "kg"),
                      row("damping of the hand", device.hand.damping_n_s_per_m, "N·s/m"),
                      row("stiffness of the hand", device.hand.stiffness_n_per_m, "N/m")});
-}
-
-Curve boundary(const WallMap& map, const char* label, Colour colour, double WallBoundary::*value) {
-  Curve curve{.label = label, .colour = colour, .width = 2.0};
-  for (const WallBoundary& at : map.boundaries) {
-    const bool drawn = at.*value > map.grid.first.front() && at.*value < map.grid.first.back();
-    curve.x.push_back(at.damping_n_s_per_m);
-    curve.y.push_back(drawn ? at.*value : std::nan(""));
-  }
-  return curve;
-}
-
-Chart chart_of(const WallMap& map) {
-  Chart chart{.title = "Virtual wall: where it comes to rest",
-              .x_label = "damping of the wall B [N·s/m]",
-              .y_label = "stiffness of the wall K [N/m]",
-              .x_range = {map.grid.second.front(), map.grid.second.back()},
-              .y_range = {map.grid.first.front(), map.grid.first.back()},
-              .log_y = true,
-              .legend_below = true,
-              .width_px = 1000,
-              .height_px = 560};
-  if (!map.cells.empty()) chart.boxes = boxes_of(map.grid, map.cells, true, true, false);
-  chart.curves = {boundary(map, "eigenvalues", Colour::black, &WallBoundary::eigenvalues),
-                  boundary(map, "simulated, linear", Colour::vermillion, &WallBoundary::simulated_linear),
-                  boundary(map, "simulated, as it is", Colour::blue, &WallBoundary::simulated),
-                  boundary(map, "passive, with filter and delay", Colour::green, &WallBoundary::passive),
-                  boundary(map, "Colgate and Schenkel", Colour::purple, &WallBoundary::colgate_schenkel)};
-  chart.curves[1].mark = Mark::points;
-  chart.curves[1].width = 3.0;
-  chart.curves[4].dashed = true;
-  chart.horizontal.push_back({.at = map.abbott_okamura, .label = "Abbott and Okamura (B = 0)"});
-  for (const auto& [colour, label] :
-       {std::pair{Colour::sky, "comes to rest"}, {Colour::orange, "does not"}}) {
-    chart.curves.push_back(
-        {.label = label, .x = {-1.0}, .y = {-1.0}, .colour = colour, .mark = Mark::points, .width = 8.0});
-  }
-  return chart;
 }
 
 /// In words what the lines say of each other.
@@ -139,41 +67,6 @@ std::vector<std::string> comparison(const WallMap& map) {
       "Okamura {:.4g}); passivity must hold in any hand, stability in the one that was given",
       undamped.eigenvalues, undamped.passive, undamped.colgate_schenkel, map.abbott_okamura));
   return lines;
-}
-
-Chart chart_of(const LawStudy& study) {
-  const LawMap& map = study.map;
-  Chart chart{.title = fmt::format("{}: where strokes of up to {:.3g} m/s are given no energy", study.model,
-                                   map.speed_m_s),
-              .x_label = "depth, in travel of the device [mm]",
-              .y_label = "sampling rate [Hz]",
-              .log_y = true,
-              .legend_below = true,
-              .width_px = 1000,
-              .height_px = 480};
-  Grid2 drawn = map.grid;
-  for (double& depth : drawn.first) depth *= 1e3;
-  chart.x_range = {drawn.first.front(), drawn.first.back()};
-  chart.y_range = {drawn.second.front(), drawn.second.back()};
-  chart.boxes = boxes_of(drawn, map.cells, false, false, true);
-  Curve theory{.label = "local stiffness = passive stiffness", .colour = Colour::black, .width = 2.0};
-  const std::size_t columns = drawn.first.size();
-  for (std::size_t row = 0; row < drawn.second.size(); ++row) {
-    const auto begin = map.cells.begin() + static_cast<std::ptrdiff_t>(row * columns);
-    const auto beyond = std::find_if(begin, begin + static_cast<std::ptrdiff_t>(columns),
-                                     [](const Cell& cell) { return !cell.theory; });
-    const auto at = static_cast<std::size_t>(beyond - begin);
-    theory.x.push_back(at == 0 || at == columns ? std::nan("")
-                                                : 0.5 * (drawn.first[at - 1] + drawn.first[at]));
-    theory.y.push_back(drawn.second[row]);
-  }
-  chart.curves.push_back(std::move(theory));
-  for (const auto& [colour, label] : {std::pair{Colour::sky, "passive"}, {Colour::orange, "gains energy"}}) {
-    chart.curves.push_back(
-        {.label = label, .x = {-1.0}, .y = {-1.0}, .colour = colour, .mark = Mark::points, .width = 8.0});
-  }
-  chart.horizontal.push_back({.at = 1.0 / study.device.period_s, .label = "this device"});
-  return chart;
 }
 
 /// The axis that was studied, and what it can do by itself.
@@ -270,7 +163,7 @@ Findings findings_of(const WallMap& map, const StudiedAxis& on) {
                 {"cells", std::move(cells)}};
   found.lines = comparison(map);
   found.json["in_words"] = found.lines;
-  found.figures.push_back({"wall", chart_of(map)});
+  found.figures.push_back({"wall", picture_of(map)});
   found.html = device_table(map.device) + "<h2>Boundaries</h2>\n" + html_table(table);
   return found;
 }
@@ -345,7 +238,7 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
   found.json["in_words"] = found.lines;
-  found.figures.push_back({"law", chart_of(study)});
+  found.figures.push_back({"law", picture_of(study.model, study.map)});
   found.html = device_table(study.device);
   return found;
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -16,6 +17,11 @@ namespace kerf::bench {
 }
 [[nodiscard]] inline nlohmann::ordered_json json_number(const std::optional<double>& value) {
   return value ? json_number(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// The number back: NaN of null.
+[[nodiscard]] inline double number_from(const nlohmann::ordered_json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
 /// A list of numbers.

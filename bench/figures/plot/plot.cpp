@@ -67,6 +67,46 @@ void add_data(std::string& script, const Curve& curve, std::size_t index) {
   script += "EOD\n";
 }
 
+/// Runs of one colour as one rectangle.
+void add_cells(std::string& script, const Cells& cells) {
+  if (cells.kind.empty()) return;
+  const std::vector<double>& along = cells.upwards ? cells.y_edges : cells.x_edges;
+  const std::vector<double>& across = cells.upwards ? cells.x_edges : cells.y_edges;
+  const std::size_t in_a_row = along.size() - 1;
+  for (std::size_t row = 0; row + 1 < across.size(); ++row) {
+    const auto colour = [&](std::size_t i) { return cells.kinds[cells.kind[row * in_a_row + i]].colour; };
+    for (std::size_t begin = 0, end = 0; begin < in_a_row; begin = end) {
+      while (end < in_a_row && colour(end) == colour(begin)) ++end;
+      std::pair left_bottom{along[begin], across[row]};
+      std::pair right_top{along[end], across[row + 1]};
+      if (cells.upwards) {
+        std::swap(left_bottom.first, left_bottom.second);
+        std::swap(right_top.first, right_top.second);
+      }
+      fmt::format_to(std::back_inserter(script),
+                     "set object rectangle from first {}, first {} to first {}, first {} behind fc rgb '{}' "
+                     "fs solid 0.3 noborder\n",
+                     left_bottom.first, left_bottom.second, right_top.first, right_top.second,
+                     hex(colour(begin)));
+    }
+  }
+}
+
+/// The curves, and one beyond the axes for each colour of cells: the legend names it.
+std::vector<Curve> curves_of(const Chart& chart) {
+  std::vector<Curve> curves = chart.curves;
+  for (const CellKind& kind : chart.cells.kinds) {
+    if (kind.dotted) continue;
+    curves.push_back({.label = kind.label,
+                      .x = {-1.0},
+                      .y = {-1.0},
+                      .colour = kind.colour,
+                      .mark = Mark::points,
+                      .width = 8.0});
+  }
+  return curves;
+}
+
 std::string ticks_of(char axis, const std::vector<NamedTick>& ticks) {
   if (ticks.empty()) return {};
   std::string script = fmt::format("set {}tics (", axis);
@@ -96,8 +136,8 @@ std::string script_of(const Chart& chart, const std::string& output) {
   for (const auto& [axis, range] : {std::pair{'x', chart.x_range}, std::pair{'y', chart.y_range}}) {
     if (range.begin < range.end) fmt::format_to(out, "set {}range [{}:{}]\n", axis, range.begin, range.end);
   }
-  if (std::all_of(chart.curves.begin(), chart.curves.end(),
-                  [](const Curve& curve) { return curve.label.empty(); }))
+  const std::vector<Curve> curves = curves_of(chart);
+  if (std::all_of(curves.begin(), curves.end(), [](const Curve& curve) { return curve.label.empty(); }))
     script += "unset key\nset rmargin 3\n";
   script += ticks_of('x', chart.x_ticks) + ticks_of('y', chart.y_ticks);
   for (const Band& band : chart.bands) {
@@ -107,13 +147,7 @@ std::string script_of(const Chart& chart, const std::string& output) {
         "noborder\n",
         band.begin, band.end, hex(band.colour));
   }
-  for (const Box& box : chart.boxes) {
-    fmt::format_to(
-        out,
-        "set object rectangle from first {}, first {} to first {}, first {} behind fc rgb '{}' fs solid 0.3 "
-        "noborder\n",
-        box.left, box.bottom, box.right, box.top, hex(box.colour));
-  }
+  add_cells(script, chart.cells);
   for (const Marker& marker : chart.vertical) {
     fmt::format_to(
         out, "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead lc rgb '{1}' lw 1.5 dt 3\n",
@@ -134,9 +168,9 @@ std::string script_of(const Chart& chart, const std::string& output) {
                    gnuplot_text(label.text), label.x, label.y,
                    label.left ? "right offset -0.6,-0.6" : "left offset 0.6,0.6");
   }
-  for (std::size_t i = 0; i < chart.curves.size(); ++i) add_data(script, chart.curves[i], i);
-  for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-    const Curve& curve = chart.curves[i];
+  for (std::size_t i = 0; i < curves.size(); ++i) add_data(script, curves[i], i);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const Curve& curve = curves[i];
     fmt::format_to(out, "{} $d{} using 1:2 with {} lc rgb '{}' {}", i == 0 ? "plot" : ",", i, style_of(curve),
                    hex(curve.colour), curve.label.empty() ? "notitle" : "title " + gnuplot_text(curve.label));
   }

@@ -26,6 +26,7 @@ struct Curve {
   Mark mark = Mark::line;
   double width = 1.5;
   bool dashed = false;
+  std::vector<std::size_t> of;  ///< the number of what each point stands for, for a page; empty: of nothing
 };
 
 /// A stretch of the x axis laid behind the curves.
@@ -35,13 +36,20 @@ struct Band {
   Colour colour = Colour::sky;
 };
 
-/// A rectangle laid behind the curves, such as a run of cells of a map.
-struct Box {
-  double left = 0.0;
-  double right = 0.0;
-  double bottom = 0.0;
-  double top = 0.0;
+/// What cells of a map can be.
+struct CellKind {
   Colour colour = Colour::sky;
+  std::string label;
+  bool dotted = false;  ///< on a page; gnuplot draws and names colours alone
+};
+
+/// A map laid behind the curves. Its cells follow each other along y where `upwards`, else along x.
+struct Cells {
+  std::vector<double> x_edges;  ///< where columns begin and end: one more than there are
+  std::vector<double> y_edges;
+  bool upwards = false;
+  std::vector<CellKind> kinds;    ///< in the legend, cells or not
+  std::vector<std::size_t> kind;  ///< of each cell; empty: none is drawn
 };
 
 /// A line across the chart with a text at it.
@@ -77,7 +85,7 @@ struct Chart {
   std::string y_label;
   std::vector<Curve> curves;
   std::vector<Band> bands;
-  std::vector<Box> boxes;
+  Cells cells;
   std::vector<Marker> vertical;
   std::vector<Marker> horizontal;
   std::vector<PointLabel> labels;

@@ -16,10 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t head_bytes = 4096;
 
-double number_in(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
-
 Json head_of(const RecordedTrial& trial) {
   Json head{{"what", to_json(trial.what)},
             {"answer", trial.answer},
@@ -43,7 +39,7 @@ RecordedTrial trial_of(const Json& head) {
   RecordedTrial trial;
   trial.what = trial_plan_from(head.at("what"));
   trial.answer = head.at("answer").get<std::size_t>();
-  trial.response_s = number_in(head.at("response_s"));
+  trial.response_s = number_from(head.at("response_s"));
   trial.switches = head.at("switches").get<std::size_t>();
   trial.at = head.at("at").get<std::string>();
   for (const Json& axis : head.at("axes")) {
@@ -51,8 +47,8 @@ RecordedTrial trial_of(const Json& head) {
                           .position_unit = axis.at(1).get<std::string>(),
                           .force_unit = axis.at(2).get<std::string>(),
                           .lever = axis.at(3).get<double>(),
-                          .contact_position = number_in(axis.at(4)),
-                          .contact_direction = number_in(axis.at(5))});
+                          .contact_position = number_from(axis.at(4)),
+                          .contact_direction = number_from(axis.at(5))});
   }
   for (const Json& channel : head.at("channels")) {
     trial.channels.push_back(

@@ -3,20 +3,24 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include <kerf/fitting/fit.h>
 
+#include "chart/chart_picture.h"
 #include "chart/fit_plan.h"
 #include "files/whole_file.h"
 #include "laws/law_file.h"
+#include "plot/chart_json.h"
 #include "recordings/axes.h"
 #include "results/law_view.h"
 #include "results/residuals.h"
 #include "results/result_jobs.h"
 #include "stability/device/in_hand.h"
+#include "stability/map_pictures.h"
 
 namespace kerf::bench {
 namespace {
@@ -115,13 +119,25 @@ WorkspaceEntry find_result(Workspace& workspace, const std::string& id) {
   return workspace.find(id, FileKind::stability);
 }
 
+/// What the page draws of a result, whichever version wrote it.
+std::optional<Chart> figure_of(FileKind kind, const nlohmann::ordered_json& result) {
+  return kind == FileKind::chart ? chart_picture(result) : map_picture(result);
+}
+
 HttpResponse result(const HttpRequest& request, Workspace& workspace) {
   const WorkspaceEntry entry = find_result(workspace, text_in_query(request, "id"));
   if (std::filesystem::file_size(entry.path) > largest_result)
     throw RequestError(413, fmt::format("{} is larger than {} MB", entry.name, largest_result >> 20U));
   HttpResponse response = json_response({});
   response.body = read_whole_file(entry.path);
-  return response;
+  if (entry.kind != FileKind::chart && entry.kind != FileKind::stability) return response;
+  try {
+    auto result = nlohmann::ordered_json::parse(response.body);
+    if (const auto figure = figure_of(entry.kind, result)) result["figure"] = chart_to_json(*figure);
+    return json_response(result);
+  } catch (const std::exception& error) {
+    throw RequestError(400, fmt::format("{} is not what kerf writes: {}", entry.name, error.what()));
+  }
 }
 
 HttpResponse fitted_laws_list() {

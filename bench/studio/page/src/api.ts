@@ -242,6 +242,43 @@ export interface FitFile {
   choice: { model: string; why: string };
   warnings: string[];
 }
+export type Colour = "black" | "blue" | "vermillion" | "green" | "purple" | "orange" | "sky" | "yellow" | "grey";
+export interface FigureCurve {
+  label: string; // empty: not in the legend
+  x: (number | null)[]; // null breaks a line
+  y: (number | null)[];
+  colour: Colour;
+  mark: "line" | "points" | "circles" | "crosses";
+  width: number;
+  dashed: boolean;
+  of: number[]; // the number of what each point stands for; empty: of nothing
+}
+export interface FigureCells {
+  x_edges: number[];
+  y_edges: number[];
+  upwards: boolean; // cells follow each other along y, else along x
+  kinds: { colour: Colour; label: string; dotted: boolean }[];
+  kind: number[]; // of each cell
+}
+export interface FigureMarker {
+  at: number | null;
+  label: string;
+  label_after: boolean; // right of a vertical line instead of left
+}
+/** What the server sends of chart_to_json() in bench/figures/plot. */
+export interface Figure {
+  x_label: string;
+  y_label: string;
+  curves: FigureCurve[];
+  cells: FigureCells;
+  vertical: FigureMarker[];
+  horizontal: FigureMarker[];
+  labels: { x: number; y: number; text: string; left: boolean }[];
+  x_range: [number, number] | null; // null: what the curves need
+  y_range: [number, number] | null;
+  log_x: boolean;
+  log_y: boolean;
+}
 export interface ChartPoint {
   law: string;
   fidelity: string;
@@ -268,6 +305,7 @@ export interface ChartFile {
   compared_in: "N" | "JND";
   points: ChartPoint[];
   notes: string[];
+  figure: Figure;
 }
 export interface ChoiceCandidate {
   law: string;
@@ -298,24 +336,12 @@ interface StabilityOf {
     axis: string;
     grip: string;
     rate_hz: number;
-    damping_n_s_per_m: number;
-    passive_stiffness_n_per_m: number;
-    colgate_schenkel_n_per_m: number;
   };
   in_words: string[];
-}
-export interface WallBoundary {
-  B: number;
-  simulated: number;
-  simulated_linear: number;
-  eigenvalues: number;
-  passive: number;
-  colgate_schenkel: number;
+  figure?: Figure; // missing where there are no cells
 }
 export interface WallStability extends StabilityOf {
   study: "wall";
-  abbott_okamura: number;
-  boundaries: WallBoundary[];
   cells: { K: number; B: number; stable: boolean; theory: boolean }[];
 }
 export interface LawStability extends StabilityOf {

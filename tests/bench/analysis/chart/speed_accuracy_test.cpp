@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "chart/chart_files.h"
+#include "chart/chart_picture.h"
 #include "chart/fidelities.h"
 
 namespace kerf::bench {
@@ -92,7 +93,7 @@ TEST(SpeedAccuracy, CrossesEulerOutPastTwiceTheRelaxationTime) {
   EXPECT_TRUE(point(chart, "kelvin", "Euler, 4000 Hz").stable);
   for (const auto* fidelity : {"exact", "exact, float", "semi-implicit", "semi-implicit, 250 Hz"})
     EXPECT_TRUE(point(chart, "kelvin", fidelity).stable) << fidelity;
-  const Chart picture = chart_picture(chart);
+  const Chart picture = chart_picture(chart_as_json(chart));
   EXPECT_TRUE(std::any_of(picture.curves.begin(), picture.curves.end(),
                           [](const Curve& curve) { return curve.mark == Mark::crosses; }));
 }

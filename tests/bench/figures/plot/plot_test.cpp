@@ -11,6 +11,7 @@
 namespace kerf::bench {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -34,6 +35,29 @@ TEST(Plot, NamesTicksOnBothAxes) {
                                 .y_ticks = {{.at = 3.0, .name = "subject 1"}}});
   EXPECT_THAT(svg, HasSubstr("the standard"));
   EXPECT_THAT(svg, HasSubstr("subject 1"));
+}
+
+TEST(Plot, DrawsRunsOfCellsOfOneColourAsOneRectangle) {
+  Chart chart{.curves = {{.x = {0, 3}, .y = {0, 2}}},
+              .cells = {.x_edges = {0, 1, 2, 3},
+                        .y_edges = {0, 1, 2},
+                        .kinds = {{Colour::sky, "holds"},
+                                  {Colour::orange, "breaks"},
+                                  {Colour::sky, "holds, which theory denies", true}},
+                        .kind = {0, 2, 0, 1, 1, 1}}};
+  const auto rectangles = [&] {
+    const std::string svg = draw(chart);
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = svg.find("fill-opacity = '0.3", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  EXPECT_EQ(rectangles(), 2U) << "a row below, one above";
+  chart.cells.upwards = true;
+  EXPECT_EQ(rectangles(), 4U) << "the middle one of three columns is of two colours";
+  EXPECT_THAT(draw(chart), AllOf(HasSubstr("holds"), HasSubstr("breaks"), Not(HasSubstr("denies"))));
+  chart.cells.kind.clear();
+  EXPECT_EQ(rectangles(), 0U);
+  EXPECT_THAT(draw(chart), HasSubstr("breaks"));
 }
 
 TEST(Plot, TakesHostileTextAsText) {

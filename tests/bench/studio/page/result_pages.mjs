@@ -12,6 +12,19 @@ async function jsonIn(studio, name) {
   return JSON.parse(await readFile(join(studio.folder, name), "utf8"));
 }
 
+/** Every text of the page's figure and its legend stands in the picture that the program drew, too. */
+async function expectAsInPrint(page, studio, svg, except = []) {
+  const print = await readFile(join(studio.folder, svg), "utf8");
+  const texts = await page.locator(".figure .legend span, .figure .xy_plot :is(.axis, .note)").allTextContents();
+  const left = texts.filter((it) => !print.includes(it.replace(" (nowhere here)", "")));
+  expectEqual(
+    left.filter((it) => !except.some((pattern) => pattern.test(it))),
+    [],
+    "what the page says and the picture does not",
+  );
+  return texts;
+}
+
 /** The heading of the page once it says so: a job's result opens by itself. */
 async function heading(page, pattern) {
   await until(`the heading is ${pattern}`, async () => pattern.test((await page.textContent("h1")) ?? ""), limit_ms);
@@ -95,6 +108,8 @@ async function testChart(page, studio) {
   await heading(page, /short\.chart$/);
   const { points } = await jsonIn(studio, "short.chart/chart.json");
   expectEqual(await page.locator("g.point").count(), points.length, "points");
+  const texts = await expectAsInPrint(page, studio, "short.chart/chart.svg");
+  for (const it of ["kelvin", "front", "JND", "half of it"]) expect(texts.includes(it), `${it} is named`);
   await page.locator('g.point[tabindex="0"]').focus();
   await page.keyboard.press("ArrowRight");
   const label = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
@@ -103,6 +118,7 @@ async function testChart(page, studio) {
   await until("its law is open", async () =>
     label.startsWith((await page.textContent(".law h2").catch(() => "")) || "?"),
   );
+  expect(await page.evaluate(() => document.activeElement.classList.contains("opened")), "the point keeps the focus");
   expect((await page.textContent(".law .equation")).startsWith("F ="), "the law's equation");
   expectEqual(await page.locator(".law tbody tr").count(), 3, "parameters of Kelvin's law");
   await page.locator("th button", { hasText: "p50" }).click();
@@ -136,6 +152,9 @@ async function testStability(page, studio) {
   const run = studio.kerf(["stability", "--device", "sim:scissors", "--grip", "light", "--cells", "12", "--json"]);
   const { cells, in_words: words } = JSON.parse(run.stdout);
   expectEqual(await page.locator(".words li").allTextContents(), words, "what the verb says");
+  const added = [/theory says otherwise$/, /^the device's own damping/];
+  const texts = await expectAsInPrint(page, studio, "sim-scissors.stability/wall.svg", added);
+  for (const it of ["comes to rest", "eigenvalues"]) expect(texts.includes(it), `${it} is named`);
   await page.locator(".map svg.xy_plot").focus();
   for (const key of ["ArrowUp", "ArrowLeft", "ArrowLeft"]) await page.keyboard.press(key);
   // The first press leads to the middle.

@@ -74,6 +74,28 @@ TEST_F(ResultRoutes, TakeAnOrderAndShowItsResult) {
   EXPECT_THAT(result.type, HasSubstr("application/json"));
 }
 
+TEST_F(ResultRoutes, DrawWhatEarlierVersionsWrote) {
+  const std::filesystem::path stored = std::filesystem::path(KERF_SOURCE_DIR) / "tests/bench/analysis";
+  for (const auto& [from, to] : {std::pair{"chart/older_chart.json", "old.chart/chart.json"},
+                                 {"stability/older_wall.json", "wall.stability/stability.json"},
+                                 {"stability/older_law.json", "law.stability/stability.json"}}) {
+    std::filesystem::create_directory((folder_ / to).parent_path());
+    std::filesystem::copy_file(stored / from, folder_ / to);
+    json result = json::parse(get("/api/result", {{"id", id(to)}}).body);
+    EXPECT_GE(result["figure"]["curves"].size(), 1U) << to;
+    EXPECT_EQ(result["figure"]["x_range"].size(), 2U) << to;
+    result.erase("figure");
+    EXPECT_EQ(result, json::parse(test::read_text(folder_ / to)));
+  }
+  std::filesystem::create_directory(folder_ / "broken.chart");
+  for (const auto* text : {"{", R"({"points": []})"}) {
+    test::write_text(folder_ / "broken.chart/chart.json", text);
+    const HttpResponse response = get("/api/result", {{"id", id("broken.chart/chart.json")}});
+    EXPECT_EQ(response.status, 400);
+    EXPECT_THAT(response.body, HasSubstr("broken.chart/chart.json is not what kerf writes"));
+  }
+}
+
 TEST_F(ResultRoutes, ShowALawAndWhatItLeavesOfARecording) {
   const HttpResponse law = get("/api/law", {{"id", id("tissue.law.toml")}});
   ASSERT_EQ(law.status, 200) << law.body;

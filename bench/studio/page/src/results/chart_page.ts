@@ -1,62 +1,60 @@
-import type { ChartFile, Workspace, WorkspaceFile } from "../api";
+import type { ChartFile, ChartPoint, Workspace, WorkspaceFile } from "../api";
 import { element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
+import { SortableTable } from "../ui/sortable_table";
 import type { Context } from "../ui/view";
 import { ChartPlot } from "./chart_plot";
-import { PlacedChart } from "./chart_points";
-import type { PlacedPoint } from "./chart_points";
 import { ChoicePanel } from "./choice_panel";
 import type { JobList } from "./jobs";
 import { LawPanel } from "./law_panel";
 import { byName, lawBeside, recordingsFor, resultName } from "./names";
-import { SortableTable } from "./sortable_table";
 
 const microseconds = (ns: number | null): string => (ns === null ? "–" : (1e-3 * ns).toFixed(3));
 
-function tableOf(chart: PlacedChart, open: (at: PlacedPoint) => void): HTMLElement {
+function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
   const columns = [
     {
       head: "law",
-      text: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}`,
-      key: (at: PlacedPoint) => `${at.point.law}, ${at.point.fidelity}`,
+      text: (point: ChartPoint) => `${point.law}, ${point.fidelity}`,
+      key: (point: ChartPoint) => `${point.law}, ${point.fidelity}`,
     },
     {
       head: "free",
-      text: (at: PlacedPoint) => String(at.point.parameters),
-      key: (at: PlacedPoint) => at.point.parameters,
+      text: (point: ChartPoint) => String(point.parameters),
+      key: (point: ChartPoint) => point.parameters,
     },
     {
       head: "p50 [µs]",
-      text: (at: PlacedPoint) => microseconds(at.point.p50_ns),
-      key: (at: PlacedPoint) => at.point.p50_ns ?? 0,
+      text: (point: ChartPoint) => microseconds(point.p50_ns),
+      key: (point: ChartPoint) => point.p50_ns ?? 0,
     },
     {
       head: "p99.9 [µs]",
-      text: (at: PlacedPoint) => microseconds(at.point.p999_ns),
-      key: (at: PlacedPoint) => at.point.p999_ns ?? 0,
+      text: (point: ChartPoint) => microseconds(point.p999_ns),
+      key: (point: ChartPoint) => point.p999_ns ?? 0,
     },
     {
       head: "error [N]",
-      text: (at: PlacedPoint) => plain(at.point.error_n),
-      key: (at: PlacedPoint) => at.point.error_n ?? Infinity,
+      text: (point: ChartPoint) => plain(point.error_n),
+      key: (point: ChartPoint) => point.error_n ?? Infinity,
     },
     {
       head: "error [JND]",
-      text: (at: PlacedPoint) => plain(at.point.error_jnd, 2),
-      key: (at: PlacedPoint) => at.point.error_jnd ?? Infinity,
+      text: (point: ChartPoint) => plain(point.error_jnd, 2),
+      key: (point: ChartPoint) => point.error_jnd ?? Infinity,
     },
     {
       head: "stable",
-      text: (at: PlacedPoint) => (at.point.stable ? "yes" : `no: ${at.point.why_not_stable}`),
-      key: (at: PlacedPoint) => (at.point.stable ? "yes" : "no"),
+      text: (point: ChartPoint) => (point.stable ? "yes" : `no: ${point.why_not_stable}`),
+      key: (point: ChartPoint) => (point.stable ? "yes" : "no"),
     },
     {
       head: "front",
-      text: (at: PlacedPoint) => (at.point.on_front ? "yes" : ""),
-      key: (at: PlacedPoint) => (at.point.on_front ? "a" : "b"),
+      text: (point: ChartPoint) => (point.on_front ? "yes" : ""),
+      key: (point: ChartPoint) => (point.on_front ? "a" : "b"),
     },
   ];
-  return new SortableTable("Every point", columns, chart.points, open).root;
+  return new SortableTable("Every point", columns, points, open).root;
 }
 
 /** A chart as it was written: points that open their laws, and the choice of one beside it. */
@@ -69,12 +67,11 @@ export class ChartPage {
     private readonly context: Context,
     private readonly workspace: Workspace,
     private readonly file: WorkspaceFile,
-    chart: ChartFile,
+    private readonly chart: ChartFile,
     jobs: JobList,
   ) {
-    const placed = new PlacedChart(chart);
     this.law = new LawPanel(context);
-    this.plot = new ChartPlot(placed, (at) => this.open(at));
+    this.plot = new ChartPlot(chart, (index) => this.open(index));
     const recording = recordingsFor(workspace, chart.source)[0];
     const its = recording?.name.endsWith(`${chart.source}.h5`) ? recording : undefined;
     const choice = new ChoicePanel(
@@ -110,7 +107,7 @@ export class ChartPage {
         element("div", { class: "stack" }, this.law.root, jobs.root),
       ),
       choice.root,
-      tableOf(placed, (at) => this.open(at)),
+      tableOf(chart.points, (point) => this.open(chart.points.indexOf(point))),
       ...chart.notes.map((it) => element("p", { class: "quiet" }, it)),
       element("p", {}, element("a", { href: "#/chart" }, "All charts")),
     );
@@ -121,10 +118,11 @@ export class ChartPage {
     this.law.end();
   }
 
-  private open(at: PlacedPoint): void {
-    this.plot.markOpened(at.index);
-    const law = lawBeside(this.workspace, this.file, at.point.law_file);
-    const title = `${at.point.law}, ${at.point.fidelity}`;
+  private open(index: number): void {
+    const point = this.chart.points[index]!;
+    this.plot.markOpened(index);
+    const law = lawBeside(this.workspace, this.file, point.law_file);
+    const title = `${point.law}, ${point.fidelity}`;
     if (law) void this.law.open(law.id, title);
     else this.context.complain(new Error(`${title}: its law file is not in this folder; chart the recording again`));
   }

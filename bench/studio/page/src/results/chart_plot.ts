@@ -1,180 +1,124 @@
+import type { ChartFile, ChartPoint } from "../api";
 import { drawn, element } from "../ui/dom";
-import { XyPlot } from "../ui/xy_plot";
-import { pointInWords } from "./chart_points";
-import type { PlacedChart, PlacedPoint } from "./chart_points";
-import { markClass, markPath, markSample } from "./marks";
+import { FigurePlot } from "../ui/figure";
+import type { Spot } from "../ui/figure";
+import { plain, withUnit } from "../ui/numbers";
 
-const radius = 7;
 const reach = 14; // of a pointer
 
-/** Cost of a tick over error, both logarithmic; a point opens its law. Arrow keys go from point to point. */
+/** A chart's figure; a point opens its law. Arrow keys go from point to point. */
 export class ChartPlot {
   readonly root: HTMLElement;
-  private readonly plot: XyPlot;
+  private readonly drawing: FigurePlot;
   private readonly readout = element(
     "p",
     { class: "readout", role: "status" },
     "Point at a mark, or go from mark to mark with the arrow keys. Enter opens its law.",
   );
   private readonly marks: SVGGElement[] = [];
-  private current = 0; // in points by error
+  private current = 0; // in spots by error
   private opened = -1; // in the file
-  private readonly byError: PlacedPoint[];
-  private readonly byCost: PlacedPoint[];
+  private readonly byError: Spot[];
+  private readonly byCost: Spot[];
 
   constructor(
-    private readonly chart: PlacedChart,
-    private readonly open: (at: PlacedPoint) => void,
+    private readonly chart: ChartFile,
+    private readonly open: (index: number) => void, // in the file
   ) {
-    this.byError = [...chart.points].sort((a, b) => a.error - b.error || a.cost_us - b.cost_us);
-    this.byCost = [...chart.points].sort((a, b) => a.cost_us - b.cost_us || a.error - b.error);
-    this.plot = new XyPlot(
-      { label: `error, root mean square [${chart.unit}]`, logarithmic: true },
-      { label: "cost of a tick, median [µs]", logarithmic: true },
-      `Cost of a tick over error, ${chart.points.length} points`,
-      () => this.draw(),
+    this.drawing = new FigurePlot(chart.figure, `Cost of a tick over error, ${chart.points.length} points`, () =>
+      this.draw(),
     );
+    const { spots, plot, legend } = this.drawing;
+    this.byError = [...spots].sort((a, b) => a.x - b.x || a.y - b.y);
+    this.byCost = [...spots].sort((a, b) => a.y - b.y || a.x - b.x);
     this.root = element(
       "figure",
-      { class: "card chart_plot" },
-      element("div", { class: "plot tall" }, this.plot.svg),
+      { class: "card figure chart_plot" },
+      element("div", { class: "plot" }, plot.svg),
       this.readout,
-      this.legend(),
+      legend,
     );
     // Marks lie on each other: the nearest is meant, and a second press means the one below it.
-    const { svg } = this.plot;
-    svg.addEventListener("pointermove", (event) => {
+    plot.svg.addEventListener("pointermove", (event) => {
       const at = this.near(event)[0];
       if (at) this.tell(at, -1);
     });
-    svg.addEventListener("click", (event) => {
+    plot.svg.addEventListener("click", (event) => {
       const near = this.near(event);
-      const next = near[(near.findIndex((it) => it.index === this.opened) + 1) % near.length];
-      if (next) this.open(next);
+      const next = near[(near.findIndex((it) => it.of === this.opened) + 1) % near.length];
+      if (next) this.open(next.of);
     });
-    this.plot.show([], chart.limits());
+    this.drawing.show();
   }
 
   end(): void {
-    this.plot.end();
+    this.drawing.end();
   }
 
   /** Marks the point whose law is open. */
   markOpened(index: number): void {
     this.opened = index;
-    this.current = this.byError.findIndex((it) => it.index === index);
-    this.draw();
-  }
-
-  private legend(): HTMLElement {
-    const entry = (sample: Element, text: string): HTMLLIElement =>
-      element("li", {}, sample, element("span", {}, text));
-    const line = (kind: string): SVGSVGElement =>
-      drawn(
-        "svg",
-        { class: "sample", viewBox: "0 0 30 22", width: 30, height: 22, "aria-hidden": "true" },
-        drawn("line", { class: kind, x1: 1, x2: 29, y1: 11, y2: 11 }),
-      );
-    const cross = drawn(
-      "svg",
-      { class: "sample", viewBox: "0 0 22 22", width: 22, height: 22, "aria-hidden": "true" },
-      drawn("path", { class: "cross", d: crossPath(11, 11) }),
+    this.current = Math.max(
+      0,
+      this.byError.findIndex((it) => it.of === index),
     );
-    return element(
-      "ul",
-      { class: "legend", "aria-label": "Legend" },
-      ...this.chart.laws.map((law, i) => entry(markSample(i), law)),
-      entry(cross, "not stable"),
-      entry(line("stairs"), "front"),
-      entry(line("jnd_line"), "JND"),
-      entry(line("tick_line"), "a tick, and half of it"),
-    );
+    this.drawing.show();
   }
 
   private draw(): void {
-    const { plot, chart } = this;
-    const [left, right] = plot.limits.x;
-    const [bottom, top] = plot.limits.y;
-    const horizontal = (us: number, text: string, below: number): SVGElement[] => [
-      drawn("line", { class: "tick_line", x1: plot.x(left), x2: plot.x(right), y1: plot.y(us), y2: plot.y(us) }),
-      drawn("text", { class: "line_label", x: plot.x(right) - 6, y: plot.y(us) + below, "text-anchor": "end" }, text),
-    ];
-    plot.ground.replaceChildren(
-      ...horizontal(chart.tick_us, `a tick at ${Math.round(chart.file.rate_hz)} Hz`, -6),
-      ...horizontal(chart.tick_us / 2, "half of it", 18),
-      drawn("line", {
-        class: "jnd_line",
-        x1: plot.x(chart.jnd),
-        x2: plot.x(chart.jnd),
-        y1: plot.y(bottom),
-        y2: plot.y(top),
-      }),
-      drawn("text", { class: "line_label", x: plot.x(chart.jnd) + 6, y: plot.y(bottom) - 8 }, "JND"),
-      drawn("path", { class: "stairs", d: this.stairs() }),
-    );
     const had_focus = this.marks.includes(document.activeElement as unknown as SVGGElement);
     this.marks.length = 0;
-    this.byError.forEach((at, place) => this.marks.push(this.mark(at, place)));
+    this.byError.forEach((spot, place) => this.marks.push(this.mark(spot, place)));
     const on_top = (mark: SVGGElement): number =>
       Number(mark.classList.contains("on_front")) + 2 * Number(mark.classList.contains("opened"));
-    plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
+    this.drawing.plot.layer.replaceChildren(...[...this.marks].sort((a, b) => on_top(a) - on_top(b)));
     if (had_focus) this.marks[this.current]?.focus();
   }
 
-  private stairs(): string {
-    const { plot } = this;
-    const front = this.chart.front();
-    let x = plot.x(plot.limits.x[1]);
-    let path = "";
-    for (const at of front) {
-      const y = plot.y(at.cost_us);
-      path += `${path ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}L${plot.x(at.error).toFixed(1)} ${y.toFixed(1)}`;
-      x = plot.x(at.error);
-    }
-    return path && `${path}L${x.toFixed(1)} ${plot.y(plot.limits.y[1]).toFixed(1)}`;
-  }
-
-  private mark(at: PlacedPoint, place: number): SVGGElement {
-    const x = this.plot.x(at.error);
-    const y = this.plot.y(at.cost_us);
-    const mark = drawn(
+  private mark(spot: Spot, place: number): SVGGElement {
+    const { plot } = this.drawing;
+    const { on_front } = this.point(spot);
+    return drawn(
       "g",
       {
-        class: `point${at.point.on_front ? " on_front" : ""}${at.index === this.opened ? " opened" : ""}`,
+        class: `point${on_front ? " on_front" : ""}${spot.of === this.opened ? " opened" : ""}`,
         role: "button",
         tabindex: place === this.current ? 0 : -1,
-        "aria-label": pointInWords(at),
-        keydown: (event: KeyboardEvent) => this.key(event, at),
-        focus: () => this.tell(at, place),
+        "aria-label": pointInWords(this.point(spot)),
+        keydown: (event: KeyboardEvent) => this.key(event, spot),
+        focus: () => this.tell(spot, place),
         // Of who presses it without a pointer.
         click: (event: MouseEvent) => {
           if (event.detail !== 0) return;
           event.stopPropagation();
-          this.open(at);
+          this.open(spot.of);
         },
       },
-      drawn("circle", { class: "reach", cx: x, cy: y, r: 12 }),
-      drawn("path", {
-        class: markClass(at.law),
-        d: markPath(at.law, x, y, at.point.on_front ? radius + 1 : radius - 1),
-      }),
+      drawn("circle", { class: "reach", cx: plot.x(spot.x), cy: plot.y(spot.y), r: 12 }),
+      this.drawing.markAt(spot, on_front ? 2 : 0),
     );
-    if (!at.point.stable) mark.append(drawn("path", { class: "cross", d: crossPath(x, y) }));
-    return mark;
+  }
+
+  private point(spot: Spot): ChartPoint {
+    return this.chart.points[spot.of]!;
   }
 
   /** The points about a pointer, nearest first; of those that lie together the front's. */
-  private near(event: MouseEvent): PlacedPoint[] {
-    const pointer = this.plot.pointer(event);
-    return this.chart.points
-      .map((at) => ({ at, far: Math.hypot(this.plot.x(at.error) - pointer.x, this.plot.y(at.cost_us) - pointer.y) }))
+  private near(event: MouseEvent): Spot[] {
+    const { plot, spots } = this.drawing;
+    const pointer = plot.pointer(event);
+    return spots
+      .map((at) => ({ at, far: Math.hypot(plot.x(at.x) - pointer.x, plot.y(at.y) - pointer.y) }))
       .filter((it) => it.far <= reach)
-      .sort((a, b) => Math.round((a.far - b.far) / 4) || Number(b.at.point.on_front) - Number(a.at.point.on_front))
+      .sort(
+        (a, b) =>
+          Math.round((a.far - b.far) / 4) || Number(this.point(b.at).on_front) - Number(this.point(a.at).on_front),
+      )
       .map((it) => it.at);
   }
 
-  private tell(at: PlacedPoint, place: number): void {
-    this.readout.textContent = pointInWords(at);
+  private tell(at: Spot, place: number): void {
+    this.readout.textContent = pointInWords(this.point(at));
     if (place < 0 || place === this.current) return;
     this.marks[this.current]?.setAttribute("tabindex", "-1");
     this.current = place;
@@ -182,7 +126,7 @@ export class ChartPlot {
   }
 
   /** Left and right by error, up and down by cost. */
-  private key(event: KeyboardEvent, at: PlacedPoint): void {
+  private key(event: KeyboardEvent, at: Spot): void {
     const along = { ArrowRight: this.byError, ArrowLeft: this.byError, ArrowUp: this.byCost, ArrowDown: this.byCost }[
       event.key
     ];
@@ -191,7 +135,7 @@ export class ChartPlot {
       const next = along[along.indexOf(at) + step];
       if (next) this.marks[this.byError.indexOf(next)]?.focus();
     } else if (event.key === "Enter" || event.key === " ") {
-      this.open(at);
+      this.open(at.of);
     } else {
       return;
     }
@@ -199,7 +143,11 @@ export class ChartPlot {
   }
 }
 
-function crossPath(x: number, y: number): string {
-  const r = radius + 2;
-  return `M${x - r} ${y - r}L${x + r} ${y + r}M${x - r} ${y + r}L${x + r} ${y - r}`;
+/** One line of a point, for the read-out and for who hears it. */
+function pointInWords(point: ChartPoint): string {
+  const cost = `${withUnit(1e-9 * (point.p50_ns ?? 0), "s")} a tick, 99.9 % within ${withUnit(1e-9 * (point.p999_ns ?? NaN), "s")}`;
+  const error = `error ${withUnit(point.error_n, "N")} (${plain(point.error_jnd, 2)} JND)`;
+  const stable = point.stable ? "" : `; not stable: ${point.why_not_stable}`;
+  const front = point.on_front ? "; on the front" : "";
+  return `${point.law}, ${point.fidelity}: ${cost}; ${error}; ${point.parameters} parameters${front}${stable}`;
 }

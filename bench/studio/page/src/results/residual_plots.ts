@@ -1,9 +1,9 @@
 import type { Residuals } from "../api";
+import { bandPath, jndBand } from "../ui/bands";
 import { drawn, element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import { XyPlot } from "../ui/xy_plot";
 import type { Limits } from "../ui/xy_plot";
-import { bandPath, jndBand } from "./bands";
 
 /** Symmetric about zero, with the JND in it. */
 function aboutZero(of: Residuals, values: readonly (number | null)[]): [number, number] {

@@ -2,7 +2,6 @@ import "./results.css";
 
 import type { StabilityFile, Workspace, WorkspaceFile } from "../api";
 import { JobList } from "../results/jobs";
-import { mapModel } from "../results/map_model";
 import { byName, resultName } from "../results/names";
 import { stabilityForm } from "../results/stability_form";
 import { StabilityMap } from "../results/stability_map";
@@ -52,8 +51,8 @@ export const stability: View = {
         title.textContent = `Stability: ${resultName(file)}`;
         const words = element("ul", { class: "words" }, ...of.in_words.map((it) => element("li", {}, it)));
         root.append(element("p", { class: "quiet" }, about(of)));
-        if (of.cells.length > 0) {
-          map = new StabilityMap(mapModel(of), about(of));
+        if (of.figure) {
+          map = new StabilityMap(of, of.figure, about(of));
           root.append(map.root);
         }
         root.append(words);

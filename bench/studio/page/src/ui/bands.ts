@@ -1,5 +1,5 @@
-import { drawn } from "../ui/dom";
-import type { XyPlot } from "../ui/xy_plot";
+import { drawn } from "./dom";
+import type { XyPlot } from "./xy_plot";
 
 type Values = readonly (number | null)[];
 

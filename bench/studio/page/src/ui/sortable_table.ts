@@ -1,4 +1,4 @@
-import { element } from "../ui/dom";
+import { element } from "./dom";
 
 export interface Column<Row> {
   head: string;

@@ -1,0 +1,148 @@
+#include "chart/chart_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "files/json_number.h"
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+constexpr double least_share_of_jnd = 1e-4;
+constexpr double cheapest_us = 2e-3;  // below it a cost is what the clock can tell
+constexpr std::array law_colours{Colour::blue,   Colour::vermillion, Colour::green, Colour::purple,
+                                 Colour::orange, Colour::sky,        Colour::grey,  Colour::yellow};
+
+/// A point where it is drawn.
+struct Spot {
+  std::size_t of = 0;  ///< in the result
+  std::string law;
+  std::string name;
+  double error = 0.0;
+  double p50_ns = 0.0;
+  double cost_us = 0.0;  ///< as it is drawn
+  double rarely_us = 0.0;
+  bool stable = true;
+  bool on_front = false;
+};
+
+/// A chart's points, errors in N where one axis is judged, else in JNDs.
+struct Spots {
+  explicit Spots(const json& chart)
+      : unit(chart.at("compared_in").get<std::string>()),
+        jnd(unit == "N" ? number_from(chart.at("jnd_n")) : 1.0),
+        tick_us(1e6 / chart.at("rate_hz").get<double>()) {
+    const double most = 1e3 * jnd;
+    for (const json& point : chart.at("points")) {
+      const double error = number_from(point.at(unit == "N" ? "error_n" : "error_jnd"));
+      const double p50_ns = number_from(point.at("p50_ns"));
+      const double cost_us = std::max(1e-3 * p50_ns, cheapest_us);
+      const auto law = point.at("law").get<std::string>();
+      all.push_back({.of = all.size(),
+                     .law = law,
+                     .name = law + ", " + point.at("fidelity").get<std::string>(),
+                     .error = std::clamp(std::isfinite(error) ? error : most, least_share_of_jnd * jnd, most),
+                     .p50_ns = p50_ns,
+                     .cost_us = cost_us,
+                     .rarely_us = std::max(cost_us, 1e-3 * number_from(point.at("p999_ns"))),
+                     .stable = point.at("stable").get<bool>(),
+                     .on_front = point.at("on_front").get<bool>()});
+    }
+  }
+  std::string unit;
+  double jnd;
+  double tick_us;
+  std::vector<Spot> all;
+};
+
+void add_laws(const Spots& spots, Chart& picture) {
+  std::vector<Curve> laws;
+  for (const Spot& spot : spots.all) {
+    auto at = std::ranges::find(laws, spot.law, &Curve::label);
+    if (at == laws.end()) {
+      at = laws.insert(at, {.label = spot.law,
+                            .colour = law_colours[laws.size() % law_colours.size()],
+                            .mark = laws.size() < law_colours.size() ? Mark::points : Mark::circles,
+                            .width = 4.0});
+    }
+    at->x.push_back(spot.error);
+    at->y.push_back(spot.cost_us);
+    at->of.push_back(spot.of);
+  }
+  picture.curves.insert(picture.curves.end(), laws.begin(), laws.end());
+}
+
+void add_front(const Spots& spots, Chart& picture) {
+  std::vector<Spot> front;
+  std::ranges::copy_if(spots.all, std::back_inserter(front), &Spot::on_front);
+  std::ranges::sort(front, {}, &Spot::p50_ns);
+  if (front.empty()) return;
+  Curve stairs{.label = "front", .colour = Colour::black, .width = 2.0};
+  Curve rare{.label = "p99.9, front", .colour = Colour::black, .mark = Mark::circles, .width = 4.0};
+  double right = picture.x_range.end;
+  for (const Spot& spot : front) {
+    for (const double x : {right, spot.error}) {
+      stairs.x.push_back(x);
+      stairs.y.push_back(spot.cost_us);
+    }
+    right = spot.error;
+    rare.x.push_back(right);
+    rare.y.push_back(spot.rarely_us);
+    const bool near_left = std::log(right / picture.x_range.begin) <
+                           0.45 * std::log(picture.x_range.end / picture.x_range.begin);
+    picture.labels.push_back({.x = right, .y = spot.cost_us, .text = spot.name, .left = !near_left});
+  }
+  stairs.x.push_back(right);
+  stairs.y.push_back(picture.y_range.end);
+  picture.curves.insert(picture.curves.begin(), {stairs, rare});
+}
+
+void add_unstable(const Spots& spots, Chart& picture) {
+  Curve crosses{.label = "not stable", .colour = Colour::black, .mark = Mark::crosses, .width = 7.0};
+  for (const Spot& spot : spots.all) {
+    if (spot.stable) continue;
+    crosses.x.push_back(spot.error);
+    crosses.y.push_back(spot.cost_us);
+  }
+  if (!crosses.x.empty()) picture.curves.push_back(crosses);
+}
+
+}  // namespace
+
+Chart chart_picture(const json& chart) {
+  const Spots spots(chart);
+  Chart picture{.title = fmt::format("Cost of a tick over error: {}", chart.at("source").get<std::string>()),
+                .x_label = fmt::format("error, root mean square [{}]", spots.unit),
+                .y_label = "cost of a tick, median [us]",
+                .log_x = true,
+                .log_y = true,
+                .width_px = 1000,
+                .height_px = 620};
+  Range errors{spots.jnd, spots.jnd};
+  Range costs{0.1, spots.tick_us};
+  for (const Spot& spot : spots.all) {
+    errors = {std::min(errors.begin, spot.error), std::max(errors.end, spot.error)};
+    costs = {std::min(costs.begin, spot.cost_us), std::max(costs.end, spot.cost_us)};
+  }
+  picture.x_range = {0.5 * errors.begin, 3.0 * errors.end};
+  picture.y_range = {0.5 * costs.begin, 3.0 * costs.end};
+  add_laws(spots, picture);
+  add_front(spots, picture);
+  add_unstable(spots, picture);
+  picture.vertical.push_back({.at = spots.jnd, .label = "JND", .label_after = true});
+  picture.horizontal.push_back(
+      {.at = spots.tick_us, .label = fmt::format("a tick at {:g} Hz", chart.at("rate_hz").get<double>())});
+  picture.horizontal.push_back({.at = 0.5 * spots.tick_us, .label = "half of it"});
+  return picture;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,83 @@
+#include "chart/chart_picture.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using nlohmann::ordered_json;
+using testing::ElementsAre;
+
+/// kelvin at four fidelities and exponential at two, as an earlier version wrote them.
+ordered_json older_chart() {
+  return ordered_json::parse(
+      test::read_text(std::string(KERF_SOURCE_DIR) + "/tests/bench/analysis/chart/older_chart.json"));
+}
+
+const Curve& curve(const Chart& picture, const std::string& label) {
+  for (const Curve& one : picture.curves) {
+    if (one.label == label) return one;
+  }
+  throw std::invalid_argument("no curve " + label);
+}
+
+TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
+  const ordered_json chart = older_chart();
+  const Chart picture = chart_picture(chart);
+  EXPECT_EQ(picture.title, "Cost of a tick over error: cut");
+  EXPECT_EQ(picture.x_label, "error, root mean square [N]");
+  std::vector<std::string> labels;
+  for (const Curve& one : picture.curves) labels.push_back(one.label);
+  EXPECT_THAT(labels, ElementsAre("front", "p99.9, front", "kelvin", "exponential"));
+  EXPECT_THAT(curve(picture, "kelvin").of, ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(curve(picture, "exponential").of, ElementsAre(4, 5));
+  EXPECT_EQ(curve(picture, "exponential").x[1], chart["points"][5]["error_n"]);
+  EXPECT_EQ(curve(picture, "exponential").y[1], 1e-3 * chart["points"][5]["p50_ns"].get<double>());
+  EXPECT_NE(curve(picture, "exponential").colour, curve(picture, "kelvin").colour);
+  EXPECT_EQ(picture.vertical.at(0).at, chart["jnd_n"]);
+  EXPECT_NEAR(picture.horizontal.at(0).at, 5000.0, 1e-6);
+}
+
+TEST(ChartPicture, LeadsTheFrontFromTheRightBorderDownItsPointsToTheUpper) {
+  ordered_json chart = older_chart();
+  for (auto& point : chart["points"]) point["on_front"] = point["fidelity"] == "exact";
+  chart["points"][4].update({{"on_front", true}, {"p50_ns", 5.0}});
+  const Chart picture = chart_picture(chart);
+  const double accurate = chart["points"][0]["error_n"];
+  const double cheap = chart["points"][4]["error_n"];
+  const double dear_us = 1e-3 * chart["points"][0]["p50_ns"].get<double>();
+  EXPECT_THAT(curve(picture, "front").x, ElementsAre(picture.x_range.end, cheap, cheap, accurate, accurate));
+  EXPECT_THAT(curve(picture, "front").y, ElementsAre(0.005, 0.005, dear_us, dear_us, picture.y_range.end));
+  EXPECT_EQ(picture.labels.at(0).text, "exponential, as fitted");
+  EXPECT_TRUE(picture.labels.at(0).left) << "it stands at the right";
+  EXPECT_FALSE(picture.labels.at(1).left);
+}
+
+TEST(ChartPicture, KeepsWithinItsBordersWhatIsUnknownOrTooSmall) {
+  ordered_json chart = older_chart();
+  chart["compared_in"] = "JND";
+  chart["points"][0].update({{"error_jnd", nullptr}, {"p50_ns", 0.1}, {"stable", false}});
+  chart["points"][1]["error_jnd"] = 0.0;
+  const Chart picture = chart_picture(chart);
+  EXPECT_EQ(picture.x_label, "error, root mean square [JND]");
+  EXPECT_EQ(curve(picture, "kelvin").x[0], 1000.0);
+  EXPECT_EQ(curve(picture, "kelvin").x[1], 1e-4);
+  EXPECT_EQ(curve(picture, "kelvin").y[0], 2e-3);
+  EXPECT_THAT(curve(picture, "not stable").x, ElementsAre(1000.0));
+  EXPECT_EQ(picture.x_range.begin, 0.5e-4);
+  EXPECT_EQ(picture.x_range.end, 3000.0);
+}
+
+TEST(ChartPicture, RefusesWhatIsNoChart) {
+  ordered_json chart = older_chart();
+  chart["points"][2].erase("p50_ns");
+  EXPECT_THROW((void)chart_picture(chart), nlohmann::json::exception);
+}
+
+}  // namespace
+}  // namespace kerf::bench
