@@ -16,7 +16,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <kerf/version.h>
+
 #include "files/whole_file.h"
+#include "html/html.h"
 
 namespace kerf::bench {
 namespace {
@@ -177,6 +180,15 @@ std::string script_of(const Chart& chart, const std::string& output) {
   return script + "\n";
 }
 
+/// With title and maker in place of gnuplot's, which a browser would show beside the pointer.
+std::string named(std::string svg, const std::string& title) {
+  const auto begin = svg.find("<title>");
+  const auto end = svg.find("</desc>");
+  if (begin == std::string::npos || end == std::string::npos) return svg;
+  return svg.replace(begin, end - begin,
+                     fmt::format("<title>{}</title>\n<desc>{}, by gnuplot", escaped(title), software()));
+}
+
 /// A temporary file's name, removed with the object.
 class TemporaryName {
  public:
@@ -220,7 +232,7 @@ std::vector<std::string> draw_all(std::span<const Chart> charts) {
       throw std::runtime_error(
           fmt::format("gnuplot could not draw '{}': {}", charts[i].title, read_whole_file(errors.path())));
     }
-    drawings.push_back(svg.substr(begin));
+    drawings.push_back(named(svg.substr(begin), charts[i].title));
   }
   if (status != 0) throw std::runtime_error("gnuplot failed: " + read_whole_file(errors.path()));
   return drawings;

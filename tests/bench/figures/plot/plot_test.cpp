@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/version.h>
+
 namespace kerf::bench {
 namespace {
 
@@ -27,6 +29,7 @@ TEST(Plot, IsOneSvgElementWithItsLabels) {
   EXPECT_THAT(svg, HasSubstr("</svg>"));
   for (const auto* text : {"Force over time", "time [s]", "force [N]", "measured"})
     EXPECT_THAT(svg, HasSubstr(text));
+  EXPECT_THAT(svg, HasSubstr("<title>Force over time</title>\n<desc>" + software() + ", by gnuplot</desc>"));
 }
 
 TEST(Plot, NamesTicksOnBothAxes) {
