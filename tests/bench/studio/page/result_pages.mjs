@@ -16,7 +16,7 @@ async function jsonIn(studio, name) {
 async function expectAsInPrint(page, studio, svg, except = []) {
   const print = await readFile(join(studio.folder, svg), "utf8");
   const texts = await page.locator(".figure .legend span, .figure .xy_plot :is(.axis, .note)").allTextContents();
-  const left = texts.filter((it) => !print.includes(it.replace(" (nowhere here)", "")));
+  const left = texts.filter((it) => !print.includes(it) && !it.endsWith(" (nowhere here)"));
   expectEqual(
     left.filter((it) => !except.some((pattern) => pattern.test(it))),
     [],
@@ -158,9 +158,26 @@ async function testStability(page, studio) {
   await page.locator(".map svg.xy_plot").focus();
   for (const key of ["ArrowUp", "ArrowLeft", "ArrowLeft"]) await page.keyboard.press(key);
   // The first press leads to the middle.
-  const { stable, theory } = cells[4 * 12 + 6];
+  const { B, stable, theory } = cells[4 * 12 + 6];
   const expected = `${stable ? ": comes to rest" : ": does not come to rest"}; theory (the eigenvalues) ${stable === theory ? "agrees" : "says otherwise"}`;
-  expect((await page.textContent(".map .readout")).endsWith(expected), `the cell at the cursor${expected}`);
+  const told = await page.textContent(".map .readout");
+  expect(told.endsWith(expected), `the cell at the cursor${expected}`);
+  expect(Math.abs(Number(/B ([\d.]+) N·s/.exec(told)?.[1]) / B - 1) < 0.01, `its damping is ${B}: ${told}`);
+}
+
+/** A law's map, whose cells follow each other to the right. */
+async function testMapOfALaw(page, studio) {
+  const arguments_ = ["--depth", "0.01", "--cells", "5", "--json", "-o", "kelvin.stability"];
+  const { cells } = JSON.parse(studio.kerf(["stability", "cut.fit/kelvin.law.toml", ...arguments_]).stdout);
+  await page.goto(`${studio.url}#/stability/${await studio.id("files", "kelvin.stability/stability.json")}`);
+  await heading(page, /kelvin\.stability$/);
+  const texts = await expectAsInPrint(page, studio, "kelvin.stability/law.svg", [/otherwise$/, /^asked for: 10 mm/]);
+  expect(texts.includes("this device"), "the device's own rate is named");
+  await page.locator(".map svg.xy_plot").focus();
+  for (const key of ["ArrowUp", "ArrowLeft"]) await page.keyboard.press(key);
+  const told = await page.textContent(".map .readout");
+  const depth_mm = 1000 * cells[2 * 5 + 1].depth_m;
+  expect(told.includes(`depth ${depth_mm} mm: ${cells[11].stable ? "passive" : "gains energy"}`), told);
 }
 
 /** All of it on a page of a studio whose folder has cut.h5, segmented. */
@@ -172,6 +189,7 @@ export async function testResults(page, studio) {
   await testChart(page, studio);
   await testChoice(page, studio);
   await testStability(page, studio);
+  await testMapOfALaw(page, studio);
 }
 
 export const tests = {
