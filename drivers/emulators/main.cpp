@@ -93,6 +93,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what escapes is out of memory
 int main(int count, char** texts) {
   Arguments arguments;
   CLI::App app(

@@ -332,7 +332,7 @@ double Lattice<Real>::potential_energy() const noexcept {
   double side = 0.0, diagonal = 0.0, bedding = 0.0;
   for (int cell = 0; cell < cells(); ++cell) {
     if (!living(cell)) continue;
-    std::array<Vector, 4> u;
+    std::array<Vector, 4> u{};
     for (int i = 0; i < 4; ++i) {
       u[index(i)] = displacement(corner(cell, i));
       bedding += u[index(i)][0] * u[index(i)][0] + u[index(i)][1] * u[index(i)][1];

@@ -119,6 +119,7 @@ Orthogonal Orthogonal::make(std::span<const double> values, const Options& given
   return law;
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): a surface is never without a value
 AxisValues Orthogonal::step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
   const Vector3d q(motion.position[0], motion.position[1], motion.position[2]);
   const Vector3d qd(motion.velocity[0], motion.velocity[1], motion.velocity[2]);

@@ -49,7 +49,7 @@ void read_piecewise(const std::filesystem::path& path) {
 /// The one line that a file which is no recording gives, read as a whole or piece by piece; empty if it was
 /// read.
 std::string refusal(const std::filesystem::path& file) {
-  const std::string line = line_of([&] { static_cast<void>(read_recording(file)); });
+  std::string line = line_of([&] { static_cast<void>(read_recording(file)); });
   EXPECT_EQ(line_of([&] { read_piecewise(file); }), line);
   return line;
 }

@@ -36,9 +36,10 @@ CurvePoints sampled(std::size_t count, double noise, unsigned seed, bool loop, c
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   CurvePoints points;
+  const std::uint8_t branches = loop ? 2 : 1;
   for (std::size_t i = 0; i < count; ++i) {
     const double x = static_cast<double>(i) / static_cast<double>(count - 1);
-    for (std::uint8_t branch = 0; branch < (loop ? 2 : 1); ++branch) {
+    for (std::uint8_t branch = 0; branch < branches; ++branch) {
       points.x.push_back(x);
       points.y.push_back((branch == 1 ? x - 0.4 * function(x) : function(x)) + noise * normal(random));
       if (loop) points.branch.push_back(branch);
@@ -51,7 +52,8 @@ CurvePoints sampled(std::size_t count, double noise, unsigned seed, bool loop, c
 /// infinite if a segment has too few points.
 inline double dense_error(const CurvePoints& points, const std::vector<double>& knots, std::size_t fewest) {
   double total = 0.0;
-  for (std::uint8_t branch = 0; branch < (points.branch.empty() ? 1 : 2); ++branch) {
+  const std::uint8_t branches = points.branch.empty() ? 1 : 2;
+  for (std::uint8_t branch = 0; branch < branches; ++branch) {
     const auto size = static_cast<Eigen::Index>(points.x.size());
     const auto columns = static_cast<Eigen::Index>(knots.size());
     Eigen::MatrixXd hats = Eigen::MatrixXd::Zero(size, columns);

@@ -116,7 +116,9 @@ TEST(ImplicitSurface, TheRateOfTheJacobianIsThatOfTheMotion) {
   expect_rate(ellipsoid, 1e-6);
 }
 
-Orthogonal made(std::vector<double> values, Options options) { return Orthogonal::make(values, options); }
+Orthogonal made(const std::vector<double>& values, const Options& options) {
+  return Orthogonal::make(values, options);
+}
 
 TEST(Orthogonal, PressesOutOfThePlaneWithTheForceOfItsLaw) {
   // In vivo intestine of [Sepulveda2008] under a horizontal plane at the origin, device at rest: J_tip^-T tau

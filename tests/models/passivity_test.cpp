@@ -24,8 +24,8 @@ constexpr double outside =
 std::vector<Motion> closed_path(unsigned seed, double reach) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::array<double, 4> amplitude;
-  std::array<double, 4> phase;
+  std::array<double, 4> amplitude{};
+  std::array<double, 4> phase{};
   for (std::size_t k = 0; k < 4; ++k) {
     amplitude[k] = reach * uniform(random) / static_cast<double>(k + 1);
     phase[k] = 2.0 * std::numbers::pi * uniform(random);

@@ -10,7 +10,7 @@ namespace {
 
 const Options three_points{{"points", 3.0}, {"first", 0.2}, {"last", 0.6}, {"loop", true}};
 
-Recording<double> scissors(Options options = three_points) {
+Recording<double> scissors(const Options& options = three_points) {
   return Recording<double>::make(std::vector{1.0, 3.0, 2.0, -1.0, -1.5, -0.5}, options);
 }
 

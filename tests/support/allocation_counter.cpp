@@ -33,7 +33,6 @@ kerf::test::NoAllocation::~NoAllocation() { forbidden = false; }
 
 #ifdef KERF_SANITIZER_MALLOC
 // The sanitizers have a malloc of their own, and tell of each call.
-// NOLINTNEXTLINE(readability-identifier-naming)
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
                                                          void (*on_free)(const volatile void*));
 namespace {

@@ -19,7 +19,7 @@ class FullDisk {
   FullDisk& operator=(const FullDisk&) = delete;
   ~FullDisk() {
     setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
+    (void)std::signal(SIGXFSZ, handler_);
   }
 
  private:

@@ -14,7 +14,7 @@ namespace kerf::test {
 /// scripts/fetch-data fills, else in KERF_SHARED_DATA. Empty if it is in neither.
 inline std::filesystem::path find_measured_file(const std::string& name) {
   for (const auto* folder : {KERF_SOURCE_DIR "/data", KERF_SHARED_DATA}) {
-    const auto file = std::filesystem::path(folder) / name;
+    auto file = std::filesystem::path(folder) / name;
     if (std::filesystem::exists(file)) return file;
   }
   return {};
@@ -22,7 +22,7 @@ inline std::filesystem::path find_measured_file(const std::string& name) {
 
 /// Where a file is that the test has asked for by KERF_NEEDS_DATA.
 inline std::filesystem::path measured_file(const std::string& name) {
-  const auto file = find_measured_file(name);
+  auto file = find_measured_file(name);
   if (file.empty()) throw std::runtime_error(name + " is taken without KERF_NEEDS_DATA before it");
   return file;
 }

@@ -11,6 +11,7 @@ namespace kerf::bench {
 enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error = 3, file_error = 4 };
 
 /// What every verb is given beside its own options.
+// NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw
 struct Context {
   bool json = false;              ///< print one JSON object on standard output and nothing else there
   std::uint64_t seed = 1;         ///< of every random choice

@@ -38,6 +38,7 @@ struct DemoVerbArguments {
 };
 
 /// The closed loop of a law by the wall clock, kept for the report.
+// NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw
 struct ClosedLoop {
   nlohmann::ordered_json json;
   Verdict verdict;

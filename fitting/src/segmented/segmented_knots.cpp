@@ -38,7 +38,7 @@ struct Tridiagonal {
 /// One branch under given knots.
 struct Fit {
   std::array<Moments, max_segments> moments;
-  std::array<Line, max_segments> lines;
+  std::array<Line, max_segments> lines{};
   Tridiagonal normal;
   std::array<double, max_segments + 1> force{};
 

@@ -98,7 +98,7 @@ class Climb {
 
  private:
   [[nodiscard]] Polished polish(const std::vector<double>& knots, const Polished& best) const {
-    const Polished moved = descend(points_, knots, fewest_);
+    Polished moved = descend(points_, knots, fewest_);
     if (moved.error > hopeless * best.error) return moved;
     return settle(points_, moved, fewest_, cell_, promising * best.error);
   }

@@ -70,7 +70,7 @@ std::vector<LinearFamily> prony_families(const Problem& problem, const Samples& 
   const std::size_t arms = (problem.parameters.size() - 1) / 2;
   struct Set {
     std::vector<Eigen::Index> places;
-    double left;
+    double left = 0.0;
   };
   // From the best sets of one arm fewer: every further time is tried with each of them.
   std::vector<Set> sets{{.places = {0}, .left = 0.0}};

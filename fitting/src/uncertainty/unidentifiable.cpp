@@ -69,7 +69,7 @@ std::string listed(const UnidentifiableDirection& unidentifiable, const std::vec
 
 std::string percent(double share) {
   char text[32];
-  std::snprintf(text, sizeof text, "%+.3g %%", 10.0 * share);
+  (void)std::snprintf(text, sizeof text, "%+.3g %%", 10.0 * share);
   return text;
 }
 

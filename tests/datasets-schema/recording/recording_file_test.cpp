@@ -42,7 +42,7 @@ TEST(RecordingFile, ReadsAnyStretchOfAColumn) {
   const Recording whole = test::sample_recording(3000);
   write_recording(folder / "r.h5", whole);
   const RecordingFile file(folder / "r.h5");
-  std::vector<double> two_axes(2 * 3);
+  std::vector<double> two_axes(6);
   file.read(Column::force_measured, 1234, 3, two_axes);
   for (std::size_t i = 0; i < two_axes.size(); ++i) EXPECT_EQ(two_axes[i], whole.force_measured[2468 + i]);
   std::vector<std::uint64_t> ticks(10);

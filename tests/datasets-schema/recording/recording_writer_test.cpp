@@ -168,7 +168,7 @@ TEST(RecordingWriter, LosesNothingThatWasFlushedWhenItsProcessIsKilled) {
     writer.append_event({.time_s = 0.0, .kind = "start", .text = ""});
     writer.flush();
     writer.append(rows_of(1700, 5300));
-    std::raise(SIGKILL);
+    (void)std::raise(SIGKILL);
   }
   waitpid(child, nullptr, 0);
   const auto found = read_recording(folder / "r.h5.partial");

@@ -88,7 +88,7 @@ TEST(EmulatedU6, AnswersABadChecksumAsTheVendorDoes) {
 
 TEST(EmulatedU6, HasTheNominalConstantsInTenBlocks) {
   Host host;
-  std::array<std::array<double, 4>, 10> blocks;
+  std::array<std::array<double, 4>, 10> blocks{};
   for (std::uint8_t block = 0; block < 10; ++block) {
     const auto constants = wire::parse_constants(host.ask(wire::read_constants(block).view()));
     ASSERT_TRUE(constants) << static_cast<int>(block);

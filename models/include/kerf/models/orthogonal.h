@@ -107,6 +107,7 @@ struct Orthogonal {
   static std::vector<ParameterInfo> parameters(const Options& given);
   static Orthogonal make(std::span<const double> values, const Options& given);
 
+  // NOLINTNEXTLINE(bugprone-exception-escape): a surface is never without a value
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;
 };
 

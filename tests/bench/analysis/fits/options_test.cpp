@@ -31,7 +31,7 @@ class FitOptions : public testing::Test {
     return outcome.exit_status == 0 ? json::parse(outcome.output) : json();
   }
   std::string punch(const std::string& name, const test::Tissue& tissue = {}) {
-    const std::string file = (folder_ / name).string();
+    std::string file = (folder_ / name).string();
     schema::write_recording(file, test::punch(tissue));
     return file;
   }

@@ -139,7 +139,7 @@ struct Work {
   double dry = 0.0;
 };
 Work work_of(const models::Law& law, const AxisSeries& series) {
-  const auto values = law.values();  // offset, stiffness, viscosity, coulomb, presliding
+  const auto& values = law.values();  // offset, stiffness, viscosity, coulomb, presliding
   const auto force = render(law, series);
   Work work;
   for (std::size_t i = 1; i < force.size(); ++i) {

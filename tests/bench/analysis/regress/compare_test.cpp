@@ -86,8 +86,8 @@ TEST(CompareForces, FindsTheWorstTickAndItsChannel) {
   schema::StoredForces one{.name = "one", .channels = {{"x", "N"}, {"y", "N"}}};
   one.force.assign(200, 1.0);
   RenderedForces got = as_stored(one);
-  got.force[2 * 30] = 1.2;
-  got.force[2 * 70 + 1] = 0.5;
+  got.force[60] = 1.2;
+  got.force[141] = 0.5;
   const ForceComparison comparison = compare_forces(one, got, {.force_n = 0.1});
   EXPECT_EQ(comparison.outside, 2U);
   EXPECT_EQ(comparison.worst->tick, 70U);

@@ -62,7 +62,7 @@ TEST(OpenLoop, GivesAgainWhatTheLawGaveInClosedLoopToTheLastBit) {
 
 /// A device that has the axes of a law.
 std::string device_for(const LawFile& law) {
-  for (const std::string uri : {"sim:scissors", "sim:pose6", "sim:premium"}) {
+  for (std::string uri : {"sim:scissors", "sim:pose6", "sim:premium"}) {
     try {
       (void)axes_for(law, drivers::open_device(uri)->info());
       return uri;

@@ -72,7 +72,7 @@ TEST(Prepare, NotesEveryStepInTheOrderInWhichItWasDone) {
 }
 
 TEST(Prepare, RefusesWhatCannotBeDone) {
-  const auto attempt = [](PrepareOptions options) {
+  const auto attempt = [](const PrepareOptions& options) {
     return [options] { (void)prepare(presses(), options); };
   };
   EXPECT_THAT(attempt({}), ThrowsMessage<std::invalid_argument>(HasSubstr("nothing to do")));

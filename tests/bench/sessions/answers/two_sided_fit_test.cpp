@@ -35,7 +35,7 @@ TEST(EqualLapses, AreFoundWhereTheyAre) {
   std::vector<Level> exact;
   for (const double at : {-0.2, -0.1, -0.05, 0.0, 0.05, 0.1, 0.2}) {
     constexpr int trials = 100'000;
-    exact.push_back({at, {static_cast<int>(trials * observer().probability(at) + 0.5), trials}});
+    exact.push_back({at, {static_cast<int>(std::lround(trials * observer().probability(at))), trials}});
   }
   const auto fit = fit_with_equal_lapses(exact, gaussian());
   EXPECT_DOUBLE_EQ(fit.curve.lapse, 0.04);

@@ -33,7 +33,7 @@ class BlindRun {
   /// To its end, or to where the subject leaves it.
   bench::SessionRunResult run(bench::Subject& subject, bench::SessionRunOptions options = {}) {
     bench::SessionStore running = store(bench::SessionStore::Purpose::run);
-    const bench::SessionRunResult result = run(running, subject, std::move(options));
+    bench::SessionRunResult result = run(running, subject, std::move(options));
     running.close();
     return result;
   }

@@ -74,7 +74,7 @@ class SubjectTerminal : public testing::Test {
     return screen_.find(text) != std::string::npos;
   }
   void read_screen() {
-    std::array<char, 4096> buffer;
+    std::array<char, 4096> buffer{};
     for (ssize_t count = 0; (count = read(keyboard_, buffer.data(), buffer.size())) > 0;) {
       screen_.append(buffer.data(), static_cast<std::size_t>(count));
     }
@@ -246,7 +246,7 @@ class SubjectLines : public testing::Test {
     in_[1] = -1;
   }
   [[nodiscard]] std::string said() const {
-    std::array<char, 4096> buffer;
+    std::array<char, 4096> buffer{};
     const ssize_t count = read(out_[0], buffer.data(), buffer.size());
     return count > 0 ? std::string(buffer.data(), static_cast<std::size_t>(count)) : std::string();
   }

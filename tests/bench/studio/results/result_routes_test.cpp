@@ -123,12 +123,12 @@ TEST_F(ResultRoutes, SayWhichLawsHaveBreakpoints) {
 
 TEST_F(ResultRoutes, RefuseWhatIsNotAsItShouldBeInOneLine) {
   const std::string recording = id("punch.h5");
-  const auto fit = [&](json more) {
+  const auto fit = [&](const json& more) {
     json body{{"recording", recording}};
     body.update(more);
     return post("/api/fit", body);
   };
-  const auto map = [&](json more) {
+  const auto map = [&](const json& more) {
     json body{{"device", "sim:scissors"}, {"rate_hz", 1000}, {"cells", 5}};
     body.update(more);
     return post("/api/stability", body);

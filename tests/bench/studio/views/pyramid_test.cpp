@@ -111,7 +111,7 @@ TEST(MinMaxPyramid, ReadsNoRowWhereBucketsCoverTheColumns) {
 }
 
 TEST(MinMaxPyramid, ReadsOnlyTheRowsAtTheEdgesOfAWideView) {
-  const std::vector<double> values(64 * 10'000, 1.0);
+  const std::vector<double> values(640'000, 1.0);
   std::uint64_t rows_read = 0;
   (void)pyramid_of(values).view(1, values.size() - 1, 10, [&](auto, std::span<double> rows) {
     rows_read += rows.size();
