@@ -1,12 +1,11 @@
 # peers:
 """How long a build takes from nothing, and after an edit: without ccache, of a clone of the last commit.
 
-scripts/benchmark build [LOG]       LOG: what `scripts/test --all` printed in such a clone, whose table is taken over
+scripts/benchmark build
 """
 
 import os
 import pathlib
-import re
 import resource
 import subprocess
 import sys
@@ -38,18 +37,8 @@ def edited(clone, source, target, tests):
     return build[0] + run[0], build[1] + run[1]
 
 
-def stages(log):
-    """The closing table of a whole run, as a table of Markdown."""
-    rows = re.findall(r"^(\S.{43}) (passed|FAILED) +(\d+:\d\d)$", log.read_text(errors="replace"), re.MULTILINE)
-    if not rows or rows[-1][0].strip() != "Together":
-        sys.exit("%s: no run of scripts/test --all ends there" % log)
-    return ["", "| stage of `scripts/test --all` | | min:s |", "|---|---|---|"] + [
-        "| %s | %s | %s |" % (name.strip(), how, took) for name, how, took in rows]
-
-
 def main():
     house = pathlib.Path(sys.argv[1])
-    whole_run = stages(pathlib.Path(sys.argv[2])) if len(sys.argv) > 2 else []
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         clone = pathlib.Path(folder, "kerf")
@@ -64,7 +53,6 @@ def main():
         rows.append(("the program, after that", edited(clone, "models/include/kerf/models/kelvin.h", "kerf", "")))
     lines = ["| what | wall [s] | processor [s] |", "|---|---|---|"]
     lines += ["| %s | %.0f | %.0f |" % (what, wall, processor) for what, (wall, processor) in rows]
-    lines += whole_run
     lines += ["", "GCC, `release`, without ccache, of a clone of the last commit; what npm and apt fetch was there already."]
     replace_section(house / "docs/benchmarks.md", "build", "Building from nothing, and after an edit", "\n".join(lines))
 
