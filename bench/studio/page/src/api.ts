@@ -1,4 +1,5 @@
 import { Requests } from "./requests";
+import type { Figure } from "./ui/figure_description";
 
 // What the server answers. Every request carries the token in a header that no other site can send.
 
@@ -241,43 +242,6 @@ export interface FitFile {
   refused: { model: string; why: string }[];
   choice: { model: string; why: string };
   warnings: string[];
-}
-export type Colour = "black" | "blue" | "vermillion" | "green" | "purple" | "orange" | "sky" | "yellow" | "grey";
-export interface FigureCurve {
-  label: string; // empty: not in the legend
-  x: (number | null)[]; // null breaks a line
-  y: (number | null)[];
-  colour: Colour;
-  mark: "line" | "points" | "circles" | "crosses";
-  width: number;
-  dashed: boolean;
-  of: number[]; // the number of what each point stands for; empty: of nothing
-}
-export interface FigureCells {
-  x_edges: number[];
-  y_edges: number[];
-  upwards: boolean; // cells follow each other along y, else along x
-  kinds: { colour: Colour; label: string; dotted: boolean }[];
-  kind: number[]; // of each cell
-}
-export interface FigureMarker {
-  at: number | null;
-  label: string;
-  label_after: boolean; // right of a vertical line instead of left
-}
-/** What the server sends of chart_to_json() in bench/figures/plot. */
-export interface Figure {
-  x_label: string;
-  y_label: string;
-  curves: FigureCurve[];
-  cells: FigureCells;
-  vertical: FigureMarker[];
-  horizontal: FigureMarker[];
-  labels: { x: number; y: number; text: string; left: boolean }[];
-  x_range: [number, number] | null; // null: what the curves need
-  y_range: [number, number] | null;
-  log_x: boolean;
-  log_y: boolean;
 }
 export interface ChartPoint {
   law: string;

@@ -159,7 +159,9 @@ async function testStability(page, studio) {
   for (const key of ["ArrowUp", "ArrowLeft", "ArrowLeft"]) await page.keyboard.press(key);
   // The first press leads to the middle.
   const { B, stable, theory } = cells[4 * 12 + 6];
-  const expected = `${stable ? ": comes to rest" : ": does not come to rest"}; theory (the eigenvalues) ${stable === theory ? "agrees" : "says otherwise"}`;
+  const what = stable ? "comes to rest" : "does not come to rest";
+  const agrees = stable === theory ? "agrees" : "says otherwise";
+  const expected = `: ${what}; theory (the eigenvalues) ${agrees}`;
   const told = await page.textContent(".map .readout");
   expect(told.endsWith(expected), `the cell at the cursor${expected}`);
   expect(Math.abs(Number(/B ([\d.]+) N·s/.exec(told)?.[1]) / B - 1) < 0.01, `its damping is ${B}: ${told}`);

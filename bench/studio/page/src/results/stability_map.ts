@@ -1,4 +1,5 @@
-import type { Figure, StabilityFile } from "../api";
+import type { StabilityFile } from "../api";
+import type { Figure } from "../ui/figure_description";
 import { drawn, element } from "../ui/dom";
 import { FigurePlot } from "../ui/figure";
 import { withUnit } from "../ui/numbers";

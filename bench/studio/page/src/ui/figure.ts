@@ -1,6 +1,6 @@
 import "./figure.css";
 
-import type { Figure, FigureCurve, FigureMarker } from "../api";
+import type { Figure, FigureCurve, FigureMarker } from "./figure_description";
 import { drawn, element } from "./dom";
 import { crossPath, markPath } from "./marks";
 import { XyPlot } from "./xy_plot";

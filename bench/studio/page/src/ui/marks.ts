@@ -1,4 +1,4 @@
-import type { Colour } from "../api";
+import type { Colour } from "./figure_description";
 
 // What is told by a colour is told by a shape as well, so that neither alone has to be seen.
 
