@@ -40,6 +40,9 @@ struct AxisInfo {
   double force_limit = 0.0;  ///< largest force that may be commanded, in the unit of force
   double slew_limit = 0.0;   ///< largest change of force per second
   double speed_limit = 0.0;  ///< faster than hand and mechanism can be, per second; 0 if not known
+  /// The speed cannot grow faster than that, per second squared; 0 if not known. It may end at once: at a
+  /// stop.
+  double acceleration_limit = 0.0;
   std::optional<Mechanics> mechanics{};
 };
 
@@ -65,8 +68,10 @@ struct DeviceInfo {
   std::vector<ChannelInfo> channels;  ///< at most max_channels
   bool measures_force = false;
   bool simulated = false;
-  std::string configuration;       ///< the settings that it runs with, as TOML, for the recording
-  std::vector<ForceMount> mounts;  ///< of a force sensor, beside axes of its own names
+  double report_jitter_s = 0.0;               ///< by how much Sample::age_s may be wrong
+  std::optional<std::size_t> button_channel;  ///< not 0 while a person presses a button of the device
+  std::string configuration;                  ///< the settings that it runs with, as TOML, for the recording
+  std::vector<ForceMount> mounts;             ///< of a force sensor, beside axes of its own names
 };
 
 /// Something that a device counted while it ran.
@@ -83,6 +88,7 @@ struct Sample {
   Axes force_measured{};  ///< NaN where a sensor has nothing to say now; never a reason to render nothing
   std::array<double, max_channels> channels{};  ///< in the order of DeviceInfo::channels
   std::uint32_t faults = 0;
+  double age_s = 0.0;  ///< how long before the read the position was true, by the arrival of its report
 };
 
 /// Whether a device answered. Faults are values in the tick; exceptions belong to set-up.
