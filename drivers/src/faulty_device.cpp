@@ -22,13 +22,13 @@ struct KindInfo {
 };
 constexpr std::array kinds{
     KindInfo{Fault::Kind::unplug, "unplug", "", false}, KindInfo{Fault::Kind::stall, "stall", "s", true},
-    KindInfo{Fault::Kind::late, "late", "s", true}, KindInfo{Fault::Kind::nan, "nan", "s", false},
-    KindInfo{Fault::Kind::jump, "jump", "m", true}};
+    KindInfo{Fault::Kind::late, "late", "s", true},     KindInfo{Fault::Kind::nan, "nan", "s", false},
+    KindInfo{Fault::Kind::jump, "jump", "m", true},     KindInfo{Fault::Kind::flip, "flip", "m", true}};
 
 [[noreturn]] void refuse(std::string_view fault) {
   throw DeviceError("fault '" + std::string(fault) +
                     "': expected KIND@SECONDS or KIND@SECONDS:SIZE, such as unplug@2.5, stall@1.0:50ms, "
-                    "late@5.0:3ms, nan@3.0, nan@3.0:20ms or jump@4.0:20mm");
+                    "late@5.0:3ms, nan@3.0, nan@3.0:20ms, jump@4.0:20mm or flip@4.0:20mm");
 }
 
 /// A number with a unit, which may stand in thousandths ("50ms"), in SI; NaN for anything else.
@@ -53,7 +53,7 @@ Fault parse_fault(std::string_view text) {
   const Fault fault{.kind = found->kind,
                     .at_s = quantity(moment, moment.ends_with('s') ? "s" : ""),
                     .size = has_size ? quantity(rest.substr(colon + 1), found->unit) : 0.0};
-  const bool backwards = fault.kind != Fault::Kind::jump && fault.size < 0.0;
+  const bool backwards = found->unit != "m" && fault.size < 0.0;
   if (!(fault.at_s >= 0.0 && fault.at_s <= 1e6) || !(std::abs(fault.size) <= 100.0) || backwards)
     refuse(text);
   return fault;
@@ -103,6 +103,9 @@ void FaultyDevice::spoil(Sample& sample) noexcept {
       sample.position[0] += offset;
       constexpr double corner_rad_s = VelocityFilter::corner_rad_s;  // of the simulated encoders' velocity
       sample.velocity[0] += offset * corner_rad_s * std::exp(-corner_rad_s * since_s);
+    } else if (fault.kind == Fault::Kind::flip && !done) {
+      sample.position[0] += fault.size / device_->info().axes[0].lever;
+      done = true;
     } else if (fault.kind == Fault::Kind::nan && (!done || since_s < fault.size)) {
       sample.position[0] = std::numeric_limits<double>::quiet_NaN();
       done = true;

@@ -160,6 +160,20 @@ TEST(Validate, NamesOtherFlagBits) {
       ElementsAre(violation("/samples/flags attribute 'flag_meanings'", "'a b'", "missed_deadline")));
 }
 
+TEST(Validate, TakesARecordingOfAVersionThatKnewFewerFlags) {
+  const std::filesystem::path golden = KERF_SOURCE_DIR "/tests/datasets-schema/golden/recording-12-flags.h5";
+  EXPECT_THAT(validate(golden), IsEmpty());
+  const Recording recording = read_recording(golden);
+  EXPECT_EQ(recording.rows(), 20U);
+  EXPECT_NE(recording.flags[10] & flag_soft_start, 0U);
+  EXPECT_THAT(
+      violations_after([](hid_t file) {
+        test::set_text(file, "/samples/flags", "flag_meanings", "missed_deadline force_limited");
+      }),
+      ElementsAre(violation("/samples/flags attribute 'flag_meanings'", "'missed_deadline", "zero_held")))
+      << "no version knew as few as that";
+}
+
 TEST(Validate, NamesTimesThatDoNotIncrease) {
   auto recording = test::sample_recording();
   recording.time = {0.0, 0.002, 0.002, 0.001, 0.004};

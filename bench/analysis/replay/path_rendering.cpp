@@ -74,6 +74,10 @@ double PathReport::error_rms(std::size_t axis) const noexcept {
 }
 
 Command PathRendering::operator()(const drivers::Sample& sample, double elapsed_s) noexcept {
+  // Ticks that a late loop passed over are made up for; while it stalled, or rendered nothing, the path
+  // waits.
+  constexpr double longest_made_up_s = 0.01;
+  if (elapsed_s > longest_made_up_s) elapsed_s = path_->period_s;
   const auto ticks = static_cast<std::uint64_t>(std::llround(elapsed_s / path_->period_s));
   const Reference reference = player_.step(ticks, sample.position);
   count(reference, sample);

@@ -59,7 +59,8 @@ struct PathReport {
 ///
 /// with the reference x_r, v_r of a PathPlayer. At the path's end g fades from 1 to 0 over `fade_s`, and then
 /// the rendering has finished. The force at its beginning is that of the damper alone, since the reference
-/// begins where the device is.
+/// begins where the device is. The path waits while the loop stalls or zero force is held for longer than 10
+/// ms.
 class PathRendering {
  public:
   PathRendering(const Path& path, const std::array<Coupling, drivers::max_axes>& coupling, double fade_s,

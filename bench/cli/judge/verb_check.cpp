@@ -7,6 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "program/confirm_on_enter.h"
 #include "program/contact_arguments.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
@@ -51,6 +52,8 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   if (!arguments.record.empty()) options.record = arguments.record;
   options.law->contact = arguments.contact.over(options.law->contact);
   const StopOnSignal signals;
+  ConfirmOnEnter confirm;
+  options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
   const Verdict verdict = judge(result);
   context.result = check_as_json(result, verdict);

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "program/confirm_on_enter.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
 #include "recordings/summary.h"
@@ -34,6 +35,8 @@ void run_record(const RecordVerbArguments& arguments, Context& context) {
         fmt::format("{}seed={}", options.device_uri.find('?') == std::string::npos ? '?' : '&', context.seed);
   }
   const StopOnSignal signals;
+  ConfirmOnEnter confirm;
+  options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
   if (!result.recording_failure.empty()) throw std::runtime_error(result.recording_failure);
   const schema::Recording recording = schema::read_recording(arguments.output);

@@ -10,6 +10,7 @@
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "prepare/rows.h"
+#include "program/confirm_on_enter.h"
 #include "program/contact_arguments.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
@@ -153,6 +154,8 @@ void play_table(const ReplayVerbArguments& arguments, Context& context, const So
       fmt::format("a table of {} rows: rms {:.3g} {} beside what was recorded, {:.3g} with its smoothing",
                   recording.rows(), table.result.rmse, table.file.force_unit, table.rmse_rendered));
   const StopOnSignal signals;
+  ConfirmOnEnter confirm;
+  options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
   context.result = table_as_json(table, recording.rows());
   finish_run(arguments, context, result);
@@ -175,6 +178,8 @@ void play_path(const ReplayVerbArguments& arguments, Context& context, Source so
   if (!gaps.empty())
     warn(gaps + (options.path.bridge ? "" : ": the device waits for as long, and then moves on softly"));
   const StopOnSignal signals;
+  ConfirmOnEnter confirm;
+  options.run.zero_hold = &confirm.hold();
   const PathReplay replay = replay_path(source, options, signals.requested());
   context.result = {{"mode", "path"}, {"speed", options.path.speed}};
   context.result.update(path_as_json(replay.path, replay.report, replay.run.device));

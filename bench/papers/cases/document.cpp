@@ -35,9 +35,7 @@ std::string cases_as_markdown(const std::vector<NamedCase>& cases, const Control
       "of "
       "1 JND is 7 % of\nthe force, or 0.05 N where that is more. A wall holds if a weight of 4 N that falls "
       "on "
-      "it comes to rest. All are\nmeasured with a perfect encoder but the last: the steps of an encoder leak "
-      "too, "
-      "also on a passive wall.\n\n"
+      "it comes to rest. All are\nmeasured with a perfect encoder but the last.\n\n"
       "| K over 2 b / T | K [N/m] | holds alone | holds controlled | rms [N] | worst [N] | rms [JND] | worst "
       "[JND] | worst with the encoder [N] |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const ControlCost& row : costs.rows) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,9 @@ struct Command {
   drivers::Axes force{};
   std::uint32_t flags = 0;
   bool is_released = false;  ///< somebody wants zero force now: Safety gives it past the slew limit
+  /// By how much the energy grew since the step before that the rendering means to give back [J]; NaN: it
+  /// does not say.
+  double stored_change_j = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// From one command towards another, softly:
@@ -29,6 +33,7 @@ inline void blend_into(Command& command, const Command& coming, double share) no
   for (std::size_t axis = 0; axis < command.force.size(); ++axis) {
     command.force[axis] += share * (coming.force[axis] - command.force[axis]);
   }
+  command.stored_change_j += share * (coming.stored_change_j - command.stored_change_j);
   command.flags |= coming.flags | schema::flag_soft_switch;
 }
 

@@ -34,6 +34,7 @@ struct LoopControl {
   const std::atomic<bool>& stop;   ///< set from outside: the tick at work is the last one
   std::atomic<std::size_t>& done;  ///< deadlines behind the loop
   Heartbeat& heartbeat;            ///< for the watchdog
+  ZeroHold* hold = nullptr;  ///< who confirms after a jump of the position; none: only the device's button
   static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::size_t>::is_always_lock_free);
 };
 
@@ -155,9 +156,11 @@ template <typename Rendering>
 /// late (charged to `wake`) or because the tick before was still at work (charged to its longest stage, the
 /// wake-up included). Missed deadlines are skipped, never made up in a burst, and no tick inherits the
 /// lateness of the one before: executed and missed ticks together are the deadlines of the grid. The row
-/// after a miss says so in its flags. The device gets zero force before the first tick, whenever Safety says
-/// so, after a silence that the watchdog noticed, and at the end, however the loop ends. Nothing in it
-/// allocates, locks, throws or logs.
+/// after a miss says so in its flags. The rendering steps by the time from the reading of its last step to
+/// that of this one, in whole periods, however much of it was missed, waited for in a read, or without a
+/// reading that could be rendered. The device gets zero force before the first tick, whenever Safety says so,
+/// after a silence that the watchdog noticed, and at the end, however the loop ends. Nothing in it allocates,
+/// locks, throws or logs.
 template <typename Clock, typename Rendering, typename Recorder>
 void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recorder& recorder,
               const LoopOptions& options, const LoopControl& control, LoopReport& report) noexcept {
@@ -170,7 +173,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   const double period_s = options.safety.period_s;
   const auto period_ns = std::llround(1e9 * period_s);
   const std::int64_t silence_ns = watchdog_limit_ns(period_s);
-  Safety safety(device.info().axes, options.safety);
+  Safety safety(device.info(), options.safety);
   drivers::Sample sample;
   (void)device.write({});
 
@@ -178,31 +181,43 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   control.heartbeat.start(grid.start_ns);
   std::uint64_t due = 0;
   std::uint64_t expected = 0;
+  std::uint64_t read_periods = 0;     // that lie before the last reading
+  std::uint64_t stepped_periods = 0;  // and before the rendering's last step
   while (due < options.ticks && report.end == LoopEnd::completed && !has_finished(rendering)) {
     TickTimes times{.deadline_ns = grid.deadline_ns(due)};
     clock.sleep_until(times.deadline_ns);
     const std::uint64_t tick = grid.current(due, times.mark(Stage::wake, clock.now_ns()));
     report.charge(Stage::wake, tick - due);
     const double time_s = static_cast<double>(tick) * period_s;
-    const double elapsed_s = static_cast<double>(tick + 1 - expected) * period_s;
 
     const drivers::Status read = device.read(time_s, sample);
-    times.mark(Stage::read, clock.now_ns());
+    const std::int64_t read_ns = times.mark(Stage::read, clock.now_ns());
+    const bool stalled = control.heartbeat.beat(read_ns, silence_ns);
+    const std::uint64_t periods = grid.current(tick, read_ns) + 1;
+    const auto since = [&](std::uint64_t earlier) {
+      return static_cast<double>(periods - earlier) * period_s;
+    };
 
     const bool measures_cpu = samples_cpu(report.executed);
     const std::int64_t cpu_ns = measures_cpu ? clock.cpu_ns() : 0;
-    const std::uint32_t wrong = safety.judge(read, sample, elapsed_s);
-    Command command = wrong == 0 ? rendering(sample, elapsed_s) : Command{.flags = wrong};
+    Command command{.flags = safety.judge(read, sample, since(read_periods), stalled)};
+    read_periods = periods;
+    if (command.flags == 0) {
+      command = rendering(sample, since(stepped_periods));
+      stepped_periods = periods;
+    }
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
+    // The watchdog may have let go of the device while the computation took its time.
     if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
-    safety.apply(time_s, command);
+    safety.apply(command);
+    if (control.hold != nullptr && control.hold->exchange(safety.holds_zero())) safety.confirm();
     if (measures_cpu) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
     times.mark(Stage::compute, clock.now_ns());
 
     const drivers::Status written = device.write(command.force);
     if (written != drivers::Status::ok) {
       command.flags |= schema::flag_device_fault;
-      safety.release(time_s, command);
+      safety.release(command);
       (void)device.write({});
     }
     times.mark(Stage::write, clock.now_ns());
@@ -220,6 +235,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   }
   (void)device.write({});
   control.heartbeat.stop();
+  if (control.hold != nullptr) (void)control.hold->exchange(false);
   report.energy_j = safety.observer().energy_j();
   report.least_energy_j = safety.observer().least_j();
 }

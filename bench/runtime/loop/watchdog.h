@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <thread>
 
 #include <kerf/drivers/device.h>
@@ -14,13 +17,23 @@ namespace kerf::bench {
   return std::max<std::int64_t>(10'000'000, static_cast<std::int64_t>(3e9 * period_s));
 }
 
+/// A loop that was silent for longer than it may be.
+struct Stall {
+  std::int64_t from_ns = 0;            ///< its last sign of life, on its clock
+  std::int64_t silent_ns = 0;          ///< up to the next one
+  std::int64_t released_after_ns = 0;  ///< when the watchdog let go of the device; 0: it did not
+};
+
 /// The sign of life that a loop gives once a tick, and whether the watchdog has acted since the last one.
 class Heartbeat {
  public:
+  static constexpr std::size_t max_stalls = 64;
+
   /// The loop begins; loop time is 0 at `start_ns` of its clock.
   void start(std::int64_t start_ns) noexcept {
     start_ns_.store(start_ns, std::memory_order_relaxed);
     beat_ns_.store(start_ns, std::memory_order_relaxed);
+    stalls_ = 0;
     running_.store(true, std::memory_order_release);
   }
   void stop() noexcept { running_.store(false, std::memory_order_release); }
@@ -28,11 +41,18 @@ class Heartbeat {
   /// Called by the loop once a tick. Returns whether it had been silent for longer than the limit, or the
   /// watchdog thought so.
   bool beat(std::int64_t now_ns, std::int64_t limit_ns) noexcept {
-    const std::int64_t silent_ns = now_ns - beat_ns_.load(std::memory_order_relaxed);
+    const std::int64_t before_ns = beat_ns_.load(std::memory_order_relaxed);
     beat_ns_.store(now_ns, std::memory_order_relaxed);
-    const bool acted = acted_.load(std::memory_order_acquire);
-    if (acted) acted_.store(false, std::memory_order_relaxed);
-    return acted || silent_ns > limit_ns;
+    const std::int64_t released_ns = released_ns_.load(std::memory_order_acquire);
+    if (released_ns != 0) released_ns_.store(0, std::memory_order_relaxed);
+    if (released_ns == 0 && now_ns - before_ns <= limit_ns) return false;
+    if (stalls_ < max_stalls) {
+      stall_[stalls_] = {.from_ns = before_ns - start_ns_.load(std::memory_order_relaxed),
+                         .silent_ns = now_ns - before_ns,
+                         .released_after_ns = released_ns != 0 ? released_ns - before_ns : 0};
+    }
+    ++stalls_;
+    return true;
   }
 
   /// When the limit will be reached if no beat comes, on the loop's clock.
@@ -41,19 +61,28 @@ class Heartbeat {
   }
   /// Releases the device of a loop that is silent at `now_ns`, once; returns whether it did.
   bool release_if_silent(drivers::Device& device, std::int64_t now_ns, std::int64_t limit_ns) noexcept {
-    if (!running_.load(std::memory_order_acquire) || acted_.load(std::memory_order_relaxed)) return false;
-    const std::int64_t due = due_ns(limit_ns);
-    if (now_ns <= due) return false;
-    acted_.store(true, std::memory_order_release);
-    device.release(1e-9 * static_cast<double>(due - start_ns_.load(std::memory_order_relaxed)));
+    if (!running_.load(std::memory_order_acquire) || released_ns_.load(std::memory_order_relaxed) != 0) {
+      return false;
+    }
+    if (now_ns <= due_ns(limit_ns)) return false;
+    released_ns_.store(now_ns, std::memory_order_release);
+    device.release(1e-9 * static_cast<double>(now_ns - start_ns_.load(std::memory_order_relaxed)));
     return true;
+  }
+
+  /// The first max_stalls of them, times since the loop began. Once the loop has ended.
+  [[nodiscard]] std::span<const Stall> stalls() const noexcept {
+    return std::span(stall_).first(std::min(stalls_, max_stalls));
   }
 
  private:
   std::atomic<std::int64_t> start_ns_{0};
   std::atomic<std::int64_t> beat_ns_{0};
   std::atomic<bool> running_{false};
-  std::atomic<bool> acted_{false};
+  std::atomic<std::int64_t> released_ns_{0};  ///< 0: not since the last beat
+  // The loop's.
+  std::array<Stall, max_stalls> stall_{};
+  std::size_t stalls_ = 0;
 };
 
 /// Releases a device whose loop has been silent for too long, from a thread of its own that is more urgent

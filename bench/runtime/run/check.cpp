@@ -136,7 +136,8 @@ Verdict judge(const RunResult& result) {
   if (result.floor) tell(beside_the_floor(report, *result.floor));
   for (const auto& [flag, cause] :
        {std::pair{schema::flag_law_fault, Cause::law}, std::pair{schema::flag_device_fault, Cause::device},
-        std::pair{schema::flag_position_jump, Cause::device}}) {
+        std::pair{schema::flag_position_jump, Cause::device},
+        std::pair{schema::flag_zero_held, Cause::device}}) {
     const std::uint64_t ticks = report.ticks_with(flag);
     if (ticks > 0) fail(cause, fmt::format("in {} ticks {}", ticks, meaning_of(flag)));
   }

@@ -85,11 +85,14 @@ class Run {
   RunResult run() {
     const auto recorder = open_recorder();
     if (!options_.virtual_time) measure_host();
-    options_.progress(recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
-                      static_cast<std::size_t>(loop_.ticks), [&](std::atomic<std::size_t>& done) {
-                        run_counted({.stop = stop_, .done = done, .heartbeat = heartbeat_}, recorder.get());
-                      });
+    options_.progress(
+        recorder ? "recording " + options_.record->string() : "running " + options_.device_uri,
+        static_cast<std::size_t>(loop_.ticks), [&](std::atomic<std::size_t>& done) {
+          run_counted({.stop = stop_, .done = done, .heartbeat = heartbeat_, .hold = options_.zero_hold},
+                      recorder.get());
+        });
     result_.figures = device_->figures();
+    result_.stalls.assign(heartbeat_.stalls().begin(), heartbeat_.stalls().end());
     if (recorder) close(*recorder);
     if (result_.report.end == LoopEnd::device_lost) {
       throw drivers::DeviceError(fmt::format(
@@ -124,8 +127,12 @@ class Run {
     if (options_.virtual_time) {
       surroundings.pass_time = [this](double seconds) {
         virtual_clock_.pass(std::llround(1e9 * seconds));
-        heartbeat_.release_if_silent(*device_, virtual_clock_.now_ns(),
-                                     watchdog_limit_ns(1.0 / options_.rate_hz));
+        // The watchdog, at the moment at which it would have woken up.
+        const std::int64_t limit_ns = watchdog_limit_ns(1.0 / options_.rate_hz);
+        const std::int64_t woken_ns = heartbeat_.due_ns(limit_ns) + 1;
+        if (woken_ns <= virtual_clock_.now_ns()) {
+          heartbeat_.release_if_silent(*device_, woken_ns, limit_ns);
+        }
       };
     }
     surroundings.stop = &stop_;
@@ -218,6 +225,11 @@ class Run {
     if (report.missed() > 0) {
       recorder.note({.time_s = at, .kind = "gap", .text = missed_in_words(report)});
     }
+    for (const Stall& stall : result_.stalls) {
+      recorder.note({.time_s = 1e-9 * static_cast<double>(stall.from_ns + stall.silent_ns),
+                     .kind = "stall",
+                     .text = in_words(stall)});
+    }
     const schema::Properties figures = note_figures(recorder, result_.figures, at);
     std::string status = "complete";
     if (report.end == LoopEnd::stopped) {
@@ -241,6 +253,16 @@ class Run {
 };
 
 }  // namespace
+
+std::string in_words(const Stall& stall) {
+  const double silent_s = 1e-9 * static_cast<double>(stall.silent_ns);
+  if (stall.released_after_ns == 0) {
+    return fmt::format("the loop was silent for {:.4g} s, and nobody released the device meanwhile",
+                       silent_s);
+  }
+  return fmt::format("the loop was silent for {:.4g} s; the watchdog released the device after {:.4g} s",
+                     silent_s, 1e-9 * static_cast<double>(stall.released_after_ns));
+}
 
 RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop) {
   if (!(options.rate_hz >= 100.0 && options.rate_hz <= 10000.0)) {

@@ -49,7 +49,8 @@ struct RunOptions {
   std::function<void(const schema::Row&)> each_row;
   double ramp_s = 0.25;  ///< of the soft start, and from law to law
   bool passivity_control = false;
-  std::optional<Scene> scene;                   ///< what a simulated device meets
+  ZeroHold* zero_hold = nullptr;  ///< where somebody confirms after a jump of the position; none: nobody can
+  std::optional<Scene> scene;     ///< what a simulated device meets
   std::optional<std::filesystem::path> record;  ///< where to record
   bool replace = false;                         ///< an existing recording may be replaced
   /// Time to measure what the machine itself does to an empty loop, unless that is known since it was started
@@ -69,9 +70,13 @@ struct RunResult {
   std::optional<HostFloor> floor;         ///< if it was asked for
   std::int64_t spin_ns = 0;               ///< how long before its deadline the loop woke up
   std::vector<drivers::Figure> figures;   ///< what the device counted
+  std::vector<Stall> stalls;              ///< the first Heartbeat::max_stalls of them
   std::uint64_t rows_lost = 0;
   std::string recording_failure;  ///< why the recording could not be written to its end; empty if it could
 };
+
+/// How long a loop was silent, and when the device was released.
+[[nodiscard]] std::string in_words(const Stall& stall);
 
 /// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly. However it ends,
 /// the device is left with zero force.

@@ -40,6 +40,7 @@ AxisInfo translation(std::string name) {
           .force_limit = 8.5,
           .slew_limit = 2000.0,
           .speed_limit = 5.0,
+          .acceleration_limit = 500.0,
           .mechanics = translating};
 }
 
@@ -53,6 +54,7 @@ AxisInfo rotation(std::string name) {
           .force_limit = 0.515,
           .slew_limit = 100.0,
           .speed_limit = 50.0,
+          .acceleration_limit = 7000.0,
           .mechanics = turning};
 }
 

@@ -34,7 +34,8 @@ AxisInfo joint(std::string name, std::size_t at) {
           .upper = range.upper,
           .force_limit = motor_limit_n_m * ratio,
           .slew_limit = 400.0,
-          .speed_limit = 25.0};
+          .speed_limit = 25.0,
+          .acceleration_limit = 2000.0};
 }
 
 /// Friction that stops each joint or, where it is too weak, takes what it can.

@@ -23,6 +23,7 @@ std::vector<AxisInfo> scissors_axes() {
            .force_limit = 7.58,
            .slew_limit = 2000.0,
            .speed_limit = 50.0,
+           .acceleration_limit = 20'000.0,
            .mechanics = Mechanics{.mass_kg = handle_inertia_kg_m2 /
                                              (SimulatedScissors::lever_m * SimulatedScissors::lever_m),
                                   .viscous_n_s_per_m = viscous_n_s_per_m,
@@ -37,6 +38,7 @@ std::vector<AxisInfo> scissors_axes() {
            .force_limit = 159.0,
            .slew_limit = 20000.0,
            .speed_limit = 5.0,
+           .acceleration_limit = 600.0,
            .mechanics = Mechanics{
                .mass_kg = carriage_kg, .viscous_n_s_per_m = viscous_n_s_per_m, .coulomb_n = coulomb_n}}};
 }

@@ -63,6 +63,7 @@ enum Flag : std::uint32_t {
   flag_watchdog = 1U << 9U,
   flag_soft_switch = 1U << 10U,
   flag_passivity_control = 1U << 11U,
+  flag_zero_held = 1U << 12U,
 };
 
 /// What a flag is called in the file, and what it says of its row.
@@ -72,8 +73,9 @@ struct FlagInfo {
   std::string_view meaning;
 };
 
-/// Every flag, in the order of its bit.
-inline constexpr std::array<FlagInfo, 12> flag_table{{
+/// Every flag, in the order of its bit. New ones come at the end: a file of an earlier version has the first
+/// of them, first_flags or more.
+inline constexpr std::array<FlagInfo, 13> flag_table{{
     {flag_missed_deadline, "missed_deadline", "deadlines were missed before this tick"},
     {flag_force_limited, "force_limited", "the force was cut to what the device may exert"},
     {flag_slew_limited, "slew_limited", "the force changed more slowly than was asked for"},
@@ -86,7 +88,10 @@ inline constexpr std::array<FlagInfo, 12> flag_table{{
     {flag_watchdog, "watchdog", "the loop had stalled and the watchdog released the device: zero force"},
     {flag_soft_switch, "soft_switch", "two laws are blended"},
     {flag_passivity_control, "passivity_control", "damping was added to keep the rendering passive"},
+    {flag_zero_held, "zero_held", "the position had jumped, and nobody has confirmed it: zero force"},
 }};
+
+inline constexpr std::size_t first_flags = 12;
 
 /// Further numbers and texts about a device or a scene, by name.
 using Properties = std::map<std::string, std::variant<double, std::string>>;

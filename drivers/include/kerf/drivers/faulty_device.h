@@ -19,14 +19,15 @@ struct Fault {
     late,    ///< one write() takes `size` seconds longer
     nan,     ///< positions are not finite for `size` seconds, at least one sample
     jump,    ///< axis 0 reads a travel that is off by `size` metres, from then on
+    flip,    ///< likewise in one sample: a bit was turned on the way
   };
   Kind kind = Kind::nan;
   double at_s = 0.0;
   double size = 0.0;
 };
 
-/// Reads "unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:20mm,late@5.0:3ms": KIND@SECONDS[:SIZE], sizes in s or
-/// ms, those of jumps in m or mm.
+/// Reads "unplug@2.5,stall@1.0:50ms,nan@3.0,jump@4.0:20mm,flip@4.5:20mm,late@5.0:3ms": KIND@SECONDS[:SIZE],
+/// sizes in s or ms, those of jumps and flips in m or mm.
 /// @throws DeviceError that says what was found and what was expected.
 [[nodiscard]] std::vector<Fault> parse_faults(std::string_view text);
 

@@ -21,6 +21,7 @@
 #include "cases/controlled_wall.h"
 #include "cases/document.h"
 #include "files/whole_file.h"
+#include "loop/safety.h"
 #include "stability/device/in_hand.h"
 #include "stability/law_force.h"
 
@@ -276,6 +277,67 @@ TEST(PassivityControlled, RefusesADeviceWithADelay) {
   SampledDevice late = perfect_handle();
   late.delay_s = 1e-3;
   EXPECT_THROW(ControlledWall(WallForce{}, late, {}), std::invalid_argument);
+}
+
+/// A wall as the loop gives it to a hand: through Safety, with passivity control.
+class SafeWall {
+ public:
+  SafeWall(const SampledDevice& device, double stiffness, bool says_what_it_stores)
+      : wall_{{.stiffness_n_per_m = stiffness}},
+        energy_{stiffness},
+        says_(says_what_it_stores),
+        safety_({.axes = {{.name = "theta",
+                           .force_unit = "N",
+                           .resolution = device.encoder_step_m,
+                           .force_limit = 7.58,
+                           .slew_limit = 2000.0,
+                           .mechanics = drivers::Mechanics{.mass_kg = device.mass_kg,
+                                                           .viscous_n_s_per_m = device.viscous_n_s_per_m}}}},
+                {.period_s = device.period_s, .soft_start_s = 0.0, .passivity_control = true}) {}
+
+  /// 20 mm at 2 N and 0.1 m/s, and back through free air.
+  void cut() {
+    for (int tick = 0; tick < 200; ++tick) (void)force_at(1e-4 * tick, -2.0, 0.0);
+    for (int tick = 200; tick > 0; --tick) (void)force_at(1e-4 * tick, 0.0, 0.0);
+  }
+  double operator()(const AxisReading& reading) noexcept {
+    const double stored_j = energy_(reading.position_m);
+    return force_at(reading.position_m, wall_(reading), stored_j - std::exchange(stored_j_, stored_j));
+  }
+
+ private:
+  double force_at(double position_m, double force_n, double stored_change_j) noexcept {
+    (void)safety_.judge(drivers::Status::ok, {.position = {position_m}}, 1e-3);
+    Command command{.force = {force_n}};
+    if (says_) command.stored_change_j = stored_change_j;
+    safety_.apply(command);
+    return command.force[0];
+  }
+
+  WallForce wall_;
+  WallEnergy energy_;
+  bool says_;
+  Safety safety_;
+  double stored_j_ = 0.0;
+};
+
+TEST(PassivityControl, HoldsAStiffWallHoweverMuchWasCutBefore) {
+  const SampledDevice device = weighted_scissors();
+  for (const bool says_what_it_stores : {true, false}) {
+    double after_none_n = 0.0;
+    for (const int cuts : {0, 1, 5, 20, 100}) {
+      SafeWall wall(device, 1600.0, says_what_it_stores);
+      for (int cut = 0; cut < cuts; ++cut) wall.cut();
+      const double ripple = ripple_n(lean_on(device, wall));
+      RecordProperty(fmt::format("after_{}_cuts_{}", cuts, says_what_it_stores),
+                     fmt::format("{:.4f} N", ripple));
+      if (cuts == 0) after_none_n = ripple;
+      EXPECT_LE(std::abs(ripple - after_none_n), 0.05) << cuts << " cuts";
+      if (says_what_it_stores) {
+        EXPECT_LE(ripple, 0.05) << cuts << " cuts";
+      }
+    }
+  }
 }
 
 TEST(ControlCost, IsNothingOnAPassiveWallAndGrowsWithWhatIsMissing) {

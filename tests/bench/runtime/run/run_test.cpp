@@ -111,6 +111,27 @@ TEST(Run, RendersALawSoThatTheHandFeelsIt) {
   EXPECT_GT(least_angle(true), least_angle(false) + 0.05);
 }
 
+TEST(Run, LetsTheForceBackAlongTheRampWhenSomebodyConfirmsAJump) {
+  const test::TemporaryFolder folder;
+  RunOptions options = virtual_seconds(2.0);
+  options.device_uri = "sim:scissors?fault=jump@0.6:-5mm";
+  options.law = kelvin;
+  options.record = folder / "r.h5";
+  ZeroHold hold;
+  options.zero_hold = &hold;
+  options.each_row = [&](const schema::Row& row) {
+    EXPECT_EQ(hold.is_held(), row.tick >= 602 && row.tick <= 1001) << row.tick;
+    if (row.tick == 300 || row.tick == 1000) hold.confirm();  // the first has nothing to confirm
+  };
+  (void)run(options);
+  const schema::Recording recording = schema::read_recording(*options.record);
+  EXPECT_FALSE(hold.is_held());
+  for (std::size_t row = 600; row < 1002; ++row) ASSERT_EQ(recording.force_commanded[2 * row], 0.0) << row;
+  EXPECT_NE(recording.flags[1010] & schema::flag_soft_start, 0U);
+  EXPECT_GT(*std::max_element(recording.force_commanded.begin() + 2 * 1010, recording.force_commanded.end()),
+            0.5);
+}
+
 TEST(Run, RefusesARateOutOfRangeAndALawOfOtherUnits) {
   RunOptions options = virtual_seconds(0.1);
   options.rate_hz = 99.0;
@@ -137,7 +158,8 @@ LoopReport run_without_allocation(Clock& clock, std::uint64_t ticks, drivers::Su
   const test::TemporaryFolder folder;
   surroundings.tissue = surroundings_of(default_scene(), drivers::open_device("sim:scissors")->info()).tissue;
   const auto device = drivers::open_device(
-      "sim:scissors?fault=nan@0.05,jump@0.08:20mm,stall@0.1:20ms,late@0.15:3ms", std::move(surroundings));
+      "sim:scissors?fault=nan@0.05,flip@0.08:20mm,stall@0.1:20ms,late@0.15:3ms,jump@0.25:20mm",
+      std::move(surroundings));
   Recorder recorder({folder / "r.h5",
                      schema::new_header("kerf test"),
                      {{.name = "theta"}, {.name = "x_s"}},
@@ -164,7 +186,7 @@ TEST(Tick, AllocatesNothingInVirtualTime) {
   const LoopReport report = run_without_allocation(
       clock, 20'000, {.pass_time = [&](double seconds) { clock.pass(std::llround(1e9 * seconds)); }}, true);
   EXPECT_EQ(report.ticks_with(schema::flag_device_fault), 1U);
-  EXPECT_EQ(report.ticks_with(schema::flag_position_jump), 1U);
+  EXPECT_EQ(report.ticks_with(schema::flag_position_jump), 2U);
   EXPECT_EQ(report.ticks_with(schema::flag_watchdog), 1U);
   EXPECT_GT(report.ticks_with(schema::flag_soft_switch), 0U);
 }
