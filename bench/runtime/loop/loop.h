@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -14,15 +15,12 @@
 #include <kerf/schema/recording.h>
 
 #include "host/histogram.h"
+#include "loop/blame.h"
 #include "loop/command.h"
 #include "loop/safety.h"
 #include "loop/watchdog.h"
 
 namespace kerf::bench {
-
-/// The stages of a tick, and the wake-up before them.
-enum class Stage : std::uint8_t { wake, read, compute, write, record };
-inline constexpr std::array<const char*, 5> stage_names{"wake", "read", "compute", "write", "record"};
 
 struct LoopOptions {
   std::uint64_t ticks = 0;  ///< deadlines on the grid: executed and missed ticks together
@@ -86,7 +84,13 @@ struct LoopReport {
   std::array<std::uint64_t, stage_names.size()> missed_by{};  ///< deadlines, by the stage charged with them
   std::array<Histogram, stage_names.size()> stages;  ///< wake latency and the four stages of executed ticks
   Histogram cycle;                                   ///< read to record
-  Histogram compute_cpu;  ///< processor time of the computation, in every second tick: see samples_cpu()
+  /// Processor time of the computation for each period that it stepped over, in every second tick: see
+  /// samples_cpu().
+  Histogram compute_cpu;
+  std::array<std::uint64_t, cause_names.size()> missed_because{};  ///< deadlines, by who is to blame
+  static constexpr std::size_t max_misses = 64;
+  std::array<Miss, max_misses> misses{};                           ///< the evidence of the first ones
+  std::size_t late_ticks = 0;                                      ///< that cost deadlines
   std::array<std::uint64_t, schema::flag_table.size()> flagged{};  ///< ticks with each flag, by its bit
   double energy_j = 0.0;                                           ///< taken out of the hand by the rendering
   double least_energy_j = 0.0;
@@ -101,9 +105,15 @@ struct LoopReport {
   /// Deadlines that the run has behind it.
   [[nodiscard]] std::uint64_t ticks() const noexcept { return executed + missed(); }
 
-  /// Charges missed deadlines to a stage.
-  void charge(Stage stage, std::uint64_t deadlines) noexcept {
-    missed_by[static_cast<std::size_t>(stage)] += deadlines;
+  /// Charges missed deadlines to a stage, and to who is to blame.
+  void charge(const Miss& miss) noexcept {
+    missed_by[static_cast<std::size_t>(miss.stage)] += miss.deadlines;
+    missed_because[static_cast<std::size_t>(miss.cause)] += miss.deadlines;
+    if (late_ticks < max_misses) misses[late_ticks] = miss;
+    ++late_ticks;
+  }
+  [[nodiscard]] std::span<const Miss> first_misses() const noexcept {
+    return std::span(misses).first(std::min(late_ticks, max_misses));
   }
   /// Ticks with a flag.
   [[nodiscard]] std::uint64_t ticks_with(schema::Flag flag) const noexcept {
@@ -166,7 +176,8 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
               const LoopOptions& options, const LoopControl& control, LoopReport& report) noexcept {
   static_assert(std::is_nothrow_invocable_r_v<Command, Rendering&, const drivers::Sample&, double>);
   static_assert(noexcept(recorder.push(std::declval<const schema::Row&>())));
-  static_assert(noexcept(clock.sleep_until(0))&& noexcept(clock.now_ns())&& noexcept(clock.cpu_ns()));
+  static_assert(noexcept(clock.sleep_until(0))&& noexcept(clock.now_ns())&& noexcept(
+      clock.cpu_ns())&& noexcept(clock.usage()));
   static_assert(schema::max_axes == drivers::max_axes && schema::max_channels == drivers::max_channels);
   static_assert(std::is_trivially_copyable_v<schema::Row> && std::is_trivially_copyable_v<Command> &&
                 std::is_trivially_copyable_v<drivers::Sample>);
@@ -183,20 +194,32 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
   std::uint64_t expected = 0;
   std::uint64_t read_periods = 0;     // that lie before the last reading
   std::uint64_t stepped_periods = 0;  // and before the rendering's last step
+  Evidence<Clock> evidence(period_ns);
+  constexpr std::int64_t look_ns = 5'000;  // before a deadline, time enough to ask the system twice
   while (due < options.ticks && report.end == LoopEnd::completed && !has_finished(rendering)) {
     TickTimes times{.deadline_ns = grid.deadline_ns(due)};
+    clock.sleep_until(times.deadline_ns - look_ns);
+    evidence.begin(clock, clock.now_ns());
     clock.sleep_until(times.deadline_ns);
-    const std::uint64_t tick = grid.current(due, times.mark(Stage::wake, clock.now_ns()));
-    report.charge(Stage::wake, tick - due);
+    const std::int64_t woken_ns = times.mark(Stage::wake, clock.now_ns());
+    const std::uint64_t tick = grid.current(due, woken_ns);
+    if (tick != due) {
+      report.charge(evidence.judge(
+          clock, {.tick = tick, .deadlines = tick - due, .wall_ns = woken_ns - times.deadline_ns},
+          static_cast<double>(period_ns)));
+    }
     const double time_s = static_cast<double>(tick) * period_s;
 
     const drivers::Status read = device.read(time_s, sample);
     const std::int64_t read_ns = times.mark(Stage::read, clock.now_ns());
+    evidence.end(clock, Stage::read, woken_ns, read_ns);
+    bool stood_still = control.heartbeat.stands_still(read_ns, silence_ns);
     const bool stalled = control.heartbeat.beat(read_ns, silence_ns);
     const std::uint64_t periods = grid.current(tick, read_ns) + 1;
     const auto since = [&](std::uint64_t earlier) {
       return static_cast<double>(periods - earlier) * period_s;
     };
+    const std::uint64_t stepped_over = periods - stepped_periods;
 
     const bool measures_cpu = samples_cpu(report.executed);
     const std::int64_t cpu_ns = measures_cpu ? clock.cpu_ns() : 0;
@@ -208,11 +231,16 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     }
     if (tick != expected) command.flags |= schema::flag_missed_deadline;
     // The watchdog may have let go of the device while the computation took its time.
-    if (control.heartbeat.beat(clock.now_ns(), silence_ns)) command.flags |= schema::flag_watchdog;
+    const std::int64_t rendered_ns = clock.now_ns();
+    stood_still |= control.heartbeat.stands_still(rendered_ns, silence_ns);
+    if (control.heartbeat.beat(rendered_ns, silence_ns)) command.flags |= schema::flag_watchdog;
     safety.apply(command);
     if (control.hold != nullptr && control.hold->exchange(safety.holds_zero())) safety.confirm();
-    if (measures_cpu) report.compute_cpu.add(clock.cpu_ns() - cpu_ns);
-    times.mark(Stage::compute, clock.now_ns());
+    if (measures_cpu) {
+      report.compute_cpu.add((clock.cpu_ns() - cpu_ns) / static_cast<std::int64_t>(stepped_over));
+    }
+    const std::int64_t computed_ns = times.mark(Stage::compute, clock.now_ns());
+    evidence.end(clock, Stage::compute, read_ns, computed_ns);
 
     const drivers::Status written = device.write(command.force);
     if (written != drivers::Status::ok) {
@@ -220,7 +248,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
       safety.release(command);
       (void)device.write({});
     }
-    times.mark(Stage::write, clock.now_ns());
+    evidence.end(clock, Stage::write, computed_ns, times.mark(Stage::write, clock.now_ns()));
 
     recorder.push(row_of(tick, time_s, sample, command, times));
     const std::int64_t end_ns = times.mark(Stage::record, clock.now_ns());
@@ -228,7 +256,18 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     report.count(times, command.flags);
     expected = tick + 1;
     due = grid.next(tick, end_ns);
-    if (due != expected) report.charge(longest_stage(times, grid.deadline_ns(tick)), due - expected);
+    if (due != expected) {
+      const Stage longest = longest_stage(times, grid.deadline_ns(tick));
+      report.charge(
+          evidence.judge(clock,
+                         {.tick = tick,
+                          .deadlines = due - expected,
+                          .stage = longest,
+                          .wall_ns = times.duration_ns(longest),
+                          .periods = stepped_over,
+                          .stood_still = stood_still || control.heartbeat.stands_still(end_ns, silence_ns)},
+                         static_cast<double>(period_ns)));
+    }
     if (control.stop.load(std::memory_order_relaxed)) report.end = LoopEnd::stopped;
     if (read == drivers::Status::lost || written == drivers::Status::lost) report.end = LoopEnd::device_lost;
     control.done.store(static_cast<std::size_t>(due), std::memory_order_relaxed);

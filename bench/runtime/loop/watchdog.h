@@ -55,6 +55,16 @@ class Heartbeat {
     return true;
   }
 
+  /// Whether a loop that has been silent for longer than the limit was so together with the watchdog, which
+  /// has not released the device, or much too late: the whole process stood still.
+  [[nodiscard]] bool stands_still(std::int64_t now_ns, std::int64_t limit_ns) const noexcept {
+    const std::int64_t beat_ns = beat_ns_.load(std::memory_order_relaxed);
+    const std::int64_t silent_ns = now_ns - beat_ns;
+    if (silent_ns <= limit_ns) return false;
+    const std::int64_t released_ns = released_ns_.load(std::memory_order_acquire);
+    return released_ns == 0 || released_ns - beat_ns > (limit_ns + silent_ns) / 2;
+  }
+
   /// When the limit will be reached if no beat comes, on the loop's clock.
   [[nodiscard]] std::int64_t due_ns(std::int64_t limit_ns) const noexcept {
     return beat_ns_.load(std::memory_order_relaxed) + limit_ns;

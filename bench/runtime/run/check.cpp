@@ -9,7 +9,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double compute_share = 0.5;      ///< of the period that the computation may take
 constexpr double missed_share = 0.01;      ///< of the deadlines that may be missed
 constexpr double passive_within_j = 1e-3;  ///< energy that quantised positions may feign
 
@@ -21,6 +20,30 @@ nlohmann::ordered_json to_json(const Histogram& histogram) {
           {"p99", to_us(histogram.percentile_ns(0.99))},
           {"p999", to_us(histogram.percentile_ns(0.999))},
           {"max", to_us(histogram.max_ns())}};
+}
+
+nlohmann::ordered_json to_json(const Miss& miss) {
+  const auto us = [](std::int64_t ns) { return to_us(static_cast<double>(ns)); };
+  return {{"tick", miss.tick},
+          {"deadlines", miss.deadlines},
+          {"stage", stage_names[static_cast<std::size_t>(miss.stage)]},
+          {"wall_us", us(miss.wall_ns)},
+          {"cpu_us", {us(miss.least_cpu_ns), us(miss.most_cpu_ns)}},
+          {"periods", miss.periods},
+          {"waited", miss.waited},
+          {"preempted", miss.preempted},
+          {"disk_faults", miss.disk_faults},
+          {"stood_still", miss.stood_still},
+          {"cause", cause_names[static_cast<std::size_t>(miss.cause)]}};
+}
+
+/// In seconds; null: nobody released the device.
+nlohmann::ordered_json to_json(const Stall& stall) {
+  const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
+  nlohmann::ordered_json told{{"from_s", seconds(stall.from_ns)}, {"silent_s", seconds(stall.silent_ns)}};
+  told["released_after_s"] = nullptr;
+  if (stall.released_after_ns != 0) told["released_after_s"] = seconds(stall.released_after_ns);
+  return told;
 }
 
 std::string_view meaning_of(schema::Flag flag) {
@@ -52,17 +75,10 @@ bool is_slow(const LoopReport& report, double period_ns) {
   return report.compute_cpu.percentile_ns(0.999) > compute_share * period_ns;
 }
 
-Cause blame_for(const LoopReport& report, double period_ns) {
-  const auto worst = std::ranges::max_element(report.missed_by) - report.missed_by.begin();
-  switch (static_cast<Stage>(worst)) {
-    case Stage::read:
-    case Stage::write:
-      return Cause::device;
-    case Stage::compute:
-      return is_slow(report, period_ns) ? Cause::law : Cause::machine;
-    default:
-      return Cause::machine;
-  }
+/// Who cost most of the deadlines.
+Cause blame_for(const LoopReport& report) {
+  const auto worst = std::ranges::max_element(report.missed_because) - report.missed_because.begin();
+  return static_cast<Cause>(worst);
 }
 
 /// Missed deadlines beside those of an empty loop.
@@ -89,16 +105,17 @@ std::string in_words(const LoopReport& report) {
     if (report.missed_by[stage] > 0)
       text += fmt::format(" {} by {}", report.missed_by[stage], stage_names[stage]);
   }
-  if (missed_by(report, Stage::wake) > 0) text += " (the machine woke the loop late)";
+  text += "; because of";
+  for (std::size_t cause = 0; cause < cause_names.size(); ++cause) {
+    if (report.missed_because[cause] == 0) continue;
+    text += fmt::format(" the {} {}", cause_names[cause], report.missed_because[cause]);
+    if (static_cast<Cause>(cause) == Cause::machine && missed_by(report, Stage::wake) > 0)
+      text += " (it woke the loop late, or made it wait)";
+  }
   return text;
 }
 
 }  // namespace
-
-std::string_view name_of(Cause cause) noexcept {
-  constexpr std::array<std::string_view, 3> names{"law", "device", "machine"};
-  return names[static_cast<std::size_t>(cause)];
-}
 
 Verdict judge(const RunResult& result) {
   const LoopReport& report = result.report;
@@ -117,8 +134,8 @@ Verdict judge(const RunResult& result) {
   if (is_slow(report, period_ns)) {
     fail(Cause::law,
          fmt::format(
-             "your law is too slow: 99.9 % of its ticks take up to {:.1f} us of processor time, of {:.0f} "
-             "us that may be half used",
+             "your law is too slow: 99.9 % of its ticks take up to {:.1f} us of processor time a period, of "
+             "{:.0f} us that may be half used",
              to_us(cpu_ns), to_us(period_ns)));
   } else if (wall_ns > compute_share * period_ns) {
     tell(
@@ -128,10 +145,13 @@ Verdict judge(const RunResult& result) {
   }
   if (report.missed() > 0) {
     if (static_cast<double>(report.missed()) > missed_share * static_cast<double>(report.ticks())) {
-      fail(blame_for(report, period_ns), in_words(report));
+      fail(blame_for(report), in_words(report));
     } else {
       tell(in_words(report));
     }
+    const auto misses = report.first_misses();
+    const auto example = std::ranges::find(misses, blame_for(report), &Miss::cause);
+    if (example != misses.end()) tell("for example " + in_words(*example));
   }
   if (result.floor) tell(beside_the_floor(report, *result.floor));
   for (const auto& [flag, cause] :
@@ -173,6 +193,13 @@ nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& ver
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
     json["missed_by"][stage_names[stage]] = report.missed_by[stage];
   }
+  for (std::size_t cause = 0; cause < cause_names.size(); ++cause) {
+    json["missed_because"][cause_names[cause]] = report.missed_because[cause];
+  }
+  json["late_ticks"] = nlohmann::ordered_json::array();
+  for (const Miss& miss : report.first_misses()) json["late_ticks"].push_back(to_json(miss));
+  json["stalls"] = nlohmann::ordered_json::array();
+  for (const Stall& stall : result.stalls) json["stalls"].push_back(to_json(stall));
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
     json[std::string(stage_names[stage]) + "_us"] = to_json(report.stages[stage]);
   }
@@ -200,7 +227,8 @@ nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& ver
                         {"compute_cpu_us", buckets_of(report.compute_cpu)}};
   json["verdict"] = verdict.passed ? "pass" : "fail";
   json["causes"] = nlohmann::ordered_json::array();
-  for (const Cause cause : verdict.causes) json["causes"].push_back(name_of(cause));
+  for (const Cause cause : verdict.causes)
+    json["causes"].push_back(cause_names[static_cast<std::size_t>(cause)]);
   json["reasons"] = verdict.reasons;
   return json;
 }

@@ -21,7 +21,6 @@ namespace {
 
 constexpr double watched_s = 3.0;
 constexpr double limited_share = 0.05;  ///< of the ticks that may hit a limit
-constexpr double compute_share = 0.5;   ///< of the period
 constexpr double sweep_s = 1.0;         ///< of the path on which laws are timed
 constexpr std::string_view grip = "firm";
 

@@ -126,7 +126,7 @@ TEST_P(FaultyRun, ThatJumpsGetsZeroForceUntilSomebodyConfirms) {
     const Outcome outcome = run("jump@0.6:" + travel);
     EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
     EXPECT_EQ(json::parse(outcome.output).at("ticks_with").at("position_jump"), 1);
-    EXPECT_EQ(json::parse(outcome.output).at("causes"), json({"device"}));
+    EXPECT_THAT(json::parse(outcome.output).at("causes"), testing::Contains("device"));
     EXPECT_TRUE(has_event("position_jump"));
     EXPECT_TRUE(has_event("zero_held"));
     const std::size_t row = first_row_with(schema::flag_position_jump);

@@ -90,7 +90,7 @@ Calls calls_of_the_busiest_sleeper(const std::string& trace, int from) {
   return found;
 }
 
-TEST(Tick, MakesAtMostTwoSystemCalls) {
+TEST(Tick, MakesAtMostFourSystemCallsWithTheSleep) {
   const TemporaryFolder folder;
   const std::string trace = folder / "trace";
   if (test::run({"sh", "-c", "command -v strace && strace -o /dev/null true"}).exit_status != 0) {
@@ -106,11 +106,14 @@ TEST(Tick, MakesAtMostTwoSystemCalls) {
   constexpr int second_tick = 200 + 3;
   const Calls calls = calls_of_the_busiest_sleeper(test::read_text(trace), second_tick);
   const auto ticks = static_cast<double>(schema::read_recording(folder / "r.h5").rows());
+  const double late = 1000.0 - ticks;  // deadlines, at most as many late ticks, in which more is asked
   const int sleeps = calls.by_name.at("clock_nanosleep");
   EXPECT_GE(sleeps, 0.9 * ticks);
-  EXPECT_LE(calls.all, 2.0 * ticks) << "one sleep, and every second tick two looks at the processor's time";
+  EXPECT_LE(calls.all, 4.0 * ticks)
+      << "between two ticks the sleep, and a look at what the thread has used "
+         "and at its processor time; within every second tick two at the latter";
   for (const auto& [name, count] : calls.by_name) {
-    if (name == "clock_nanosleep" || name == "clock_gettime") continue;
+    if (name == "clock_nanosleep" || name == "clock_gettime" || name == "getrusage") continue;
     EXPECT_LE(count, 10) << name;
   }
 }

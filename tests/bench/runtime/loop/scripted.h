@@ -17,17 +17,34 @@ namespace kerf::test {
 inline constexpr double period_s = 1e-3;
 inline constexpr std::int64_t period_ns = 1'000'000;
 
+/// Why a stage takes its time.
+enum class Why : std::uint8_t { works, waits, is_preempted, reads_a_disk, nothing };
+
 /// Time that stands still but for the delays that a test asks for, by stage and tick.
 struct Script {
+  struct Delay {
+    std::int64_t ns = 0;
+    Why why = Why::works;
+  };
   std::int64_t now_ns = 0;
-  std::array<std::map<std::uint64_t, std::int64_t>, bench::stage_names.size()> delays_ns;
+  std::int64_t cpu_ns = 0;
+  bench::ThreadUsage usage;
+  std::array<std::map<std::uint64_t, Delay>, bench::stage_names.size()> delays;
 
-  void delay(bench::Stage stage, std::uint64_t tick, double periods) {
-    delays_ns[static_cast<std::size_t>(stage)][tick] = std::llround(periods * static_cast<double>(period_ns));
+  void delay(bench::Stage stage, std::uint64_t tick, double periods, Why why = Why::works) {
+    delays[static_cast<std::size_t>(stage)][tick] = {std::llround(periods * static_cast<double>(period_ns)),
+                                                     why};
   }
   void pass(bench::Stage stage, std::uint64_t tick) noexcept {
-    const auto& delays = delays_ns[static_cast<std::size_t>(stage)];
-    if (const auto found = delays.find(tick); found != delays.end()) now_ns += found->second;
+    const auto& of_stage = delays[static_cast<std::size_t>(stage)];
+    if (const auto found = of_stage.find(tick); found != of_stage.end()) pass(found->second);
+  }
+  void pass(const Delay& delay) noexcept {
+    now_ns += delay.ns;
+    if (delay.why == Why::works) cpu_ns += delay.ns;
+    if (delay.why == Why::waits || delay.why == Why::reads_a_disk) ++usage.voluntary_switches;
+    if (delay.why == Why::is_preempted) ++usage.involuntary_switches;
+    if (delay.why == Why::reads_a_disk) ++usage.major_page_faults;
   }
 };
 
@@ -36,9 +53,18 @@ struct ScriptedClock {
   Script& script;
 
   [[nodiscard]] std::int64_t now_ns() const noexcept { return script.now_ns; }
-  [[nodiscard]] std::int64_t cpu_ns() const noexcept { return script.now_ns; }
+  [[nodiscard]] std::int64_t cpu_ns() const noexcept { return script.cpu_ns; }
+  [[nodiscard]] bench::ThreadUsage usage() const noexcept { return script.usage; }
+  /// Sleeps, and spins for the last tenth of a period. Is late only at a deadline.
   void sleep_until(std::int64_t deadline_ns) const noexcept {
+    const std::int64_t woken_ns = deadline_ns - period_ns / 10;
+    if (script.now_ns < woken_ns) {
+      ++script.usage.voluntary_switches;
+      script.now_ns = woken_ns;
+    }
+    script.cpu_ns += std::max<std::int64_t>(0, deadline_ns - script.now_ns);
     script.now_ns = std::max(script.now_ns, deadline_ns);
+    if (deadline_ns % period_ns != 0) return;
     script.pass(bench::Stage::wake, static_cast<std::uint64_t>(deadline_ns / period_ns - 1));
   }
 };
@@ -108,6 +134,7 @@ struct Bench {
   ScriptedDevice device{script};
   ScriptedRecorder recorder{script, {}};
   std::function<double(std::uint64_t tick)> force;
+  double compute_periods = 0.0;   ///< of processor time for each period that it steps over
   std::vector<double> periods_s;  ///< that the computation was given
   std::atomic<bool> stop{false};
   std::atomic<std::size_t> done{0};
@@ -117,6 +144,7 @@ struct Bench {
     ScriptedClock clock{script};
     auto compute = [this](const drivers::Sample&, double elapsed_s) noexcept {
       script.pass(bench::Stage::compute, device.tick());
+      script.pass({.ns = std::llround(1e9 * compute_periods * elapsed_s)});
       periods_s.push_back(elapsed_s);
       return bench::Command{.force = {force ? force(device.tick()) : 0.0}};
     };

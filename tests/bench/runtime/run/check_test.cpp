@@ -29,6 +29,10 @@ RunResult run_of(std::int64_t compute_ns, std::int64_t cpu_ns) {
 }
 RunResult run_of(std::int64_t compute_ns) { return run_of(compute_ns, compute_ns); }
 
+void charge(RunResult& result, Stage stage, std::uint64_t deadlines, Cause cause = Cause::machine) {
+  result.report.charge({.deadlines = deadlines, .stage = stage, .cause = cause});
+}
+
 TEST(Verdict, PassesALawThatKeepsItsTime) {
   const Verdict verdict = judge(run_of(10'000));
   EXPECT_TRUE(verdict.passed);
@@ -52,16 +56,19 @@ TEST(Verdict, NeverCallsALawSlowThatWasMadeToWait) {
 
 TEST(Verdict, ToleratesOneDeadlineInAHundredAndTellsOfIt) {
   RunResult result = run_of(10'000);
-  result.report.charge(Stage::wake, 10);
+  charge(result, Stage::wake, 10);
   const Verdict verdict = judge(result);
   EXPECT_TRUE(verdict.passed);
-  EXPECT_THAT(verdict.reasons,
-              ElementsAre("10 of 1010 deadlines missed: 10 by wake (the machine woke the loop late)"));
+  EXPECT_THAT(
+      verdict.reasons,
+      ElementsAre("10 of 1010 deadlines missed: 10 by wake; because of the machine 10 (it woke the loop "
+                  "late, or made it wait)",
+                  HasSubstr("for example tick 0: wake took")));
 }
 
 TEST(CheckLines, ShowTheTimesOfTheJsonAStageALine) {
   RunResult result = run_of(10'000, 8'000);
-  result.report.charge(Stage::write, 3);
+  charge(result, Stage::write, 3);
   const Verdict verdict = judge(result);
   const auto lines = check_lines(result, verdict);
   ASSERT_EQ(lines.size(), 1U + 7U + verdict.reasons.size());
@@ -79,31 +86,16 @@ TEST(CheckLines, ShowTheTimesOfTheJsonAStageALine) {
   EXPECT_THAT(lines.back(), HasSubstr(verdict.reasons.back()));
 }
 
-struct Blame {
-  Stage stage;
-  std::int64_t cpu_ns;
-  Cause cause;
-};
-class Blamed : public testing::TestWithParam<Blame> {};
-
-TEST_P(Blamed, IsWhoMissedMostDeadlines) {
-  RunResult result = run_of(900'000, GetParam().cpu_ns);
-  result.report.charge(Stage::wake, 20);
-  result.report.charge(GetParam().stage, 50);
-  const Verdict verdict = judge(result);
-  EXPECT_FALSE(verdict.passed);
-  EXPECT_THAT(verdict.causes, ElementsAre(GetParam().cause));
+TEST(Verdict, BlamesWhoCostMostDeadlinesWhateverTheStage) {
+  for (const Cause cause : {Cause::law, Cause::device, Cause::machine, Cause::unknown}) {
+    RunResult result = run_of(10'000);
+    charge(result, Stage::wake, 20);
+    charge(result, Stage::read, 50, cause);
+    const Verdict verdict = judge(result);
+    EXPECT_FALSE(verdict.passed);
+    EXPECT_THAT(verdict.causes, ElementsAre(cause));
+  }
 }
-INSTANTIATE_TEST_SUITE_P(
-    By, Blamed,
-    testing::Values(Blame{Stage::wake, 1000, Cause::machine}, Blame{Stage::read, 1000, Cause::device},
-                    Blame{Stage::write, 1000, Cause::device}, Blame{Stage::record, 1000, Cause::machine},
-                    Blame{Stage::compute, 1000, Cause::machine}, Blame{Stage::compute, 900'000, Cause::law}),
-    [](const auto& tested) {
-      return std::string(stage_names[static_cast<std::size_t>(tested.param.stage)]) +
-             (tested.param.cpu_ns > 1000 ? "_slow" : "");
-    });
-
 TEST(Verdict, SetsMissedDeadlinesBesideThoseOfAnEmptyLoop) {
   RunResult result = run_of(10'000);
   result.floor = HostFloor{.rate_hz = 1000.0, .ticks = 3000, .missed = 6};
@@ -111,14 +103,15 @@ TEST(Verdict, SetsMissedDeadlinesBesideThoseOfAnEmptyLoop) {
       judge(result).reasons,
       ElementsAre("no deadline was missed in this run, but an empty loop missed 6 of 3000 here: expect "
                   "120 in a minute"));
-  result.report.charge(Stage::wake, 5);
+  charge(result, Stage::wake, 5);
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("these may all be the machine's own")));
   result.floor->missed = 0;
-  result.report.charge(Stage::wake, 5);
+  charge(result, Stage::wake, 5);
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("the machine was later in this run")));
-  result.report.charge(Stage::compute, 1);
+  charge(result, Stage::compute, 1, Cause::law);
   EXPECT_THAT(judge(result).reasons, Contains(HasSubstr("these are more than the machine's own")));
   result.report.missed_by = {};
+  result.report.late_ticks = 0;
   EXPECT_THAT(judge(result).reasons, IsEmpty()) << "a quiet machine and a quiet run";
 }
 
@@ -156,14 +149,18 @@ TEST(Verdict, TellsOfARenderingThatIsNotPassive) {
 
 TEST(CheckAsJson, AddsUp) {
   RunResult result = run_of(10'000);
-  result.report.charge(Stage::compute, 3);
-  result.report.charge(Stage::record, 2);
+  charge(result, Stage::compute, 3, Cause::law);
+  charge(result, Stage::record, 2);
   const auto json = check_as_json(result, judge(result));
   EXPECT_EQ(json.at("ticks"), 1005);
   EXPECT_EQ(json.at("executed"), 1000);
   EXPECT_EQ(json.at("missed"), 5);
   EXPECT_EQ(json.at("missed_by"),
             nlohmann::ordered_json::parse(R"({"wake":0,"read":0,"compute":3,"write":0,"record":2})"));
+  EXPECT_EQ(json.at("missed_because"),
+            nlohmann::ordered_json::parse(R"({"law":3,"device":0,"machine":2,"unknown":0})"));
+  ASSERT_EQ(json.at("late_ticks").size(), 2U);
+  EXPECT_EQ(json.at("late_ticks").at(0).at("cause"), "law");
   double sum_us = 0.0;
   for (const auto* stage : {"read_us", "compute_us", "write_us", "record_us"}) {
     sum_us += json.at(stage).at("mean").get<double>();
