@@ -10,6 +10,9 @@ namespace kerf::models {
 namespace {
 
 constexpr int max_substeps = 1000;  // a tick; more than that no machine does in 1 ms
+constexpr double longest_ticks = 2.0;
+constexpr double following_rad_s = 10.0;
+constexpr double following_m_s = 0.5;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr int max_columns = 8;         // of the strip that the blades press at once
 constexpr double slack_columns = 2.0;  // beyond the blades' length that the strip reaches
@@ -93,10 +96,11 @@ ScissorsMesh ScissorsMesh::make(std::span<const double> values, const Options& g
   law.opening_speed = reader.number("opening_speed", 0.0, 100.0);
   law.fixed_substeps = static_cast<int>(reader.count("substeps", 0, max_substeps));
   law.point = CuttingPoint(scissors);
+  law.slab_step_s = stable_step(law.slab, law.coupling_stiffness, law.coupling_damping);
+  law.strip_step_s = stable_step(law.strip, law.contact_stiffness, law.contact_damping);
   constexpr double tick_s = 1e-3;
   for (const auto& [what, step_s] :
-       {std::pair{"slab", stable_step(law.slab, law.coupling_stiffness, law.coupling_damping)},
-        std::pair{"strip", stable_step(law.strip, law.contact_stiffness, law.contact_damping)}}) {
+       {std::pair{"slab", law.slab_step_s}, std::pair{"strip", law.strip_step_s}}) {
     if (tick_s <= step_safety * step_s * max_substeps) continue;
     throw std::invalid_argument("law 'scissors_mesh': the " + std::string(what) +
                                 " is stable only in steps of " + std::to_string(1e9 * step_s) +
@@ -117,16 +121,42 @@ ScissorsMesh::State ScissorsMesh::initial_state() const {
   return state;
 }
 
-int ScissorsMesh::substeps(double period_s) const {
-  if (fixed_substeps > 0) return fixed_substeps;
-  return substeps_for(stable_step(slab, coupling_stiffness, coupling_damping), period_s);
+int ScissorsMesh::substeps(double period_s) const noexcept {
+  return fixed_substeps > 0 ? fixed_substeps : substeps_for(slab_step_s, period_s);
 }
 
 void ScissorsMesh::choose_substeps(State& state, double period_s) const noexcept {
-  if (period_s == state.period_s) return;
-  state.period_s = period_s;
-  state.slab_substeps = substeps(period_s);
-  state.strip_substeps = substeps_for(stable_step(strip, contact_stiffness, contact_damping), period_s);
+  const double nominal_s = state.nominal.after(period_s);
+  const double stable_s = fixed_substeps > 0 ? strip_step_s : std::min(slab_step_s, strip_step_s);
+  state.advance_s = std::min({period_s, longest_ticks * nominal_s, max_substeps * step_safety * stable_s});
+  const double ticks = state.advance_s / nominal_s;
+  state.slab_substeps = fixed_substeps > 0 && ticks > 1.01
+                            ? static_cast<int>(std::ceil(ticks * fixed_substeps))
+                            : substeps(state.advance_s);
+  state.strip_substeps = substeps_for(strip_step_s, state.advance_s);
+}
+
+ScissorsMesh::Blades ScissorsMesh::blades_at(double theta, double x_s) const noexcept {
+  const bool cut = point.cuts_at(theta);
+  return {.theta = theta, .x_s = x_s, .x_c = cut ? point(theta) : 0.0, .cut = cut};
+}
+
+ScissorsMesh::Seen ScissorsMesh::follow(State& state, const SpatialMotion& motion,
+                                        double period_s) const noexcept {
+  const bool at_the_tool = !state.started || (!state.trails && state.advance_s >= period_s);
+  state.started = true;
+  if (at_the_tool) return {blades_at(motion.position[0], motion.position[1]), motion.velocity[0]};
+  const double turn = motion.position[0] - state.before.theta;
+  const double travel = motion.position[1] - state.before.x_s;
+  const auto in_time = [&](double way, double following, double speed) {
+    const double reach = std::max(following, 2.0 * std::abs(speed)) * state.advance_s;
+    return std::abs(way) > reach ? reach / std::abs(way) : 1.0;
+  };
+  const double share = std::min(in_time(turn, following_rad_s, motion.velocity[0]),
+                                in_time(travel, following_m_s, motion.velocity[1]));
+  state.trails = share < 1.0;
+  return {blades_at(state.before.theta + share * turn, state.before.x_s + share * travel),
+          share * turn / state.advance_s};
 }
 
 int ScissorsMesh::front_node(const State& state) const noexcept {
@@ -139,7 +169,7 @@ double ScissorsMesh::front_position(const State& state) const noexcept {
   return edge_m + state.slab.position(front_node(state))[0];
 }
 
-double ScissorsMesh::push_slab(State& state, const Blades& blades, double period_s) const noexcept {
+double ScissorsMesh::push_slab(State& state, const Blades& blades) const noexcept {
   const int node = front_node(state);
   const double now = blades.x_s + blades.x_c;
   const double before = state.before.cut ? state.before.x_s + state.before.x_c : now;
@@ -149,10 +179,10 @@ double ScissorsMesh::push_slab(State& state, const Blades& blades, double period
                     .stiffness_n_per_m = coupling_stiffness,
                     .damping_n_s_per_m = coupling_damping,
                     .target_m = {before - at_rest, 0.0},
-                    .velocity_m_per_s = {(now - before) / period_s, 0.0},
+                    .velocity_m_per_s = {(now - before) / state.advance_s, 0.0},
                     .along = {true, false}};
   const bool contact = std::max(now, before) > touching;
-  const auto dt = period_s / state.slab_substeps;
+  const double dt = state.advance_s / state.slab_substeps;
   state.slab.step(dt, state.slab_substeps, contact ? std::span(&coupling, 1) : std::span<Coupling>());
   // A lattice that has diverged (too few sub-steps by hand) is a fault and no silence.
   if (!std::isfinite(coupling.force_n[0]) || !std::isfinite(state.slab.position(node)[0]))
@@ -172,7 +202,7 @@ void ScissorsMesh::begin_cut(State& state, const Blades& blades) const noexcept 
   }
 }
 
-AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept {
+AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades) const noexcept {
   const auto distance = [&](int column) {
     return state.strip_origin_m + strip.spacing_m * column - blades.x_s;
   };
@@ -194,12 +224,12 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades, doubl
                             .stiffness_n_per_m = contact_stiffness,
                             .damping_n_s_per_m = contact_damping,
                             .target_m = {0.0, side * (gap_before - half)},
-                            .velocity_m_per_s = {0.0, side * (gap - gap_before) / period_s},
+                            .velocity_m_per_s = {0.0, side * (gap - gap_before) / state.advance_s},
                             .along = {false, true}};
     }
   }
   const std::span pressed(couplings.data(), count);
-  state.strip.step(period_s / state.strip_substeps, state.strip_substeps, pressed);
+  state.strip.step(state.advance_s / state.strip_substeps, state.strip_substeps, pressed);
   const double psi = 0.5 * blades.theta + point.taper_angle();
   const double edge_distance = blades.x_c * std::sin(psi);
   AxisValues force{};
@@ -240,26 +270,24 @@ void ScissorsMesh::end_cut(State& state) const noexcept {
 
 AxisValues ScissorsMesh::step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
   choose_substeps(state, period_s);
-  const double theta = motion.position[0];
-  const bool cut = point.cuts_at(theta);
-  const Blades blades{.theta = theta, .x_s = motion.position[1], .x_c = cut ? point(theta) : 0.0, .cut = cut};
-  const bool opening = motion.velocity[0] > opening_speed;
+  const auto [blades, rate] = follow(state, motion, period_s);
+  const bool opening = rate > opening_speed;
   const bool at_the_end = state.front >= slab.columns - 1 || state.strip_front >= strip.columns - 2;
-  if (state.cutting && (!cut || opening || at_the_end)) end_cut(state);
+  if (state.cutting && (!blades.cut || opening || at_the_end)) end_cut(state);
   AxisValues force{};
-  if (!cut) {
-    state.slab.step(period_s / state.slab_substeps, state.slab_substeps);
+  if (!blades.cut) {
+    state.slab.step(state.advance_s / state.slab_substeps, state.slab_substeps);
   } else {
     const double front = front_position(state);
-    const bool closing = motion.velocity[0] < 0.0;
+    const bool closing = rate < 0.0;
     const bool within_reach =
-        point.half_gap(theta, front - blades.x_s) < 0.5 * strip.spacing_m && front > blades.x_s;
+        point.half_gap(blades.theta, front - blades.x_s) < 0.5 * strip.spacing_m && front > blades.x_s;
     if (!state.cutting && closing && within_reach && state.front < slab.columns - 1) begin_cut(state, blades);
     if (state.cutting) {
-      force = squeeze_strip(state, blades, period_s);
+      force = squeeze_strip(state, blades);
       break_elements(state, blades);
     }
-    force[1] += push_slab(state, blades, period_s);
+    force[1] += push_slab(state, blades);
   }
   state.before = blades;
   return force;

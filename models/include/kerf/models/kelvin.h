@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +55,7 @@ struct Kelvin {
     ArmTick<T> tick;  ///< of `period_s`
     double penetration = 0.0;
     double period_s = 0.0;
+    double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
   };
 
@@ -96,7 +99,9 @@ struct Kelvin {
     }
     if (period_s != state.period_s) {
       state.period_s = period_s;
-      state.tick = ArmTick<T>::of(integrator, series_stiffness, relaxation_time(), period_s);
+      state.shortest_s = std::min(state.shortest_s, period_s);
+      state.tick =
+          ArmTick<T>::of(integrator, series_stiffness, relaxation_time(), period_s, state.shortest_s);
     }
     const auto travel = static_cast<Input<T>>(x - state.penetration);
     state.arm_force = state.arm_force + (state.tick.gain * travel - state.tick.loss * state.arm_force);

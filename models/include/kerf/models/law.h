@@ -86,6 +86,14 @@ class Law {
 
   /// One tick of a scalar law; of a spatial law, a fault. Never throws, allocates or returns a number that is
   /// not finite.
+  ///
+  /// `period_s` is the time since the state's last tick [s], whatever it was: a period of the loop, several
+  /// after a late one, a minute after a stall. The tool went there in a straight line. The rule for all laws:
+  /// the force stays bounded by what the motion asks for, and the work of a tick does not grow with its
+  /// length. A law that remembers no time sees where the tool is and how it moves now; one whose memory has a
+  /// closed form (kelvin, maxwell, springpot and what is made of them) takes the whole time at once; one
+  /// that has to be integrated in sub-steps (scissors_mesh) advances by two nominal ticks at most, is held
+  /// for the rest, and trails a tool that went far no slower than a hand moves.
   [[nodiscard]] Response step(State& state, const Motion& motion, double period_s) const noexcept;
   /// One tick of a spatial law; of a scalar law, a fault.
   [[nodiscard]] SpatialResponse step(State& state, const SpatialMotion& motion,

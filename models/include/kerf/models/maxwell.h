@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -65,6 +67,7 @@ struct Maxwell {
     std::array<ArmTick<T>, max_arms> tick{};  ///< of `period_s`
     double penetration = 0.0;
     double period_s = 0.0;
+    double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
   };
 
@@ -154,8 +157,10 @@ struct Maxwell {
   }
   void hold(State& state, double period_s) const noexcept {
     state.period_s = period_s;
+    state.shortest_s = std::min(state.shortest_s, period_s);
     for (std::size_t i = 0; i < arms; ++i) {
-      state.tick[i] = ArmTick<T>::of(integrator, stiffness[i], relaxation_time[i], period_s);
+      state.tick[i] =
+          ArmTick<T>::of(integrator, stiffness[i], relaxation_time[i], period_s, state.shortest_s);
     }
   }
 };

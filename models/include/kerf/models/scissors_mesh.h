@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,24 @@
 #include <kerf/models/spatial.h>
 
 namespace kerf::models {
+
+/// How long a tick of a loop is, learned from the times that it steps by: the shortest median of three in
+/// succession. Neither a late tick nor the short one after it passes for the nominal one.
+class NominalTick {
+ public:
+  /// After a tick of this length [s].
+  double after(double period_s) noexcept {
+    if (last_s_[1] == 0.0) last_s_ = {period_s, period_s};
+    const auto [least, most] = std::minmax(last_s_[0], last_s_[1]);
+    shortest_s_ = std::min(shortest_s_, std::clamp(period_s, least, most));
+    last_s_ = {last_s_[1], period_s};
+    return shortest_s_;
+  }
+
+ private:
+  std::array<double, 2> last_s_{};
+  double shortest_s_ = std::numeric_limits<double>::infinity();
+};
 
 /// Scissors in a slab of tissue, by two lattices.
 ///
@@ -38,7 +58,19 @@ namespace kerf::models {
 /// slab is then split from where the cut began to its front.
 ///
 /// Both lattices take semi-implicit Euler steps, as many a tick as their stiffest spring and their couplings
-/// need (stable_step()).
+/// need (stable_step()). The option `substeps` says how many of the slab there are in a nominal tick
+/// (NominalTick), and may be too few; a longer tick has more, so that none is longer than asked for by more
+/// than 1 %.
+///
+/// A tick advances the mesh by at most two nominal ticks and 1000 stable sub-steps, however long it was, so
+/// that the catching up of a law that keeps within half a period never costs the next deadline. For the rest
+/// of the time the mesh is held: waves and relaxation of it come later by as much. The blades that the mesh
+/// sees then go from where they were to where the tool is in a straight line of angle and translation, in
+/// the time advanced if that takes no more than 10 rad/s and 0.5 m/s (about what a hand does) or twice the
+/// tool's own speed; else they follow it at that speed over the next ticks. Until they have caught up the
+/// forces are those of a tool that trails by so much, and elements break one after the other as under a
+/// quick hand. A mesh that needs more than 1000 sub-steps in a nominal tick is held in every one: slower
+/// than it should be, and stable.
 ///
 /// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: [Weiss2004], section 2; differs from the
 /// paper in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
@@ -57,7 +89,9 @@ struct ScissorsMesh {
   double edge_m = 0.0;  ///< x_m
   double lever_m = 0.28 / 7.58;
   double opening_speed = 0.0;  ///< faster than this ends a cut [rad/s]
-  int fixed_substeps = 0;      ///< 0: as many as needed
+  int fixed_substeps = 0;      ///< of the slab in a nominal tick; 0: as many as needed
+  double slab_step_s = 0.0;    ///< largest stable one with the coupling
+  double strip_step_s = 0.0;   ///< with the blades' contact
   CuttingPoint point;
 
   /// Where the blades are. Within a tick they move linearly from the last one's place.
@@ -71,10 +105,13 @@ struct ScissorsMesh {
   struct State {
     Lattice<float> slab;
     Lattice<float> strip;
-    double period_s = 0.0;  ///< that the sub-steps are for
-    int slab_substeps = 1;
+    NominalTick nominal;
+    double advance_s = 0.0;  ///< by which this tick advances the lattices
+    int slab_substeps = 1;   ///< of it
     int strip_substeps = 1;
-    Blades before;  ///< of the last tick
+    Blades before;         ///< that the mesh saw in the last tick
+    bool started = false;  ///< there was one
+    bool trails = false;   ///< they are not yet where the tool is
     bool cutting = false;
     int begun = 0;                     ///< column of the slab at which the cut began
     int front = 0;                     ///< column up to which it is cut
@@ -93,17 +130,24 @@ struct ScissorsMesh {
   [[nodiscard]] State initial_state() const;
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;
 
-  /// Sub-steps of the slab in a tick.
-  [[nodiscard]] int substeps(double period_s) const;
+  /// Sub-steps of the slab in a nominal tick.
+  [[nodiscard]] int substeps(double period_s) const noexcept;
 
  private:
   [[nodiscard]] int middle_row() const noexcept { return (slab.rows - 1) / 2; }
   [[nodiscard]] int front_node(const State& state) const noexcept;
   [[nodiscard]] double front_position(const State& state) const noexcept;
+  /// What the mesh sees of the tool.
+  struct Seen {
+    Blades blades;
+    double rate = 0.0;  ///< of the angle [rad/s]
+  };
   void choose_substeps(State& state, double period_s) const noexcept;
-  double push_slab(State& state, const Blades& blades, double period_s) const noexcept;
+  [[nodiscard]] Blades blades_at(double theta, double x_s) const noexcept;
+  Seen follow(State& state, const SpatialMotion& motion, double period_s) const noexcept;
+  double push_slab(State& state, const Blades& blades) const noexcept;
   void begin_cut(State& state, const Blades& blades) const noexcept;
-  AxisValues squeeze_strip(State& state, const Blades& blades, double period_s) const noexcept;
+  AxisValues squeeze_strip(State& state, const Blades& blades) const noexcept;
   void break_elements(State& state, const Blades& blades) const noexcept;
   void end_cut(State& state) const noexcept;
 };
