@@ -220,11 +220,16 @@ Blade Blade::make(std::span<const double> values, const Options& given) {
 Wrench Blade::step(State& state, const Pose& pose, const Twist& twist) const noexcept {
   if (!has_thresholds) return blade_wrench(shape, viscous, fidelity, pose, twist);
   if (!state.in_tissue) state.anchor = pose;
+  state.stored_j = 0.0;
+  double held_j = 0.0;
   const auto elastic_wrench = [&] {
     const Twist displacement{
         .linear = pose.hand - state.anchor.hand,
         .angular = rotation_vector_of(pose.rotation * state.anchor.rotation.transpose())};
-    return blade_wrench(shape, elastic, fidelity, pose, displacement);
+    const Wrench wrench = blade_wrench(shape, elastic, fidelity, pose, displacement);
+    held_j = std::max(
+        0.0, -0.5 * (wrench.force.dot(displacement.linear) + wrench.moment.dot(displacement.angular)));
+    return wrench;
   };
   Wrench wrench = state.mode.cutting ? blade_wrench(shape, viscous, fidelity, pose, twist) : elastic_wrench();
   // The field is zero out of the tissue, and its anchor then follows the blade.
@@ -234,7 +239,10 @@ Wrench Blade::step(State& state, const Pose& pose, const Twist& twist) const noe
     return {};
   }
   const bool cut = state.mode.cutting;
-  if (thresholds.step(state.mode, wrench.force.norm()) == cut) return wrench;
+  if (thresholds.step(state.mode, wrench.force.norm()) == cut) {
+    state.stored_j = held_j;
+    return wrench;
+  }
   if (state.mode.cutting) return blade_wrench(shape, viscous, fidelity, pose, twist);
   state.anchor = pose;
   return {};

@@ -70,6 +70,72 @@ void update_points(int columns, const Coefficients k, const Real* __restrict x,
   }
 }
 
+// Sums over a row. The terms are computed first, all of a kind at once, and then added in lanes that need not
+// wait for each other.
+constexpr int max_columns = 1000;
+template <typename Real>
+using Terms = std::array<Real, max_columns>;
+template <typename Real>
+double total(const Terms<Real>& terms, int count) noexcept {
+  constexpr int lanes = 8;
+  std::array<Real, lanes> sum{};
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    for (int l = 0; l < lanes; ++l)
+      sum[static_cast<std::size_t>(l)] += terms[static_cast<std::size_t>(i + l)];
+  }
+  for (; i < count; ++i) sum[0] += terms[static_cast<std::size_t>(i)];
+  double all = 0.0;
+  for (const Real one : sum) all += static_cast<double>(one);
+  return all;
+}
+
+/// What a strain or a displacement u adds to Strains, that in a step before was u - d: u (u - d) - share d^2.
+template <typename Real>
+Real across_step(Real u, Real d, Real share) noexcept {
+  return u * u - d * (u + share * d);
+}
+
+/// Over the nodes of a row, times their corners: squared speeds, and Strains of the bedding.
+template <typename Real, typename By>
+std::array<double, 2> row_of_nodes(int columns, const By by, const std::uint8_t* __restrict corners,
+                                   const Real* __restrict ux, const Real* __restrict uy,
+                                   const Real* __restrict vx, const Real* __restrict vy) noexcept {
+  Terms<Real> speed, bedding;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled as far as used
+  for (int c = 0; c < columns; ++c) {
+    const Real quarters = static_cast<Real>(corners[c]);
+    speed[static_cast<std::size_t>(c)] = quarters * (vx[c] * vx[c] + vy[c] * vy[c]);
+    bedding[static_cast<std::size_t>(c)] = quarters * (across_step(ux[c], by.dt * vx[c], by.bedding) +
+                                                       across_step(uy[c], by.dt * vy[c], by.bedding));
+  }
+  return {total(speed, columns), total(bedding, columns)};
+}
+
+/// Over whole cells between a lower and an upper row of nodes: Strains of the sides and the diagonals.
+template <typename Real, typename By>
+std::array<double, 2> row_of_cells(int cells, const By by, const Real* __restrict ux0,
+                                   const Real* __restrict uy0, const Real* __restrict vx0,
+                                   const Real* __restrict vy0, const Real* __restrict ux1,
+                                   const Real* __restrict uy1, const Real* __restrict vx1,
+                                   const Real* __restrict vy1) noexcept {
+  Terms<Real> side, diagonal;  // NOLINT(cppcoreguidelines-pro-type-member-init): likewise
+  const auto upright = [&](int c) {
+    return across_step(uy1[c] - uy0[c], by.dt * (vy1[c] - vy0[c]), by.spring);
+  };
+  for (int c = 0; c < cells; ++c) {
+    side[static_cast<std::size_t>(c)] =
+        across_step(ux0[c + 1] - ux0[c], by.dt * (vx0[c + 1] - vx0[c]), by.spring) +
+        across_step(ux1[c + 1] - ux1[c], by.dt * (vx1[c + 1] - vx1[c]), by.spring) + Real(2) * upright(c);
+    diagonal[static_cast<std::size_t>(c)] =
+        across_step(ux1[c + 1] - ux0[c] + (uy1[c + 1] - uy0[c]),
+                    by.dt * (vx1[c + 1] - vx0[c] + (vy1[c + 1] - vy0[c])), by.spring) +
+        across_step(ux0[c + 1] - ux1[c] - (uy0[c + 1] - uy1[c]),
+                    by.dt * (vx0[c + 1] - vx1[c] - (vy0[c + 1] - vy1[c])), by.spring);
+  }
+  // An upright side belongs to two cells, but for the first and the last.
+  return {total(side, cells) + static_cast<double>(upright(cells) - upright(0)), total(diagonal, cells)};
+}
+
 }  // namespace
 
 // ---- set-up ----
@@ -90,6 +156,7 @@ Lattice<Real>::Lattice(const LatticeOptions& options) : options_(options) {
   cut_right_.resize(index(cells()));
   cut_up_.resize(index(cells()));
   corner_node_.resize(4 * index(cells()));
+  whole_row_.resize(index(options.rows - 1));
   row_buffers_.resize(12 * index(options.columns));
   reset();
 }
@@ -101,6 +168,7 @@ void Lattice<Real>::reset() noexcept {
   std::fill(entry_.begin(), entry_.end(), -1);
   std::fill(cut_right_.begin(), cut_right_.end(), std::uint8_t{0});
   std::fill(cut_up_.begin(), cut_up_.end(), std::uint8_t{0});
+  std::fill(whole_row_.begin(), whole_row_.end(), std::uint8_t{1});
   irregular_nodes_ = 0;
   nodes_ = points_;
   for (int cell = 0; cell < cells(); ++cell) {
@@ -319,32 +387,90 @@ auto Lattice<Real>::force(int node) const noexcept -> Vector {
 
 template <typename Real>
 double Lattice<Real>::kinetic_energy() const noexcept {
-  double energy = 0.0;
-  for (int node = 0; node < node_limit(); ++node) {
-    const Vector v = velocity(node);
-    energy += 0.5 * mass(node) * (v[0] * v[0] + v[1] * v[1]);
-  }
-  return energy;
+  return node_energy(0.0)[0];
 }
 
 template <typename Real>
 double Lattice<Real>::potential_energy() const noexcept {
-  double side = 0.0, diagonal = 0.0, bedding = 0.0;
-  for (int cell = 0; cell < cells(); ++cell) {
-    if (!living(cell)) continue;
-    std::array<Vector, 4> u{};
-    for (int i = 0; i < 4; ++i) {
-      u[index(i)] = displacement(corner(cell, i));
-      bedding += u[index(i)][0] * u[index(i)][0] + u[index(i)][1] * u[index(i)][1];
-    }
-    const auto squared = [](double strain) { return strain * strain; };
-    side += squared(u[1][0] - u[0][0]) + squared(u[2][0] - u[3][0]);
-    side += squared(u[3][1] - u[0][1]) + squared(u[2][1] - u[1][1]);
-    diagonal += squared(u[2][0] - u[0][0] + u[2][1] - u[0][1]);
-    diagonal += squared(u[1][0] - u[3][0] - u[1][1] + u[3][1]);
+  return node_energy(0.0)[1] + spring_energy(0.0);
+}
+
+template <typename Real>
+double Lattice<Real>::energy(double dt) const noexcept {
+  const FlushDenormals while_summing;
+  const auto [kinetic, bedding] = node_energy(dt);
+  return kinetic + bedding + spring_energy(dt);
+}
+
+template <typename Real>
+auto Lattice<Real>::step_before(double dt) const noexcept -> StepBefore {
+  const double share = dt > 0.0 ? 0.5 / dt : 0.0;
+  return {static_cast<Real>(dt), static_cast<Real>(share * options_.damping_time_s),
+          static_cast<Real>(share * options_.bedding_time_s)};
+}
+
+template <typename Real>
+auto Lattice<Real>::node_energy(double dt) const noexcept -> Vector {
+  const StepBefore by = step_before(dt);
+  double speed = 0.0, bedding = 0.0;
+  const auto add = [&](std::size_t start, int columns) {
+    const auto of = row_of_nodes(columns, by, corners_.data() + start, ux_.data() + start, uy_.data() + start,
+                                 vx_.data() + start, vy_.data() + start);
+    speed += of[0];
+    bedding += of[1];
+  };
+  for (int row = 0; row < options_.rows; ++row) add(index(row * options_.columns), options_.columns);
+  for (std::size_t i = 0; i < index(irregular_nodes_); ++i) {
+    if (stencils_[i].node >= points_) add(index(stencils_[i].node), 1);
   }
-  return options_.stiffness_n_per_m / 4.0 * side + options_.diagonal_stiffness_n_per_m / 4.0 * diagonal +
-         options_.bedding_n_per_m / 8.0 * bedding;
+  return {options_.node_mass_kg / 8.0 * speed, options_.bedding_n_per_m / 8.0 * bedding};
+}
+
+template <typename Real>
+auto Lattice<Real>::strains_of(int cell, const StepBefore& by) const noexcept -> Strains {
+  std::array<Vector, 4> u{}, d{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const int node = corner(cell, static_cast<int>(i));
+    const Vector v = velocity(node);
+    const double dt = static_cast<double>(by.dt);
+    u[i] = displacement(node);
+    d[i] = {dt * v[0], dt * v[1]};
+  }
+  // Of a spring from one corner to another, along a direction.
+  const auto of = [&](std::size_t from, std::size_t to, double x, double y) {
+    const auto strain = [&](const std::array<Vector, 4>& at) {
+      return x * (at[to][0] - at[from][0]) + y * (at[to][1] - at[from][1]);
+    };
+    return across_step(strain(u), strain(d), static_cast<double>(by.spring));
+  };
+  return {.side = of(0, 1, 1.0, 0.0) + of(3, 2, 1.0, 0.0) + of(0, 3, 0.0, 1.0) + of(1, 2, 0.0, 1.0),
+          .diagonal = of(0, 2, 1.0, 1.0) + of(3, 1, 1.0, -1.0)};
+}
+
+template <typename Real>
+double Lattice<Real>::spring_energy(double dt) const noexcept {
+  const StepBefore by = step_before(dt);
+  Strains sum;
+  for (int row = 0; row < options_.rows - 1; ++row) {
+    if (whole_row_[index(row)] != 0) {
+      const std::size_t low = index(row) * index(options_.columns), up = low + index(options_.columns);
+      const auto of =
+          row_of_cells(cell_columns_, by, ux_.data() + low, uy_.data() + low, vx_.data() + low,
+                       vy_.data() + low, ux_.data() + up, uy_.data() + up, vx_.data() + up, vy_.data() + up);
+      sum.side += of[0];
+      sum.diagonal += of[1];
+      continue;
+    }
+    const int first = row * cell_columns_;
+    for (int cell = first; cell < first + cell_columns_; ++cell) {
+      if (!living(cell)) continue;
+      const Strains of = strains_of(cell, by);
+      sum.side += of.side;
+      sum.diagonal += of.diagonal;
+    }
+  }
+  return options_.stiffness_n_per_m / 4.0 * sum.side +
+         options_.diagonal_stiffness_n_per_m / 4.0 * sum.diagonal;
 }
 
 // The members that are defined here; lattice_cuts.cpp has the others.

@@ -71,6 +71,7 @@ void Lattice<Real>::split(int point) noexcept {
     for (int i = first; i < 4; ++i) {
       if (fan[index(i)] != first) continue;
       corner_node_[index(4 * around[index(i)] + (i + 2) % 4)] = own;
+      if (own >= points_) whole_row_[index(around[index(i)] / cell_columns_)] = 0;
       ++corners_[index(own)];
     }
   }
@@ -150,6 +151,7 @@ bool Lattice<Real>::remove_cell(int cell) noexcept {
   const int lower_left = cell / cell_columns_ * options_.columns + cell % cell_columns_;
   const int upper_left = lower_left + options_.columns;
   for (int i = 0; i < 4; ++i) corner_node_[index(4 * cell + i)] = -1;
+  whole_row_[index(cell / cell_columns_)] = 0;
   for (const int point : {lower_left, lower_left + 1, upper_left, upper_left + 1}) split(point);
   for (const int point : {lower_left, lower_left + 1, upper_left, upper_left + 1}) refresh_around(point);
   return true;
@@ -182,6 +184,11 @@ bool Lattice<Real>::consistent() const {
     if (needs_entry && entry_[n] < 0) return false;
   }
   if (living_nodes != nodes_) return false;
+  for (int cell = 0; cell < cells(); ++cell) {
+    for (int i = 0; i < 4 && whole_row_[index(cell / cell_columns_)] != 0; ++i) {
+      if (corner(cell, i) < 0 || corner(cell, i) >= points_) return false;
+    }
+  }
   for (int point = 0; point < points_; ++point) {
     const std::array<int, 4> around = cells_around(point), fan = fans(around);
     for (int i = 0; i < 4; ++i) {

@@ -43,6 +43,8 @@ struct AnyLaw {
                                     double period_s) const noexcept = 0;
   [[nodiscard]] virtual AxisValues step(AnyState& state, const SpatialMotion& motion,
                                         double period_s) const noexcept = 0;
+  /// Not a number: the law has none, or the state is another law's.
+  [[nodiscard]] virtual double stored_energy(const AnyState& state) const noexcept = 0;
 };
 
 namespace {
@@ -133,6 +135,13 @@ struct RegisteredLaw final : AnyLaw {
       if (state.law == Of) return law.step(static_cast<StateOf<L, Of>&>(state).value, motion, period_s);
     }
     return {not_a_number};
+  }
+  [[nodiscard]] double stored_energy(const AnyState& state) const noexcept override {
+    if constexpr (requires(const typename L::State& of) { law.stored_energy(of); }) {
+      static_assert(noexcept(law.stored_energy(std::declval<const typename L::State&>())));
+      if (state.law == Of) return law.stored_energy(static_cast<const StateOf<L, Of>&>(state).value);
+    }
+    return not_a_number;
   }
 
   L law;
@@ -251,6 +260,11 @@ SpatialResponse Law::step(State& state, const SpatialMotion& motion, double peri
   const AxisValues force = law_->step(*state.state_, motion, period_s);
   if (!all_finite(force)) return {.force = {}, .fault = true};
   return {.force = force, .fault = false};
+}
+
+double Law::stored_energy(const State& state) const noexcept {
+  const double energy = state.state_ ? law_->stored_energy(*state.state_) : not_a_number;
+  return std::isfinite(energy) ? energy : not_a_number;
 }
 
 std::vector<double> Law::along(std::span<const Motion> motion, std::span<const double> period_s) const {

@@ -127,9 +127,8 @@ AxisValues Orthogonal::step(State& state, const SpatialMotion& motion, double pe
   const SurfaceContact contact =
       std::visit([&](const auto& one) { return contact_with(one, at, q, qd); }, surface);
   const Motion normal{.penetration = -contact.phi, .velocity = -contact.phi_rate};
-  Exponential<double>::State none;
-  const double resisting =
-      cutting ? fracture.step(state.fracture, normal, period_s) : deformation.step(none, normal, period_s);
+  const double resisting = cutting ? fracture.step(state.fracture, normal, period_s)
+                                   : deformation.step(state.deformation, normal, period_s);
   const Vector3d weight = at.coriolis_torque + at.gravity;
   Vector3d torque = weight;
   // A cut object holds the tool where its law does; in the opened crack there is nothing.

@@ -39,7 +39,10 @@ AxisValues ScissorsFree::step(State& state, const SpatialMotion& motion, double 
   const double theta = motion.position[0];
   // Closing is the direction into the material, so that the selector's penetration is -theta.
   const auto branch = selector.step(state.branch, Motion{-theta, -motion.velocity[0]}, period_s);
-  if (!point.cuts_at(theta)) return {};
+  if (!point.cuts_at(theta)) {
+    state.material.pushed_m = 0.0;
+    return {};
+  }
   const double x_c = point(theta);
   const auto edge = material.step(state.material, x_c + motion.position[1]);
   const double friction = pivot_torque + blade_friction * x_c;

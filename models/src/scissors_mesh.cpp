@@ -184,10 +184,19 @@ double ScissorsMesh::push_slab(State& state, const Blades& blades) const noexcep
   const bool contact = std::max(now, before) > touching;
   const double dt = state.advance_s / state.slab_substeps;
   state.slab.step(dt, state.slab_substeps, contact ? std::span(&coupling, 1) : std::span<Coupling>());
+  if (contact) {
+    const double strain = now - at_rest - state.slab.displacement(node)[0];
+    if (strain > 0.0) state.coupled_j += 0.5 * coupling_stiffness * strain * strain;
+  }
   // A lattice that has diverged (too few sub-steps by hand) is a fault and no silence.
   if (!std::isfinite(coupling.force_n[0]) || !std::isfinite(state.slab.position(node)[0]))
     return not_a_number;
   return contact ? std::min(0.0, coupling.force_n[0]) : 0.0;
+}
+
+double ScissorsMesh::stored_energy(const State& state) const noexcept {
+  return state.coupled_j + state.slab.energy(state.advance_s / state.slab_substeps) +
+         (state.cutting ? state.strip.energy(state.advance_s / state.strip_substeps) : 0.0);
 }
 
 void ScissorsMesh::begin_cut(State& state, const Blades& blades) const noexcept {
@@ -233,6 +242,11 @@ AxisValues ScissorsMesh::squeeze_strip(State& state, const Blades& blades) const
   const double psi = 0.5 * blades.theta + point.taper_angle();
   const double edge_distance = blades.x_c * std::sin(psi);
   AxisValues force{};
+  for (const Coupling& one : pressed) {
+    const double target = one.target_m[1] + one.velocity_m_per_s[1] * state.advance_s;
+    const double strain = target - state.strip.displacement(one.node)[1];
+    state.coupled_j += 0.5 * one.stiffness_n_per_m * strain * strain;
+  }
   for (std::size_t i = 0; i < count; i += 2) {
     // Mean force on one blade; it only pushes.
     const double mean = 0.5 * (couplings[i + 1].force_n[1] - couplings[i].force_n[1]);
@@ -274,6 +288,7 @@ AxisValues ScissorsMesh::step(State& state, const SpatialMotion& motion, double 
   const bool opening = rate > opening_speed;
   const bool at_the_end = state.front >= slab.columns - 1 || state.strip_front >= strip.columns - 2;
   if (state.cutting && (!blades.cut || opening || at_the_end)) end_cut(state);
+  state.coupled_j = 0.0;
   AxisValues force{};
   if (!blades.cut) {
     state.slab.step(state.advance_s / state.slab_substeps, state.slab_substeps);

@@ -84,6 +84,27 @@ TEST(Lattice, AnyCutsKeepItWholeInItsPartsAndStable) {
   }
 }
 
+TEST(Lattice, SaysItsEnergyWhateverIsCut) {
+  for (unsigned seed = 1; seed <= 50; ++seed) {
+    std::mt19937 random(seed);
+    LatticeOptions options = damped_on_a_bed(24, 7);
+    Lattice<double> lattice(options);
+    shake(lattice, seed);
+    const double dt = 0.5 * stable_step(options);
+    const auto all = sides(lattice);
+    for (int round = 0; round < 6; ++round) {
+      const double whole = written_out_energy(lattice), discrete = discrete_energy(lattice, dt);
+      ASSERT_NEAR(energy(lattice), whole, 1e-12 * whole);
+      ASSERT_NEAR(lattice.energy(0.0), whole, 1e-12 * whole);
+      ASSERT_NEAR(lattice.energy(dt), discrete, 1e-12 * whole) << "seed " << seed << ", round " << round;
+      const auto side = all[random() % all.size()];
+      (void)lattice.cut_side(side.first, side.second);
+      if (round == 3) (void)lattice.remove_cell(side.first);
+      lattice.step(dt, 3);
+    }
+  }
+}
+
 TEST(Lattice, CutIntoCellsEachKeepsItsMomentum) {
   LatticeOptions options = undamped(6, 5);
   options.damping_time_s = 5e-5;

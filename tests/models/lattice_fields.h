@@ -127,6 +127,16 @@ template <typename Real>
 double energy(const Lattice<Real>& lattice) {
   return lattice.kinetic_energy() + lattice.potential_energy();
 }
+/// The same, from the forces of the springs.
+inline double written_out_energy(const Lattice<double>& lattice) {
+  const Field u = displacements(lattice), none(u.size());
+  double kinetic = 0.0;
+  for (const int node : living_nodes(lattice)) {
+    const Vector v = lattice.velocity(node);
+    kinetic += 0.5 * lattice.mass(node) * (v[0] * v[0] + v[1] * v[1]);
+  }
+  return kinetic - 0.5 * dot(u, forces(lattice, u, none, 0.0, 0.0));
+}
 
 /// What no step within the limit lets grow: the energy at which leapfrog sees the lattice, less dt/4 v'Cv.
 inline double discrete_energy(const Lattice<double>& lattice, double dt) {

@@ -122,13 +122,19 @@ struct Blade {
   struct State {
     TwoThresholds::State mode;
     bool in_tissue = false;
-    Pose anchor;  ///< where the tissue began to hold
+    Pose anchor;            ///< where the tissue began to hold
+    double stored_j = 0.0;  ///< by the elastic field
   };
 
   static std::vector<LawAxis> axes();
   static std::vector<OptionInfo> options();
   static std::vector<ParameterInfo> parameters(const Options& given);
   static Blade make(std::span<const double> values, const Options& given);
+
+  /// Energy of the elastic field while the tissue holds, -(F . d + M . r) / 2 of the displacements d and r
+  /// since then [J]; none while it is cut. What the field means to hold: it acts on what is submerged now, so
+  /// that a blade that is drawn along while its wetted area changes gets back more or less.
+  [[nodiscard]] double stored_energy(const State& state) const noexcept { return state.stored_j; }
 
   /// One tick in the frame of the tissue; blade_wrench() with the state machine around it.
   Wrench step(State& state, const Pose& pose, const Twist& twist) const noexcept;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <kerf/models/motion.h>
@@ -29,6 +31,7 @@ struct BranchSelector {
   struct State {
     double filtered_penetration = 0.0;
     double switch_penetration = 0.0;
+    double penetration = -std::numeric_limits<double>::infinity();
     int direction = 0;  ///< +1 closing, -1 opening, 0 before the first motion
     bool started = false;
   };
@@ -43,6 +46,7 @@ struct BranchSelector {
 
   Branch step(State& state, const Motion& motion, double period_s) const noexcept {
     const double x = motion.penetration;
+    state.penetration = x;
     if (!state.started) {
       state.filtered_penetration = x;
       state.switch_penetration = x;
@@ -65,5 +69,43 @@ struct BranchSelector {
     return {.closing = direction >= 0, .scale = scale};
   }
 };
+
+/// Most work that a law of two branches gives back from a penetration x, within its grid [J]:
+///
+///     U(x) = max(0, max over y < x of int_y^x F_open,  max over y > x of -int_x^y F_close)
+///
+/// A branch that resists gives nothing back. Before the grid nothing is held: a force that goes on there is a
+/// bias. Both branches are linear between grid points.
+/// @param place of grid point i < `points`, increasing; `force_at(closing, i)` of a branch there,
+///        `force(closing, x)` anywhere
+template <typename T, typename Place, typename ForceAt, typename Force>
+[[nodiscard]] T recoverable_energy(double penetration, std::size_t points, Place&& place, ForceAt&& force_at,
+                                   Force&& force) noexcept {
+  const double x = std::max(penetration, static_cast<double>(place(0)));
+  T most(0);
+  struct Walk {
+    T force;
+    double at;
+    T sum{0};
+  };
+  const auto go = [&](Walk& walk, double to, T next) {
+    const T half_way = static_cast<T>(0.5 * std::abs(to - walk.at));
+    // The sum is largest at a grid point or where the force changes its sign.
+    if (walk.force > T(0) && next < T(0)) {
+      most = std::max(most, T(walk.sum + half_way * walk.force * walk.force / (walk.force - next)));
+    }
+    walk = {next, to, walk.sum + half_way * (walk.force + next)};
+    most = std::max(most, walk.sum);
+  };
+  Walk opening{.force = force(false, x), .at = x};
+  Walk closing{.force = -force(true, x), .at = x};
+  for (std::size_t i = points; i-- > 0;) {
+    if (place(i) < x) go(opening, place(i), force_at(false, i));
+  }
+  for (std::size_t i = 0; i < points; ++i) {
+    if (place(i) > x) go(closing, place(i), -force_at(true, i));
+  }
+  return most;
+}
 
 }  // namespace kerf::models

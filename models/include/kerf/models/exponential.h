@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -53,7 +54,9 @@ struct Exponential {
   bool zero_at_contact = false;
   T offset{};  ///< F0 [N]
 
-  struct State {};
+  struct State {
+    double penetration = -std::numeric_limits<double>::infinity();
+  };
 
   static std::vector<ParameterInfo> parameters(const Options& given) {
     const OptionReader reader(name, options(), given);
@@ -109,14 +112,20 @@ struct Exponential {
     const T depth = thickness / exponent * log(stiffness_n_per_m * thickness / (amplitude * exponent));
     return depth > T(0.0) ? depth : T(0.0);
   }
-  /// Elastic energy since contact [J].
-  [[nodiscard]] T stored_energy(double penetration) const {
+  /// Elastic energy since contact [J]. The offset is the sensor's, and none of it.
+  [[nodiscard]] T stored_energy(double penetration) const noexcept {
     using std::expm1;
-    const T whole = amplitude * thickness / exponent * expm1(exponent * (penetration / thickness));
-    return zero_at_contact ? T(whole - amplitude * penetration) : whole;
+    if (penetration <= 0.0) return T(0);
+    const T whole = amplitude * static_cast<Input<T>>(thickness) / exponent *
+                    expm1(exponent * static_cast<Input<T>>(penetration / thickness));
+    return zero_at_contact ? T(whole - amplitude * static_cast<Input<T>>(penetration)) : whole;
+  }
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return stored_energy(state.penetration);
   }
 
-  T step(State&, const Motion& motion, double) const noexcept {
+  T step(State& state, const Motion& motion, double) const noexcept {
+    state.penetration = motion.penetration;
     if (motion.penetration <= 0.0) return offset;
     return offset + (elastic_force(motion.penetration) + viscosity * static_cast<Input<T>>(motion.velocity));
   }

@@ -87,6 +87,9 @@ struct Fracture {
     return thickness / exponent * log1p(yield_energy * exponent / (amplitude * thickness));
   }
 
+  /// Elastic energy of the deformation, U [J]: none while a crack grows.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept { return state.stored; }
+
   T step(State& state, const Motion& motion, double) const noexcept {
     const double x = motion.penetration;
     if (state.mode == Mode::fracture) state.mode = x < state.surface ? Mode::free : Mode::cutting;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -71,11 +72,20 @@ struct Friction {
   }
 
   /// Most energy that can be had back from the friction, Fc xd (|z| - log(1 + |z|)) [J].
-  [[nodiscard]] T recoverable_energy(const State& state) const {
+  [[nodiscard]] T recoverable_energy(const State& state) const noexcept {
     using std::abs;
     using std::log1p;
     const T bent = abs(state.slip);
     return coulomb * presliding * (bent - log1p(bent));
+  }
+  /// That and the energy of spring and offset, (F0 + k x)^2 / (2 k) [J]. Not a number where spring or offset
+  /// have no least energy: k < 0, or an offset without a spring.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    const T friction = recoverable_energy(state);
+    if (stiffness == T(0.0) && offset == T(0.0)) return friction;
+    if (!(stiffness > T(0.0))) return T(std::numeric_limits<double>::quiet_NaN());
+    const T spring = offset + stiffness * state.penetration;
+    return friction + 0.5 * spring * spring / stiffness;
   }
 
   T step(State& state, const Motion& motion, double) const noexcept {

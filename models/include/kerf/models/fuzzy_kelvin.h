@@ -70,6 +70,11 @@ struct FuzzyKelvin {
             reader.number("depth", 0.0, 1e3)};
   }
 
+  /// Of the element since the last rupture [J].
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return element.stored_energy(state.element);
+  }
+
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     const T force =
         element.step(state.element, {motion.penetration - state.reference, motion.velocity}, period_s);
@@ -79,6 +84,7 @@ struct FuzzyKelvin {
     state.reference = motion.penetration;
     state.element.arm_force = T(0.0);
     state.element.penetration = 0.0;
+    state.element.out_of_reach = T(0.0);
     return T(0.0);
   }
 };

@@ -26,6 +26,9 @@ namespace kerf::models {
 /// depth. The threshold is that of fuzzy_kelvin, met by the force against the cut alone. Above the surface
 /// there is no force, and the reference goes with the blade.
 ///
+/// Passive without stiffening. With c > 0 it is not: deepening raises the lateral forces without a force
+/// along the depth that pays for it, as the paper's parameters that change with depth do.
+///
 /// Source: [FuzzyKelvin], section 2.3, whose three elements have no numbers of their own; figs. 4-6 are of
 /// the x axis.
 struct FuzzyKelvin3d {
@@ -41,6 +44,7 @@ struct FuzzyKelvin3d {
   struct State {
     std::array<Kelvin<double>::State, 3> element;
     std::array<double, 3> reference{};
+    double depth = 0.0;  ///< d [m]
     bool in_tissue = false;
     std::uint32_t ruptures = 0;
   };
@@ -74,9 +78,18 @@ struct FuzzyKelvin3d {
     return law;
   }
 
+  /// Of the three elements since the last rupture, (1 + c d) times what they hold [J].
+  [[nodiscard]] double stored_energy(const State& state) const noexcept {
+    if (!state.in_tissue) return 0.0;
+    double energy = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) energy += element[i].stored_energy(state.element[i]);
+    return (1.0 + stiffening_per_m * state.depth) * energy;
+  }
+
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
     const auto& p = motion.position;
     const double depth = p[2] < 0.0 ? -p[2] : 0.0;
+    state.depth = depth;
     if (!(depth > 0.0)) state.in_tissue = false;
     if (depth > 0.0 && !state.in_tissue) {
       state.element = {};
@@ -104,6 +117,7 @@ struct FuzzyKelvin3d {
         for (auto& one : state.element) {
           one.arm_force = 0.0;
           one.penetration = 0.0;
+          one.out_of_reach = 0.0;
         }
         return {};
       }

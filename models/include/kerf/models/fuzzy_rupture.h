@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -34,7 +35,9 @@ struct FuzzyRupture {
 
   FuzzySurface<T> surface;
 
-  struct State {};
+  struct State {
+    double penetration = -std::numeric_limits<double>::infinity();
+  };
 
   static std::vector<OptionInfo> options() { return FuzzySurface<T>::options(); }
   static std::vector<ParameterInfo> parameters(const Options& given) {
@@ -44,7 +47,14 @@ struct FuzzyRupture {
     return {FuzzySurface<T>::make(values, OptionReader(name, options(), given))};
   }
 
-  T step(State&, const Motion& motion, double) const noexcept {
+  /// Work of the force along the depth at rest [J], as if it were a spring. Not a bound: a force that grows
+  /// with the speed gives more to a tool that leaves fast than it took from one that came slowly.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return state.penetration > 0.0 ? surface.work_to(state.penetration, 0.0) : T(0.0);
+  }
+
+  T step(State& state, const Motion& motion, double) const noexcept {
+    state.penetration = motion.penetration;
     if (!(motion.penetration > 0.0)) return T(0.0);
     return surface(motion.penetration, std::abs(motion.velocity));
   }

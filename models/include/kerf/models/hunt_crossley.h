@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -43,7 +44,9 @@ struct HuntCrossley {
   T exponent{};                   ///< n [1]
   double reference_depth = 0.01;  ///< x1 [m or rad], > 0
 
-  struct State {};
+  struct State {
+    double penetration = -std::numeric_limits<double>::infinity();
+  };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
     return {{"reference_force", Quantity::force, 1e-15, 1e6, Scale::logarithmic,
@@ -62,12 +65,17 @@ struct HuntCrossley {
   }
 
   /// Elastic energy at a depth [J].
-  [[nodiscard]] T stored_energy(double penetration) const {
-    if (penetration <= 0.0) return T(0.0);
-    return reference_force * penetration / (exponent + 1.0) * share(penetration);
+  [[nodiscard]] T stored_energy(double penetration) const noexcept {
+    if (penetration <= 0.0) return T(0);
+    return reference_force * static_cast<Input<T>>(penetration) / (exponent + Input<T>(1)) *
+           share(penetration);
+  }
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return stored_energy(state.penetration);
   }
 
-  T step(State&, const Motion& motion, double) const noexcept {
+  T step(State& state, const Motion& motion, double) const noexcept {
+    state.penetration = motion.penetration;
     if (motion.penetration <= 0.0) return T(0);
     const T at_reference = reference_force + reference_damping * static_cast<Input<T>>(motion.velocity);
     return at_reference < T(0) ? T(0) : T(at_reference * share(motion.penetration));

@@ -40,7 +40,7 @@ struct ArmTick {
         return {periods * share, stiffness * share};
       }
       case Integrator::euler: {
-        const auto steps = static_cast<std::uint64_t>(period_s / shortest_s + 0.5);
+        const auto steps = static_cast<std::uint64_t>(std::round(period_s / shortest_s));
         if (steps < 2) return {periods, stiffness};
         const T loss = loss_of(periods / Input<T>(static_cast<double>(steps)), steps);
         return {loss, stiffness / periods * loss};

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/contact_energy.h>
 #include <kerf/models/integrator.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
@@ -57,6 +58,7 @@ struct Kelvin {
     double period_s = 0.0;
     double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
+    T out_of_reach{0};  ///< of the springs' energy (contact_step()) [J]
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -80,14 +82,24 @@ struct Kelvin {
   }
 
   /// Energy held by the two springs [J], for a penetration in metres.
-  [[nodiscard]] T stored_energy(const State& state) const {
-    return 0.5 * parallel_stiffness * state.penetration * state.penetration +
-           0.5 * state.arm_force * state.arm_force / series_stiffness;
+  [[nodiscard]] T spring_energy(const State& state) const noexcept {
+    const Input<T> half(0.5);
+    const auto x = static_cast<Input<T>>(state.penetration);
+    return half * parallel_stiffness * x * x + half * state.arm_force * state.arm_force / series_stiffness;
+  }
+  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
+  /// penetration in metres.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return spring_energy(state) - state.out_of_reach;
+  }
+  /// Force of the element where it was left [N].
+  [[nodiscard]] T held_force(const State& state) const noexcept {
+    return parallel_stiffness * static_cast<Input<T>>(state.penetration) + state.arm_force;
   }
 
   /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
+    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
     return force < T(0) ? T(0) : force;
   }
 

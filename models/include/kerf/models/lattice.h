@@ -135,6 +135,12 @@ class Lattice {
 
   [[nodiscard]] double kinetic_energy() const noexcept;
   [[nodiscard]] double potential_energy() const noexcept;  ///< of springs and bedding
+  /// What no step of dt within the limit lets grow, and none changes where nothing damps:
+  ///
+  ///     v'Mv / 2 + u'K(u - dt v) / 2 - dt v'Cv / 4
+  ///
+  /// The energy at which leapfrog sees the lattice; for dt = 0 the sum of the two above.
+  [[nodiscard]] double energy(double dt) const noexcept;
 
   /// Whether every invariant of the cells, fans, nodes and stencils holds. Slow: for tests.
   [[nodiscard]] bool consistent() const;
@@ -172,6 +178,19 @@ class Lattice {
   void refresh(int point) noexcept;
   void refresh_around(int point) noexcept;
 
+  /// Sums that stiffnesses make an energy of: of u w - share (u - w)^2, where u is a strain now, w that of a
+  /// step before, and the share a damping time over 2 dt.
+  struct Strains {
+    double side = 0.0, diagonal = 0.0;
+  };
+  /// dt, and the shares of springs and bedding.
+  struct StepBefore {
+    Real dt, spring, bedding;
+  };
+  [[nodiscard]] StepBefore step_before(double dt) const noexcept;
+  [[nodiscard]] Strains strains_of(int cell, const StepBefore& by) const noexcept;
+  [[nodiscard]] double spring_energy(double dt) const noexcept;
+  [[nodiscard]] Vector node_energy(double dt) const noexcept;  ///< of motion, of the bedding
   [[nodiscard]] Coefficients coefficients(double dt) const noexcept;
   Row row_buffer(int row) noexcept;
   [[nodiscard]] Moved irregular(const Stencil& stencil, const Coefficients& by) const noexcept;
@@ -194,6 +213,7 @@ class Lattice {
   std::vector<std::uint8_t> pinned_;
   std::vector<std::uint8_t> cut_right_, cut_up_;  ///< the cell's right and upper side
   std::vector<int> corner_node_;                  ///< four a cell
+  std::vector<std::uint8_t> whole_row_;           ///< of cells, all on nodes of the whole lattice
   // Irregular nodes, in the order in which they became so.
   std::vector<Stencil> stencils_;
   std::vector<Moved> next_;

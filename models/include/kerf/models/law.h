@@ -99,6 +99,13 @@ class Law {
   [[nodiscard]] SpatialResponse step(State& state, const SpatialMotion& motion,
                                      double period_s) const noexcept;
 
+  /// Energy that the springs of a state hold as of its last step, [J] for a position in m, [N·rad] for rad
+  /// (work per unit of lever): what the law can give back at most, the part of past work that is not
+  /// dissipated. What a contact that never pulls cannot give back is not stored. Of a passive law it never
+  /// grows by more than the work done on it; the docstring of a law says where it is not passive. Not a
+  /// number where the law does not say, or for the state of another law. Never throws or allocates.
+  [[nodiscard]] double stored_energy(const State& state) const noexcept;
+
   /// The force of a scalar law along a motion, tick by tick from a fresh state: one period for each tick.
   [[nodiscard]] std::vector<double> along(std::span<const Motion> motion,
                                           std::span<const double> period_s) const;

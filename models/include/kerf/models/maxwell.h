@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/contact_energy.h>
 #include <kerf/models/integrator.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
@@ -69,6 +70,7 @@ struct Maxwell {
     double period_s = 0.0;
     double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
+    T out_of_reach{0};  ///< of the springs' energy (contact_step()) [J]
   };
 
   static std::vector<OptionInfo> options() {
@@ -115,17 +117,30 @@ struct Maxwell {
   }
 
   /// Energy held by the springs [J], for a penetration in metres.
-  [[nodiscard]] T stored_energy(const State& state) const {
-    T energy = 0.5 * parallel_stiffness * state.penetration * state.penetration;
+  [[nodiscard]] T spring_energy(const State& state) const noexcept {
+    const Input<T> half(0.5);
+    const auto x = static_cast<Input<T>>(state.penetration);
+    T energy = half * parallel_stiffness * x * x;
     for (std::size_t i = 0; i < arms; ++i) {
-      energy = energy + 0.5 * state.arm_force[i] * state.arm_force[i] / stiffness[i];
+      energy = energy + half * state.arm_force[i] * state.arm_force[i] / stiffness[i];
     }
     return energy;
+  }
+  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
+  /// penetration in metres.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return spring_energy(state) - state.out_of_reach;
+  }
+  /// Force of the element where it was left [N].
+  [[nodiscard]] T held_force(const State& state) const noexcept {
+    T force = parallel_stiffness * static_cast<Input<T>>(state.penetration);
+    for (std::size_t i = 0; i < arms; ++i) force = force + state.arm_force[i];
+    return force;
   }
 
   /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
+    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
     return force < T(0) ? T(0) : force;
   }
 

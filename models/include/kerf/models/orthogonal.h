@@ -96,6 +96,7 @@ struct Orthogonal {
   mechanisms::Premium device;
 
   struct State {
+    Exponential<double>::State deformation;
     Fracture<double>::State fracture;
     double normal_force = 0.0;  ///< -lambda_d of the last tick, what the surface exerts along its normal [N]
   };
@@ -106,6 +107,12 @@ struct Orthogonal {
   static std::vector<OptionInfo> options();
   static std::vector<ParameterInfo> parameters(const Options& given);
   static Orthogonal make(std::span<const double> values, const Options& given);
+
+  /// Of the normal law [J]. What compensation does is the device's own weight and inertia, and not the
+  /// object's energy.
+  [[nodiscard]] double stored_energy(const State& state) const noexcept {
+    return cutting ? fracture.stored_energy(state.fracture) : deformation.stored_energy(state.deformation);
+  }
 
   // NOLINTNEXTLINE(bugprone-exception-escape): a surface is never without a value
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;

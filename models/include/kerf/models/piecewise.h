@@ -119,8 +119,21 @@ struct Piecewise {
     return both;
   }
 
+  /// recoverable_energy() between the first knot and the last one [J]. Passive where the opening branch is
+  /// nowhere above the closing one and the selector at once and whole: a ramp band and the factor after a
+  /// reversal lessen also what is taken in, and the filter leaves the branch of before on for a while.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return models::recoverable_energy<T>(
+        state.penetration, knots, [&](std::size_t i) { return static_cast<double>(knot[i]); },
+        [&](bool is_closing, std::size_t i) { return is_closing ? closing[i] : opening[i]; },
+        [&](bool is_closing, double at) { return branch_force(is_closing, at); });
+  }
+
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    if (!loop) return branch_force(true, motion.penetration);
+    if (!loop) {
+      state.penetration = motion.penetration;
+      return branch_force(true, motion.penetration);
+    }
     const auto branch = selector.step(state, motion, period_s);
     return static_cast<Input<T>>(branch.scale) * branch_force(branch.closing, motion.penetration);
   }

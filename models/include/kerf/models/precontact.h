@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -37,7 +38,9 @@ struct Precontact {
   T width{};      ///< w [m], > 0
   bool paper = false;
 
-  struct State {};
+  struct State {
+    double penetration = -std::numeric_limits<double>::infinity();
+  };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
     return {
@@ -53,7 +56,7 @@ struct Precontact {
   }
 
   /// Elastic energy since the threshold [J].
-  [[nodiscard]] T stored_energy(double penetration) const {
+  [[nodiscard]] T stored_energy(double penetration) const noexcept {
     const T d = penetration + width;
     if (d <= T(0.0)) return T(0.0);
     const T share = paper ? T(1.0) : T(0.5);
@@ -63,7 +66,12 @@ struct Precontact {
            (paper ? T(0.0) : T(0.5 * stiffness * width * penetration));
   }
 
-  T step(State&, const Motion& motion, double) const noexcept {
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return stored_energy(state.penetration);
+  }
+
+  T step(State& state, const Motion& motion, double) const noexcept {
+    state.penetration = motion.penetration;
     const T d = motion.penetration + width;
     if (d <= T(0.0)) return T(0.0);
     const T share = paper ? T(1.0) : T(0.5);

@@ -103,8 +103,24 @@ struct Recording {
     return table[i] + (table[i + 1] - table[i]) * static_cast<Input<T>>(place - cell);
   }
 
+  /// recoverable_energy() between the first point and the last one [J], with what Piecewise says of a loop.
+  /// Goes through all points.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    const double spacing = (last - first) / static_cast<double>(closing.size() - 1);
+    return models::recoverable_energy<T>(
+        state.penetration, closing.size(),
+        [&](std::size_t i) { return first + spacing * static_cast<double>(i); },
+        [&](bool is_closing, std::size_t i) {
+          return is_closing || opening.empty() ? closing[i] : opening[i];
+        },
+        [&](bool is_closing, double at) { return branch_force(is_closing, at); });
+  }
+
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    if (opening.empty()) return branch_force(true, motion.penetration);
+    if (opening.empty()) {
+      state.penetration = motion.penetration;
+      return branch_force(true, motion.penetration);
+    }
     const auto branch = selector.step(state, motion, period_s);
     return static_cast<Input<T>>(branch.scale) * branch_force(branch.closing, motion.penetration);
   }

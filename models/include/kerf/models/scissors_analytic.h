@@ -70,6 +70,9 @@ struct ScissorsAnalytic {
     return law;
   }
 
+  /// Friction and cutting hold nothing [N·rad].
+  [[nodiscard]] T stored_energy(const State&) const noexcept { return T(0.0); }
+
   T step(State& state, const Motion& motion, double period_s) const noexcept {
     const auto branch = selector.step(state, motion, period_s);
     const double theta = contact_angle_rad - motion.penetration;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -28,7 +29,8 @@ struct MaterialEdge {
   double largest_force_n = 2.0;       ///< f_max, >= 0
 
   struct State {
-    double edge_m = 0.0;  ///< x_m
+    double edge_m = 0.0;    ///< x_m
+    double pushed_m = 0.0;  ///< by which the cutting point stands beyond it
   };
   struct Answer {
     bool contact = false;
@@ -37,10 +39,11 @@ struct MaterialEdge {
 
   /// @param cutting_point_m x_c + x_s
   Answer step(State& state, double cutting_point_m) const noexcept {
-    const double pushed = cutting_point_m - state.edge_m;
+    const double pushed = state.pushed_m = std::max(0.0, cutting_point_m - state.edge_m);
     if (!(pushed > 0.0)) return {};
     if (stiffness_n_per_m * pushed <= largest_force_n) return {true, -stiffness_n_per_m * pushed};
-    state.edge_m = cutting_point_m - largest_force_n / stiffness_n_per_m;
+    state.pushed_m = largest_force_n / stiffness_n_per_m;
+    state.edge_m = cutting_point_m - state.pushed_m;
     return {true, -largest_force_n};
   }
 };
@@ -80,6 +83,12 @@ struct ScissorsFree {
   static ScissorsFree make(std::span<const double> values, const Options& given);
 
   [[nodiscard]] State initial_state() const { return {.branch = {}, .material = {.edge_m = edge_m}}; }
+  /// Of the edge, k_t (x_c + x_s - x_m)^2 / 2 [J]: x_s gives it back. Closing also pushes the cutting point
+  /// against the edge, which the handle does not feel: where its friction takes less than the edge gains by
+  /// it, the two axes together give more than they took.
+  [[nodiscard]] double stored_energy(const State& state) const noexcept {
+    return 0.5 * material.stiffness_n_per_m * state.material.pushed_m * state.material.pushed_m;
+  }
   AxisValues step(State& state, const SpatialMotion& motion, double period_s) const noexcept;
 };
 

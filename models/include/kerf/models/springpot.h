@@ -10,6 +10,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/contact_energy.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
@@ -83,6 +84,7 @@ struct Springpot {
     double beginning = 0.0;  ///< penetration of the first tick
     double penetration = 0.0;
     bool started = false;
+    T out_of_reach{};  ///< of the springs' energy (contact_step()) [J]
   };
 
   static std::vector<OptionInfo> options() {
@@ -121,7 +123,7 @@ struct Springpot {
   }
 
   /// Energy held by the springs [J], for a penetration in metres.
-  [[nodiscard]] T stored_energy(const State& state) const {
+  [[nodiscard]] T spring_energy(const State& state) const noexcept {
     const double moved = state.penetration - state.beginning;
     T twice = stiffness * (state.penetration * state.penetration) + slow * (moved * moved);
     for (std::size_t j = 0; j < decays; ++j) {
@@ -129,10 +131,20 @@ struct Springpot {
     }
     return 0.5 * twice;
   }
+  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
+  /// penetration in metres.
+  [[nodiscard]] T stored_energy(const State& state) const noexcept {
+    return spring_energy(state) - state.out_of_reach;
+  }
+  /// Force of the element where it was left, at rest [N].
+  [[nodiscard]] T held_force(const State& state) const noexcept {
+    return stiffness * state.penetration + slow * (state.penetration - state.beginning) +
+           decaying_force(state);
+  }
 
   /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = bilateral_step(state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
+    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
     return force < T(0.0) ? T(0.0) : force;
   }
 
