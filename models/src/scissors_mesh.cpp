@@ -146,17 +146,21 @@ ScissorsMesh::Seen ScissorsMesh::follow(State& state, const SpatialMotion& motio
   const bool at_the_tool = !state.started || (!state.trails && state.advance_s >= period_s);
   state.started = true;
   if (at_the_tool) return {blades_at(motion.position[0], motion.position[1]), motion.velocity[0]};
-  const double turn = motion.position[0] - state.before.theta;
-  const double travel = motion.position[1] - state.before.x_s;
-  const auto in_time = [&](double way, double following, double speed) {
-    const double reach = std::max(following, 2.0 * std::abs(speed)) * state.advance_s;
-    return std::abs(way) > reach ? reach / std::abs(way) : 1.0;
+  const double theta = motion.position[0];
+  const double x_s = motion.position[1];
+  const double opened = std::max(0.0, theta - state.before.theta);
+  state.before = blades_at(std::max(state.before.theta, theta), std::min(state.before.x_s, x_s));
+  const double closes = theta - state.before.theta;  // <= 0
+  const double advances = x_s - state.before.x_s;    // >= 0
+  const auto in_time = [&](double following, double speed) {
+    return std::max(following, 2.0 * std::abs(speed)) * state.advance_s;
   };
-  const double share = std::min(in_time(turn, following_rad_s, motion.velocity[0]),
-                                in_time(travel, following_m_s, motion.velocity[1]));
-  state.trails = share < 1.0;
-  return {blades_at(state.before.theta + share * turn, state.before.x_s + share * travel),
-          share * turn / state.advance_s};
+  const double turn = std::max(closes, -in_time(following_rad_s, motion.velocity[0]));
+  const double travel = std::min(advances, in_time(following_m_s, motion.velocity[1]));
+  state.trails = turn > closes || travel < advances;
+  return {
+      state.trails ? blades_at(state.before.theta + turn, state.before.x_s + travel) : blades_at(theta, x_s),
+      (opened + turn) / state.advance_s};
 }
 
 int ScissorsMesh::front_node(const State& state) const noexcept {

@@ -64,13 +64,13 @@ class NominalTick {
 ///
 /// A tick advances the mesh by at most two nominal ticks and 1000 stable sub-steps, however long it was, so
 /// that the catching up of a law that keeps within half a period never costs the next deadline. For the rest
-/// of the time the mesh is held: waves and relaxation of it come later by as much. The blades that the mesh
-/// sees then go from where they were to where the tool is in a straight line of angle and translation, in
-/// the time advanced if that takes no more than 10 rad/s and 0.5 m/s (about what a hand does) or twice the
-/// tool's own speed; else they follow it at that speed over the next ticks. Until they have caught up the
-/// forces are those of a tool that trails by so much, and elements break one after the other as under a
-/// quick hand. A mesh that needs more than 1000 sub-steps in a nominal tick is held in every one: slower
-/// than it should be, and stable.
+/// of the time the mesh is held: waves and relaxation of it come later by as much. What the tool opened or
+/// drew back meanwhile the mesh sees at once, so that nothing is felt where there is no contact any more.
+/// What it closed or went forward the mesh sees in the time advanced if that takes no more than 10 rad/s and
+/// 0.5 m/s (about what a hand does) or twice the tool's own speed; else the blades that it sees follow at
+/// that speed over the next ticks. Until they have caught up the forces are those of a tool that trails by so
+/// much, and elements break one after the other as under a quick hand. A mesh that needs more than 1000
+/// sub-steps in a nominal tick is held in every one: slower than it should be, and stable.
 ///
 /// Axes: theta [rad], force in N at the handle, and x_s [m]. Source: [Weiss2004], section 2; differs from the
 /// paper in sub-steps, in the virtual work and in borders that are held, of which the paper does not speak.
