@@ -16,31 +16,51 @@ template <typename T, typename Travel>
   return travel * share * (std::max(least, T(0)) + most) / T(2);
 }
 
+/// The tick of contact_step() in which an element may be strained by a pull. Apart, so that all others stay
+/// as short as they are without it.
+template <typename Element>
+#if defined(__GNUC__)
+[[gnu::noinline]]
+#endif
+auto drawn_step(const Element& element, typename Element::State& state, double x, double period_s) noexcept {
+  using T = decltype(element.bilateral_step(state, x, period_s));
+  const auto travel = static_cast<T>(x - state.penetration);
+  T given = element.stored_energy(state);
+  T force(0);
+  if (travel == T(0)) {
+    force = element.bilateral_step(state, x, period_s);
+  } else {
+    const T held = element.held_force(state);
+    force = element.bilateral_step(state, x, period_s);
+    const T at_once = force - element.held_force(state);
+    given = std::max(T(0), given + felt_work(T(held + at_once), force, travel));
+  }
+  state.reachable = given < element.spring_energy(state) ? given : T(-1);
+  return force;
+}
+
 /// One tick of a viscoelastic element as a contact that never pulls: the force of the element, of either
-/// sign, and in `state.out_of_reach` what its springs hold but the contact does not give back,
+/// sign, and in `state.reachable` what the contact gives back at most where that is less than its springs
+/// hold,
 ///
-///     U[n] = min(V[n], U[n-1] + W[n]),   out_of_reach = V - U
+///     U[n] = min(V[n], U[n-1] + W[n])
 ///
 /// V [J] is the energy of the springs and W the work that was felt. Withdrawn faster than it recovers, an
-/// element is strained by a pull that nobody did: V rises by it, U does not. While the tool goes in or rests
-/// nothing is added to what is out of reach, and it is not reckoned with; nor are dual numbers.
+/// element is strained by a pull that nobody did: V rises by it, U does not. Where the tool goes in or rests,
+/// or the force cannot fall below zero, U keeps up with V and is not reckoned with; nor is it with dual
+/// numbers.
 ///
-/// The element has bilateral_step(), held_force() without the part that its dashpots have at once, and
-/// spring_energy(); its state has penetration and out_of_reach. @param x of the contact, >= 0
+/// The element has bilateral_step(), spring_energy(), held_force() without the part that its dashpots have at
+/// once, and least_force(), which it does not fall below on its way to x; its state has penetration and
+/// reachable. @param x of the contact, >= 0
 template <typename Element>
 auto contact_step(const Element& element, typename Element::State& state, double x,
                   double period_s) noexcept {
   using T = decltype(element.bilateral_step(state, x, period_s));
   if constexpr (std::is_floating_point_v<T>) {
-    if (state.started && (x < state.penetration || state.out_of_reach > T(0))) {
-      const auto travel = static_cast<T>(x - state.penetration);
-      const T before = element.stored_energy(state);
-      const T held = element.held_force(state);
-      const T force = element.bilateral_step(state, x, period_s);
-      const T at_once = force - element.held_force(state);
-      const T given = before + felt_work(T(held + at_once), force, travel);
-      state.out_of_reach = std::max(T(0), T(element.spring_energy(state) - std::max(T(0), given)));
-      return force;
+    const bool drawn = x < state.penetration && element.least_force(state, x, period_s) < T(0);
+    if (state.started && (drawn || state.reachable >= T(0))) {
+      return drawn_step(element, state, x, period_s);
     }
   }
   return element.bilateral_step(state, x, period_s);

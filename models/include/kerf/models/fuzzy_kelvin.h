@@ -84,7 +84,7 @@ struct FuzzyKelvin {
     state.reference = motion.penetration;
     state.element.arm_force = T(0.0);
     state.element.penetration = 0.0;
-    state.element.out_of_reach = T(0.0);
+    state.element.reachable = T(-1.0);
     return T(0.0);
   }
 };

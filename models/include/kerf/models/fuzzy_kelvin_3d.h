@@ -117,7 +117,7 @@ struct FuzzyKelvin3d {
         for (auto& one : state.element) {
           one.arm_force = 0.0;
           one.penetration = 0.0;
-          one.out_of_reach = 0.0;
+          one.reachable = -1.0;
         }
         return {};
       }

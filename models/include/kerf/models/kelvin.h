@@ -58,7 +58,7 @@ struct Kelvin {
     double period_s = 0.0;
     double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
-    T out_of_reach{0};  ///< of the springs' energy (contact_step()) [J]
+    T reachable{-1};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -87,14 +87,19 @@ struct Kelvin {
     const auto x = static_cast<Input<T>>(state.penetration);
     return half * parallel_stiffness * x * x + half * state.arm_force * state.arm_force / series_stiffness;
   }
-  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
-  /// penetration in metres.
+  /// Energy that a contact gives back at most (contact_step()) [J], for a penetration in metres.
   [[nodiscard]] T stored_energy(const State& state) const noexcept {
-    return spring_energy(state) - state.out_of_reach;
+    return state.reachable < T(0) ? spring_energy(state) : state.reachable;
   }
   /// Force of the element where it was left [N].
   [[nodiscard]] T held_force(const State& state) const noexcept {
     return parallel_stiffness * static_cast<Input<T>>(state.penetration) + state.arm_force;
+  }
+
+  /// Which it does not fall below on its way out to x, the arm relaxed or not [N].
+  [[nodiscard]] T least_force(const State& state, double x, double) const noexcept {
+    return parallel_stiffness * static_cast<Input<T>>(x) + std::min(state.arm_force, T(0)) +
+           series_stiffness * static_cast<Input<T>>(x - state.penetration);
   }
 
   /// Force of a contact: none before it, and never pulling.

@@ -70,7 +70,7 @@ struct Maxwell {
     double period_s = 0.0;
     double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
-    T out_of_reach{0};  ///< of the springs' energy (contact_step()) [J]
+    T reachable{-1};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
   };
 
   static std::vector<OptionInfo> options() {
@@ -126,15 +126,24 @@ struct Maxwell {
     }
     return energy;
   }
-  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
-  /// penetration in metres.
+  /// Energy that a contact gives back at most (contact_step()) [J], for a penetration in metres.
   [[nodiscard]] T stored_energy(const State& state) const noexcept {
-    return spring_energy(state) - state.out_of_reach;
+    return state.reachable < T(0) ? spring_energy(state) : state.reachable;
   }
   /// Force of the element where it was left [N].
   [[nodiscard]] T held_force(const State& state) const noexcept {
     T force = parallel_stiffness * static_cast<Input<T>>(state.penetration);
     for (std::size_t i = 0; i < arms; ++i) force = force + state.arm_force[i];
+    return force;
+  }
+
+  /// Which it does not fall below on its way out to x, the arms relaxed or not [N].
+  [[nodiscard]] T least_force(const State& state, double x, double) const noexcept {
+    const auto travel = static_cast<Input<T>>(x - state.penetration);
+    T force = parallel_stiffness * static_cast<Input<T>>(x);
+    for (std::size_t i = 0; i < arms; ++i) {
+      force = force + std::min(state.arm_force[i], T(0)) + stiffness[i] * travel;
+    }
     return force;
   }
 

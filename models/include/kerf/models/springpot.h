@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -84,7 +85,7 @@ struct Springpot {
     double beginning = 0.0;  ///< penetration of the first tick
     double penetration = 0.0;
     bool started = false;
-    T out_of_reach{};  ///< of the springs' energy (contact_step()) [J]
+    T reachable{-1.0};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
   };
 
   static std::vector<OptionInfo> options() {
@@ -131,15 +132,27 @@ struct Springpot {
     }
     return 0.5 * twice;
   }
-  /// Energy that a contact gives back at most: that of the springs, less what is out of its reach [J], for a
-  /// penetration in metres.
+  /// Energy that a contact gives back at most (contact_step()) [J], for a penetration in metres.
   [[nodiscard]] T stored_energy(const State& state) const noexcept {
-    return spring_energy(state) - state.out_of_reach;
+    return state.reachable < T(0) ? spring_energy(state) : state.reachable;
   }
   /// Force of the element where it was left, at rest [N].
   [[nodiscard]] T held_force(const State& state) const noexcept {
     return stiffness * state.penetration + slow * (state.penetration - state.beginning) +
            decaying_force(state);
+  }
+
+  /// Which it does not fall below on its way out to x, the decays relaxed or not [N].
+  [[nodiscard]] T least_force(const State& state, double x, double period_s) const noexcept {
+    const double travel = x - state.penetration;
+    std::array<T, lanes> sum{};
+    for (std::size_t j = 0; j < decays; j += lanes) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        sum[lane] = sum[lane] + weight[j + lane] * (std::min(state.displacement[j + lane], 0.0) + travel);
+      }
+    }
+    return stiffness * x + slow * (x - state.beginning) + fast * (travel / period_s) +
+           ((sum[0] + sum[1]) + (sum[2] + sum[3]));
   }
 
   /// Force of a contact: none before it, and never pulling.
