@@ -10,6 +10,7 @@
 
 #include "age_limits.h"
 #include "interruption.h"
+#include "kerf/drivers/woodenhaptics_signs.h"
 
 namespace kerf::drivers {
 namespace {
@@ -34,6 +35,8 @@ constexpr int switch_offset = 10000;
 constexpr double workspace_m = 0.1;
 constexpr double speed_limit_m_s = 5.0;
 constexpr double slew_limit_n_s = 2000.0;
+constexpr double acceleration_limit_m_s2 = 200.0;
+constexpr double report_jitter_s = 1e-3;  // a frame
 
 constexpr std::array<WoodenHaptics::Product, 2> known{
     {{0x1234, 0x0006, "hid:1234:0006", "WoodenHaptics", "WoodenHaptics, 3 axes with force; 1 kHz",
@@ -45,29 +48,37 @@ std::string_view name_of(Generation generation) {
   return generation == Generation::v1 ? "V1" : generation == Generation::v2 ? "V2" : "V3";
 }
 
-/// How far the tip moves along each axis for one count of each encoder, at home [m].
-mechanisms::WoodenHaptics::Matrix steps_at_home(const mechanisms::WoodenHaptics& mechanism) {
-  const Vector home = mechanism.angles({0, 0, 0});
-  const Vector count = (mechanism.angles({1, 1, 1}) - home).cwiseAbs();
-  return mechanism.jacobian(home).cwiseAbs() * count.asDiagonal();
+/// How far the tip moves along each axis for one count of each encoder, in the middle [m].
+mechanisms::WoodenHaptics::Matrix steps_in_the_middle(const mechanisms::WoodenHaptics& mechanism) {
+  const Vector middle = *mechanism.angles_of(mechanism.configuration().centre_m);
+  const Vector count = (mechanism.angles({1, 1, 1}) - mechanism.angles({0, 0, 0})).cwiseAbs();
+  return mechanism.jacobian(middle).cwiseAbs() * count.asDiagonal();
 }
 
-AxisInfo axis(std::string name, double home, double resolution, double force_limit) {
+AxisInfo axis(std::string name, double middle, double resolution, double force_limit) {
   return {.name = std::move(name),
           .position_unit = "m",
           .force_unit = "N",
           .resolution = resolution,
-          .lower = home - workspace_m,
-          .upper = home + workspace_m,
+          .lower = middle - workspace_m,
+          .upper = middle + workspace_m,
           .force_limit = force_limit,
           .slew_limit = slew_limit_n_s,
-          .speed_limit = speed_limit_m_s};
+          .speed_limit = speed_limit_m_s,
+          .acceleration_limit = acceleration_limit_m_s2};
 }
 
 Configuration with_most_current(const WoodenHaptics::Options& options) {
   Configuration made = *options.model;
   made.max_current_a = options.max_current_a;
   return made;
+}
+
+mechanisms::WoodenHaptics::Signs signs_for(Generation generation, const Configuration& model) {
+  if (const auto signs = woodenhaptics::signs_of(generation, model)) return *signs;
+  throw DeviceError(
+      fmt::format("there is no {} with the reports of {}; name the model that it is with '?model='",
+                  model.name, name_of(generation)));
 }
 
 }  // namespace
@@ -119,10 +130,10 @@ WoodenHaptics::Options WoodenHaptics::parse_options(Uri uri, const Product& prod
 WoodenHaptics::WoodenHaptics(std::string_view uri, const Product& product, const Options& options,
                              const std::atomic<bool>* stop)
     : options_(options),
-      mechanism_(with_most_current(options)),
       device_({product.vendor, product.product, product.what}, options.index, usage_page),
-      generation_(recognise(product)) {
-  const double least_step_m = steps_at_home(mechanism_).colwise().norm().minCoeff();
+      generation_(recognise(product)),
+      mechanism_(with_most_current(options), signs_for(generation_, *options.model)) {
+  const double least_step_m = steps_in_the_middle(mechanism_).colwise().norm().minCoeff();
   max_count_rate_ = 2.0 * speed_limit_m_s / least_step_m;  // nearer to the column a count is half as long
   max_count_step_ = static_cast<int>(2.5 * workspace_m / least_step_m);
   meet(product, stop);
@@ -198,28 +209,30 @@ void WoodenHaptics::meet(const Product& product, const std::atomic<bool>* stop) 
   }
   hear(report);
   heard_.take(last_);
-  const Vector home = mechanism_.tip(mechanism_.angles({0, 0, 0}));
-  const double distance_m = (mechanism_.tip(mechanism_.angles(last_.count)) - home).norm();
-  if (distance_m > 2.0 * workspace_m) {
-    throw DeviceError(
-        fmt::format("{}: by its counters the tip of {} is {:.2f} m from home, expected 0.1 m at most; it was "
-                    "not at home when it was "
-                    "switched on: hold it there and open it with calibrate=on",
-                    product.what, device_.node(), distance_m));
+  const Vector& middle = mechanism_.configuration().centre_m;
+  const double distance_m = (mechanism_.tip(mechanism_.angles(last_.count)) - middle).norm();
+  // It may stand at home, where that is outside of the workspace.
+  if (!(distance_m <= 2.0 * workspace_m + (mechanism_.home() - middle).norm())) {
+    throw DeviceError(fmt::format(
+        "{}: by its counters the tip of {} is {:.2f} m from the middle of its workspace, expected "
+        "0.1 m at most; it was not at home when it was switched on: hold it there and open it "
+        "with calibrate=on",
+        product.what, device_.node(), distance_m));
   }
 }
 
 void WoodenHaptics::describe(std::string_view uri, const Product& product) {
   const Configuration& made = mechanism_.configuration();
-  const Vector home = mechanism_.tip(mechanism_.angles({0, 0, 0}));
-  const Vector resolution = steps_at_home(mechanism_).rowwise().maxCoeff();
+  const Vector& middle = made.centre_m;
+  const Vector resolution = steps_in_the_middle(mechanism_).rowwise().maxCoeff();
   const double force = made.max_force_n;
   info_ = {.uri = std::string(uri),
            .model = fmt::format("{} {} ({})", product.what, made.name, name_of(generation_)),
            .about = std::string(product.about),
-           .axes = {axis("x", home[0], resolution[0], force), axis("y", home[1], resolution[1], force),
-                    axis("z", home[2], resolution[2], force)},
+           .axes = {axis("x", middle[0], resolution[0], force), axis("y", middle[1], resolution[1], force),
+                    axis("z", middle[2], resolution[2], force)},
            .channels = {{"current_a", "A"}, {"current_b", "A"}, {"current_c", "A"}, {"report_age", "s"}},
+           .report_jitter_s = report_jitter_s,
            .configuration = configuration()};
   if (!streams()) {
     info_.channels.insert(info_.channels.end(),

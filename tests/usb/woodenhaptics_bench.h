@@ -17,11 +17,12 @@ struct Generation {
   std::string model;
   std::string name;
   std::size_t channels;
+  std::size_t report_size;
 };
 inline const std::array generations{
-    Generation{"woody?generation=v1", "hid:1234:0006", "woody-2019", "WoodenHaptics woody-2019 (V1)", 4},
-    Generation{"woody?generation=v2", "hid:1234:0006", "woody-2019", "WoodenHaptics woody-2019 (V2)", 8},
-    Generation{"woody?generation=v3", "hid:16c0:0486", "polhem-v3", "Polhem polhem-v3 (V3)", 8}};
+    Generation{"woody?generation=v1", "hid:1234:0006", "woody-2019", "WoodenHaptics woody-2019 (V1)", 4, 8},
+    Generation{"woody?generation=v2", "hid:1234:0006", "woody-2019", "WoodenHaptics woody-2019 (V2)", 8, 14},
+    Generation{"woody?generation=v3", "hid:16c0:0486", "polhem-v3", "Polhem polhem-v3 (V3)", 8, 64}};
 
 /// An order that the emulated device applied, as its trace tells it.
 struct AppliedOrder {

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/drivers/protocols/woodenhaptics.h>
+#include <kerf/drivers/woodenhaptics_signs.h>
 #include <kerf/mechanisms/woodenhaptics.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/validate.h>
@@ -26,9 +28,16 @@ using testing::HasSubstr;
 /// Of the wall: ten for one of them, fewer for the others, because a guest takes its time.
 std::size_t seconds_of(const Generation& one) { return one.emulator.ends_with("v2") ? 10 : 2; }
 
-/// The law of a wall below the home of a model.
-std::string wall_below_home(const WoodenHaptics& mechanism) {
-  return wall_below(mechanism.tip(mechanism.angles({0, 0, 0}))[2], "1");
+/// As the driver takes it.
+WoodenHaptics mechanism_of(const Generation& one) {
+  using drivers::woodenhaptics::signs_of;
+  const auto& model = *WoodenHaptics::find(one.model);
+  return {model, signs_of(*drivers::woodenhaptics::generation_of(one.report_size), model).value()};
+}
+
+/// The law of a wall below the middle of a model's workspace, where the hand holds it.
+std::string wall_below_middle(const WoodenHaptics& mechanism) {
+  return wall_below(mechanism.configuration().centre_m[2], "1");
 }
 
 std::array<double, 3> row_of(const std::vector<double>& values, std::size_t row) {
@@ -56,8 +65,8 @@ TEST(WoodenHapticsLoop, AVirtualWallIsClosedOverEachGeneration) {
     SCOPED_TRACE(one.emulator);
     const std::size_t seconds = seconds_of(one);
     const TemporaryFolder folder;
-    const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
-    write_text(folder / "wall.law.toml", wall_below_home(mechanism));
+    const WoodenHaptics mechanism = mechanism_of(one);
+    write_text(folder / "wall.law.toml", wall_below_middle(mechanism));
     {
       const Emulator emulator(one.emulator + "&trace=" + (folder / "trace.csv").string());
       ASSERT_TRUE(becomes_attached(one.uri));
@@ -74,7 +83,7 @@ TEST(WoodenHapticsLoop, AVirtualWallIsClosedOverEachGeneration) {
     // against 400 N/m leave 4.3 mm and 1.7 N at most, a little more while its arm is loaded.
     double deepest = 0.0;
     double strongest = 0.0;
-    const double height = mechanism.tip(mechanism.angles({0, 0, 0}))[2];
+    const double height = mechanism.configuration().centre_m[2];
     std::size_t unsent = 0;
     std::vector<std::array<int, 3>> sent;
     for (std::size_t row = 0; row < recording.rows(); ++row) {
@@ -111,8 +120,8 @@ TEST(WoodenHapticsLoop, ARecordingOutlivesTheDevice) {
   for (const Generation& one : {generations[0], generations[1]}) {
     SCOPED_TRACE(one.emulator);
     const TemporaryFolder folder;
-    const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
-    write_text(folder / "wall.law.toml", wall_below_home(mechanism));
+    const WoodenHaptics mechanism = mechanism_of(one);
+    write_text(folder / "wall.law.toml", wall_below_middle(mechanism));
     const Emulator emulator(one.emulator, {"--fault", "unplug@1.2"});
     ASSERT_TRUE(becomes_attached(one.uri));
     const auto outcome = run_kerf({"record", "--device", one.uri, "--law", folder / "wall.law.toml",
@@ -133,9 +142,9 @@ TEST(WoodenHapticsTwice, WritesTheSameRecordingInEachGuest) {
   const char* folder = std::getenv("KERF_TWICE");
   if (folder == nullptr) GTEST_SKIP() << "KERF_TWICE names no folder";
   for (const Generation& one : generations) {
-    const WoodenHaptics mechanism(*WoodenHaptics::find(one.model));
+    const WoodenHaptics mechanism = mechanism_of(one);
     const TemporaryFolder own;
-    write_text(own / "wall.law.toml", wall_below_home(mechanism));
+    write_text(own / "wall.law.toml", wall_below_middle(mechanism));
     const Emulator emulator(one.emulator);
     ASSERT_TRUE(becomes_attached(one.uri));
     const auto outcome = run_kerf({"record", "--device", one.uri, "--law", own / "wall.law.toml", "--seconds",

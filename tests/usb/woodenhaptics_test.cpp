@@ -30,7 +30,7 @@ using testing::HasSubstr;
 constexpr std::size_t age_channel = 3;
 constexpr std::size_t button_channel = 4;
 
-double home_of(const Device& device, std::size_t axis) {
+double middle_of(const Device& device, std::size_t axis) {
   return 0.5 * (device.info().axes[axis].lower + device.info().axes[axis].upper);
 }
 
@@ -64,7 +64,7 @@ TEST(WoodenHaptics, EachGenerationIsKnownAndFollowsItsTip) {
     });
     // In the first second the slowest of the hand's sines, 10 mm at 0.31 Hz, was at its crest.
     for (std::size_t axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(most[axis] - home_of(*device, axis), 0.010, 0.0015);
+      EXPECT_NEAR(most[axis] - middle_of(*device, axis), 0.010, 0.0015);
     EXPECT_LE(oldest_s, 0.0011) << "a report a frame";
     EXPECT_NEAR(figure(*device, "report_rate"), 1000.0, 5.0);
     EXPECT_EQ(figure(*device, "malformed"), 0.0);
@@ -155,9 +155,9 @@ TEST(WoodenHaptics, AForceBeyondTheMotorsIsCutWithoutTurningIt) {
   ASSERT_EQ(device->write({0.0, 5.0, -5.0}), Status::ok);
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
   (void)device->read(0.0, sample);
-  // 1 N y is 0.591 A in A, 1 N z is -0.788 A in C: five times both is too much, and C's is the largest.
-  EXPECT_NEAR(sample.channels[2], 1.0, 0.0011);
-  EXPECT_NEAR(sample.channels[0] / sample.channels[2], 0.591 / 0.788, 0.002);
+  // 1 N y is 0.591 A in A, 1 N z is 0.788 A in C: five times both is too much, and C's is the largest.
+  EXPECT_NEAR(sample.channels[2], -1.0, 0.0011);
+  EXPECT_NEAR(sample.channels[0] / sample.channels[2], -0.591 / 0.788, 0.002);
   EXPECT_EQ(figure(*device, "current_limited"), 1.0);
 }
 
@@ -165,14 +165,14 @@ TEST(WoodenHaptics, CountsFromWhereItIsToldToBeAtHome) {
   // 32760: the counters wrap while the hand sways.
   const Emulator emulator("woody?generation=v2&counter_offset=32760&button=0.2s&sway=0.005m");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
-  EXPECT_THAT(refusal("hid:1234:0006"),
-              AllOf(HasSubstr("m from home"), HasSubstr("hold it there and open it with calibrate=on")));
+  EXPECT_THAT(refusal("hid:1234:0006"), AllOf(HasSubstr("m from the middle of its workspace"),
+                                              HasSubstr("hold it there and open it with calibrate=on")));
   const auto follow = [](Device& device) {
     hold(device, 900, {}, [&](int, Status status, const Sample& sample) {
       EXPECT_EQ(status, Status::ok);
       // It was opened somewhere within the sway of 5 mm and stays there.
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        EXPECT_LE(std::abs(sample.position[axis] - home_of(device, axis)), 0.011);
+        EXPECT_LE(std::abs(sample.position[axis] - middle_of(device, axis)), 0.011);
       }
     });
     EXPECT_EQ(figure(device, "implausible"), 0.0);
@@ -222,7 +222,7 @@ TEST(WoodenHaptics, TornTurnedLostAndRefusedReportsDoNoHarm) {
       faults += status != Status::ok;
       EXPECT_NE(status, Status::lost);
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        EXPECT_LE(std::abs(sample.position[axis] - home_of(*device, axis)), 0.012);
+        EXPECT_LE(std::abs(sample.position[axis] - middle_of(*device, axis)), 0.012);
       }
     });
     EXPECT_EQ(figure(*device, "implausible"), 2.0) << "those whose bits were turned";
@@ -287,6 +287,8 @@ TEST(WoodenHaptics, SaysWhatIsWrongAndHowToMendIt) {
   const Emulator emulator("woody?generation=v1");
   ASSERT_TRUE(becomes_attached("hid:1234:0006"));
   EXPECT_THAT(refusal("hid:1234:0006?preset=home"), HasSubstr("is a V1, whose counters cannot be preset"));
+  EXPECT_THAT(refusal("hid:1234:0006?model=polhem-v3"),
+              HasSubstr("there is no polhem-v3 with the reports of V1"));
   const AsNobody guard;
   EXPECT_THAT(refusal("hid:1234:0006"),
               AllOf(HasSubstr("no permission for /dev/hidraw"), HasSubstr("70-kerf.rules")));

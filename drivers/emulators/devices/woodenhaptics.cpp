@@ -6,6 +6,7 @@
 
 #include <kerf/drivers/device.h>
 
+#include "devices/woodenhaptics_wiring.h"
 #include "trace.h"
 
 namespace kerf::emulators {
@@ -59,10 +60,7 @@ Endpoints endpoints_of(EmulatedWoodenHaptics::Generation generation) {
 }
 
 HeldTip::Options held(const EmulatedWoodenHaptics::Options& options) {
-  const mechanisms::WoodenHaptics mechanism(*options.model);
-  return {.centre_m = mechanism.tip(mechanism.angles({0, 0, 0})),
-          .sway_m = options.sway_m,
-          .max_travel_m = max_travel_m};
+  return {.centre_m = options.model->centre_m, .sway_m = options.sway_m, .max_travel_m = max_travel_m};
 }
 
 }  // namespace
@@ -85,6 +83,10 @@ EmulatedWoodenHaptics::Options EmulatedWoodenHaptics::parse_options(drivers::Uri
     throw drivers::DeviceError("woody: option 'model' is '" + model +
                                "', expected woody-2016, woody-2019, aluhaptics or polhem-v3");
   }
+  if (options.model->linkage && options.generation == Generation::v1) {
+    throw drivers::DeviceError("woody: there is no " + model +
+                               " with the reports of V1; expected generation=v2 or v3");
+  }
   options.button_s = given.number("button", {"s", options.button_s, 0.0, 1e6});
   options.counter_offset = static_cast<int>(given.number("counter_offset", {"1", 0.0, -32768.0, 32767.0}));
   options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, max_travel_m});
@@ -95,7 +97,7 @@ EmulatedWoodenHaptics::Options EmulatedWoodenHaptics::parse_options(drivers::Uri
 
 EmulatedWoodenHaptics::EmulatedWoodenHaptics(const Options& options)
     : options_(options),
-      mechanism_(*options.model),
+      mechanism_(*options.model, wiring_of(options.generation, *options.model)),
       tip_(held(options)),
       trace_(open_trace(options.trace, "t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog")) {
   counter_zero_.fill(options.counter_offset);

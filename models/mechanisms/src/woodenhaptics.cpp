@@ -10,86 +10,144 @@ namespace kerf::mechanisms {
 namespace {
 
 using Configuration = WoodenHaptics::Configuration;
+using Planar = Eigen::Vector2d;
 
-constexpr std::array<Configuration, 4> models{{{"woody-2016",
-                                                {.010, .010, .010},
-                                                {.160, .120, .120},
-                                                {.080, .205, .245},
-                                                {.220, 0.0, .080},
-                                                {.0259, .0259, .0259},
-                                                3.0,
-                                                2000.0,
-                                                5.0,
-                                                1000.0},
-                                               {"woody-2019",
-                                                {.010, .010, .010},
-                                                {.160, .120, .120},
-                                                {.080, .205, .245},
-                                                {.220, 0.0, .080},
-                                                {.321, .0603, .0603},
-                                                3.0,
-                                                2000.0,
-                                                5.0,
-                                                1000.0},
-                                               {"aluhaptics",
-                                                {.0138, .0098, .0098},
-                                                {.116, .076, .076},
-                                                {.111, .140, .111},
-                                                {.140, 0.0, 0.0},
-                                                {.0259, .0259, .0259},
-                                                3.0,
-                                                2000.0,
-                                                5.0,
-                                                1000.0},
-                                               {"polhem-v3",
-                                                {.0288, .013, .010},
-                                                {.175, .100, .100},
-                                                {.100, .165, .1308},
-                                                {.2045, 0.0, .0325},
-                                                {.0603, .0538, .0538},
-                                                3.0,
-                                                4096.0,
-                                                5.0,
-                                                2000.0}}};
+constexpr double right_angle = 0.5 * std::numbers::pi;
 
-constexpr std::array<double, 3> encoder_sign{-1.0, -1.0, 1.0};  // of the encoder and the gear together
-constexpr std::array<double, 3> motor_sign{1.0, -1.0, -1.0};
+Planar along(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+/// Its derivative by the angle.
+Planar across(double angle_rad) { return {-std::sin(angle_rad), std::cos(angle_rad)}; }
+double angle_of(const Planar& direction) { return std::atan2(direction.y(), direction.x()); }
+/// The angle of a triangle between two sides, opposite to the third; not a number if there is none such.
+double angle_between(double side, double other, double opposite) {
+  return std::acos((side * side + other * other - opposite * opposite) / (2.0 * side * other));
+}
+
+std::array<Configuration, 4> make_models() {
+  Configuration woody_2016{.name = "woody-2016",
+                           .capstan_m = {.010, .010, .010},
+                           .body_m = {.160, .120, .120},
+                           .length_m = {.080, .205, .245},
+                           .origin_m = {.220, 0.0, .080},
+                           .torque_constant = {.0259, .0259, .0259},
+                           .max_current_a = 3.0,
+                           .counts_per_turn = 2000.0,
+                           .max_force_n = 5.0,
+                           .max_stiffness_n_per_m = 1000.0,
+                           .home_rad = {0.0, 0.0, right_angle}};
+  Configuration woody_2019 = woody_2016;
+  woody_2019.name = "woody-2019";
+  woody_2019.torque_constant = {.321, .0603, .0603};
+  Configuration aluhaptics{.name = "aluhaptics",
+                           .capstan_m = {.0138, .0098, .0098},
+                           .body_m = {.116, .076, .076},
+                           .length_m = {.111, .140, .111},
+                           .origin_m = {.140, 0.0, 0.0},
+                           .torque_constant = {.0259, .0259, .0259},
+                           .max_current_a = 3.0,
+                           .counts_per_turn = 2000.0,
+                           .max_force_n = 5.0,
+                           .max_stiffness_n_per_m = 1000.0,
+                           .home_rad = {0.0, 0.0, right_angle}};
+  for (Configuration* one : {&woody_2016, &woody_2019, &aluhaptics}) {
+    one->centre_m = WoodenHaptics(*one, {}).home();
+  }
+  Configuration polhem{
+      .name = "polhem-v3",
+      .capstan_m = {.0288, .013, .010},
+      .body_m = {.175, .100, .100},
+      .length_m = {0.0, .165, .1308},
+      .origin_m = {.2045, 0.0, .0325},
+      .torque_constant = {.0603, .0538, .0538},
+      .max_current_a = 3.0,
+      .counts_per_turn = 4096.0,
+      .max_force_n = 5.0,
+      .max_stiffness_n_per_m = 2000.0,
+      .linkage = WoodenHaptics::Linkage{.base_m = .034, .crank_m = .025, .coupler_m = .190, .tail_m = .034}};
+  // The makers preset the counters where the device is parked, far from the middle of its workspace.
+  constexpr std::array parked_counts{8327.0, 10926.0, 27140.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    polhem.home_rad[i] = parked_counts[i] / polhem.counts_per_turn * 2.0 * std::numbers::pi *
+                         polhem.capstan_m[i] / polhem.body_m[i];
+  }
+  return {woody_2016, woody_2019, aluhaptics, polhem};
+}
 
 }  // namespace
 
-std::span<const Configuration> WoodenHaptics::configurations() noexcept { return models; }
+std::span<const Configuration> WoodenHaptics::configurations() noexcept {
+  static const std::array<Configuration, 4> models = make_models();
+  return models;
+}
 
 const Configuration* WoodenHaptics::find(std::string_view name) noexcept {
-  const auto* const place =
-      std::find_if(models.begin(), models.end(), [&](const Configuration& one) { return one.name == name; });
-  return place == models.end() ? nullptr : place;
+  const auto models = configurations();
+  const auto place = std::ranges::find(models, name, &Configuration::name);
+  return place == models.end() ? nullptr : &*place;
 }
 
 WoodenHaptics::Vector WoodenHaptics::angles(const std::array<int, 3>& counts) const noexcept {
-  Vector turn;
+  Vector all;
   for (std::size_t i = 0; i < 3; ++i) {
-    turn[static_cast<Eigen::Index>(i)] = encoder_sign[i] * 2.0 * std::numbers::pi * counts[i] /
-                                         made_.counts_per_turn * made_.capstan_m[i] / made_.body_m[i];
+    all[static_cast<Eigen::Index>(i)] = made_.home_rad[i] + signs_.encoder[i] * 2.0 * std::numbers::pi *
+                                                                counts[i] / made_.counts_per_turn *
+                                                                made_.capstan_m[i] / made_.body_m[i];
   }
-  return {turn[0], turn[1], 0.5 * std::numbers::pi - turn[2]};
+  return all;
 }
 
 std::array<double, 3> WoodenHaptics::counts(const Vector& angles_rad) const noexcept {
-  const Vector turn(angles_rad[0], angles_rad[1], 0.5 * std::numbers::pi - angles_rad[2]);
   std::array<double, 3> counts{};
   for (std::size_t i = 0; i < 3; ++i) {
-    counts[i] = encoder_sign[i] * turn[static_cast<Eigen::Index>(i)] / (2.0 * std::numbers::pi) *
-                made_.counts_per_turn * made_.body_m[i] / made_.capstan_m[i];
+    const double turned =
+        std::remainder(angles_rad[static_cast<Eigen::Index>(i)] - made_.home_rad[i], 2.0 * std::numbers::pi);
+    counts[i] = signs_.encoder[i] * turned / (2.0 * std::numbers::pi) * made_.counts_per_turn *
+                made_.body_m[i] / made_.capstan_m[i];
   }
   return counts;
 }
 
-WoodenHaptics::Vector WoodenHaptics::tip(const Vector& angles_rad) const noexcept {
+WoodenHaptics::Arm WoodenHaptics::arm_in_series(double b_rad, double c_rad) const noexcept {
   const auto& [ln, lb, lc] = made_.length_m;
+  const double sb = std::sin(b_rad);
+  const double cb = std::cos(b_rad);
+  const double sc = std::sin(c_rad);
+  const double cc = std::cos(c_rad);
+  return {.tip = {lb * sb + lc * sc, ln + lb * cb - lc * cc},
+          .by_b = {lb * cb, -lb * sb},
+          .by_c = {lc * cc, lc * sc}};
+}
+
+WoodenHaptics::Arm WoodenHaptics::arm_as_linkage(const Linkage& linkage, double b_rad,
+                                                 double c_rad) const noexcept {
+  const double upper_m = made_.length_m[1];
+  const double fore_m = made_.length_m[2];
+  const Planar knee = Planar(0.5 * linkage.base_m, 0.0) + upper_m * along(b_rad);
+  const Planar crank = Planar(-0.5 * linkage.base_m, 0.0) + linkage.crank_m * along(c_rad);
+  const Planar between = crank - knee;
+  // The tail, opposite to the forearm, stands beside the line to the crank by an angle of the triangle of
+  // that line, tail and coupler.
+  const double lambda =
+      angle_of(between) - std::numbers::pi - angle_between(between.norm(), linkage.tail_m, linkage.coupler_m);
+  // The coupler keeps its length: its ends move alike along it.
+  const Planar coupler = knee - linkage.tail_m * along(lambda) - crank;
+  const double lever = linkage.tail_m * coupler.dot(across(lambda));
+  const Planar knee_by_b = upper_m * across(b_rad);
+  const double lambda_by_b = coupler.dot(knee_by_b) / lever;
+  const double lambda_by_c = -linkage.crank_m * coupler.dot(across(c_rad)) / lever;
+  return {.tip = knee + fore_m * along(lambda),
+          .by_b = knee_by_b + fore_m * lambda_by_b * across(lambda),
+          .by_c = fore_m * lambda_by_c * across(lambda)};
+}
+
+WoodenHaptics::Arm WoodenHaptics::arm(double b_rad, double c_rad) const noexcept {
+  return made_.linkage ? arm_as_linkage(*made_.linkage, b_rad, c_rad) : arm_in_series(b_rad, c_rad);
+}
+
+WoodenHaptics::Vector WoodenHaptics::tip(const Vector& angles_rad) const noexcept {
+  const Planar at = arm(angles_rad[1], angles_rad[2]).tip;
   const auto& [ox, oy, oz] = made_.origin_m;
-  const double reach = lb * std::sin(angles_rad[1]) + lc * std::sin(angles_rad[2]);
-  return {std::cos(angles_rad[0]) * reach - ox, std::sin(angles_rad[0]) * reach - oy,
-          ln + lb * std::cos(angles_rad[1]) - lc * std::cos(angles_rad[2]) - oz};
+  return {std::cos(angles_rad[0]) * at.x() - ox, std::sin(angles_rad[0]) * at.x() - oy, at.y() - oz};
 }
 
 std::optional<WoodenHaptics::Vector> WoodenHaptics::angles_of(const Vector& tip_m) const noexcept {
@@ -97,32 +155,34 @@ std::optional<WoodenHaptics::Vector> WoodenHaptics::angles_of(const Vector& tip_
   const auto& [ox, oy, oz] = made_.origin_m;
   const double forward = tip_m[0] + ox;
   const double aside = tip_m[1] + oy;
-  const double out = std::hypot(forward, aside);
-  const double up = tip_m[2] + oz - ln;
-  const double square = out * out + up * up;
-  const double far = std::sqrt(square);
-  const double cos_at_b = (lb * lb + square - lc * lc) / (2.0 * lb * far);
-  const double cos_at_c = (lc * lc + square - lb * lb) / (2.0 * lc * far);
-  if (!(std::abs(cos_at_b) <= 1.0 && std::abs(cos_at_c) <= 1.0)) return std::nullopt;
-  const double from_vertical = std::atan2(out, up);
-  return Vector(std::atan2(aside, forward), from_vertical - std::acos(cos_at_b),
-                std::numbers::pi - from_vertical - std::acos(cos_at_c));
+  const Planar tip(std::hypot(forward, aside), tip_m[2] + oz);
+  const Planar shoulder(made_.linkage ? 0.5 * made_.linkage->base_m : 0.0, ln);
+  const double far = (tip - shoulder).norm();
+  const double upper = angle_of(tip - shoulder) + angle_between(lb, far, lc);
+  const Planar knee = shoulder + lb * along(upper);
+  const double lambda = angle_of(tip - knee);
+  Vector angles(std::atan2(aside, forward), upper, 0.0);
+  if (made_.linkage) {
+    const Linkage& linkage = *made_.linkage;
+    const Planar pivot(-0.5 * linkage.base_m, 0.0);
+    const Planar tail = knee - linkage.tail_m * along(lambda) - pivot;
+    angles[2] = angle_of(tail) + angle_between(linkage.crank_m, tail.norm(), linkage.coupler_m);
+  } else {
+    // From the vertical, the one from above and the other from below.
+    angles[1] = right_angle - upper;
+    angles[2] = right_angle + lambda;
+  }
+  return angles.allFinite() ? std::optional(angles) : std::nullopt;
 }
 
 WoodenHaptics::Matrix WoodenHaptics::jacobian(const Vector& angles_rad) const noexcept {
-  const double lb = made_.length_m[1];
-  const double lc = made_.length_m[2];
+  const Arm at = arm(angles_rad[1], angles_rad[2]);
   const double sa = std::sin(angles_rad[0]);
   const double ca = std::cos(angles_rad[0]);
-  const double sb = std::sin(angles_rad[1]);
-  const double cb = std::cos(angles_rad[1]);
-  const double sc = std::sin(angles_rad[2]);
-  const double cc = std::cos(angles_rad[2]);
-  const double reach = lb * sb + lc * sc;
   Matrix rates;
-  rates << -sa * reach, lb * ca * cb, lc * ca * cc,  //
-      ca * reach, lb * sa * cb, lc * sa * cc,        //
-      0.0, -lb * sb, lc * sc;
+  rates << -sa * at.tip.x(), ca * at.by_b.x(), ca * at.by_c.x(),  //
+      ca * at.tip.x(), sa * at.by_b.x(), sa * at.by_c.x(),        //
+      0.0, at.by_b.y(), at.by_c.y();
   return rates;
 }
 
@@ -133,7 +193,7 @@ WoodenHaptics::Currents WoodenHaptics::currents(const Vector& force_n,
   if (!torque.allFinite()) return {.ampere = {}, .limited = true};
   double largest = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
-    all.ampere[i] = motor_sign[i] * torque[static_cast<Eigen::Index>(i)] * made_.capstan_m[i] /
+    all.ampere[i] = signs_.motor[i] * torque[static_cast<Eigen::Index>(i)] * made_.capstan_m[i] /
                     made_.body_m[i] / made_.torque_constant[i];
     largest = std::max(largest, std::abs(all.ampere[i]));
   }
@@ -149,7 +209,7 @@ WoodenHaptics::Vector WoodenHaptics::force(const std::array<double, 3>& ampere,
   Vector torque;
   for (std::size_t i = 0; i < 3; ++i) {
     torque[static_cast<Eigen::Index>(i)] =
-        motor_sign[i] * ampere[i] * made_.torque_constant[i] * made_.body_m[i] / made_.capstan_m[i];
+        signs_.motor[i] * ampere[i] * made_.torque_constant[i] * made_.body_m[i] / made_.capstan_m[i];
   }
   return jacobian(angles_rad).transpose().inverse() * torque;
 }

@@ -11,6 +11,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/protocols/woodenhaptics.h>
 #include <kerf/drivers/usb/hid_device.h>
+#include <kerf/drivers/woodenhaptics_signs.h>
 #include <kerf/mechanisms/woodenhaptics.h>
 
 #include "devices/woodenhaptics.h"
@@ -59,6 +60,10 @@ class Host {
   }
   EmulatedWoodenHaptics& device() { return device_; }
   const WoodenHaptics::Configuration& model() const { return *options_.model; }
+  /// As the driver takes it, which has signs of its own.
+  WoodenHaptics as_driven() const {
+    return {*options_.model, drivers::woodenhaptics::signs_of(generation_, *options_.model).value()};
+  }
 
  private:
   void send(const drivers::woodenhaptics::Output& output, std::int64_t at) {
@@ -194,7 +199,7 @@ TEST(EmulatedWoodenHaptics, TellsThePoseByItsCounters) {
   for (const char* options :
        {"generation=v1&model=woody-2016", "generation=v2&model=aluhaptics", "generation=v3"}) {
     Host host(options);
-    const WoodenHaptics mechanism(host.model());
+    const WoodenHaptics mechanism = host.as_driven();
     double farthest = 0.0;
     for (std::int64_t at = 0; at < 1000 * ms; at += ms) {
       host.order({}, at);
@@ -204,7 +209,7 @@ TEST(EmulatedWoodenHaptics, TellsThePoseByItsCounters) {
           mechanism.tip(mechanism.angles({report->encoder[0], report->encoder[1], report->encoder[2]}));
       // Half a count of each encoder, and up to a millisecond of 0.04 m/s.
       EXPECT_LE((told - host.device().tip()).norm(), 0.13e-3) << options;
-      farthest = std::max(farthest, (told - mechanism.tip(mechanism.angles({0, 0, 0}))).norm());
+      farthest = std::max(farthest, (told - host.model().centre_m).norm());
     }
     EXPECT_GT(farthest, 0.008) << "the hand moves";
   }
@@ -213,10 +218,11 @@ TEST(EmulatedWoodenHaptics, TellsThePoseByItsCounters) {
 TEST(EmulatedWoodenHaptics, ItsMotorsPushAsTheDocumentedCheckSays) {
   // At home with 0.0259 N·m/A: 1 N along x is -0.660 A in B, along y 0.591 A in A, along z -0.788 A in C.
   const auto force = [](const std::array<int, 3>& current_ma) {
-    Host host("generation=v2&model=woody-2016&sway=0m");
+    Host host("generation=v1&model=woody-2016&sway=0m");
     (void)host.poll(0);
     host.order(current_ma, 0);
-    (void)host.poll(1);  // a nanosecond later nothing has moved
+    (void)host.poll(ms);
+    (void)host.poll(ms + 1);  // a nanosecond after it was applied nothing has moved
     return host.device().force();
   };
   EXPECT_LE((force({0, -660, 0}) - Eigen::Vector3d::UnitX()).norm(), 1e-3);
@@ -225,7 +231,7 @@ TEST(EmulatedWoodenHaptics, ItsMotorsPushAsTheDocumentedCheckSays) {
 }
 
 TEST(EmulatedWoodenHaptics, ItsMotorsMoveTheHandThatHoldsIt) {
-  Host host("generation=v2&model=woody-2016&sway=0m");
+  Host host("generation=v1&model=woody-2016&sway=0m");
   const Eigen::Vector3d home = host.device().tip();
   for (std::int64_t at = 0; at < 1000 * ms; at += ms) {
     (void)host.poll(at);
@@ -236,6 +242,64 @@ TEST(EmulatedWoodenHaptics, ItsMotorsMoveTheHandThatHoldsIt) {
   const Eigen::Vector3d moved = host.device().tip() - home;
   EXPECT_NEAR(moved[2], 1.0 / 300.0, 0.1 / 300.0 + 1e-4);
   EXPECT_LE(std::abs(moved[1]), 1e-9);
+}
+
+// The one place where the driver's signs, which are those of the makers' host programs, meet the emulator's,
+// which are those of firmware and mounting.
+TEST(WoodenHapticsSigns, AForceMovesTheTipItsOwnWayAndIsReadSo) {
+  int variants = 0;
+  for (const std::string generation : {"v1", "v2", "v3"}) {
+    for (const auto& model : WoodenHaptics::configurations()) {
+      if (generation == "v1" && model.linkage) continue;  // refused on both sides
+      ++variants;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        SCOPED_TRACE(generation + " " + std::string(model.name) + " " + "xyz"[axis]);
+        Host host("sway=0m&generation=" + generation + "&model=" + std::string(model.name));
+        const WoodenHaptics driven = host.as_driven();
+        const Eigen::Vector3d force = 0.4 * Eigen::Vector3d::Unit(axis);
+        const Eigen::Vector3d stood = host.device().tip();
+        std::optional<Eigen::Vector3d> first;
+        Eigen::Vector3d read = stood;
+        for (std::int64_t at = 0; at < 300 * ms; at += ms) {
+          if (const auto report = host.report(at)) {
+            const auto angles = driven.angles({report->encoder[0], report->encoder[1], report->encoder[2]});
+            read = driven.tip(angles);
+            if (!first) first = read;
+            std::array<int, 3> current_ma{};
+            const auto currents = driven.currents(force, angles);
+            for (std::size_t i = 0; i < 3; ++i) {
+              current_ma[i] = static_cast<int>(std::lround(1e3 * currents.ampere[i]));
+            }
+            host.order(current_ma, at);
+          }
+        }
+        // 0.4 N less 0.1 N of friction at 300 N/m.
+        EXPECT_NEAR((host.device().tip() - stood)[axis], 1.1e-3, 0.3e-3);
+        EXPECT_NEAR((read - *first)[axis], 1.1e-3, 0.3e-3);
+        EXPECT_LE((read - host.device().tip()).norm(), 0.2e-3) << "the same place";
+      }
+    }
+  }
+  EXPECT_EQ(variants, 11);
+}
+
+// What the makers' programs send and read, for one device of each kind (haptikfabrikenapi; CHAI3D).
+TEST(WoodenHapticsSigns, AreThoseOfTheMakersPrograms) {
+  const auto& woody = *WoodenHaptics::find("woody-2019");
+  const auto moved_by_a = [&](Generation generation) {
+    const WoodenHaptics driven(woody, *drivers::woodenhaptics::signs_of(generation, woody));
+    return (driven.tip(driven.angles({300, 0, 0})) - driven.home()).y();
+  };
+  const auto ampere_for_y = [&](Generation generation) {
+    const WoodenHaptics driven(woody, *drivers::woodenhaptics::signs_of(generation, woody));
+    return driven.currents(Eigen::Vector3d::UnitY(), driven.angles({0, 0, 0})).ampere[0];
+  };
+  EXPECT_NEAR(moved_by_a(Generation::v1), -14.4e-3, 0.05e-3);
+  EXPECT_NEAR(moved_by_a(Generation::v2), 14.4e-3, 0.05e-3);
+  EXPECT_NEAR(moved_by_a(Generation::v3), 14.4e-3, 0.05e-3);
+  for (const auto generation : {Generation::v1, Generation::v2, Generation::v3}) {
+    EXPECT_NEAR(ampere_for_y(generation), 0.048, 0.0005);
+  }
 }
 
 TEST(EmulatedWoodenHaptics, ItsAmplifiersCutMotorForMotor) {
@@ -306,6 +370,8 @@ TEST(EmulatedWoodenHaptics, RefusesWhatItIsNot) {
   };
   EXPECT_THAT(refusal("generation=v4"), HasSubstr("expected v1, v2 or v3"));
   EXPECT_THAT(refusal("model=omega"), HasSubstr("expected woody-2016"));
+  EXPECT_THAT(refusal("generation=v1&model=polhem-v3"),
+              HasSubstr("there is no polhem-v3 with the reports of V1"));
   EXPECT_THAT(refusal("colour=red"), HasSubstr("has no option 'colour'"));
 }
 

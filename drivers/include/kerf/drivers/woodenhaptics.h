@@ -105,9 +105,9 @@ class WoodenHaptics final : public Device {
   [[nodiscard]] bool streams() const noexcept { return generation_ == woodenhaptics::Generation::v1; }
 
   Options options_;
-  mechanisms::WoodenHaptics mechanism_;
   usb::HidDevice device_;
   woodenhaptics::Generation generation_;
+  mechanisms::WoodenHaptics mechanism_;
   DeviceInfo info_;
   std::array<int, 3> home_count_{};
   double max_count_rate_ = 0.0;  ///< no hand is faster [1/s]
