@@ -76,6 +76,12 @@ class EmulatedDevice {
   /// asked.
   [[nodiscard]] virtual std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const = 0;
 
+  /// Bytes that each packet to the host begins with before its data, if it has any.
+  [[nodiscard]] virtual std::size_t preamble() const { return 0; }
+
+  /// From now on its counters say what they said last, or again what they count.
+  virtual void stick(bool /*stuck*/) {}
+
   /// One line of what it has seen, for the person who watches.
   [[nodiscard]] virtual std::string tell() const { return ""; }
 };

@@ -4,25 +4,38 @@
 #include <array>
 #include <charconv>
 #include <stdexcept>
-#include <utility>
 
 namespace kerf::emulators {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Fault::Kind>, 5> kinds{{{"drop", Fault::Kind::drop},
-                                                                         {"split", Fault::Kind::split},
-                                                                         {"corrupt", Fault::Kind::corrupt},
-                                                                         {"stall", Fault::Kind::stall},
-                                                                         {"unplug", Fault::Kind::unplug}}};
+using Kind = Fault::Kind;
 
-Fault::Kind kind_of(Disturbance disturbance) noexcept {
+/// What stands behind the second.
+enum class Takes : std::uint8_t { nothing, count, count_and_seed, time_and_duration, duration };
+struct Name {
+  std::string_view text;
+  Kind kind;
+  Takes takes;
+};
+constexpr std::array<Name, 10> names{{{"drop", Kind::drop, Takes::count},
+                                      {"split", Kind::split, Takes::count},
+                                      {"corrupt", Kind::corrupt, Takes::count},
+                                      {"stall", Kind::stall, Takes::count},
+                                      {"duplicate", Kind::duplicate, Takes::count},
+                                      {"flip", Kind::flip, Takes::count_and_seed},
+                                      {"delay", Kind::delay, Takes::time_and_duration},
+                                      {"refuse-out", Kind::refuse_out, Takes::duration},
+                                      {"stick", Kind::stick, Takes::duration},
+                                      {"unplug", Kind::unplug, Takes::nothing}}};
+
+Kind kind_of(Disturbance disturbance) noexcept {
   switch (disturbance) {
     case Disturbance::split:
-      return Fault::Kind::split;
+      return Kind::split;
     case Disturbance::corrupt:
-      return Fault::Kind::corrupt;
+      return Kind::corrupt;
     default:
-      return Fault::Kind::drop;
+      return Kind::drop;
   }
 }
 
@@ -32,23 +45,72 @@ bool reads(std::string_view text, Number& number) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
+/// "20ms" or "1.5s".
+bool reads_time(std::string_view text, double& time_s) {
+  double scale = 1.0;
+  if (text.ends_with("ms")) {
+    scale = 1e-3;
+    text.remove_suffix(1);
+  }
+  if (!text.ends_with('s') && scale == 1.0) return false;
+  text.remove_suffix(1);
+  if (!reads(text, time_s) || !(time_s > 0.0)) return false;
+  time_s *= scale;
+  return true;
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (auto colon = text.find(':'); colon != std::string_view::npos; colon = text.find(':')) {
+    words.push_back(text.substr(0, colon));
+    text.remove_prefix(colon + 1);
+  }
+  words.push_back(text);
+  return words;
+}
+
+bool reads_words(const std::vector<std::string_view>& words, Takes takes, Fault& fault) {
+  const bool first = words.size() > 1;
+  const bool second = words.size() > 2;
+  if (words.size() > 3 || !reads(words[0], fault.at_s) || !(fault.at_s >= 0.0)) return false;
+  switch (takes) {
+    case Takes::nothing:
+      return !first;
+    case Takes::count:
+      return !second && (!first || (reads(words[1], fault.count) && fault.count > 0));
+    case Takes::count_and_seed:
+      return (!first || (reads(words[1], fault.count) && fault.count > 0)) &&
+             (!second || reads(words[2], fault.seed));
+    case Takes::time_and_duration:
+      return first && reads_time(words[1], fault.delay_s) &&
+             (!second || reads_time(words[2], fault.duration_s));
+    case Takes::duration:
+      return first && !second && reads_time(words[1], fault.duration_s);
+  }
+  return false;
+}
+
 Fault parse_fault(std::string_view text) {
   const auto at = text.find('@');
-  const auto* kind = std::ranges::find(kinds, text.substr(0, at), [](const auto& one) { return one.first; });
+  const auto* name = std::ranges::find(names, text.substr(0, at), &Name::text);
   Fault fault;
-  bool good = at != std::string_view::npos && kind != kinds.end();
-  if (good) {
-    fault.kind = kind->second;
-    std::string_view rest = text.substr(at + 1);
-    const auto colon = rest.find(':');
-    if (colon != std::string_view::npos) good = reads(rest.substr(colon + 1), fault.count) && fault.count > 0;
-    good = good && reads(rest.substr(0, colon), fault.at_s) && fault.at_s >= 0.0;
+  if (at != std::string_view::npos && name != names.end()) {
+    fault.kind = name->kind;
+    if (reads_words(words_of(text.substr(at + 1)), name->takes, fault)) return fault;
   }
-  if (good) return fault;
   throw std::invalid_argument(
       "fault '" + std::string(text) +
-      "': expected KIND@SECONDS or KIND@SECONDS:COUNT, KIND one of drop, split, corrupt, "
-      "stall, unplug; for example drop@2.0:3");
+      "': expected KIND@SECONDS, for drop, split, corrupt, stall and duplicate with :COUNT, for flip with "
+      ":COUNT:SEED, for delay with :TIME:DURATION, for refuse-out and stick with :DURATION, or unplug; for "
+      "example drop@2.0:3 or refuse-out@2.0:30ms");
+}
+
+/// A number that looks drawn, the next of a row by its place in it (SplitMix64).
+std::uint64_t drawn(std::uint64_t place) noexcept {
+  std::uint64_t bits = place * 0x9E3779B97F4A7C15U;
+  bits = (bits ^ bits >> 30U) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ bits >> 27U) * 0x94D049BB133111EBU;
+  return bits ^ bits >> 31U;
 }
 
 }  // namespace
@@ -63,37 +125,62 @@ std::vector<Fault> parse_faults(std::string_view text) {
   return faults;
 }
 
-const Fault* FaultPlan::find(Fault::Kind kind, double time_s) const noexcept {
+const Fault* FaultPlan::find(Kind kind, double time_s) const noexcept {
   for (const Fault& fault : faults_) {
-    if (fault.kind == kind && fault.count > 0 && time_s >= fault.at_s) return &fault;
+    if (fault.kind == kind && fault.count > 0 && time_s >= fault.at_s &&
+        time_s < fault.at_s + fault.duration_s) {
+      return &fault;
+    }
   }
   return nullptr;
 }
 
-void FaultPlan::count(Fault::Kind kind, double time_s) noexcept {
-  if (const Fault* found = find(kind, time_s))
-    --faults_[static_cast<std::size_t>(found - faults_.data())].count;
+bool FaultPlan::count(Kind kind, double time_s) noexcept {
+  const Fault* found = find(kind, time_s);
+  if (found == nullptr) return false;
+  --faults_[static_cast<std::size_t>(found - faults_.data())].count;
+  return true;
 }
 
 Disturbance FaultPlan::due(double time_s) const noexcept {
-  if (find(Fault::Kind::drop, time_s) != nullptr) return Disturbance::drop;
-  if (find(Fault::Kind::split, time_s) != nullptr) return Disturbance::split;
-  if (find(Fault::Kind::corrupt, time_s) != nullptr) return Disturbance::corrupt;
+  if (find(Kind::drop, time_s) != nullptr) return Disturbance::drop;
+  if (find(Kind::split, time_s) != nullptr) return Disturbance::split;
+  if (find(Kind::corrupt, time_s) != nullptr) return Disturbance::corrupt;
   return Disturbance::none;
 }
 
-void FaultPlan::done(Disturbance disturbance, double time_s) noexcept { count(kind_of(disturbance), time_s); }
-
-bool FaultPlan::stalls(double time_s) noexcept {
-  const bool does = find(Fault::Kind::stall, time_s) != nullptr;
-  count(Fault::Kind::stall, time_s);
-  return does;
+void FaultPlan::done(Disturbance disturbance, double time_s) noexcept {
+  (void)count(kind_of(disturbance), time_s);
 }
+
+bool FaultPlan::stalls(double time_s) noexcept { return count(Kind::stall, time_s); }
+
+bool FaultPlan::duplicates(double time_s) noexcept { return count(Kind::duplicate, time_s); }
+
+std::optional<std::uint64_t> FaultPlan::flips(double time_s) noexcept {
+  const Fault* found = find(Kind::flip, time_s);
+  if (found == nullptr) return std::nullopt;
+  const std::uint64_t number = drawn(found->seed << 32U ^ found->count);
+  (void)count(Kind::flip, time_s);
+  return number;
+}
+
+double FaultPlan::delay_s(double time_s) const noexcept {
+  const Fault* found = find(Kind::delay, time_s);
+  return found == nullptr ? 0.0 : found->delay_s;
+}
+
+std::optional<double> FaultPlan::refuses_until_s(double time_s) const noexcept {
+  const Fault* found = find(Kind::refuse_out, time_s);
+  return found == nullptr ? std::nullopt : std::optional(found->at_s + found->duration_s);
+}
+
+bool FaultPlan::sticks(double time_s) const noexcept { return find(Kind::stick, time_s) != nullptr; }
 
 std::optional<double> FaultPlan::unplugged_at_s() const noexcept {
   std::optional<double> first;
   for (const Fault& fault : faults_) {
-    if (fault.kind == Fault::Kind::unplug) first = std::min(first.value_or(fault.at_s), fault.at_s);
+    if (fault.kind == Kind::unplug) first = std::min(first.value_or(fault.at_s), fault.at_s);
   }
   return first;
 }

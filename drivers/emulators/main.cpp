@@ -108,8 +108,10 @@ int main(int count, char** texts) {
       ->capture_default_str();
   app.add_option(
       "--fault", arguments.faults,
-      "What goes wrong: KIND@SECONDS[:COUNT],..., from when it was plugged in; KIND is drop, split, corrupt, "
-      "stall or unplug");
+      "What goes wrong, from so many seconds after it was plugged in: KIND@SECONDS[:COUNT],... with KIND "
+      "drop, "
+      "split, corrupt, stall or duplicate; flip@SECONDS[:COUNT[:SEED]], delay@SECONDS:TIME[:DURATION], "
+      "refuse-out@SECONDS:DURATION, stick@SECONDS:DURATION, unplug@SECONDS; docs/devices.md has each");
   app.add_option("--seconds", arguments.seconds, "Unplug it after so long; 0: never")
       ->check(CLI::Range(0.0, 1e9));
   app.add_option("--times", arguments.times, "Plug it in so many times; 0: for ever")->capture_default_str();

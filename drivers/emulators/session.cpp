@@ -1,10 +1,12 @@
 #include "session.h"
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <limits>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <poll.h>
 #include <sys/socket.h>
@@ -19,6 +21,7 @@ using drivers::usb::now_ns;
 
 constexpr std::int32_t stalled = -EPIPE;
 constexpr std::int64_t shortest_wait_ns = 20'000;
+constexpr std::int64_t frame_ns = 1'000'000;
 constexpr std::int64_t longest_wait_ns = 100'000'000;  // then it looks whether it is to stop
 
 // Requests and descriptors of chapter 9 of USB 2.0, and of HID 1.11.
@@ -32,11 +35,17 @@ constexpr std::uint8_t set_interface = 11;
 constexpr std::uint8_t descriptor_device = 1;
 constexpr std::uint8_t descriptor_configuration = 2;
 constexpr std::uint8_t descriptor_string = 3;
+constexpr std::uint8_t descriptor_endpoint = 5;
 constexpr std::uint8_t descriptor_report = 0x22;
+constexpr std::uint8_t transfer_type = 0x03;
+constexpr std::uint8_t interrupt = 0x03;
+constexpr std::uint8_t direction_in = 0x80;
 constexpr std::uint8_t type_mask = 0x60;  // standard, class, vendor
 constexpr std::uint8_t hid_class_out = 0x21;
 constexpr std::uint8_t hid_set_idle = 0x0A;
 constexpr std::uint8_t hid_set_protocol = 0x0B;
+
+std::int64_t next_frame(std::int64_t time_ns) { return (time_ns / frame_ns + 1) * frame_ns; }
 
 }  // namespace
 
@@ -49,7 +58,19 @@ Setup Setup::parse(std::span<const std::uint8_t, 8> bytes) noexcept {
 }
 
 Session::Session(int socket, EmulatedDevice& device, FaultPlan faults)
-    : socket_(socket), device_(device), faults_(std::move(faults)), start_ns_(now_ns()) {}
+    : socket_(socket), device_(device), faults_(std::move(faults)), start_ns_(now_ns()) {
+  find_intervals();
+}
+
+void Session::find_intervals() {
+  const Bytes& all = device_.description().configuration;
+  for (std::size_t at = 0; at + 7 <= all.size() && all[at] > 0; at += all[at]) {
+    const std::uint8_t address = all[at + 2];
+    if (all[at + 1] != descriptor_endpoint || (address & direction_in) != 0) continue;
+    if ((all[at + 3] & transfer_type) != interrupt) continue;
+    out_[address].interval_ns = frame_ns * std::bit_floor(std::max<unsigned>(1, all[at + 6]));
+  }
+}
 
 Session::End Session::run(const std::atomic<bool>& stop, double seconds) {
   const auto unplugged_at_s = faults_.unplugged_at_s();
@@ -58,6 +79,9 @@ Session::End Session::run(const std::atomic<bool>& stop, double seconds) {
     if (stop.load()) return End::stopped;
     if (unplugged_at_s && seconds_at(now) >= *unplugged_at_s) return End::unplugged;
     if (seconds > 0.0 && seconds_at(now) >= seconds) return End::time_over;
+    device_.stick(faults_.sticks(seconds_at(now)));
+    take_sent(now);
+    send_late(now);
     serve_waiting(now);
     if (!open_) return End::host_left;
     const std::int64_t wait_ns = std::max<std::int64_t>(0, wait_until_ns(now, seconds) - now_ns());
@@ -76,6 +100,8 @@ std::int64_t Session::wait_until_ns(std::int64_t now, double seconds) const {
     if (const auto next = device_.next_event_ns(now))
       until = std::min(until, std::max(*next, now + shortest_wait_ns));
   }
+  until = std::min(until, next_sent_ns(now));
+  if (!late_.empty()) until = std::min(until, late_.front().due_ns);
   if (const auto at_s = faults_.unplugged_at_s()) {
     until = std::min(until, start_ns_ + static_cast<std::int64_t>(1e9 * *at_s));
   }
@@ -114,8 +140,38 @@ void Session::take(const usbip::Request& request, std::span<const std::uint8_t> 
     endpoints_[request.endpoint].waiting.push_back({request.sequence, request.length, now});
     return;
   }
-  device_.receive(request.endpoint, data, now);
-  reply(request.sequence, 0, {}, data.size());
+  OutEndpoint& out = out_[request.endpoint];
+  // Where nothing holds it up it is taken before the host says the next.
+  if (out.waiting.empty() && now >= out.due_ns && !faults_.refuses_until_s(seconds_at(now))) {
+    out.due_ns = out.interval_ns == 0 ? 0 : next_frame(now);
+  }
+  out.waiting.push_back({request.sequence, Bytes(data.begin(), data.end())});
+  take_sent(now);
+}
+
+void Session::take_sent(std::int64_t now) {
+  if (faults_.refuses_until_s(seconds_at(now))) return;
+  for (std::size_t number = 1; number < out_.size(); ++number) {
+    OutEndpoint& out = out_[number];
+    while (!out.waiting.empty() && now >= out.due_ns) {
+      const Sent sent = std::move(out.waiting.front());
+      out.waiting.pop_front();
+      if (out.interval_ns > 0) out.due_ns = (now / frame_ns) * frame_ns + out.interval_ns;
+      device_.receive(static_cast<std::uint8_t>(number), sent.data, now);
+      reply(sent.sequence, 0, {}, sent.data.size());
+    }
+  }
+}
+
+/// When something that the host has sent can be taken.
+std::int64_t Session::next_sent_ns(std::int64_t now) const {
+  std::int64_t next = std::numeric_limits<std::int64_t>::max();
+  for (const OutEndpoint& out : out_) {
+    if (!out.waiting.empty()) next = std::min(next, out.due_ns);
+  }
+  const auto refused_s = faults_.refuses_until_s(seconds_at(now));
+  if (!refused_s || next == std::numeric_limits<std::int64_t>::max()) return next;
+  return std::max(next, start_ns_ + static_cast<std::int64_t>(1e9 * *refused_s) + 1);
 }
 
 void Session::take_control(const usbip::Request& request, std::span<const std::uint8_t> data,
@@ -178,6 +234,14 @@ std::optional<Bytes> Session::descriptor(const Setup& setup) const {
 }
 
 void Session::unlink(const usbip::Request& request) {
+  for (OutEndpoint& out : out_) {
+    if (std::erase_if(out.waiting, [&](const Sent& one) { return one.sequence == request.unlinked; }) > 0) {
+      return write_all(usbip::unlink_reply(request.sequence, -ECONNRESET));
+    }
+  }
+  if (std::erase_if(late_, [&](const Late& one) { return one.sequence == request.unlinked; }) > 0) {
+    return write_all(usbip::unlink_reply(request.sequence, -ECONNRESET));
+  }
   for (Endpoint& endpoint : endpoints_) {
     const auto found = std::ranges::find(endpoint.waiting, request.unlinked, &Waiting::sequence);
     if (found == endpoint.waiting.end()) continue;
@@ -192,17 +256,53 @@ void Session::serve_waiting(std::int64_t now) {
     Endpoint& endpoint = endpoints_[number];
     while (!endpoint.waiting.empty()) {
       const Waiting oldest = endpoint.waiting.front();
-      answer_.resize(oldest.length);
-      const Disturbance asked = faults_.due(seconds_at(now));
-      Disturbance left = asked;
-      const auto size = device_.send(static_cast<std::uint8_t>(number), answer_,
-                                     std::max(oldest.since_ns, endpoint.last_end_ns), now, left);
-      if (left != asked) faults_.done(asked, seconds_at(now));
+      const auto size = fetch(static_cast<std::uint8_t>(number), oldest, now);
       if (!size) break;
       endpoint.waiting.pop_front();
       endpoint.last_end_ns = now;
-      reply_in(oldest.sequence, std::span(answer_).first(*size));
+      const auto data = std::span(answer_).first(*size);
+      const auto delay_ns = static_cast<std::int64_t>(1e9 * faults_.delay_s(seconds_at(now)));
+      if (delay_ns > 0 || !late_.empty()) {
+        const std::int64_t after_ns = late_.empty() ? 0 : late_.back().due_ns;
+        late_.push_back(
+            {std::max(now + delay_ns, after_ns), oldest.sequence, Bytes(data.begin(), data.end())});
+      } else {
+        reply_in(oldest.sequence, data);
+      }
     }
+  }
+}
+
+/// What the device has for a waiting transfer, into answer_, disturbed as the faults ask.
+std::optional<std::size_t> Session::fetch(std::uint8_t number, const Waiting& oldest, std::int64_t now) {
+  Endpoint& endpoint = endpoints_[number];
+  answer_.resize(oldest.length);
+  if (!endpoint.again.empty()) {
+    const Bytes again = std::exchange(endpoint.again, {});
+    const std::size_t size = std::min(again.size(), answer_.size());
+    std::copy_n(again.begin(), size, answer_.begin());
+    return size;
+  }
+  const Disturbance asked = faults_.due(seconds_at(now));
+  Disturbance left = asked;
+  const auto size = device_.send(number, answer_, std::max(oldest.since_ns, endpoint.last_end_ns), now, left);
+  if (left != asked) faults_.done(asked, seconds_at(now));
+  const std::size_t preamble = device_.preamble();
+  if (!size || *size <= preamble) return size;
+  if (const auto bit = faults_.flips(seconds_at(now))) {
+    answer_[preamble + (*bit >> 3U) % (*size - preamble)] ^= static_cast<std::uint8_t>(1U << (*bit & 7U));
+  }
+  if (faults_.duplicates(seconds_at(now))) {
+    endpoint.again.assign(answer_.begin(), answer_.begin() + static_cast<std::ptrdiff_t>(*size));
+  }
+  return size;
+}
+
+void Session::send_late(std::int64_t now) {
+  while (!late_.empty() && late_.front().due_ns <= now) {
+    const Late late = std::move(late_.front());
+    late_.pop_front();
+    reply_in(late.sequence, late.data);
   }
 }
 

@@ -15,6 +15,10 @@ namespace kerf::emulators {
 
 /// One attachment of an emulated device to a host, over a socket that speaks USB/IP: from plugging in to
 /// unplugging.
+///
+/// Frames begin with each millisecond of the clock. What the host sends to an interrupt endpoint is taken at
+/// the beginning of a frame, one transfer in each interval of the endpoint's descriptor (bInterval, rounded
+/// down to a power of two as host controllers do); to a bulk endpoint at once.
 class Session {
  public:
   enum class End : std::uint8_t { host_left, unplugged, stopped, time_over };
@@ -36,6 +40,23 @@ class Session {
   struct Endpoint {
     std::deque<Waiting> waiting;
     std::int64_t last_end_ns = 0;
+    Bytes again;  ///< an answer that comes a second time
+  };
+  /// What the host has sent and the device has not taken.
+  struct Sent {
+    std::uint32_t sequence;
+    Bytes data;
+  };
+  struct OutEndpoint {
+    std::int64_t interval_ns = 0;  ///< 0: none
+    std::int64_t due_ns = 0;       ///< when the next may be taken
+    std::deque<Sent> waiting;
+  };
+  /// An answer that a fault holds back.
+  struct Late {
+    std::int64_t due_ns;
+    std::uint32_t sequence;
+    Bytes data;
   };
 
   bool read_messages(std::int64_t now_ns);
@@ -45,7 +66,13 @@ class Session {
                                             std::int64_t now_ns);
   [[nodiscard]] std::optional<Bytes> descriptor(const Setup& setup) const;
   void unlink(const usbip::Request& request);
+  void find_intervals();
+  void take_sent(std::int64_t now_ns);
+  [[nodiscard]] std::int64_t next_sent_ns(std::int64_t now_ns) const;
   void serve_waiting(std::int64_t now_ns);
+  [[nodiscard]] std::optional<std::size_t> fetch(std::uint8_t number, const Waiting& oldest,
+                                                 std::int64_t now_ns);
+  void send_late(std::int64_t now_ns);
   [[nodiscard]] std::int64_t wait_until_ns(std::int64_t now_ns, double seconds) const;
   void reply(std::uint32_t sequence, std::int32_t status, std::span<const std::uint8_t> data,
              std::size_t actual);
@@ -62,6 +89,8 @@ class Session {
   FaultPlan faults_;
   std::int64_t start_ns_;
   std::array<Endpoint, 16> endpoints_;
+  std::array<OutEndpoint, 16> out_;
+  std::deque<Late> late_;
   Bytes received_;
   Bytes answer_;
   bool open_ = true;

@@ -55,6 +55,7 @@ EmulatedFalcon::Options EmulatedFalcon::parse_options(drivers::Uri uri) {
   }
   options.homed = given.flag("homed", options.homed);
   options.home_after_s = given.number("home_after", {"s", options.home_after_s, 0.0, 1e6});
+  options.home_for_s = given.number("home_for", {"s", options.home_for_s, 0.0, 1e6});
   options.offset = static_cast<int>(given.number("offset", {"1", 0.0, -10000.0, 10000.0}));
   options.units_per_n_m = given.number("torque_scale", {"1", options.units_per_n_m, 1000.0, 30000.0});
   options.glitch = given.flag("glitch", options.glitch);
@@ -150,7 +151,8 @@ void EmulatedFalcon::take_image(std::uint8_t byte, std::int64_t now_ns) {
 }
 
 std::array<int, 3> EmulatedFalcon::counts() {
-  if (const auto at = Falcon::angles(tip_.position())) absolute_ = Falcon::counts_of(at->shoulder);
+  const auto at = Falcon::angles(tip_.position());
+  if (at && !stuck_) absolute_ = Falcon::counts_of(at->shoulder);
   return absolute_;
 }
 
@@ -158,9 +160,11 @@ void EmulatedFalcon::home(bool asked, double time_s) {
   if (!asked) {
     homed_ = false;
     homing_since_s_ = -1.0;
-  } else if (!homed_) {
+  } else {
     if (homing_since_s_ < 0.0) homing_since_s_ = time_s;
-    homed_ = time_s - homing_since_s_ >= options_.home_after_s;
+    const double since_s = time_s - homing_since_s_;
+    homed_ = homed_ || since_s >= options_.home_after_s;
+    if (options_.home_for_s >= 0.0 && since_s > options_.home_after_s + options_.home_for_s) homed_ = false;
   }
   const bool leads = asked && !homed_;
   const bool outward = time_s - homing_since_s_ < 0.5 * options_.home_after_s;
@@ -212,6 +216,8 @@ std::optional<std::size_t> EmulatedFalcon::send(std::uint8_t endpoint, std::span
 std::optional<std::int64_t> EmulatedFalcon::next_event_ns(std::int64_t) const {
   return bridge_.next_event_ns();
 }
+
+std::size_t EmulatedFalcon::preamble() const { return Ftdi::status_size; }
 
 std::string EmulatedFalcon::tell() const {
   const char* firmware = "no firmware";

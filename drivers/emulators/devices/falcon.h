@@ -32,15 +32,16 @@ namespace kerf::emulators {
 /// every other second.
 ///
 /// Options: firmware=loaded|none (none), homed=on|off (off: it is not yet when plugged in), home_after
-/// (0.3s), offset (counts that stand for the power-on place, 0), torque_scale (of the plant's motors, 10000
-/// per N·m), sway (0.01m), glitch=on|off (off: a zero byte before the answer to the hello), trace=FILE (CSV,
-/// a line for each frame).
+/// (0.3s), home_for (until then its homing is lost again; for good), offset (counts that stand for the
+/// power-on place, 0), torque_scale (of the plant's motors, 10000 per N·m), sway (0.01m), glitch=on|off (off:
+/// a zero byte before the answer to the hello), trace=FILE (CSV, a line for each frame).
 class EmulatedFalcon final : public EmulatedDevice {
  public:
   struct Options {
     bool loaded = false;
     bool homed = false;
     double home_after_s = 0.3;
+    double home_for_s = -1.0;  ///< negative: until it is plugged in anew
     int offset = 0;
     double units_per_n_m = 10000.0;
     bool glitch = false;
@@ -59,6 +60,8 @@ class EmulatedFalcon final : public EmulatedDevice {
                                   std::int64_t waits_since_ns, std::int64_t now_ns,
                                   Disturbance& next) override;
   [[nodiscard]] std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const override;
+  [[nodiscard]] std::size_t preamble() const override;
+  void stick(bool stuck) override { stuck_ = stuck; }
   [[nodiscard]] std::string tell() const override;
 
  private:
@@ -86,6 +89,7 @@ class EmulatedFalcon final : public EmulatedDevice {
   std::array<int, 3> absolute_{};  ///< counts of the last place that the arms can reach
   std::array<int, 3> at_power_on_{};
   std::array<int, 3> motor_{};
+  bool stuck_ = false;
   bool homed_;
   double homing_since_s_ = -1.0;
   std::int64_t start_ns_ = -1;

@@ -7,9 +7,8 @@ namespace kerf::emulators {
 namespace {
 
 constexpr std::size_t packet_size = 64;
-constexpr std::size_t status_size = 2;
-constexpr std::size_t packet_data = packet_size - status_size;
-constexpr std::array<std::uint8_t, status_size> idle{0x01, 0x60};
+constexpr std::size_t packet_data = packet_size - Ftdi::status_size;
+constexpr std::array<std::uint8_t, Ftdi::status_size> idle{0x01, 0x60};
 
 enum Request : std::uint8_t {
   reset = 0x00,
@@ -43,7 +42,7 @@ std::size_t packets_for(std::size_t data) noexcept {
 /// How much data a transfer of so many bytes can carry.
 std::size_t room_in(std::size_t size) noexcept {
   const std::size_t rest = size % packet_size;
-  return size / packet_size * packet_data + (rest > status_size ? rest - status_size : 0);
+  return size / packet_size * packet_data + (rest > Ftdi::status_size ? rest - Ftdi::status_size : 0);
 }
 
 }  // namespace

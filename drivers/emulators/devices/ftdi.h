@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -18,6 +19,8 @@ namespace kerf::emulators {
 /// whichever is later. A transfer longer than a packet has the two bytes again every 64.
 class Ftdi {
  public:
+  static constexpr std::size_t status_size = 2;  ///< before the data of each packet
+
   /// What the device behind it learns from a request.
   enum class Event : std::uint8_t { none, purged, baud, dtr_rose, dtr_fell, reset };
 

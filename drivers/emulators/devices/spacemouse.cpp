@@ -42,6 +42,29 @@ const Description& navigator() {
   return description;
 }
 
+/// A receiver with a keyboard on its first interface and the cap on its second. Its numbers are those of a
+/// real one, its interfaces an assumption.
+const Description& receiver() {
+  static const Description description = [] {
+    Description made = navigator();
+    made.device[8] = 0x6F;
+    made.device[9] = 0x25;
+    made.device[10] = 0x52;
+    made.device[11] = 0xC6;
+    made.configuration = {0x09, 0x02, 0x42, 0x00, 0x02, 0x01, 0x00, 0x80, 0x32, 0x09, 0x04, 0x00, 0x00, 0x01,
+                          0x03, 0x00, 0x00, 0x00, 0x09, 0x21, 0x11, 0x01, 0x00, 0x01, 0x22, 0x17, 0x00, 0x07,
+                          0x05, 0x82, 0x03, 0x08, 0x00, 0x0A, 0x09, 0x04, 0x01, 0x00, 0x02, 0x03, 0x00, 0x00,
+                          0x00, 0x09, 0x21, 0x11, 0x01, 0x00, 0x01, 0x22, 0xD9, 0x00, 0x07, 0x05, 0x81, 0x03,
+                          0x08, 0x00, 0x0A, 0x07, 0x05, 0x02, 0x03, 0x08, 0x00, 0x0A};
+    made.strings = {"3Dconnexion", "Universal Receiver"};
+    made.reports.insert(made.reports.begin(),
+                        {0x05, 0x01, 0x09, 0x06, 0xA1, 0x01, 0x05, 0x07, 0x19, 0xE0, 0x29, 0xE7,
+                         0x15, 0x00, 0x25, 0x01, 0x75, 0x01, 0x95, 0x08, 0x81, 0x02, 0xC0});
+    return made;
+  }();
+  return description;
+}
+
 }  // namespace
 
 EmulatedSpaceMouse::Options EmulatedSpaceMouse::parse_options(drivers::Uri uri) {
@@ -49,11 +72,14 @@ EmulatedSpaceMouse::Options EmulatedSpaceMouse::parse_options(drivers::Uri uri) 
   Options options;
   options.amplitude = given.number("amplitude", {"1", options.amplitude, 0.0, 350.0});
   options.rest_s = given.number("rest", {"s", options.rest_s, 0.0, 1e6});
+  options.receiver = given.flag("receiver", options.receiver);
   given.refuse_others();
   return options;
 }
 
-const Description& EmulatedSpaceMouse::description() const { return navigator(); }
+const Description& EmulatedSpaceMouse::description() const {
+  return options_.receiver ? receiver() : navigator();
+}
 
 std::optional<Bytes> EmulatedSpaceMouse::control(const Setup& setup, std::span<const std::uint8_t>,
                                                  std::int64_t) {

@@ -15,12 +15,15 @@ namespace kerf::emulators {
 /// presses button 1 every other second. One report each 8 ms, translation and rotation by turns, so that each
 /// axis comes 62.5 times a second; at rest three pairs of zeros and then silence.
 ///
-/// Options: amplitude (300 of the 350 that a cap gives), rest (0s: never; else it lets go after so long).
+/// Options: amplitude (300 of the 350 that a cap gives), rest (0s: never; else it lets go after so long),
+/// receiver=on|off (off: the same cap behind a Universal Receiver, 256f:c652, whose first interface is
+/// another).
 class EmulatedSpaceMouse final : public EmulatedDevice {
  public:
   struct Options {
     double amplitude = 300.0;
     double rest_s = 0.0;
+    bool receiver = false;
   };
   static Options parse_options(drivers::Uri uri);
   explicit EmulatedSpaceMouse(const Options& options) : options_(options) {}

@@ -168,7 +168,16 @@ std::array<int, 3> EmulatedWoodenHaptics::motor_counts() const {
   return whole;
 }
 
+void EmulatedWoodenHaptics::stick(bool stuck) {
+  if (!stuck) {
+    stuck_at_.reset();
+  } else if (!stuck_at_) {
+    stuck_at_ = counters();
+  }
+}
+
 std::array<int, 6> EmulatedWoodenHaptics::counters() const {
+  if (stuck_at_) return *stuck_at_;
   std::array<int, 6> all = counter_zero_;
   const auto motors = motor_counts();
   for (std::size_t i = 0; i < 3; ++i) all[i] += motors[i];
@@ -235,8 +244,8 @@ std::optional<std::size_t> EmulatedWoodenHaptics::send(std::uint8_t endpoint, st
   if (endpoint != endpoints_of(options_.generation).in) return std::nullopt;
   run_until(now_ns);
   if (const auto size = wire_.send_rest(buffer)) return size;
-  if ((!streams() && report_.empty()) || now_ns < start_ns_ + frame_ * frame_ns) return std::nullopt;
-  frame_ = (now_ns - start_ns_) / frame_ns + 1;
+  if ((!streams() && report_.empty()) || now_ns < next_report_ns_) return std::nullopt;
+  next_report_ns_ = (now_ns / frame_ns + 1) * frame_ns;
   if (streams()) {
     if (!orders_.empty()) {
       apply(orders_.front(), now_ns);
@@ -256,7 +265,7 @@ std::optional<std::size_t> EmulatedWoodenHaptics::send(std::uint8_t endpoint, st
 
 std::optional<std::int64_t> EmulatedWoodenHaptics::next_event_ns(std::int64_t) const {
   if (start_ns_ < 0) return std::nullopt;
-  if (streams() || !report_.empty()) return start_ns_ + frame_ * frame_ns;
+  if (streams() || !report_.empty()) return next_report_ns_;
   return watchdog_ ? std::nullopt : std::optional(last_order_ns_ + watchdog_ns);
 }
 

@@ -55,6 +55,7 @@ class EmulatedWoodenHaptics final : public EmulatedDevice {
                                   std::int64_t waits_since_ns, std::int64_t now_ns,
                                   Disturbance& next) override;
   [[nodiscard]] std::optional<std::int64_t> next_event_ns(std::int64_t now_ns) const override;
+  void stick(bool stuck) override;
   [[nodiscard]] std::string tell() const override;
 
   /// What its motors have, after the amplifiers' limit.
@@ -88,7 +89,8 @@ class EmulatedWoodenHaptics final : public EmulatedDevice {
   std::int64_t start_ns_ = -1;
   std::int64_t reached_ns_ = 0;  ///< the tip is simulated so far
   std::int64_t last_order_ns_ = 0;
-  std::int64_t frame_ = 0;  ///< of the next report
+  std::int64_t next_report_ns_ = 0;  ///< the frame in which the next one may be sent
+  std::optional<std::array<int, 6>> stuck_at_;
   Currents current_ma_{};
   bool watchdog_ = true;  ///< the motors are off
   bool button_latched_ = false;

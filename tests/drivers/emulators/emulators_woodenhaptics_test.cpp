@@ -179,6 +179,17 @@ TEST(EmulatedWoodenHaptics, CountersWrapAtSixteenBits) {
   EXPECT_GT(most, 32000);
 }
 
+TEST(EmulatedWoodenHaptics, ItsCountersStandStillWhileTheyStick) {
+  Host host("generation=v1");
+  const auto a = [&](std::int64_t at) { return host.report(at)->encoder[1]; };
+  host.device().stick(true);
+  const int stuck = a(100 * ms);
+  host.device().stick(true);
+  EXPECT_EQ(a(600 * ms), stuck);
+  host.device().stick(false);
+  EXPECT_NE(a(601 * ms), stuck);
+}
+
 TEST(EmulatedWoodenHaptics, PresetsItsCountersAndForgetsTheButton) {
   Host host("generation=v2&button=0.1s&sway=0m");
   ASSERT_TRUE(host.poll(0));

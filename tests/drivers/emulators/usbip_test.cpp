@@ -1,7 +1,9 @@
 #include "usbip.h"
 
 #include <array>
+#include <bit>
 #include <cerrno>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -10,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include <kerf/drivers/usb/io_thread.h>
 
 #include "attach.h"
 #include "faults.h"
@@ -65,9 +69,39 @@ TEST(EmulatorFaults, ComeAtTheirTimeAndAsOftenAsAsked) {
   EXPECT_EQ(plan.unplugged_at_s(), 3.5);
 }
 
+TEST(EmulatorFaults, LastAsLongAsAsked) {
+  FaultPlan plan(parse_faults("delay@1:20ms:0.5s,refuse-out@2:30ms,stick@3:1s,delay@4:1.5s,duplicate@5"));
+  EXPECT_EQ(plan.delay_s(0.9), 0.0);
+  EXPECT_DOUBLE_EQ(plan.delay_s(1.0), 0.02);
+  EXPECT_EQ(plan.delay_s(1.5), 0.0);
+  EXPECT_DOUBLE_EQ(plan.delay_s(1e6), 1.5) << "for ever";
+  EXPECT_FALSE(plan.refuses_until_s(1.99));
+  EXPECT_DOUBLE_EQ(plan.refuses_until_s(2.0).value(), 2.03);
+  EXPECT_FALSE(plan.refuses_until_s(2.04));
+  EXPECT_TRUE(plan.sticks(3.5));
+  EXPECT_FALSE(plan.sticks(4.5));
+  EXPECT_TRUE(plan.duplicates(5.0));
+  EXPECT_FALSE(plan.duplicates(5.0));
+}
+
+TEST(EmulatorFaults, TurnOtherBitsByAnotherSeedAndTheSameByTheSame) {
+  const auto drawn = [](const char* text) {
+    FaultPlan plan(parse_faults(text));
+    std::vector<std::uint64_t> bits;
+    while (const auto bit = plan.flips(1.0)) bits.push_back(*bit % 128);
+    return bits;
+  };
+  EXPECT_EQ(drawn("flip@1:20:7"), drawn("flip@1:20:7"));
+  EXPECT_NE(drawn("flip@1:20:7"), drawn("flip@1:20:8"));
+  const auto many = drawn("flip@1:2000:7");
+  EXPECT_EQ(many.size(), 2000U);
+  EXPECT_EQ(std::set(many.begin(), many.end()).size(), 128U) << "none is left out";
+}
+
 TEST(EmulatorFaults, SayWhatWasExpected) {
-  for (const char* text :
-       {"drop", "drop@", "drop@x", "drop@-1", "drop@1:0", "drop@1:x", "fall@1", "drop@1,,stall@2"}) {
+  for (const char* text : {"drop", "drop@", "drop@x", "drop@-1", "drop@1:0", "drop@1:x", "drop@1:1:1",
+                           "fall@1", "drop@1,,stall@2", "unplug@1:2", "flip@1:2:x", "delay@1", "delay@1:5",
+                           "delay@1:0ms", "delay@1:1ms:2ms:3ms", "refuse-out@1", "stick@1:-1s"}) {
     try {
       (void)parse_faults(text);
       ADD_FAILURE() << text;
@@ -187,6 +221,66 @@ TEST(Session, StallsWhenAskedTo) {
   const auto reply = host.receive(true);
   EXPECT_EQ(reply.status, 0);
   EXPECT_EQ(reply.data.size(), 7U);
+}
+
+/// Time since the host sent its first, in whole frames, at which each of some transfers was taken.
+std::vector<std::int64_t> frames_taken(Host& host, const Request& request, std::size_t size, int count) {
+  const auto now_ms = [] { return drivers::usb::now_ns() / 1'000'000; };
+  const std::int64_t sent_ms = now_ms();
+  for (int i = 0; i < count; ++i) host.send(request, std::vector<std::uint8_t>(size));
+  std::vector<std::int64_t> frames;
+  for (int i = 0; i < count; ++i) {
+    EXPECT_EQ(host.receive(false).status, 0);
+    frames.push_back(now_ms() - sent_ms);
+  }
+  return frames;
+}
+
+TEST(Session, TakesOneInterruptTransferInEachInterval) {
+  const Request order{.sequence = 1, .endpoint = 1, .length = 8};
+  Host v1("woody?generation=v1");
+  const auto frames = frames_taken(v1, order, 8, 8);
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_GE(frames[i], static_cast<std::int64_t>(i) + 1);
+  // 10 ms by its descriptor, which a host controller takes for 8.
+  Host cap("spacemouse");
+  const auto slow = frames_taken(cap, {.sequence = 1, .endpoint = 2, .length = 2}, 2, 3);
+  EXPECT_GE(slow[1], 8);
+  EXPECT_GE(slow[2], 16);
+}
+
+TEST(Session, RefusesWhatTheHostSendsForAsLongAsAsked) {
+  Host host("woody?generation=v1", "refuse-out@0:30ms");
+  const auto frames = frames_taken(host, {.sequence = 1, .endpoint = 1, .length = 8}, 8, 1);
+  EXPECT_GE(frames[0], 29);
+  Host given_up("woody?generation=v1", "refuse-out@0:1000s");
+  given_up.send({.sequence = 7, .endpoint = 1, .length = 8}, std::vector<std::uint8_t>(8));
+  given_up.send({.kind = Request::Kind::unlink, .sequence = 8, .unlinked = 7});
+  EXPECT_EQ(given_up.receive(false).status, -ECONNRESET);
+}
+
+TEST(Session, DelaysRepeatsAndFlipsAnswers) {
+  const Request ask{.sequence = 5, .in = true, .endpoint = 1, .length = 8};
+  Host late("woody?generation=v1", "delay@0:40ms");
+  const std::int64_t asked_ns = drivers::usb::now_ns();
+  late.send(ask);
+  EXPECT_EQ(late.receive(true).data.size(), 8U);
+  EXPECT_GE(drivers::usb::now_ns() - asked_ns, 40'000'000);
+  const auto three = [&](const char* faults) {
+    Host host("woody?generation=v1&sway=0m", faults);
+    std::vector<std::vector<std::uint8_t>> answers;
+    for (int i = 0; i < 3; ++i) host.send(ask);
+    for (int i = 0; i < 3; ++i) answers.push_back(host.receive(true).data);
+    return answers;
+  };
+  const auto well = three("");
+  const auto twice = three("duplicate@0");
+  EXPECT_EQ(twice[0], twice[1]) << "with its counter";
+  EXPECT_EQ(twice[2], well[1]);
+  const auto turned = three("flip@0:1:3");
+  int bits = 0;
+  for (std::size_t i = 0; i < 8; ++i) bits += std::popcount(static_cast<unsigned>(turned[0][i] ^ well[0][i]));
+  EXPECT_EQ(bits, 1);
+  EXPECT_EQ(turned[1], well[1]);
 }
 
 TEST(Session, NoticesWhenTheHostLeavesAndUnplugsItself) {
