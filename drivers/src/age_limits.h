@@ -9,6 +9,8 @@ namespace kerf::drivers {
 inline constexpr std::int64_t max_reading_age_ns = 20'000'000;
 /// A device that has said nothing for longer is Status::lost.
 inline constexpr std::int64_t max_silence_ns = 1'000'000'000;
+/// By how much the time of a report may be wrong: a frame of the bus.
+inline constexpr double max_report_jitter_s = 1e-3;
 /// An older command is not held any longer: five periods of the slowest loop, so the one that gave it is
 /// dead.
 inline constexpr std::int64_t max_command_age_ns = 50'000'000;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "age_limits.h"
 #include "kerf/mechanisms/angle.h"
 
 namespace kerf::drivers {
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double full_deflection = 350.0;
 constexpr int wait_ms = 50;
+// A receiver has further interfaces, and a keypad is no cap: generic desktop, multi-axis controller.
+constexpr usb::Usage cap{.page = 0x01, .usage = 0x08};
 
 struct Model {
   std::uint16_t vendor;
@@ -56,6 +59,8 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
           .axes = {axis("x", false, reach), axis("y", false, reach), axis("z", false, reach),
                    axis("rx", true, swing), axis("ry", true, swing), axis("rz", true, swing)},
           .channels = {{.name = "report_age", .unit = "s"}, {.name = "buttons", .unit = "1"}},
+          .report_jitter_s = max_report_jitter_s,
+          .button_channel = 1,
           .configuration =
               "reach = " + std::to_string(reach) + " # m\nswing = " + std::to_string(swing) + " # rad\n"};
 }
@@ -63,7 +68,7 @@ DeviceInfo describe(std::string_view uri, const SpaceMouse::Options& options, co
 }  // namespace
 
 std::vector<usb::Attached> find_spacemice() {
-  auto all = usb::find_hid(0, 0);
+  auto all = usb::find_hid(0, 0, cap);
   std::erase_if(all, [](const usb::Attached& one) {
     return std::ranges::none_of(models, [&](const Model& model) {
       return model.vendor == one.vendor && model.product == one.product;
@@ -85,7 +90,7 @@ SpaceMouse::SpaceMouse(std::string_view uri, std::size_t number, const Options& 
     : options_(options),
       device_([&] {
         const auto [identity, index] = find(number);
-        return usb::HidDevice(identity, index);
+        return usb::HidDevice(identity, index, cap);
       }()),
       opened_ns_(usb::now_ns()) {
   info_ = describe(uri, options, device_.name());
@@ -126,7 +131,8 @@ Status SpaceMouse::read(double now_s, Sample& sample) noexcept {
     sample.velocity[at] = velocity_.update(at, sample.position[at], now_s);
   }
   velocity_.advance(now_s);
-  sample.channels[0] = 1e-9 * static_cast<double>(usb::now_ns() - report_.at_ns);
+  sample.age_s = 1e-9 * static_cast<double>(usb::now_ns() - report_.at_ns);
+  sample.channels[0] = sample.age_s;
   sample.channels[1] = report_.state.buttons;
   return Status::ok;
 }

@@ -36,6 +36,21 @@ TEST(SpaceMouse, FollowsTheCapAtItsOwnPace) {
   EXPECT_LT(oldest, 0.03);
 }
 
+TEST(SpaceMouse, OfAReceiverTheCapIsReadAndNotItsOtherInterface) {
+  const Emulator emulator("spacemouse?receiver=on");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  const auto attached = drivers::list_attached();
+  EXPECT_EQ(attached.size(), 1U);
+  const auto device = drivers::open_device("spacemouse:0");
+  double farthest = 0.0;
+  loop(*device, 1000, [&](int, Status status, const drivers::Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    EXPECT_EQ(sample.age_s, sample.channels[0]);
+    farthest = std::max(farthest, std::abs(sample.position[0]));
+  });
+  EXPECT_GT(farthest, 0.02);
+}
+
 TEST(SpaceMouse, IsLostWhenItIsUnpluggedAndComesBack) {
   Emulator emulator("spacemouse");
   ASSERT_TRUE(becomes_attached("spacemouse:0"));

@@ -30,6 +30,7 @@ constexpr std::int64_t boot_ns = 1000 * millisecond;
 constexpr std::int64_t hello_ns = 30 * millisecond;  // 7 on the line, 16 of latency
 constexpr std::int64_t echo_ns = 1000 * millisecond;
 constexpr int max_hellos = 60;
+constexpr int max_loads = 10;  // as libnifalcon: a byte that is lost once is no reason to give up
 constexpr int read_timeout_ms = 100;
 constexpr std::size_t block_size = 62;  // the data of one packet
 constexpr std::size_t max_image = 1U << 20U;
@@ -81,7 +82,7 @@ bool read_until(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& 
   const std::int64_t until_ns = now_ns() + max_ns;
   while (now_ns() < until_ns) {
     refuse_if_stopped(falcon_identity.what, setup.stop);
-    const std::size_t size = device.bulk_in(falcon_in, buffer, read_timeout_ms);
+    const std::size_t size = device.receive(falcon_in, buffer, read_timeout_ms);
     bool done = false;
     falcon::for_each_data_byte(std::span(buffer).first(size),
                                [&](std::uint8_t byte) { done = done || take(byte); });
@@ -96,7 +97,7 @@ bool runs(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& setup)
   falcon::FrameReader reader;
   const std::int64_t until_ns = now_ns() + max_ns;
   while (now_ns() < until_ns) {
-    device.bulk_out(falcon_out, frame);
+    device.send(falcon_out, frame);
     if (read_until(device, ask_again_ns, setup,
                    [&](std::uint8_t byte) { return reader.take(byte).has_value(); })) {
       return true;
@@ -138,7 +139,7 @@ void greet(usb::UsbDevice& device, const FalconSetup& setup) {
   device.control_out(bridge::modem_control, bridge::dtr_high);
   std::array<std::uint8_t, answer.size()> last{};  // a glitch may come before it
   for (int tries = 0; tries < max_hellos; ++tries) {
-    device.bulk_out(falcon_out, hello);
+    device.send(falcon_out, hello);
     const bool answered = read_until(device, hello_ns, setup, [&](std::uint8_t byte) {
       std::rotate(last.begin(), last.begin() + 1, last.end());
       last.back() = byte;
@@ -152,10 +153,10 @@ void greet(usb::UsbDevice& device, const FalconSetup& setup) {
       "plug it in again");
 }
 
-/// Sends bytes and reads them back.
-void send_echoed(usb::UsbDevice& device, std::span<const std::uint8_t> bytes, std::size_t before,
-                 const FalconSetup& setup) {
-  device.bulk_out(falcon_out, bytes);
+/// Sends bytes and reads them back. @returns what went wrong; empty: nothing.
+std::string send_echoed(usb::UsbDevice& device, std::span<const std::uint8_t> bytes, std::size_t before,
+                        const FalconSetup& setup) {
+  device.send(falcon_out, bytes);
   std::size_t back = 0;
   bool equal = true;
   const bool whole = read_until(device, echo_ns, setup, [&](std::uint8_t byte) {
@@ -163,25 +164,30 @@ void send_echoed(usb::UsbDevice& device, std::span<const std::uint8_t> bytes, st
     if (equal) ++back;
     return !equal || back == bytes.size();
   });
-  if (whole && equal) return;
-  fail(fmt::format(
+  if (whole && equal) return "";
+  return fmt::format(
       "it sent byte {} of its firmware back {}; unplug it, plug it in again, and use another cable or port",
-      before + back, equal ? "not at all" : "wrong"));
+      before + back, equal ? "not at all" : "wrong");
 }
 
-void load(usb::UsbDevice& device, std::span<const std::uint8_t> image, const FalconSetup& setup) {
+/// @returns what went wrong; empty: nothing.
+std::string load(usb::UsbDevice& device, std::span<const std::uint8_t> image, const FalconSetup& setup) {
   device.control_out(bridge::modem_control, bridge::dtr_low);
   device.control_out(bridge::baud_rate, bridge::baud_142857);
   const bool measured = [&] {
-    device.bulk_out(falcon_out, std::array{autobaud});
+    device.send(falcon_out, std::array{autobaud});
     return read_until(device, echo_ns, setup, [](std::uint8_t byte) { return byte == autobaud; });
   }();
-  if (!measured) {
-    fail("it does not take up the speed at which its firmware is loaded; unplug it and plug it in again");
-  }
+  if (!measured)
+    return "it does not take up the speed at which its firmware is loaded; unplug it and plug it in again";
   for (std::size_t at = 0; at < image.size(); at += block_size) {
-    send_echoed(device, image.subspan(at, std::min(block_size, image.size() - at)), at, setup);
+    auto problem = send_echoed(device, image.subspan(at, std::min(block_size, image.size() - at)), at, setup);
+    if (!problem.empty()) return problem;
   }
+  enter_run_mode(device);
+  if (runs(device, boot_ns, setup)) return "";
+  return fmt::format("it took firmware={} and answers nothing; is it the firmware of a Falcon?",
+                     setup.firmware);
 }
 
 }  // namespace
@@ -198,12 +204,11 @@ void set_up_falcon(usb::UsbDevice& device, const FalconSetup& setup) {
                     "{}?firmware=FILE; Kerf ships none",
                     setup.uri.substr(0, setup.uri.find('?'))));
   }
-  greet(device, setup);
-  load(device, image, setup);
-  enter_run_mode(device);
-  if (!runs(device, boot_ns, setup)) {
-    fail(fmt::format("it took firmware={} and answers nothing; is it the firmware of a Falcon?",
-                     setup.firmware));
+  for (int tries = 1;; ++tries) {
+    greet(device, setup);
+    const std::string problem = load(device, image, setup);
+    if (problem.empty()) return;
+    if (tries == max_loads) fail(fmt::format("{} (tried {} times)", problem, tries));
   }
 }
 

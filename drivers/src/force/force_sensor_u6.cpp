@@ -130,14 +130,14 @@ void ForceSensorU6::refuse(const std::string& why) const {
 }
 
 std::size_t ForceSensorU6::ask(const labjack_u6::Message& question, std::span<std::uint8_t> answer) {
-  usb_.bulk_out(labjack_u6::command_endpoint, question.view());
-  return usb_.bulk_in(labjack_u6::answer_endpoint, answer);
+  usb_.send(labjack_u6::command_endpoint, question.view());
+  return usb_.receive(labjack_u6::answer_endpoint, answer);
 }
 
 void ForceSensorU6::drain() noexcept {
   try {
     std::array<std::uint8_t, labjack_u6::max_packet> left{};
-    while (usb_.bulk_in(labjack_u6::answer_endpoint, left, drain_timeout_ms) > 0) {
+    while (usb_.receive(labjack_u6::answer_endpoint, left, drain_timeout_ms) > 0) {
     }
   } catch (const DeviceError&) {
     // What comes next says it better.
@@ -154,7 +154,7 @@ void ForceSensorU6::stop_stream() {
   }
   // Packets that left before the stop would be taken for the next stream's.
   for (std::size_t packet = 0; packet < fifo_packets + transfer_count; ++packet) {
-    if (usb_.bulk_in(labjack_u6::stream_endpoint, answer, drain_timeout_ms) == 0) break;
+    if (usb_.receive(labjack_u6::stream_endpoint, answer, drain_timeout_ms) == 0) break;
   }
 }
 

@@ -9,11 +9,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <hidapi.h>
-#include <linux/hidraw.h>
 #include <poll.h>
 #include <sys/file.h>
-#include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "kerf/drivers/device.h"
@@ -29,11 +26,11 @@ std::string narrow(const wchar_t* text) {
 
 }  // namespace
 
-std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product, std::uint16_t usage_page) {
+std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product, const Usage& usage) {
   std::vector<Attached> found;
   hid_device_info* all = hid_enumerate(vendor, product);
   for (const hid_device_info* one = all; one != nullptr; one = one->next) {
-    if (usage_page != 0 && one->usage_page != usage_page) continue;
+    if (one->usage_page != usage.page || one->usage != usage.usage) continue;
     // hidapi tells of a device once for each usage that it has.
     const bool known =
         std::ranges::any_of(found, [&](const Attached& other) { return other.node == one->path; });
@@ -50,8 +47,8 @@ std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product, std:
   return found;
 }
 
-HidDevice::HidDevice(const Identity& identity, std::size_t index, std::uint16_t usage_page) {
-  const auto found = find_hid(identity.vendor, identity.product, usage_page);
+HidDevice::HidDevice(const Identity& identity, std::size_t index, const Usage& usage) {
+  const auto found = find_hid(identity.vendor, identity.product, usage);
   if (index >= found.size()) {
     throw DeviceError(
         fmt::format("{}: number {} is not attached ({} of {:04x}:{:04x} found); plug it in, or start its "
@@ -60,7 +57,6 @@ HidDevice::HidDevice(const Identity& identity, std::size_t index, std::uint16_t 
   }
   node_ = found[index].node;
   name_ = found[index].name;
-  // hidraw lets many open a device; two loops on one would fight over its motors.
   descriptor_ = open(node_.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_ < 0) {
     if (errno == EACCES || errno == EPERM) {
@@ -78,33 +74,12 @@ HidDevice::HidDevice(const Identity& identity, std::size_t index, std::uint16_t 
 
 HidDevice::~HidDevice() { close(descriptor_); }
 
-HidDevice::Ready HidDevice::wait(std::int64_t max_ns, int wake_descriptor) noexcept {
-  std::array<pollfd, 2> waited{{{.fd = descriptor_, .events = POLLIN, .revents = 0},
-                                {.fd = wake_descriptor, .events = POLLIN, .revents = 0}}};
-  const std::int64_t wait_ns = std::max<std::int64_t>(max_ns, 0);
-  const timespec most{.tv_sec = wait_ns / 1'000'000'000, .tv_nsec = wait_ns % 1'000'000'000};
-  if (ppoll(waited.data(), waited.size(), &most, nullptr) <= 0) return {};
-  return {.report = waited[0].revents != 0, .woken = waited[1].revents != 0};
-}
-
 int HidDevice::read(std::span<std::uint8_t> report, int timeout_ms) noexcept {
-  if (timeout_ms > 0) wait(std::int64_t{1'000'000} * timeout_ms, -1);
+  pollfd waited{.fd = descriptor_, .events = POLLIN, .revents = 0};
+  (void)poll(&waited, 1, timeout_ms);
   const ssize_t size = ::read(descriptor_, report.data(), report.size());
   if (size >= 0) return static_cast<int>(size);
   return errno == EAGAIN || errno == EINTR ? 0 : -1;
-}
-
-bool HidDevice::write(std::span<const std::uint8_t> report) noexcept {
-  return ::write(descriptor_, report.data(), report.size()) == static_cast<ssize_t>(report.size());
-}
-
-HidReportSizes HidDevice::report_sizes() const noexcept {
-  int size = 0;
-  hidraw_report_descriptor told{};
-  if (ioctl(descriptor_, HIDIOCGRDESCSIZE, &size) < 0) return {};
-  told.size = static_cast<std::uint32_t>(size);
-  if (ioctl(descriptor_, HIDIOCGRDESC, &told) < 0) return {};
-  return hid_report_sizes({&told.value[0], told.size});
 }
 
 HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexcept {

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "kerf/drivers/device.h"
+#include "usb/holders.h"
 
 namespace kerf::drivers::usb {
 namespace {
@@ -112,6 +113,7 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
                       what_, index, count, identity.vendor, identity.product));
     }
     if (error != LIBUSB_SUCCESS) fail("opening it", error);
+    refuse_if_held();
     libusb_set_auto_detach_kernel_driver(handle_, 1);
     if (error = libusb_claim_interface(handle_, 0); error != LIBUSB_SUCCESS)
       fail("claiming its interface", error);
@@ -125,6 +127,16 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
     waited_.push_back({.descriptor = (*one)->fd, .events = (*one)->events});
   }
   libusb_free_pollfds(all);
+}
+
+/// Who has its hidraw node open would lose it in the middle of what it does.
+void UsbDevice::refuse_if_held() const {
+  for (const std::string& hidraw : hidraw_nodes_of(sys_folder_of(libusb_get_device(handle_)))) {
+    if (const auto holder = process_that_holds(hidraw)) {
+      throw DeviceError(fmt::format("{}: {} is in use by another program (process {}); close that program",
+                                    what_, hidraw, *holder));
+    }
+  }
 }
 
 UsbDevice::~UsbDevice() {
@@ -155,7 +167,7 @@ void UsbDevice::control_out(std::uint8_t request, std::uint16_t value, std::uint
   if (error < 0) fail(fmt::format("control request {}", request), error);
 }
 
-void UsbDevice::bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms) {
+void UsbDevice::send(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms) {
   std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());  // libusb's pointer is not const
   int sent = 0;
   const int error = libusb_bulk_transfer(handle_, endpoint, copy.data(), static_cast<int>(copy.size()), &sent,
@@ -164,12 +176,39 @@ void UsbDevice::bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> by
   if (sent != static_cast<int>(copy.size())) fail("sending", LIBUSB_ERROR_IO);
 }
 
-std::size_t UsbDevice::bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms) {
+std::size_t UsbDevice::receive(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms) {
   int received = 0;
   const int error = libusb_bulk_transfer(handle_, endpoint, buffer.data(), static_cast<int>(buffer.size()),
                                          &received, static_cast<unsigned>(timeout_ms));
   if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_TIMEOUT) fail("receiving", error);
   return static_cast<std::size_t>(received);
+}
+
+UsbDevice::Endpoints UsbDevice::endpoints() const noexcept {
+  libusb_config_descriptor* told = nullptr;
+  Endpoints endpoints;
+  if (libusb_get_active_config_descriptor(libusb_get_device(handle_), &told) != LIBUSB_SUCCESS) return {};
+  if (told->bNumInterfaces > 0 && told->interface[0].num_altsetting > 0) {
+    const libusb_interface_descriptor& first = told->interface[0].altsetting[0];
+    for (const auto& one : std::span(first.endpoint, first.bNumEndpoints)) {
+      std::uint8_t& endpoint =
+          (one.bEndpointAddress & LIBUSB_ENDPOINT_IN) != 0 ? endpoints.in : endpoints.out;
+      if (endpoint == 0) endpoint = one.bEndpointAddress;
+    }
+  }
+  libusb_free_config_descriptor(told);
+  return endpoints;
+}
+
+std::vector<std::uint8_t> UsbDevice::report_descriptor() noexcept {
+  constexpr std::uint8_t interface_in = 0x81;
+  constexpr std::uint16_t report_type = 0x2200;
+  std::vector<std::uint8_t> told(4096);
+  const int size =
+      libusb_control_transfer(handle_, interface_in, LIBUSB_REQUEST_GET_DESCRIPTOR, report_type, 0,
+                              told.data(), static_cast<std::uint16_t>(told.size()), control_timeout_ms);
+  told.resize(static_cast<std::size_t>(std::max(size, 0)));
+  return told;
 }
 
 bool UsbDevice::handle_events(std::int64_t max_ns, int wake_descriptor) noexcept {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <span>
 
 #include <kerf/drivers/device.h>
 
@@ -29,6 +30,10 @@ class VelocityFilter {
     last_s_ = now_s;
     started_ = true;
   }
+  /// What it gave last.
+  [[nodiscard]] double velocity(std::size_t axis) const noexcept { return velocity_[axis]; }
+  /// A position from which the next difference is taken, without one to it.
+  void restart(std::size_t axis, double position) noexcept { last_position_[axis] = position; }
 
  private:
   Axes last_position_{};

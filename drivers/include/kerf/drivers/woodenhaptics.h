@@ -3,23 +3,36 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/protocols/woodenhaptics.h>
-#include <kerf/drivers/triple_buffer.h>
+#include <kerf/drivers/report_velocity.h>
 #include <kerf/drivers/uri.h>
-#include <kerf/drivers/usb/hid_device.h>
 #include <kerf/drivers/usb/io_thread.h>
-#include <kerf/drivers/velocity_filter.h>
+#include <kerf/drivers/usb/usb_device.h>
 #include <kerf/mechanisms/woodenhaptics.h>
 
 namespace kerf::drivers {
 
+class WoodenHapticsLink;
+
+/// What a WoodenHaptics said last.
+struct WoodenHapticsReading {
+  std::array<int, 3> count{};
+  std::array<int, 3> gimbal{};
+  bool button = false;
+  std::int64_t at_ns = 0;  ///< when it arrived, or an earlier time at which it may have been true
+};
+
 /// WoodenHaptics and Polhem, three motors on capstans, by HID reports: `hid:1234:0006` (V1 and V2, told apart
-/// by the length of their reports) and `hid:16c0:0486` (V3).
+/// by the length of their reports) and `hid:16c0:0486` (V3). By libusb, which takes the interface from the
+/// kernel's usbhid while the device is open: a write to a hidraw node cannot be given up, and a node can be
+/// opened by others.
 ///
 /// Axes x (towards the user), y (right) and z (up) of the tip, in metres, in the frame of
 /// mechanisms::WoodenHaptics. The encoders count from where the device was switched on, so that must have
@@ -63,89 +76,45 @@ class WoodenHaptics final : public Device {
   /// @throws DeviceError
   WoodenHaptics(std::string_view uri, const Product& product, const Options& options,
                 const std::atomic<bool>* stop = nullptr);
+  ~WoodenHaptics() override;
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  /// Fault without a report for 20 ms and where counters are of no place; lost after 1 s or when unplugged.
   [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
+  /// Fault also where the device takes no orders, for 20 ms or three in a row.
   [[nodiscard]] Status write(const Axes& force) noexcept override;
   void release(double at_s) noexcept override;
   [[nodiscard]] std::vector<Figure> figures() const override;
 
  private:
-  using Currents = std::array<int, 3>;  ///< [mA]
-  /// What the device said last.
-  struct Heard {
-    std::array<int, 3> count{};  ///< from home
-    std::array<int, 3> gimbal{};
-    bool button = false;
-    std::int64_t at_ns = 0;
-  };
-  struct Command {
-    Currents current_ma{};
-    std::uint32_t releases = 0;  ///< so many had there been when it was given
-    std::int64_t at_ns = 0;
-  };
-
   // Set-up.
-  [[nodiscard]] woodenhaptics::Generation recognise(const Product& product) const;
+  [[nodiscard]] woodenhaptics::Generation recognise(const Product& product);
   void meet(const Product& product, const std::atomic<bool>* stop);
+  void send(std::span<const std::uint8_t> order);
   [[nodiscard]] woodenhaptics::Report first_report(const Product& product, const std::atomic<bool>* stop);
-  void find_home(const Product& product, const woodenhaptics::Report& report);
   void describe(std::string_view uri, const Product& product);
   [[nodiscard]] std::string configuration() const;
 
-  // The device's own thread.
-  void serve(const std::stop_token& stop) noexcept;
-  bool hear() noexcept;
-  void hear(const woodenhaptics::Report& report) noexcept;
-  void speak(std::int64_t now_ns) noexcept;
-  void send_final_zero() noexcept;
-  void send(const Currents& current_ma) noexcept;
-  [[nodiscard]] Currents wanted(std::int64_t now_ns) const noexcept;
-  [[nodiscard]] std::int64_t next_turn_ns(std::int64_t now_ns) const noexcept;
-  [[nodiscard]] bool streams() const noexcept { return generation_ == woodenhaptics::Generation::v1; }
+  void take() noexcept;
 
   Options options_;
-  usb::HidDevice device_;
+  usb::UsbDevice device_;
   woodenhaptics::Generation generation_;
   mechanisms::WoodenHaptics mechanism_;
   DeviceInfo info_;
   std::array<int, 3> home_count_{};
-  double max_count_rate_ = 0.0;  ///< no hand is faster [1/s]
-  int max_count_step_ = 0;       ///< nor is the workspace larger
+  std::unique_ptr<WoodenHapticsLink> link_;
 
-  // Between the two threads.
-  TripleBuffer<Heard> heard_;
-  TripleBuffer<Command> commanded_;
-  TripleBuffer<Currents> sent_;
-  std::atomic<std::uint32_t> releases_{0};
-  std::atomic<bool> lost_{false};
-  std::atomic<bool> refuses_{false};  ///< the last orders did not reach it
-
-  // Of the tick.
-  Heard last_;
-  Currents last_sent_{};
-  VelocityFilter velocity_;
+  WoodenHapticsReading last_;
+  std::array<int, 3> count_{};  ///< from home
+  mechanisms::WoodenHaptics::Vector tip_ = mechanisms::WoodenHaptics::Vector::Zero();
+  bool reachable_ = false;  ///< the counters are of a place; else the tip is the last that was one
+  std::array<int, 3> last_sent_{};
+  ReportVelocity velocity_{3};
   std::atomic<std::uint64_t> limited_{0};
 
-  // Of the device's thread.
-  woodenhaptics::Counters counters_;
-  Command command_;
-  Currents sent_ma_{};
-  std::int64_t heard_ns_ = 0;
-  std::int64_t sent_ns_ = 0;
-  int last_counter_ = 0;
-  unsigned refused_in_a_row_ = 0;
-  bool fresh_ = false;     ///< a command waits to be sent
-  bool answered_ = false;  ///< V2 and V3: a report has come since the last order
-  std::atomic<std::uint64_t> reports_{0};
-  std::atomic<std::uint64_t> malformed_{0};
-  std::atomic<std::uint64_t> implausible_{0};
-  std::atomic<std::uint64_t> resent_{0};
-  std::atomic<std::uint64_t> gaps_{0};
-  std::atomic<std::uint64_t> refused_{0};
-
   std::int64_t opened_ns_ = 0;
-  usb::IoThread thread_;  ///< last: it ends first
+  usb::IoThread thread_;  ///< last: it ends first, and lets the motors go
 };
 
 }  // namespace kerf::drivers

@@ -11,9 +11,15 @@
 
 namespace kerf::drivers::usb {
 
-/// HID devices of one vendor and product, in the order of hidapi; 0 takes any, also for `usage_page`.
-[[nodiscard]] std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product,
-                                             std::uint16_t usage_page = 0);
+/// What a HID collection is for, by its report descriptor.
+struct Usage {
+  std::uint16_t page = 0;
+  std::uint16_t usage = 0;
+};
+
+/// HID devices of one vendor and product that have a collection of this usage, in the order of hidapi; 0
+/// takes any vendor or product.
+[[nodiscard]] std::vector<Attached> find_hid(std::uint16_t vendor, std::uint16_t product, const Usage& usage);
 
 /// Bytes of the longest report in each direction, by a report descriptor, without the number of a report.
 struct HidReportSizes {
@@ -25,31 +31,19 @@ struct HidReportSizes {
 /// Reads the items of a report descriptor (HID 1.11, chapter 6.2.2); what it cannot read it leaves out.
 [[nodiscard]] HidReportSizes hid_report_sizes(std::span<const std::uint8_t> descriptor) noexcept;
 
-/// An open HID device: found by hidapi, and then spoken to through its hidraw node itself, because hidapi
-/// gives out no descriptor that a thread could wait on together with a wake-up. read() and write() allocate
-/// nothing; write() returns when the device has taken the report, which is why only a thread of the device's
-/// own calls them.
+/// An open HID device that is only read: found by hidapi, and then spoken to through its hidraw node itself,
+/// which read() waits for without allocating. Many programs may have it open.
 class HidDevice {
  public:
   /// @throws DeviceError if it is not there, may not be opened, or another Kerf has it, each with its mend.
-  HidDevice(const Identity& identity, std::size_t index, std::uint16_t usage_page = 0);
+  HidDevice(const Identity& identity, std::size_t index, const Usage& usage);
   HidDevice(const HidDevice&) = delete;
   HidDevice& operator=(const HidDevice&) = delete;
   ~HidDevice();
 
-  struct Ready {
-    bool report = false;  ///< read() has something to say: a report, or that the device is gone
-    bool woken = false;   ///< the wake-up descriptor is readable
-  };
-  /// Waits until one of both is so, at most so long; without a wake-up descriptor if that is -1.
-  Ready wait(std::int64_t max_ns, int wake_descriptor) noexcept;
   /// Waits for a report, at most so long. @returns its length, 0 if none came, -1 if the device is gone.
   int read(std::span<std::uint8_t> report, int timeout_ms) noexcept;
-  /// Sends a report whose first byte is its number, 0 if it has none. False if it could not.
-  bool write(std::span<const std::uint8_t> report) noexcept;
 
-  /// How long its reports are, by its report descriptor; zero if the kernel does not tell.
-  [[nodiscard]] HidReportSizes report_sizes() const noexcept;
   [[nodiscard]] const std::string& node() const noexcept { return node_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 

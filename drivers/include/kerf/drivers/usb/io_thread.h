@@ -12,8 +12,7 @@ namespace kerf::drivers::usb {
 [[nodiscard]] std::int64_t now_ns() noexcept;
 
 /// A device's own thread, which speaks to the bus so that the tick never waits for it: libusb allocates and
-/// locks with every transfer that it submits, and a write to hidraw returns only when the device has taken
-/// it.
+/// locks with every transfer that it submits.
 ///
 /// More urgent than the loop where that is permitted, so that a loop that spins towards its deadline on the
 /// only processor does not hold up its own data. wake() is for the tick: one system call, no lock.

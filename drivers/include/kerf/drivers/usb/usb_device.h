@@ -40,14 +40,16 @@ struct Attached {
 /// Devices of one vendor and product, in the order of the bus. Empty where there is no USB at all.
 [[nodiscard]] std::vector<Attached> find_usb(std::uint16_t vendor, std::uint16_t product);
 
-/// An open USB device with its interface 0 claimed, by libusb.
+/// An open USB device with its interface 0 claimed, by libusb: no other program can claim it, and a driver of
+/// the kernel (usbhid, with the hidraw node that others could open) is detached until it is closed.
 ///
 /// The functions that wait are for set-up: they allocate, and throw DeviceError. While it runs, a device is
 /// spoken to by Transfers and one thread that calls handle_events().
 class UsbDevice {
  public:
   /// Opens the `index`-th device of an identity.
-  /// @throws DeviceError if it is not there, may not be opened or is in use, each with its mend.
+  /// @throws DeviceError if it is not there, may not be opened, or another program has it, by libusb or by a
+  /// hidraw node of its interface, each with its mend.
   UsbDevice(const Identity& identity, std::size_t index);
   UsbDevice(const UsbDevice&) = delete;
   UsbDevice& operator=(const UsbDevice&) = delete;
@@ -56,9 +58,18 @@ class UsbDevice {
   /// A control transfer without data, "vendor, to the device". @throws DeviceError
   void control_out(std::uint8_t request, std::uint16_t value, std::uint16_t index = 0);
   /// Sends all bytes. @throws DeviceError
-  void bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms = 1000);
+  void send(std::uint8_t endpoint, std::span<const std::uint8_t> bytes, int timeout_ms = 1000);
   /// Receives up to buffer.size() bytes; 0 if none came in time. @throws DeviceError
-  std::size_t bulk_in(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms = 1000);
+  std::size_t receive(std::uint8_t endpoint, std::span<std::uint8_t> buffer, int timeout_ms = 1000);
+
+  /// The endpoints of interface 0, the first in each direction; 0 where there is none.
+  struct Endpoints {
+    std::uint8_t in = 0;
+    std::uint8_t out = 0;
+  };
+  [[nodiscard]] Endpoints endpoints() const noexcept;
+  /// The report descriptor of a HID device; empty if it does not tell.
+  [[nodiscard]] std::vector<std::uint8_t> report_descriptor() noexcept;
 
   /// Waits until a transfer has ended, `wake_descriptor` (if not -1) is readable or the time is over, and
   /// calls the handlers of what has ended. From one thread. @returns whether `wake_descriptor` is readable.
@@ -71,6 +82,7 @@ class UsbDevice {
   [[nodiscard]] const std::string& node() const noexcept { return node_; }
 
  private:
+  void refuse_if_held() const;
   [[noreturn]] void fail(std::string_view doing, int error) const;
 
   std::string what_;
