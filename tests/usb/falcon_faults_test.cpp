@@ -1,16 +1,21 @@
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <kerf/drivers/device.h>
 
 #include "emulator.h"
+#include "falcon_bench.h"
 #include "opening.h"
+#include "support/program.h"
 
 namespace kerf::test {
 namespace {
@@ -66,6 +71,83 @@ TEST(Falcon, FindsItsFramesAgainAfterALostByte) {
   EXPECT_EQ(run.faults, 0);
   EXPECT_EQ(run.resent, 3.0);
   EXPECT_EQ(run.dropped_bytes, 3.0 * 15.0);
+}
+
+// What the counts say is for the loop to judge; but a velocity that a turned bit made would outlast it by 8
+// ms.
+TEST(Falcon, ATurnedBitMakesNoVelocity) {
+  std::string faults;
+  for (int i = 0; i < 60; ++i) faults += fmt::format("flip@{:.2f}:1:{},", 0.8 + 0.02 * i, i);
+  faults.pop_back();
+  const Emulator emulator(ready, {"--fault", faults});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  int moved = 0;
+  double fastest = 0.0;
+  drivers::Axes last{};
+  loop(*device, 1700, [&](int tick, Status status, const Sample& sample) {
+    EXPECT_NE(status, Status::lost);
+    if (tick > 0) moved += std::abs(sample.position[2] - last[2]) > 1e-3;
+    last = sample.position;
+    if (tick > 50) fastest = std::max(fastest, std::abs(sample.velocity[2]));
+    (void)device->write({0.0, 0.0, 0.1});
+  });
+  // 10 mm at 0.59 Hz are 37 mm/s; a jump that a hand can make as well is up to 0.4 mm, an eighth of which
+  // counts.
+  EXPECT_LT(fastest, 0.09);
+  EXPECT_GE(moved, 6) << "higher bits of the counts were among them, and came back";
+}
+
+TEST(Falcon, LetsGoAndEndsWhileAFrameIsRefused) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "trace.csv";
+  {
+    const Emulator emulator(std::string(ready) + "&sway=0m&trace=" + file, {"--fault", "refuse-out@1:0.8s"});
+    ASSERT_TRUE(becomes_attached("falcon:0"));
+    const auto device = drivers::open_device("falcon:0");
+    int faults = 0;
+    loop(*device, 1000, [&](int, Status status, const Sample&) {
+      faults += status != Status::ok;
+      (void)device->write({0.0, 0.0, 1.0});
+    });
+    EXPECT_GT(faults, 100) << "it answers nothing";
+    device->release(0.0);
+    loop(*device, 1000, [](int, Status, const Sample&) {});
+  }
+  const auto rows = read_trace(file);
+  bool refused = false;
+  for (std::size_t i = 1; i < rows.size() && !refused; ++i) {
+    refused = rows[i].time_s - rows[i - 1].time_s > 0.5;
+    if (refused) {
+      EXPECT_NE(rows[i - 1].motor, (std::array{0, 0, 0}));
+      EXPECT_EQ(rows[i].motor, (std::array{0, 0, 0}));
+    }
+  }
+  EXPECT_TRUE(refused);
+  // And a program that ends meanwhile does not wait for it.
+  const Emulator again(ready, {"--fault", "refuse-out@1:100s"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  auto device = drivers::open_device("falcon:0");
+  loop(*device, 900, [&](int, Status, const Sample&) { (void)device->write({0.0, 0.0, 1.0}); });
+  const auto asked = std::chrono::steady_clock::now();
+  device.reset();
+  EXPECT_LE(std::chrono::steady_clock::now() - asked, std::chrono::milliseconds(100));
+}
+
+TEST(Falcon, ALateAnswerIsAsOldAsItsQuestion) {
+  const Emulator emulator(ready, {"--fault", "delay@0.8:4ms:0.2s"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0");
+  double oldest = 0.0;
+  double last = 0.0;
+  loop(*device, 1200, [&](int, Status status, const Sample& sample) {
+    EXPECT_EQ(status, Status::ok);
+    oldest = std::max(oldest, sample.age_s);
+    last = sample.age_s;
+    (void)device->write({0.0, 0.0, 0.1});
+  });
+  EXPECT_GE(oldest, 0.004);
+  EXPECT_LE(last, 0.002);
 }
 
 TEST(Falcon, GoesOnAfterAStall) {

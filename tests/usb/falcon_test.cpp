@@ -138,13 +138,30 @@ TEST(Falcon, SaysWhatTheLoaderDoesNotAnswer) {
               HasSubstr("does not answer at 9600 baud"));
 }
 
-TEST(Falcon, ComparesWhatTheLoaderSendsBack) {
+TEST(Falcon, LoadsItsFirmwareAgainWhereAByteWasLostOrTurned) {
   const TemporaryFolder folder;
-  // 40 kB take 2.9 s: the fault is within them.
-  const Emulator emulator("falcon", {"--fault", "corrupt@1.5"});
+  // 40 kB take 2.9 s: each fault is within a try.
+  const Emulator emulator("falcon?homed=on", {"--fault", "corrupt@1.5,flip@3.5:1:5,drop@6"});
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  const auto device = drivers::open_device("falcon:0?homing=off&firmware=" + firmware_file(folder, 20000));
+  loop(*device, 100, [](int, Status status, const Sample&) { EXPECT_EQ(status, Status::ok); });
+}
+
+TEST(Falcon, ComparesWhatTheLoaderSendsBackAndGivesUpAfterTenTries) {
+  const TemporaryFolder folder;
+  std::string faults;
+  for (int tries = 0; tries < 10; ++tries) faults += "flip@" + std::to_string(tries + 1) + ".5:1,";
+  faults.pop_back();
+  const Emulator emulator("falcon", {"--fault", faults});
   ASSERT_TRUE(becomes_attached("falcon:0"));
   EXPECT_THAT(refusal("falcon:0?firmware=" + firmware_file(folder, 20000)),
-              HasSubstr("of its firmware back wrong"));
+              AllOf(HasSubstr("of its firmware back wrong"), HasSubstr("(tried 10 times)")));
+}
+
+TEST(Falcon, AHomingThatIsLostAtOnceIsNone) {
+  const Emulator emulator("falcon?firmware=loaded&home_after=0.05s&home_for=0.0005s");
+  ASSERT_TRUE(becomes_attached("falcon:0"));
+  EXPECT_THAT(refusal("falcon:0?homing_timeout=0.3s"), HasSubstr("not homed within 0.3 s"));
 }
 
 TEST(Falcon, WaitsForHomingOnlySoLongAndOnlyWhileSomebodyWaits) {

@@ -35,7 +35,8 @@ AxisInfo axis(std::string name, double lower, double upper) {
           .upper = upper,
           .force_limit = 9.0,  // "more than 2 lbf" of its data sheet
           .slew_limit = 2000.0,
-          .speed_limit = 5.0};
+          .speed_limit = 5.0,
+          .acceleration_limit = 200.0};
 }
 
 std::string configuration_of(const Falcon::Options& options) {
@@ -64,6 +65,8 @@ DeviceInfo describe(std::string_view uri, const Falcon::Options& options) {
                        {.name = "motor_2", .unit = "1"},
                        {.name = "motor_3", .unit = "1"},
                        {.name = "report_age", .unit = "s"}},
+          .report_jitter_s = max_report_jitter_s,
+          .button_channel = 0,
           .configuration = configuration_of(options)};
 }
 
@@ -117,7 +120,11 @@ void Falcon::wait_for_report(const std::atomic<bool>* stop) {
 
 void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
   const std::int64_t until_ns = usb::now_ns() + static_cast<std::int64_t>(1e9 * options_.homing_timeout_s);
-  while (!link_->homed()) {
+  // A report from before would still count from elsewhere; and it may lose its homing again.
+  const auto homed = [](const FalconLink::Reading& reading) {
+    return std::ranges::all_of(reading.report.homed, [](bool one) { return one; });
+  };
+  while (!link_->homed() || !homed(link_->take())) {
     refuse_if_stopped(falcon_identity.what, stop);
     if (link_->lost()) {
       throw DeviceError(
@@ -131,27 +138,21 @@ void Falcon::wait_until_homed(const std::atomic<bool>* stop) {
     }
     std::this_thread::sleep_for(pause);
   }
-  // One from before would still count from elsewhere.
-  const auto homed = [](const FalconLink::Reading& reading) {
-    return std::ranges::all_of(reading.report.homed, [](bool one) { return one; });
-  };
-  while (!homed(link_->take()) && !link_->lost()) std::this_thread::sleep_for(pause);
 }
 
-Status Falcon::read(double now_s, Sample& sample) noexcept {
+Status Falcon::read(double, Sample& sample) noexcept {
   const FalconLink::Reading& reading = link_->take();
   const std::int64_t age_ns = usb::now_ns() - reading.at_ns;
   if (link_->lost() || age_ns > max_silence_ns) return Status::lost;
-  for (std::size_t at = 0; at < axis_count; ++at) {
-    sample.position[at] = reading.knob[at];
-    sample.velocity[at] = velocity_.update(at, reading.knob[at], now_s);
-  }
-  velocity_.advance(now_s);
+  std::ranges::copy(reading.knob, sample.position.begin());
+  velocity_.update(sample.position, reading.at_ns, info_);
+  for (std::size_t at = 0; at < axis_count; ++at) sample.velocity[at] = velocity_.velocity(at);
+  sample.age_s = 1e-9 * static_cast<double>(age_ns);
   const falcon::Report& report = reading.report;
   sample.channels[0] =
       (report.plus ? 1 : 0) | (report.forward ? 2 : 0) | (report.centre ? 4 : 0) | (report.minus ? 8 : 0);
   for (std::size_t i = 0; i < axis_count; ++i) sample.channels[1 + i] = reading.motor[i];
-  sample.channels[4] = 1e-9 * static_cast<double>(age_ns);
+  sample.channels[4] = sample.age_s;
   sample.faults = limited_ ? force_was_limited : 0U;
   const bool knows_where = reading.reachable && (!options_.homing || link_->homed());
   return knows_where && age_ns <= max_reading_age_ns ? Status::ok : Status::fault;

@@ -16,6 +16,7 @@ using End = usb::Transfer::End;
 
 constexpr std::int64_t millisecond = 1'000'000;
 constexpr std::int64_t answer_ns = 5 * millisecond;   // it takes at most 1.3
+constexpr std::int64_t prompt_ns = 3 * millisecond;   // what takes longer was held up on its way
 constexpr std::int64_t unasked_ns = 2 * millisecond;  // a tick of 1 kHz, and as much again
 constexpr std::int64_t final_zero_ns = 50 * millisecond;
 constexpr unsigned max_bad = 20;
@@ -92,7 +93,11 @@ void FalconLink::received(std::size_t which, End end, std::span<const std::uint8
 }
 
 void FalconLink::sent(End end) noexcept {
-  if (!ending_ && end != End::completed) ended_badly(end, falcon_out);
+  if (end == End::cancelled) {
+    unanswered_ = 0;  // nothing was asked
+  } else if (!ending_ && end != End::completed) {
+    ended_badly(end, falcon_out);
+  }
 }
 
 void FalconLink::ended_badly(End end, std::uint8_t endpoint) noexcept {
@@ -116,11 +121,12 @@ void FalconLink::take_report(const falcon::Report& report) noexcept {
   // Homing moves the origin, perhaps too far for the travel from the last position.
   if (!knob) knob = mechanisms::Falcon::knob(shoulder, vector_of(middle));
   if (knob) nearby_ = *knob;
+  const std::int64_t now = now_ns();
   readings_.put({.report = report,
                  .motor = sent_motor_,
                  .knob = {nearby_.x(), nearby_.y(), nearby_.z()},
                  .reachable = knob.has_value(),
-                 .at_ns = now_ns()});
+                 .at_ns = now - sent_ns_ > prompt_ns ? sent_ns_ : now});
   homed_.store(std::ranges::all_of(report.homed, [](bool one) { return one; }), std::memory_order_relaxed);
   counts_.reports.fetch_add(1, std::memory_order_relaxed);
   if (unanswered_ > 0) --unanswered_;
@@ -128,11 +134,16 @@ void FalconLink::take_report(const falcon::Report& report) noexcept {
 
 void FalconLink::send_if_due() noexcept {
   (void)orders_.take(order_);
-  if (out_.pending() || lost()) return;
+  if (lost()) return;
   const std::int64_t now = now_ns();
   const bool holds = order_.number > released_.load() && now - order_.at_ns <= max_command_age_ns;
   const auto& motor = holds ? order_.motor : zero;
   const bool lets_go = !holds && sent_motor_ != zero;  // waits for no answer
+  if (out_.pending()) {
+    // Whenever the device takes frames again, that one must not be the first.
+    if (lets_go) out_.cancel();
+    return;
+  }
   if (unanswered_ > 0 && !lets_go) {
     if (now - sent_ns_ < answer_ns) return;
     unanswered_ = 0;
@@ -165,6 +176,7 @@ void FalconLink::let_go() noexcept {
   bool said = false;
   // Its answer is waited for too: then the device has it.
   while (now_ns() < until_ns && !lost() && !(said && !out_.pending() && unanswered_ == 0)) {
+    if (!said && out_.pending()) out_.cancel();
     if (!said && !out_.pending()) {
       unanswered_ = 0;
       send(zero, Falcon::Led::off);

@@ -28,7 +28,7 @@ class FalconLink {
     std::array<int, 3> motor{};    ///< last sent
     std::array<double, 3> knob{};  ///< [m]; where it is not reachable, the last place that was
     bool reachable = false;        ///< the counts are of a place within the workspace
-    std::int64_t at_ns = 0;
+    std::int64_t at_ns = 0;        ///< when it arrived, or an earlier time at which it may have been true
   };
 
   FalconLink(usb::UsbDevice& device, usb::IoThread& thread, bool homing, Falcon::Led led);

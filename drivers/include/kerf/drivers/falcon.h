@@ -9,10 +9,10 @@
 #include <vector>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/report_velocity.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
-#include <kerf/drivers/velocity_filter.h>
 
 namespace kerf::drivers {
 
@@ -81,7 +81,7 @@ class Falcon final : public Device {
   DeviceInfo info_;
   usb::UsbDevice device_;
   std::unique_ptr<FalconLink> link_;
-  VelocityFilter velocity_;
+  ReportVelocity velocity_{3};
   bool limited_ = false;
   std::atomic<std::uint64_t> limited_ticks_{0};
   usb::IoThread thread_;  ///< last: it ends first, and lets the motors go
