@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,6 +78,26 @@ TEST(WoodenHaptics, EachGenerationIsKnownAndFollowsItsTip) {
     EXPECT_EQ(figure(*device, "implausible"), 0.0);
     EXPECT_LE(figure(*device, "resent"), 0.0);
     EXPECT_LE(figure(*device, "counter_gaps"), 0.0);
+  }
+}
+
+// Through driver, kernel and emulator, what WoodenHapticsSigns.* say of their tables.
+TEST(WoodenHaptics, AForceMovesTheHandItsOwnWay) {
+  for (const Generation& one : generations) {
+    SCOPED_TRACE(one.emulator);
+    const Emulator emulator(one.emulator + "&sway=0m");
+    ASSERT_TRUE(becomes_attached(one.uri));
+    const auto device = drivers::open_device(one.uri);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      Axes stood{};
+      hold(*device, 200, {}, [&](int, Status, const Sample& sample) { stood = sample.position; });
+      Axes force{};
+      force[axis] = 0.4;
+      Axes moved{};
+      hold(*device, 300, force, [&](int, Status, const Sample& sample) { moved = sample.position; });
+      // 0.4 N less 0.1 N of friction at 300 N/m; friction also keeps it up to 0.3 mm from where it stood.
+      EXPECT_NEAR(moved[axis] - stood[axis], 1.1e-3, 0.5e-3) << axis;
+    }
   }
 }
 
@@ -345,6 +366,22 @@ TEST(WoodenHaptics, IsTakenFromNoProgramAndGivenToNone) {
     hold(*device, 50, {0.1, 0.0, 0.0});
   }
   EXPECT_NE(only_hidraw_node(), "") << "given back";
+}
+
+// What the udev rules give: the node of the device, and with it the right to take its interface from the
+// kernel.
+TEST(WoodenHaptics, AnOrdinaryUserHasItAloneToo) {
+  const Emulator emulator("woody?generation=v2");
+  ASSERT_TRUE(becomes_attached("hid:1234:0006"));
+  const std::string node = drivers::list_attached().at(0).node;
+  ASSERT_EQ(chmod(node.c_str(), 0666), 0);
+  const AsNobody guard;
+  {
+    const auto device = drivers::open_device("hid:1234:0006");
+    EXPECT_EQ(only_hidraw_node(), "");
+    hold(*device, 50, {0.1, 0.0, 0.0});
+  }
+  EXPECT_NE(only_hidraw_node(), "");
 }
 
 TEST(WoodenHaptics, SaysWhatIsWrongAndHowToMendIt) {
