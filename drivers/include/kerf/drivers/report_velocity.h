@@ -27,7 +27,7 @@ class ReportVelocity {
 
   /// Takes the report that arrived at `at_ns`, once.
   void update(const Axes& position, std::int64_t at_ns, const DeviceInfo& info) noexcept {
-    if (at_ns == last_ns_) return;
+    if (at_ns <= last_ns_) return;
     const double elapsed_s = 1e-9 * static_cast<double>(at_ns - last_ns_);
     const bool first = last_ns_ == 0;
     if (!first && !follows(position, position_, elapsed_s, info)) {
