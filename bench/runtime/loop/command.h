@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -46,17 +47,31 @@ struct NoForce {
 /// all that it has.
 class LawRendering {
  public:
-  /// `axes`: the device's axis for each axis of the law, or the one axis of a scalar law.
-  LawRendering(models::Law law, const models::Contact& contact, const std::vector<std::size_t>& axes)
-      : law_(std::move(law)), state_(law_.initial_state()), contact_(contact), spatial_(law_.is_spatial()) {
+  /// Says nothing of what the law stores: that costs time, and only a passivity controller asks for it.
+  static constexpr double tells_no_energy = std::numeric_limits<double>::quiet_NaN();
+
+  /// `axes`: the device's axis for each axis of the law, or the one axis of a scalar law. `lever`: of that
+  /// axis, if the command is to say by how much the law's store has grown.
+  LawRendering(models::Law law, const models::Contact& contact, const std::vector<std::size_t>& axes,
+               double lever = tells_no_energy)
+      : law_(std::move(law)),
+        state_(law_.initial_state()),
+        contact_(contact),
+        spatial_(law_.is_spatial()),
+        energy_scale_(spatial_ && std::isfinite(lever) ? 1.0 : lever) {
     for (const std::size_t axis : axes) axis_.at(count_++) = axis;
   }
 
   /// At a drivers::Sample of the device, or at a models::SpatialMotion of its axes.
   template <typename Sample>
   [[nodiscard]] Command operator()(const Sample& sample, double period_s) noexcept {
-    return spatial_ ? in_space(sample.position, sample.velocity, period_s)
-                    : along_axis(sample.position, sample.velocity, period_s);
+    Command command = spatial_ ? in_space(sample.position, sample.velocity, period_s)
+                               : along_axis(sample.position, sample.velocity, period_s);
+    if (std::isfinite(energy_scale_)) {
+      const double stored_j = energy_scale_ * law_.stored_energy(state_);
+      command.stored_change_j = stored_j - std::exchange(stored_j_, stored_j);
+    }
+    return command;
   }
 
  private:
@@ -88,6 +103,8 @@ class LawRendering {
   models::Law::State state_;
   models::Contact contact_;
   bool spatial_;
+  double energy_scale_;
+  double stored_j_ = 0.0;
   std::array<std::size_t, models::max_law_axes> axis_{};
   std::size_t count_ = 0;
 };

@@ -31,7 +31,8 @@ enum class Trust : std::uint8_t {
 /// nowhere. A limit that is not known (0) limits nothing. After a report that breaks this two more decide: if
 /// both can follow from the place before and lie nearer to it than to the jump, a bit was turned on the way,
 /// and the tool is believed again; else the place is in doubt for good (an encoder slipped), until confirm().
-/// A tick without a new report decides nothing: it is one whose age has grown with the loop's time.
+/// A tick without a new report decides nothing: it is one with the same position, whose age has grown with
+/// the loop's time.
 class Plausibility {
  public:
   explicit Plausibility(const drivers::DeviceInfo& device) noexcept
@@ -49,7 +50,8 @@ class Plausibility {
   /// A reading with finite numbers, `elapsed_s` after the last call.
   [[nodiscard]] Trust judge(const drivers::Sample& sample, double elapsed_s) noexcept {
     pass(elapsed_s);
-    const bool is_repeated = started_ && sample.age_s - age_s_ >= 0.5 * elapsed_s;
+    const bool is_repeated =
+        started_ && sample.position == last_.position && sample.age_s - age_s_ >= 0.5 * elapsed_s;
     age_s_ = sample.age_s;
     if (is_repeated) return trust_ == Trust::jumped ? trust_ = Trust::doubted : trust_;
     const Place here{.position = sample.position, .taken_s = now_s_ - sample.age_s};

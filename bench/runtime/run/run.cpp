@@ -148,7 +148,10 @@ class Run {
   [[nodiscard]] std::vector<SwitchedLaw> laws() const {
     std::vector<SwitchedLaw> all;
     const auto add = [&](const LawFile& law, double from_s) {
-      all.push_back({.rendering = {law.law, law.contact, axes_for(law, result_.device)}, .from_s = from_s});
+      const std::vector<std::size_t> axes = axes_for(law, result_.device);
+      const double lever = options_.passivity_control ? result_.device.axes[axes.front()].lever
+                                                      : LawRendering::tells_no_energy;
+      all.push_back({.rendering = {law.law, law.contact, axes, lever}, .from_s = from_s});
     };
     if (options_.law) add(*options_.law, 0.0);
     for (const LawChange& change : options_.changes) add(change.law, change.at_s);

@@ -11,7 +11,7 @@
 #include <kerf/psychophysics/psychometric_fit.h>
 #include <kerf/psychophysics/quest_plus.h>
 
-#include "psychophysics/coverage.h"
+#include "fitting/psychophysics/coverage.h"
 
 // Numbers for an oracle and for the study of coverage, as JSON on the terminal, one object a line.
 //
