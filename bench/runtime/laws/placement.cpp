@@ -1,5 +1,6 @@
 #include "laws/placement.h"
 
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
@@ -45,6 +46,19 @@ std::vector<std::size_t> axes_for(const LawFile& law, const drivers::DeviceInfo&
     axes.push_back(axis);
   }
   return axes;
+}
+
+std::vector<std::size_t> named_axes_for(const LawFile& law, const drivers::DeviceInfo& device) {
+  const auto is_its_own = [&](const drivers::AxisInfo& axis) { return axis.name == law.axis; };
+  if (law.law.is_spatial() || std::ranges::any_of(device.axes, is_its_own)) return axes_for(law, device);
+  std::string all;
+  for (const drivers::AxisInfo& axis : device.axes)
+    all += fmt::format("{}'{}' ({} over {})", all.empty() ? "" : ", ", axis.name, axis.force_unit,
+                       axis.position_unit);
+  throw std::invalid_argument(
+      fmt::format("the law is for axis '{}' ({} over {}), and {} has {}; a law for another axis has its name "
+                  "as 'axis' in its file",
+                  law.axis, law.force_unit, law.position_unit, device.model, all));
 }
 
 std::vector<models::LawAxis> axes_of(const LawFile& law) {

@@ -28,6 +28,10 @@ template <typename Named>
 /// @throws std::invalid_argument if the device lacks an axis, or has it in other units.
 [[nodiscard]] std::vector<std::size_t> axes_for(const LawFile& law, const drivers::DeviceInfo& device);
 
+/// As axes_for(), but of a scalar law too by the name of its axis: where a person picks a law for their hand,
+/// nothing is put on another axis than it was made for. @throws std::invalid_argument.
+[[nodiscard]] std::vector<std::size_t> named_axes_for(const LawFile& law, const drivers::DeviceInfo& device);
+
 /// The axes that a law acts on, with their units; a scalar law has one.
 [[nodiscard]] std::vector<models::LawAxis> axes_of(const LawFile& law);
 /// Their places in a motion that has no others: 0, 1, ...

@@ -86,7 +86,9 @@ nlohmann::ordered_json status_as_json(const LiveStatus& status) {
                               {"whole_wake_s", percentiles_as_json(status.whole_wake)},
                               {"whole_cycle_s", percentiles_as_json(status.whole_cycle)},
                               {"ended", status.ended},
-                              {"session", false}};
+                              {"session", status.is_session},
+                              {"force", name_of(force_state(status))},
+                              {"force_reason", force_reason(status)}};
   if (status.recording) {
     json["recording"] = {{"name", status.recording->name},
                          {"rows", status.recording->rows},
@@ -95,10 +97,11 @@ nlohmann::ordered_json status_as_json(const LiveStatus& status) {
   return json;
 }
 
-nlohmann::ordered_json session_status_as_json() {
-  nlohmann::ordered_json nothing = status_as_json({});
-  nothing["session"] = true;
-  return nothing;
+nlohmann::ordered_json session_status_as_json(bool is_released) {
+  LiveStatus nothing;
+  nothing.is_released = is_released;
+  nothing.is_session = true;
+  return status_as_json(nothing);
 }
 
 nlohmann::ordered_json traces_as_json(const std::vector<Trace>& traces) {

@@ -45,8 +45,8 @@ struct LiveCursor {
 
 /// Durations in seconds.
 [[nodiscard]] nlohmann::ordered_json status_as_json(const LiveStatus& status);
-/// Of a loop that nothing is told of, because a session runs.
-[[nodiscard]] nlohmann::ordered_json session_status_as_json();
+/// Of a loop that nothing is told of, because a session runs, but whether zero force is held.
+[[nodiscard]] nlohmann::ordered_json session_status_as_json(bool is_released);
 [[nodiscard]] nlohmann::ordered_json traces_as_json(const std::vector<Trace>& traces);
 
 }  // namespace kerf::bench

@@ -136,6 +136,11 @@ void LiveLoop::stop() {
   changed_.wait(lock, [this] { return phase_ == Phase::idle; });
 }
 
+void LiveLoop::tell_fault(const std::string& fault) {
+  const std::lock_guard lock(mutex_);
+  ended_ = fault;
+}
+
 void LiveLoop::require_running() const {
   if (phase_ != Phase::running) throw std::invalid_argument("no loop is running: start it first");
 }
@@ -149,7 +154,7 @@ std::shared_ptr<LiveHub> LiveLoop::running_hub() const {
 void LiveLoop::render(const LawFile& law, const std::string& name) {
   const std::lock_guard lock(mutex_);  // no other loop begins meanwhile
   require_running();
-  const std::vector<std::size_t> axes = axes_for(law, hub_->device());
+  const std::vector<std::size_t> axes = named_axes_for(law, hub_->device());
   hub_->offer(std::make_unique<LawRendering>(law.law, law.contact, axes), name);
 }
 

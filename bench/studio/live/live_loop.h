@@ -68,7 +68,7 @@ class LiveLoop {
     stop_.store(true);
   }
 
-  /// Goes softly over to a law. @throws std::invalid_argument: no loop runs, or the device has no such axis.
+  /// Goes softly over to a law. @throws std::invalid_argument: no loop runs, or as named_axes_for().
   void render(const LawFile& law, const std::string& name);
   /// Goes softly over to no force. @throws std::invalid_argument: no loop runs.
   void render_nothing();
@@ -78,6 +78,11 @@ class LiveLoop {
   void release_force() noexcept { rendering_.release(); }
   /// The force comes back along the soft start.
   void resume() noexcept { rendering_.resume(); }
+  [[nodiscard]] bool is_released() const noexcept { return rendering_.is_released(); }
+  /// What ended a loop, also one of somebody else's on the same device: the status tells it until it is
+  /// dismissed or another loop starts.
+  void tell_fault(const std::string& fault);
+  void dismiss_fault() { tell_fault(""); }
 
   /// Records from now on, beside everything else. @throws std::invalid_argument: no loop runs, it is recorded
   /// already, or the file exists; std::system_error.

@@ -24,7 +24,8 @@ class LiveViewer {
 
   [[nodiscard]] std::string next() {
     if (is_closed_()) {
-      return is_status_due(cursor_) ? status_event(session_status_as_json()) : std::string();
+      return is_status_due(cursor_) ? status_event(session_status_as_json(loop_.is_released()))
+                                    : std::string();
     }
     return live_event(loop_, cursor_);
   }
@@ -41,7 +42,8 @@ class LiveAnswers {
   LiveAnswers(LiveLoop& loop, const LiveHooks& hooks) : loop_(loop), hooks_(hooks) {}
 
   [[nodiscard]] HttpResponse status() const {
-    return json_response(hooks_.is_closed() ? session_status_as_json() : status_as_json(loop_.status()));
+    return json_response(hooks_.is_closed() ? session_status_as_json(loop_.is_released())
+                                            : status_as_json(loop_.status()));
   }
 
   [[nodiscard]] HttpResponse traces() const {
@@ -109,6 +111,11 @@ class LiveAnswers {
     return status();
   }
 
+  [[nodiscard]] HttpResponse dismiss() const {
+    loop_.dismiss_fault();
+    return status();
+  }
+
   [[nodiscard]] HttpResponse record(const HttpRequest& request) const {
     const std::string name = text_in(json_in(request), "name");
     require_running();
@@ -163,6 +170,7 @@ void add_live_routes(Routes& routes, LiveLoop& loop, const LiveHooks& hooks) {
   post("/api/live/stop", Pace::at_once, [answers](Request) { return answers->stop(); });
   post("/api/live/feel", Pace::action, [answers](Request it) { return answers->render(it); });
   post("/api/live/resume", Pace::at_once, [answers](Request) { return answers->resume(); });
+  post("/api/live/dismiss", Pace::at_once, [answers](Request) { return answers->dismiss(); });
   post("/api/live/record", Pace::action, [answers](Request it) { return answers->record(it); });
   post("/api/live/record/stop", Pace::action, [answers](Request) { return answers->stop_recording(); });
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <kerf/drivers/device.h>
@@ -10,6 +11,20 @@
 #include "host/histogram.h"
 
 namespace kerf::bench {
+
+/// What there is of force in the hand, in one word: it gives the bar of every page its colour. A further
+/// reason to hold the force is an enumerator here, its line in name_of() and force_state(), and its line in
+/// page/src/ui/force/force_states.ts.
+enum class ForceState : std::uint8_t {
+  idle,      ///< no loop runs
+  starting,  ///< its device is being opened
+  free,      ///< the loop runs and renders nothing
+  rendered,  ///< a law is rendered
+  zero,      ///< somebody asked for zero force; held until it is let back
+  lost,      ///< the loop ended by a fault, and nobody has started another or dismissed it
+  session    ///< a session runs, of whose forces nothing is told
+};
+[[nodiscard]] std::string_view name_of(ForceState state) noexcept;
 
 /// What a loop that a page watches is doing. After its end: what it did.
 struct LiveStatus {
@@ -36,7 +51,12 @@ struct LiveStatus {
   Percentiles cycle;        ///< reading, computing and writing, likewise
   Percentiles whole_wake;   ///< since the loop began
   Percentiles whole_cycle;  ///< likewise
-  std::string ended;        ///< why the loop ended; empty if it was stopped or never started
+  std::string ended;        ///< the fault that ended the loop, until dismissed; else empty
+  bool is_session = false;  ///< a session runs: nothing else of the loop is told
 };
+
+[[nodiscard]] ForceState force_state(const LiveStatus& status) noexcept;
+/// Why it is so, where a person has to know: the fault of a loop that was lost.
+[[nodiscard]] std::string_view force_reason(const LiveStatus& status) noexcept;
 
 }  // namespace kerf::bench

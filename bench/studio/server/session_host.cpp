@@ -58,8 +58,9 @@ class SessionHost::Running {
   SessionStore store_;
 };
 
-SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake)
-    : hosts_(std::move(hosts)), wake_(std::move(wake)) {}
+SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake,
+                         std::function<void(const std::string&)> tell_fault)
+    : hosts_(std::move(hosts)), wake_(std::move(wake)), tell_fault_(std::move(tell_fault)) {}
 
 SessionHost::~SessionHost() { close(); }
 
@@ -113,6 +114,9 @@ void SessionHost::run(Running& running) {
     };
     ended = end_in_words(run_session(running.store_, *page(), options, stop_));
     running.store_.close();
+  } catch (const drivers::DeviceError& error) {
+    ended = error.what();
+    tell_fault_(ended);
   } catch (const std::exception& error) {
     ended = error.what();
   }

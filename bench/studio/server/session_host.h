@@ -45,8 +45,9 @@ class SessionHost {
     bool check = true;               ///< the laws on the device first
   };
 
-  /// `hosts` and `wake` are the server's.
-  SessionHost(std::vector<std::string> hosts, std::function<void()> wake);
+  /// `hosts` and `wake` are the server's; `tell_fault` is called when a session loses its device.
+  SessionHost(std::vector<std::string> hosts, std::function<void()> wake,
+              std::function<void(const std::string&)> tell_fault);
   SessionHost(const SessionHost&) = delete;
   SessionHost& operator=(const SessionHost&) = delete;
   ~SessionHost();  ///< ends a session as stop() does
@@ -75,6 +76,7 @@ class SessionHost {
 
   std::vector<std::string> hosts_;
   std::function<void()> wake_;
+  std::function<void(const std::string&)> tell_fault_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> closed_{false};
   std::atomic<bool> running_{false};

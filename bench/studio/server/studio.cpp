@@ -35,7 +35,9 @@ class Studio::State {
       : workspace_(options.folder),
         server_({.address = options.address, .port = options.port, .max_body = max_body}),
         access_(server_.hosts()),
-        sessions_(server_.hosts(), [this] { server_.wake(); }) {
+        sessions_(
+            server_.hosts(), [this] { server_.wake(); },
+            [this](const std::string& fault) { loop_.tell_fault(fault); }) {
     routes_.on_ready([this] { server_.wake(); });
     loop_.on_rows([this] { server_.wake(); });
     add_workspace_routes(routes_, workspace_, options.device_uri);
@@ -77,8 +79,9 @@ class Studio::State {
   /// To a session, which knows nothing of a force that was released here.
   void leave_the_device() {
     if (loop_.status().is_released)
-      throw RequestError(409, "Zero force is held: let the force back first, on the scope.");
+      throw RequestError(409, "Zero force is held: let the force back first, in the bar.");
     loop_.stop();
+    loop_.dismiss_fault();
   }
 
   /// A drawn law, which has no name yet.
@@ -94,12 +97,14 @@ class Studio::State {
       below.path.erase(0, subject_folder.size());
       return sessions_.respond(below, overdue);
     }
-    if (!access_.admits(request)) {
+    const bool asks_for_zero_force = request.path == "/api/live/zero" && request.method == "POST";
+    if (!(asks_for_zero_force && server_.is_loopback() ? access_.admits_without_token(request)
+                                                       : access_.admits(request))) {
       return HttpResponse{.status = 403,
                           .body = "This address is not valid. Open the one that kerf studio shows.\n"};
     }
     // Whoever asks for zero force has a reason: it ends a session too, which can be gone on with.
-    if (request.path == "/api/live/zero" && request.method == "POST") {
+    if (asks_for_zero_force) {
       loop_.release_force();  // first, so that a session which is just being begun finds it
       sessions_.stop();
     }

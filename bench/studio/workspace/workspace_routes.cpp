@@ -11,6 +11,7 @@
 #include <kerf/schema/live_recording.h>
 
 #include "laws/law_file.h"
+#include "laws/placement.h"
 #include "recordings/provenance.h"
 #include "sealed/session_facts.h"
 
@@ -59,15 +60,20 @@ nlohmann::ordered_json recording_entry(const WorkspaceEntry& entry, RecordingLen
 }
 
 nlohmann::ordered_json law_entry(const WorkspaceEntry& entry) {
-  nlohmann::ordered_json json{{"id", entry.id},       {"name", entry.name},  {"model", ""},
-                              {"axis", ""},           {"position_unit", ""}, {"force_unit", ""},
-                              {"breakpoints", false}, {"error", ""}};
+  nlohmann::ordered_json json{
+      {"id", entry.id},       {"name", entry.name},  {"model", ""},
+      {"axis", ""},           {"position_unit", ""}, {"force_unit", ""},
+      {"breakpoints", false}, {"error", ""},         {"axes", nlohmann::ordered_json::array()}};
   try {
     const LawFile law = read_law_file(entry.path);
     json["model"] = law.law.model();
     json["axis"] = law.axis;
     json["position_unit"] = law.position_unit;
     json["force_unit"] = law.force_unit;
+    for (const models::LawAxis& axis : axes_of(law)) {
+      json["axes"].push_back(
+          {{"name", axis.name}, {"position_unit", axis.position_unit}, {"force_unit", axis.force_unit}});
+    }
     json["breakpoints"] = models::law_facts(law.law.model()).search == models::Search::segments;
   } catch (const std::exception& error) {
     json["error"] = error.what();

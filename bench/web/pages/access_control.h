@@ -22,6 +22,10 @@ class AccessControl {
   [[nodiscard]] std::string url(std::string_view path) const;
   /// An address can be opened from anywhere; an action (POST) only by the page, which sends the header.
   [[nodiscard]] bool admits(const HttpRequest& request) const;
+  /// As admits(), but for the token: the server was called by a name of its own, and not by a page of another
+  /// site. Enough to ask for zero force, which is always safe; a foreign page is refused, since it could
+  /// spoil an experiment by asking again and again.
+  [[nodiscard]] bool admits_without_token(const HttpRequest& request) const;
 
  private:
   [[nodiscard]] bool is_ours(std::string_view host) const;

@@ -1,5 +1,6 @@
 import { Requests } from "./requests";
 import type { Figure } from "./ui/figure_description";
+import type { ForceState } from "./ui/force/force_states";
 
 // What the server answers. Every request carries the token in a header that no other site can send.
 
@@ -39,6 +40,7 @@ export interface WorkspaceLaw {
   position_unit: string;
   force_unit: string;
   breakpoints: boolean; // knots that the segment editor moves
+  axes: Axis[]; // that it acts on
   error: string; // why it cannot be read; empty if it can
 }
 export interface WorkspaceSession {
@@ -90,7 +92,9 @@ export interface LoopStatus {
   rows_lost: number;
   wake_s: Percentiles; // of the last ten seconds
   cycle_s: Percentiles;
-  ended: string; // why the loop is not running any more; empty if it was stopped or never started
+  ended: string; // the fault that ended the loop, until dismissed; else empty
+  force: ForceState;
+  force_reason: string; // why, where a person has to know
   session: boolean; // a session is running: nothing of the loop is shown
 }
 export interface LiveFrame {
@@ -257,8 +261,9 @@ export interface ChartPoint {
   error_jnd: number | null;
   worst_n: number | null;
   axis: string;
-  stable: boolean;
+  stable: boolean | null; // null: nobody judged it
   why_not_stable: string;
+  why_not_judged?: string; // missing in files of earlier versions
   on_front: boolean;
 }
 export interface ChartFile {
@@ -280,7 +285,8 @@ export interface ChoiceCandidate {
   held_out_jnd: number | null;
   within_jnd: boolean;
   tick_us: number;
-  stable: boolean | null;
+  stable: boolean | null; // null: nobody judged it
+  why_not_judged?: string; // missing in files of earlier versions
   passed_over: string; // empty: it was taken
 }
 export interface ChoiceFile {
@@ -383,7 +389,7 @@ type Parameters = Record<string, string | number | readonly number[]>;
 export class Api {
   private readonly requests = new Requests();
 
-  constructor(private readonly token: string) {}
+  constructor(readonly token: string) {}
 
   async get<Answer>(path: string, parameters: Parameters = {}, signal?: AbortSignal): Promise<Answer> {
     return this.read(path, parameters, signal, async (answer) => (await answer.json()) as Answer);
@@ -408,9 +414,14 @@ export class Api {
     return new EventSource(address(path, { ...parameters, token: this.token }));
   }
 
+  /** Past what else is being read, so that only a studio that does not answer is late. */
+  async loopStatus(signal: AbortSignal): Promise<LoopStatus> {
+    return (await (await this.send("/api/live/status", { signal })).json()) as LoopStatus;
+  }
+
   /**
-   * Asks for zero force until somebody has heard it: needs nothing that this page knows. What else waits for an
-   * answer is given up first, since a browser opens only six connections to one server.
+   * Asks for zero force until somebody has heard it: needs nothing that this page knows, not even the token. What else
+   * waits for an answer is given up first, since a browser opens only six connections to one server.
    */
   async zeroForce(): Promise<void> {
     this.requests.giveUp();
@@ -421,7 +432,8 @@ export class Api {
         await this.send("/api/live/zero", { method: "POST", keepalive: true, signal: patience.signal });
         return;
       } catch (error) {
-        if (tries >= 20) throw error instanceof ApiError ? error : silent();
+        if (tries >= 20 || (error instanceof ApiError && error.status === 403))
+          throw error instanceof ApiError ? error : silent();
         await new Promise((go) => setTimeout(go, 100));
       } finally {
         clearTimeout(timer);

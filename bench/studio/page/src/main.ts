@@ -1,8 +1,8 @@
 import "./studio.css";
 
 import { Api } from "./api";
+import { ForceBar } from "./ui/force/force_bar";
 import { help, pageKeys } from "./ui/help";
-import { loopState } from "./ui/loop_state";
 import { element } from "./ui/dom";
 import type { Place, View } from "./ui/view";
 import { chart } from "./views/chart";
@@ -22,6 +22,7 @@ function byId(id: string): HTMLElement {
 }
 
 const api = new Api(document.querySelector<HTMLMetaElement>("meta[name=kerf-token]")?.content ?? "");
+new ForceBar(api, byId("force_bar"), complain); // first: whatever fails below, Escape is heard
 const root = byId("view");
 const notice = byId("notice");
 const links = new Map<string, HTMLAnchorElement>();
@@ -91,6 +92,5 @@ byId("skip").addEventListener("click", (event) => {
   event.preventDefault(); // the address is the page's place
   focusHead();
 });
-loopState(api, byId("loop_state"), byId("zero") as HTMLButtonElement, complain);
 addEventListener("hashchange", () => show());
 show(true);

@@ -45,6 +45,31 @@ TEST(AxesForALaw, AreThoseOfItsNames) {
   }
 }
 
+TEST(AxesForALawInTheHand, AreThoseItNamesInItsUnitsAndNoOthers) {
+  LawFile law = file_of("kelvin");
+  law.axis = "theta";
+  law.position_unit = "rad";
+  EXPECT_THAT(named_axes_for(law, scissors), ElementsAre(0));
+  EXPECT_THAT(named_axes_for(file_of("blade"), pose6), ElementsAre(0, 1, 2, 3, 4, 5));
+  const auto refusal = [&] {
+    try {
+      (void)named_axes_for(law, scissors);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  law.axis = "punch";
+  law.position_unit = "m";
+  EXPECT_EQ(axis_for(law, scissors), 1U) << "its units alone would fit";
+  EXPECT_THAT(refusal(), HasSubstr("the law is for axis 'punch' (N over m)"));
+  EXPECT_THAT(refusal(), HasSubstr("'theta' (N over rad), 'x_s' (N over m)"));
+  law.axis = "";
+  EXPECT_THAT(refusal(), HasSubstr("the law is for axis ''"));
+  law.axis = "theta";
+  EXPECT_THAT(refusal(), HasSubstr("the law gives N over m, but axis 'theta'"));
+}
+
 TEST(AxesForALaw, MustHaveItsUnits) {
   drivers::DeviceInfo metric = pose6;
   metric.axes[3].force_unit = "N";

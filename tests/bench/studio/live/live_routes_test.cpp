@@ -144,13 +144,65 @@ TEST(LiveRoutes, AnswerZeroForceAtOnceWhateverIsGoingOn) {
   EXPECT_EQ(site.status()["released"], false);
 }
 
+TEST(LiveRoutes, RefuseALawThatIsForAnotherAxisThanTheDeviceHas) {
+  LiveSite site;
+  ASSERT_EQ(site.ask("POST", "start", R"({"device": "sim:scissors"})").status, 200);
+  ASSERT_EQ(site.ask("POST", "feel", R"({"law": "abc"})").status, 200);
+  ASSERT_TRUE(site.comes_true([](const json& it) { return it["law"] == "a.law.toml"; }));
+  std::string punch = law_text;  // in m along an axis of its own, and x_s of the scissors is in m
+  for (const auto& [from, to] : {std::pair{"\"theta\"", "\"punch\""}, std::pair{"\"rad\"", "\"m\""},
+                                 std::pair{"30, unit = \"deg\"", "30, unit = \"mm\""}})
+    punch.replace(punch.find(from), std::string(from).size(), to);
+  for (std::size_t at = punch.find("/rad"); at != std::string::npos; at = punch.find("/rad"))
+    punch.replace(at, 4, "/m");
+  const HttpResponse refused = site.ask("POST", "feel", json{{"toml", punch}}.dump());
+  EXPECT_EQ(refused.status, 400);
+  EXPECT_THAT(refused.body, HasSubstr("the law is for axis 'punch' (N over m)"));
+  EXPECT_THAT(refused.body, HasSubstr("'theta' (N over rad)"));
+  EXPECT_EQ(site.status()["law"], "a.law.toml");
+}
+
+TEST(LiveRoutes, SayInOneWordWhatThereIsOfForce) {
+  LiveSite site;
+  EXPECT_EQ(site.status()["force"], "idle");
+  ASSERT_EQ(site.ask("POST", "start", R"({"device": "sim:scissors"})").status, 200);
+  EXPECT_EQ(site.status()["force"], "free");
+  ASSERT_EQ(site.ask("POST", "feel", R"({"law": "abc"})").status, 200);
+  EXPECT_TRUE(site.comes_true([](const json& it) { return it["force"] == "rendered"; }));
+  EXPECT_EQ(site.ask("POST", "zero").status, 200);
+  EXPECT_EQ(site.status()["force"], "zero");
+  site.is_session = true;
+  EXPECT_EQ(site.status()["force"], "zero") << "whoever asked for it has to see that it is held";
+  site.is_session = false;
+  EXPECT_EQ(site.ask("POST", "resume", "{}").status, 200);
+  EXPECT_EQ(site.status()["force"], "rendered");
+  site.is_session = true;
+  EXPECT_EQ(site.status()["force"], "session");
+}
+
+TEST(LiveRoutes, TellOfALostDeviceUntilItIsDismissedOrAnotherLoopStarts) {
+  LiveSite site;
+  const auto lose = [&] {
+    ASSERT_EQ(site.ask("POST", "start", R"({"device": "sim:scissors?fault=unplug@0.05"})").status, 200);
+    EXPECT_EQ(site.status()["force_reason"], "");
+    ASSERT_TRUE(site.comes_true([](const json& it) { return it["force"] == "lost"; }));
+    EXPECT_THAT(site.status()["force_reason"].get<std::string>(), HasSubstr("the device was lost"));
+  };
+  lose();
+  EXPECT_EQ(site.ask("POST", "dismiss", "{}").status, 200);
+  EXPECT_EQ(site.status()["force"], "idle");
+  lose();
+  ASSERT_EQ(site.ask("POST", "start", R"({"device": "sim:scissors"})").status, 200);
+  EXPECT_EQ(site.status()["force"], "free");
+}
+
 TEST(LiveRoutes, ShowNothingOfTheLoopWhileASessionRuns) {
   LiveSite site;
   ASSERT_EQ(site.ask("POST", "start", "{}").status, 200);
   const HttpResponse stream = site.ask("GET", "stream", "", {{"ticks", "1"}});
   site.is_session = true;
   for (const char* path : {"traces", "stream", "view"}) EXPECT_EQ(site.ask("GET", path).status, 409) << path;
-  for (const char* path : {"start", "stop", "feel", "resume", "record", "record/stop"}) {
+  for (const char* path : {"start", "stop", "feel", "resume", "dismiss", "record", "record/stop"}) {
     const HttpResponse response = site.ask("POST", path, "{}");
     EXPECT_EQ(response.status, 409) << path;
     EXPECT_THAT(response.body, HasSubstr("A session is running; nothing of the loop is shown."));

@@ -1,6 +1,7 @@
 // The scope, and what has to work when nothing else does: recordings, zero force, a studio that is killed.
 
 import { existsSync, readdirSync } from "node:fs";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
@@ -78,6 +79,59 @@ export const tests = {
     await until("the force is back", async () => !(await status(studio)).released);
     await page.keyboard.press("Escape");
     await until("Escape releases it too", async () => (await status(studio)).released);
+  },
+
+  async "a law is rendered by a press alone, and only one that suits the device"({ browser, studio, screenshots }) {
+    const example = new URL("../../../../examples/kelvin.law.toml", import.meta.url);
+    const law = await readFile(example, "utf8");
+    for (const name of ["a", "b", "c"]) await writeFile(join(studio.folder, `${name}.law.toml`), law);
+    await writeFile(join(studio.folder, "punch.law.toml"), law.replace("axis = 'theta'", "axis = 'punch'"));
+    await studio.serve();
+    const page = await openScope(browser, studio);
+    await startLoop(page);
+    const rendered = (what) => page.getByText(`Rendered now: ${what}`, { exact: true }).waitFor();
+    await rendered("nothing");
+    let orders = 0;
+    page.on("request", (request) => (orders += request.url().includes("/feel") ? 1 : 0));
+    const list = page.getByLabel("Law to feel");
+    await list.focus();
+    for (let i = 0; i < 4; ++i) await page.keyboard.press("ArrowDown");
+    expectEqual([orders, (await status(studio)).law], [0, ""], "what going through the list renders");
+    expectEqual(await list.inputValue(), await studio.id("laws", "c.law.toml"), "the last that suits");
+    const punch = list.locator("option", { hasText: "punch" });
+    expectEqual(await punch.textContent(), "punch.law.toml (for punch in rad, N)", "why it does not suit");
+    expect(await punch.evaluate((it) => it.disabled), "it cannot be picked");
+    await page.getByRole("button", { name: "Render" }).click();
+    await rendered("c");
+    expectEqual([orders, (await status(studio)).law], [1, "c.law.toml"], "what is rendered");
+    await page.screenshot({ path: join(screenshots, "scope_law.png") });
+    await page.keyboard.press("Escape");
+    await page.getByText("Held back: c", { exact: true }).waitFor();
+    await page.getByRole("button", { name: "Let force back" }).click();
+    await rendered("c");
+    const refused = await studio.api("/api/live/feel", { law: await studio.id("laws", "punch.law.toml") });
+    expectEqual(refused.status, 400, "past the page");
+    expect(refused.json.error.includes("the law is for axis 'punch' (N over rad)"), refused.json.error);
+
+    // What somebody renders elsewhere shows here, and leaves the list as it is.
+    await studio.api("/api/live/feel", { toml: law });
+    await rendered("kelvin");
+    expectEqual(await list.inputValue(), await studio.id("laws", "c.law.toml"), "what is picked");
+    await list.selectOption({ label: "nothing" });
+    await page.getByRole("button", { name: "Render" }).click();
+    await rendered("nothing");
+    expectNoComplaints(page);
+  },
+
+  async "a law that is drawn is shown as rendered"({ browser, studio }) {
+    studio.record("cut.h5", 10);
+    await studio.serve();
+    const page = await openScope(browser, studio);
+    await startLoop(page);
+    const recording = await studio.id("recordings", "cut.h5");
+    const knots = { penetration: [0, 0.1, 0.3], closing: [0, 1, 2], opening: [] };
+    expectEqual((await studio.api("/api/editor/feel", { recording, axis: 0, knots })).status, 200, "it is felt");
+    await page.getByText("Rendered now: a drawn law").waitFor();
   },
 
   async "the button works on a page that has lost everything else"({ browser, studio }) {

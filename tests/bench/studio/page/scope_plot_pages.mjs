@@ -71,7 +71,7 @@ export const tests = {
     await page.keyboard.press("Escape");
     await until("the loop has released the force", async () => (await live(studio)).released);
     await until("the page says so", async () => (await state(page)).startsWith("Zero force"));
-    await page.click("text=Let force back");
+    await page.getByRole("button", { name: "Let force back" }).click();
     await until("the force is back", async () => !(await live(studio)).released);
     await page.keyboard.press("?");
     expect(await page.isVisible("#help"), "the help is open");

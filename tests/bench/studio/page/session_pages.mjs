@@ -27,8 +27,8 @@ async function law(stiffness) {
   return example.replace(/(parallel_stiffness = { value = )\d+/, `$1${stiffness}`);
 }
 
-async function prepare(studio) {
-  await writeFile(join(studio.folder, "abx.protocol.toml"), protocol);
+async function prepare(studio, device = "sim:scissors") {
+  await writeFile(join(studio.folder, "abx.protocol.toml"), protocol.replace("sim:scissors", device));
   await writeFile(join(studio.folder, "soft.law.toml"), await law(6));
   await writeFile(join(studio.folder, "hard.law.toml"), await law(12));
   studio.kerfOrThrow("session", "key", "keeper.key");
@@ -120,5 +120,19 @@ export const tests = {
     await page.goto(studio.page("sessions"));
     await page.getByRole("button", { name: "Stop the session" }).click();
     await page.getByText("it can be gone on with").waitFor();
+  },
+
+  async "a device that a session loses is told on every page, until another begins"({ browser, studio }) {
+    await prepare(studio, "sim:scissors?fault=unplug@0.3");
+    const session = await studio.id("sessions", "S01.h5");
+    const page = await openPage(browser);
+    await page.goto(studio.page("fits"));
+    const bar = (state) => page.locator(`#force_bar[data-state="${state}"]`).waitFor();
+    const begin = (device) => studio.api("/api/session/start", { session, check: false, device });
+    expectEqual((await begin("")).status, 200, "the session begins");
+    await bar("lost");
+    expect((await page.textContent("#force_bar p")).includes("the device was lost"), "why");
+    expectEqual((await begin("sim:scissors")).status, 200, "it is gone on with");
+    await bar("session");
   },
 };

@@ -42,6 +42,9 @@ class StudioUnderAttack : public testing::Test {
                                          "Content-Length: {}\r\n\r\n{}",
                                          target, ours(), more, body.size(), body));
   }
+  [[nodiscard]] std::string post_by(const std::string& target, const std::string& headers) const {
+    return answer_to(port(), fmt::format("POST {} HTTP/1.1\r\n{}Content-Length: 0\r\n\r\n", target, headers));
+  }
 
   /// The loop of a simulated device, which has to go on whatever is asked.
   void start_the_loop() const {
@@ -77,9 +80,10 @@ const std::vector<std::string> gets{"/",
                                     "/api/jobs",
                                     "/api/session",
                                     "/nothing"};
-const std::vector<std::string> posts{"/api/live/start", "/api/live/zero",   "/api/live/record",
+const std::vector<std::string> posts{"/api/live/start", "/api/live/resume", "/api/live/record",
                                      "/api/live/feel",  "/api/editor/save", "/api/fit",
                                      "/api/chart",      "/api/stability",   "/api/session/start"};
+const std::string zero = "/api/live/zero";
 
 std::string with_parameter(const std::string& target, const std::string& parameter) {
   return target + (target.find('?') == std::string::npos ? "?" : "&") + parameter;
@@ -112,6 +116,30 @@ TEST_F(StudioUnderAttack, AnswersNoOtherSiteAndByNoOtherName) {
   }
   for (const std::string& path : posts)
     EXPECT_EQ(status_of(post(path, "{}", "Origin: http://evil.example\r\n")), "403") << path;
+}
+
+TEST_F(StudioUnderAttack, GivesZeroForceToWhoeverAsksOnThisMachineButBackOnlyToWhoKnowsTheToken) {
+  const std::string old_tab =
+      fmt::format("Origin: http://127.0.0.1:{}\r\nX-Kerf-Token: {}\r\n", port(), std::string(32, '0'));
+  for (const std::string& headers : {old_tab, std::string()}) {
+    ASSERT_EQ(status_of(post("/api/live/resume", "{}")), "200");
+    EXPECT_EQ(status_of(post_by(zero, host() + headers)), "200") << headers;
+    EXPECT_EQ(status().at("released"), true) << headers;
+    EXPECT_EQ(status_of(post_by("/api/live/resume", host() + headers)), "403") << headers;
+    EXPECT_EQ(status().at("released"), true) << headers;
+  }
+}
+
+TEST_F(StudioUnderAttack, GivesZeroForceToNoForeignPageWhichCouldSpoilATrial) {
+  for (const std::string& origin :
+       {std::string("http://evil.example"), std::string("null"), std::string("https://127.0.0.1"),
+        fmt::format("http://127.0.0.1:{}", port() + 1)}) {
+    EXPECT_EQ(status_of(post_by(zero, host() + "Origin: " + origin + "\r\n")), "403") << origin;
+    EXPECT_EQ(status_of(post(zero, "", "Origin: " + origin + "\r\n")), "403") << origin;
+  }
+  EXPECT_EQ(status_of(post_by(zero, fmt::format("Host: evil.example:{}\r\n", port()))), "403");
+  EXPECT_EQ(status_of(get(zero, host())), "403") << "an address is opened, which nobody meant as an order";
+  EXPECT_EQ(status().at("released"), false);
 }
 
 TEST_F(StudioUnderAttack, GivesEachAnswerItsPolicyWithoutInlineCode) {

@@ -49,17 +49,30 @@ TEST_F(AccessControlOfAServer, RefusesActionsByAnAddressAlone) {
   EXPECT_FALSE(access_.admits(request));
 }
 
+TEST_F(AccessControlOfAServer, AsksForNoTokenWhereNoneIsNeeded) {
+  HttpRequest request = asking("POST");
+  request.headers["x-kerf-token"] = "an old one";
+  EXPECT_TRUE(access_.admits_without_token(request));
+  request.headers.erase("x-kerf-token");
+  EXPECT_TRUE(access_.admits_without_token(request));
+  request.headers["origin"] = "http://127.0.0.1:80";
+  EXPECT_TRUE(access_.admits_without_token(request));
+  EXPECT_FALSE(access_.admits(request));
+}
+
 TEST_F(AccessControlOfAServer, RefusesOtherSitesAndOtherNamesOfTheMachine) {
   for (const char* origin : {"http://evil.example", "https://127.0.0.1:80", "null", "http://127.0.0.1:81",
                              "http://127.0.0.1:80.evil.example"}) {
     HttpRequest request = asking();
     request.headers["origin"] = origin;
     EXPECT_FALSE(access_.admits(request)) << origin;
+    EXPECT_FALSE(access_.admits_without_token(request)) << origin;
   }
   for (const char* host : {"evil.example", "127.0.0.1", "127.0.0.1:81", ""}) {
     HttpRequest request = asking();
     request.headers["host"] = host;
     EXPECT_FALSE(access_.admits(request)) << host;
+    EXPECT_FALSE(access_.admits_without_token(request)) << host;
   }
 }
 

@@ -1,13 +1,14 @@
 import type { LoopStatus, Workspace } from "../api";
 import { button, element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
-import { lawsToPick } from "../laws";
+import { lackingFor, lawsToPick, shortName } from "../laws";
 
 /** The panel beside the scope: device, law, force and recording. Its parts keep their places, whatever the loop does. */
 export class ScopeControls {
   readonly root: HTMLElement;
   private status: LoopStatus | null = null;
   private laws: Workspace["laws"] = [];
+  private suited = ""; // the axes that the list is for
   private readonly device = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
   private readonly sensor = element("input", {
     type: "text",
@@ -16,9 +17,11 @@ export class ScopeControls {
     placeholder: "none",
   });
   private readonly scene = select([{ value: "", text: "none" }], "", () => {});
-  private readonly law = select([{ value: "", text: "nothing" }], "", () => this.feel());
+  private readonly law = select([{ value: "", text: "nothing" }], "", () => {});
+  // Going through the list renders nothing: a law comes to the hand by a press alone.
+  private readonly render = button("Render", () => this.feel(), { disabled: true });
+  private readonly rendered = element("p", { class: "rendered" });
   private readonly start = element("button", { type: "submit", class: "firm", disabled: true }, "Start"); // until fill()
-  private readonly resume = button("Let force back", () => this.order("/api/live/resume"), { disabled: true });
   private readonly name = element("input", {
     type: "text",
     autocomplete: "off",
@@ -44,10 +47,11 @@ export class ScopeControls {
         },
         labelled("Device", this.device),
         element("div", { class: "pair" }, labelled("Force sensor", this.sensor), labelled("Scene", this.scene)),
-        element("div", { class: "pair" }, this.start, this.resume),
+        this.start,
       ),
       this.state,
-      labelled("Law to feel", this.law),
+      element("div", { class: "law" }, labelled("Law to feel", this.law), this.render),
+      this.rendered,
       element("div", { class: "record" }, labelled("New recording's name", this.name), this.record),
       this.recorded,
     );
@@ -68,21 +72,23 @@ export class ScopeControls {
       ),
     );
     this.law.replaceChildren(...options("nothing", this.laws));
+    this.suited = "";
     if (this.status) this.show(this.status);
   }
 
   show(status: LoopStatus): void {
     const before = this.status;
     this.status = status;
+    this.offerWhatSuits(status);
     const running = status.running || status.starting === true;
     this.start.textContent = running ? "Stop" : "Start";
     this.start.classList.toggle("firm", !running);
     for (const it of [this.device, this.sensor, this.scene]) it.disabled = running;
     if (running && status.device && this.device.value !== status.device) this.device.value = status.device;
-    this.resume.disabled = !status.released;
     this.law.disabled = !status.running;
     this.record.disabled = !status.running;
-    this.showLaw(status, before);
+    this.render.disabled = !status.running;
+    put(this.rendered, renderedText(status));
     this.record.textContent = status.recording ? "Stop" : "Record";
     this.record.setAttribute("aria-label", status.recording ? "Stop recording" : "Record");
     this.record.classList.toggle("firm", status.recording !== null);
@@ -93,16 +99,18 @@ export class ScopeControls {
     put(this.state, stateText(status));
   }
 
-  /** What the loop renders, unless somebody is choosing right now. */
-  private showLaw(status: LoopStatus, before: LoopStatus | null): void {
-    if (before && before.law === status.law && this.law.value !== "" && document.activeElement === this.law) return;
-    const id = this.idOf(status.law);
-    if (document.activeElement !== this.law || before?.law !== status.law) this.law.value = id;
-  }
-
-  /** A law is told by its file's name, with or without its ending. */
-  private idOf(law: string): string {
-    return this.laws.find((it) => it.name === law || it.name === `${law}.law.toml`)?.id ?? "";
+  /** What the device has no axis for stands in the list with the reason, and cannot be picked. */
+  private offerWhatSuits({ running, axes }: LoopStatus): void {
+    const suited = running ? JSON.stringify(axes) : "all";
+    if (suited === this.suited) return;
+    this.suited = suited;
+    for (const [index, law] of this.laws.entries()) {
+      const lacking = running ? lackingFor(law, axes) : "";
+      const option = this.law.options[index + 1]!;
+      option.disabled = lacking !== "";
+      option.textContent = lacking ? `${law.name} (for ${lacking})` : law.name;
+      if (option.disabled && option.selected) this.law.value = "";
+    }
   }
 
   private startOrStop(): void {
@@ -127,15 +135,17 @@ export class ScopeControls {
     const told = (status: Partial<LoopStatus>): void => {
       if (status.ticks !== undefined) this.show(status as LoopStatus);
     };
-    this.context.api.post<Partial<LoopStatus>>(path, body).then(told, (error: unknown) => {
-      this.context.complain(error);
-      this.law.value = this.idOf(this.status?.law ?? "");
-    });
+    this.context.api.post<Partial<LoopStatus>>(path, body).then(told, this.context.complain);
   }
 }
 
 function put(node: HTMLElement, text: string): void {
   if (node.textContent !== text) node.textContent = text;
+}
+
+function renderedText({ running, released, law }: LoopStatus): string {
+  if (!running) return "";
+  return released && law ? `Held back: ${shortName(law)}` : `Rendered now: ${shortName(law) || "nothing"}`;
 }
 
 function recordedText(status: LoopStatus): string {
@@ -147,9 +157,8 @@ function recordedText(status: LoopStatus): string {
 
 function stateText(status: LoopStatus): string {
   if (status.starting) return "The device is being opened.";
-  if (!status.running && status.released) return "The loop is not running; zero force is held until it is let back.";
   if (!status.running) return status.ended ? `Ended: ${status.ended}` : "The loop is not running.";
-  if (status.released) return "Zero force: nothing is rendered until force is let back.";
+  if (status.released) return "Zero force: nothing is rendered.";
   if (status.blending) return "Force comes back gently.";
   return `Running at ${Math.round(status.rate_hz)} Hz.`;
 }

@@ -50,7 +50,7 @@ export class FeelPanel {
     const { released } = await this.context.api.get<LoopStatus>("/api/live/status");
     this.context.say(
       released
-        ? "Zero force stays on: resume on the scope to feel the drawn law."
+        ? "Zero force stays on: let the force back in the bar to feel the drawn law."
         : "The device renders the drawn law now.",
     );
   }

@@ -1,6 +1,6 @@
 // What the segment editor works out in the page: breakpoints, steps back, errors. Run by
 //
-//     node tests/bench/studio/page/editor_test.mjs [PAGE]
+//     node tests/bench/studio/page/modules/editor_test.mjs [PAGE]
 //
 // where PAGE is a folder with the page's src and node_modules (default: bench/studio/page, after 'npm ci'). The
 // modules are bundled by its esbuild as the program's page is. Exit status 1 if a test fails.
@@ -13,7 +13,7 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const page = resolve(process.argv[2] ?? join(here, "../../../../bench/studio/page"));
+const page = resolve(process.argv[2] ?? join(here, "../../../../../bench/studio/page"));
 const { build } = createRequire(join(page, "package.json"))("esbuild");
 const bundle = await build({
   stdin: {
@@ -53,7 +53,7 @@ const curve = () => ({
 const line = () => ({ penetration: [0, 0.01], closing: [2, 4], opening: [-1, -1] });
 
 test("the page's errors are those of the server", () => {
-  const cases = JSON.parse(readFileSync(join(here, "../editor/editor_errors.json"), "utf8"));
+  const cases = JSON.parse(readFileSync(join(here, "../../editor/editor_errors.json"), "utf8"));
   assert.ok(cases.length >= 5);
   for (const { name, curve: of, knots, error } of cases) {
     const found = editor.lawError(of, knots);

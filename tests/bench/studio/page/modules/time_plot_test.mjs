@@ -1,6 +1,6 @@
 // What the plots over time work out in the page: live columns, calm limits, the stretch shown, what is fetched. Run by
 //
-//     node tests/bench/studio/page/time_plot_test.mjs [PAGE]
+//     node tests/bench/studio/page/modules/time_plot_test.mjs [PAGE]
 //
 // where PAGE is a folder with the page's src and node_modules (default: bench/studio/page, after 'npm ci').
 
@@ -11,7 +11,7 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const page = resolve(process.argv[2] ?? join(here, "../../../../bench/studio/page"));
+const page = resolve(process.argv[2] ?? join(here, "../../../../../bench/studio/page"));
 const { build } = createRequire(join(page, "package.json"))("esbuild");
 const modules = [
   "requests",
