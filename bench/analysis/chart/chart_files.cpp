@@ -35,6 +35,10 @@ std::string cost_text(double nanoseconds) {
   return std::isfinite(nanoseconds) ? fmt::format("{:.3f}", 1e-3 * nanoseconds) : std::string("-");
 }
 
+std::string stable_text(const StabilityVerdict& verdict) {
+  return fmt::format("{}{}{}", name_of(verdict.stable), verdict.why.empty() ? "" : ": ", verdict.why);
+}
+
 std::vector<std::string> row_of(const ChartPoint& point) {
   return {point.law,
           point.fidelity,
@@ -47,7 +51,7 @@ std::vector<std::string> row_of(const ChartPoint& point) {
           fmt::format("{:.3g}", point.error_jnd),
           fmt::format("{:.3g}", point.worst_n),
           point.axis,
-          point.stable ? "yes" : "no: " + point.why};
+          stable_text(point.stability)};
 }
 
 const std::vector<std::string> head{
@@ -68,6 +72,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
   const std::vector<std::string> files = point_file_names(chart);
   auto file = files.begin();
   for (const ChartPoint& point : chart.points) {
+    const bool is_unstable = point.stability.stable == Stable::no;
     result["points"].push_back({{"law", point.law},
                                 {"fidelity", point.fidelity},
                                 {"law_file", *file++},
@@ -81,8 +86,9 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"error_jnd", json_number(point.error_jnd)},
                                 {"worst_n", json_number(point.worst_n)},
                                 {"axis", point.axis},
-                                {"stable", point.stable},
-                                {"why_not_stable", point.why},
+                                {"stable", to_json(point.stability.stable)},
+                                {"why_not_stable", is_unstable ? point.stability.why : ""},
+                                {"why_not_judged", why_not_judged(point.stability)},
                                 {"on_front", point.on_front}});
   }
   for (const ChartPoint* point : front_of(chart)) result["front"].push_back(point_name(*point));
@@ -95,10 +101,14 @@ std::string chart_csv(const SpeedAccuracy& chart) {
       "axis,"
       "stable,on_front\n";
   for (const ChartPoint& point : chart.points) {
+    const Stable stable = point.stability.stable;
     csv += fmt::format("{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{},{},{}\n", point.law,
                        csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
                        point.cost.p999_ns, point.cost.cold_p50_ns, point.cost.cold_p999_ns, point.error_n,
-                       point.error_jnd, point.worst_n, csv_quoted(point.axis), point.stable ? 1 : 0,
+                       point.error_jnd, point.worst_n, csv_quoted(point.axis),
+                       stable == Stable::not_judged ? name_of(stable)
+                       : stable == Stable::yes      ? "1"
+                                                    : "0",
                        point.on_front ? 1 : 0);
   }
   return csv;
@@ -149,8 +159,9 @@ std::string chart_page(const SpeedAccuracy& chart) {
   body +=
       enough == front.end()
           ? std::string("<p class=\"answer bad\">No stable point is within the JND.</p>\n")
-          : fmt::format("<p class=\"answer\">The cheapest within the JND: {}, {} us, {:.3g} N.</p>\n",
-                        escaped(point_name(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n);
+          : fmt::format("<p class=\"answer\">The cheapest within the JND: {}, {} us, {:.3g} N{}.</p>\n",
+                        escaped(point_name(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n,
+                        (*enough)->stability.stable == Stable::yes ? "" : "; its stability was not judged");
   body +=
       "<p class=\"soft\">Costs are medians and 99.9th percentiles of single ticks, with warm caches and with "
       "caches that were flushed before each tick. Costs within 15 % and 3 ns of each other, and errors "

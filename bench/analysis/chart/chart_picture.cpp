@@ -5,12 +5,14 @@
 #include <cmath>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
 
 #include "files/json_number.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 namespace {
@@ -31,7 +33,7 @@ struct Spot {
   double p50_ns = 0.0;
   double cost_us = 0.0;  ///< as it is drawn
   double rarely_us = 0.0;
-  bool stable = true;
+  Stable stable = Stable::not_judged;
   bool on_front = false;
 };
 
@@ -54,7 +56,7 @@ struct Spots {
                      .p50_ns = p50_ns,
                      .cost_us = cost_us,
                      .rarely_us = std::max(cost_us, 1e-3 * number_from(point.at("p999_ns"))),
-                     .stable = point.at("stable").get<bool>(),
+                     .stable = stable_from(point.at("stable")),
                      .on_front = point.at("on_front").get<bool>()});
     }
   }
@@ -106,14 +108,13 @@ void add_front(const Spots& spots, Chart& picture) {
   picture.curves.insert(picture.curves.begin(), {stairs, rare});
 }
 
-void add_unstable(const Spots& spots, Chart& picture) {
-  Curve crosses{.label = "not stable", .colour = Colour::black, .mark = Mark::crosses, .width = 7.0};
+void add_marks(const Spots& spots, Stable stable, Curve marks, Chart& picture) {
   for (const Spot& spot : spots.all) {
-    if (spot.stable) continue;
-    crosses.x.push_back(spot.error);
-    crosses.y.push_back(spot.cost_us);
+    if (spot.stable != stable) continue;
+    marks.x.push_back(spot.error);
+    marks.y.push_back(spot.cost_us);
   }
-  if (!crosses.x.empty()) picture.curves.push_back(crosses);
+  if (!marks.x.empty()) picture.curves.push_back(std::move(marks));
 }
 
 }  // namespace
@@ -135,9 +136,20 @@ Chart chart_picture(const json& chart) {
   }
   picture.x_range = {0.5 * errors.begin, 3.0 * errors.end};
   picture.y_range = {0.5 * costs.begin, 3.0 * costs.end};
+  const auto has = [&](Stable stable) {
+    return std::ranges::find(spots.all, stable, &Spot::stable) != spots.all.end();
+  };
+  if (has(Stable::not_judged) && !has(Stable::yes)) {
+    picture.title += ", stability not judged";  // a ring about each would hide them
+  } else {
+    add_marks(spots, Stable::not_judged,
+              {.label = "stability not judged", .colour = Colour::grey, .mark = Mark::circles, .width = 8.0},
+              picture);
+  }
   add_laws(spots, picture);
   add_front(spots, picture);
-  add_unstable(spots, picture);
+  add_marks(spots, Stable::no,
+            {.label = "not stable", .colour = Colour::black, .mark = Mark::crosses, .width = 7.0}, picture);
   picture.vertical.push_back({.at = spots.jnd, .label = "JND", .label_after = true});
   picture.horizontal.push_back(
       {.at = spots.tick_us, .label = fmt::format("a tick at {:g} Hz", chart.at("rate_hz").get<double>())});

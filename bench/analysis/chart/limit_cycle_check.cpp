@@ -22,13 +22,12 @@ DeviceInHand held_in(const Scene& scene, const ScriptedPath& path, double rate_h
           .deepest = deepest_of(scene, path, rate_hz)};
 }
 
-std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
-    const DeviceInHand& held) {
+std::function<StabilityVerdict(const LawFile&, double rate_hz)> limit_cycle_check(const DeviceInHand& held) {
   return [held](const LawFile& law, double rate_hz) {
     const HandImpedance hand{.mass_kg = held.hand_mass_kg,
                              .damping_n_s_per_m = held.hand_damping_n_s_per_m,
                              .stiffness_n_per_m = held.hand_stiffness_n_per_m};
-    return limit_cycle_in_hand(law, held.device, rate_hz, hand, held.deepest);
+    return stability_in_hand(law, held.device, rate_hz, hand, held.deepest);
   };
 }
 

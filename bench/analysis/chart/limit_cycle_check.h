@@ -1,13 +1,12 @@
 #pragma once
 
 #include <functional>
-#include <optional>
-#include <string>
 
 #include <kerf/drivers/device.h>
 
 #include "chart/speed_accuracy.h"
 #include "laws/law_file.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 
@@ -23,9 +22,8 @@ struct DeviceInHand {
 /// The device and the hand of a scene, which presses as deep as the scene's script goes.
 [[nodiscard]] DeviceInHand held_in(const Scene& scene, const ScriptedPath& path, double rate_hz);
 
-/// Says of a law at a rate why it would have a limit cycle in that hand (stability/device/in_hand.h); nothing
-/// if it would not, or if it cannot be judged.
-[[nodiscard]] std::function<std::optional<std::string>(const LawFile&, double rate_hz)> limit_cycle_check(
+/// Judges a law at a rate in that hand (stability/device/in_hand.h).
+[[nodiscard]] std::function<StabilityVerdict(const LawFile&, double rate_hz)> limit_cycle_check(
     const DeviceInHand& held);
 
 }  // namespace kerf::bench

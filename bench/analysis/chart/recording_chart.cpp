@@ -119,7 +119,7 @@ class RecordingChart {
                      .error_n = options_.folds > 0 ? fitted.result.cv_rmse : fitted.result.rmse,
                      .worst_n = difference(rendered_force, series_.force).largest_n,
                      .axis = source_.recording->axes[source_.axis].name,
-                     .why = {},
+                     .stability = {},
                      .file = fitted.file};
     if (!std::isfinite(point.error_n)) {
       chart_.notes.push_back(
@@ -153,12 +153,10 @@ class RecordingChart {
       finite = finite && std::isfinite(f);
     }
     if (!finite || !(largest <= runaway * peak_n_)) {
-      point.stable = false;
-      point.why = fmt::format("its force reaches {:.3g} N, the recording {:.3g} N", largest, peak_n_);
-    } else if (options_.unstable) {
-      const auto why = options_.unstable(point.file, point.rate_hz);
-      point.stable = !why;
-      point.why = why.value_or("");
+      point.stability =
+          not_stable(fmt::format("its force reaches {:.3g} N, the recording {:.3g} N", largest, peak_n_));
+    } else {
+      judge_stability(point, options_);
     }
     chart_.points.push_back(point);
   }

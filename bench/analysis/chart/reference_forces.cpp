@@ -91,11 +91,10 @@ void ReferenceForces::compare(const RenderedMotion& forces, ChartPoint& point) c
     point.axis = about_[place].name;
   }
   if (forces.faults > 0) {
-    point.stable = false;
-    point.why = "its force is not finite";
+    point.stability = not_stable("its force is not finite");
   } else if (largest_n > scene_runaway * peak_n_) {
-    point.stable = false;
-    point.why = fmt::format("its force reaches {:.3g} N, the reference {:.3g} N", largest_n, peak_n_);
+    point.stability =
+        not_stable(fmt::format("its force reaches {:.3g} N, the reference {:.3g} N", largest_n, peak_n_));
   }
 }
 

@@ -65,7 +65,7 @@ ChartPoint point_of(const Fidelity& fidelity) {
           .rate_hz = fidelity.rate_hz,
           .cost = {},
           .axis = {},
-          .why = {},
+          .stability = {},
           .file = fidelity.law};
 }
 
@@ -124,6 +124,13 @@ void time_points(const std::vector<std::size_t>& axes, Motions& motions, const C
 
 }  // namespace
 
+void judge_stability(ChartPoint& point, const ChartOptions& options) {
+  point.stability =
+      options.stability
+          ? options.stability(point.file, point.rate_hz)
+          : not_judged("no hand pressed and held it; its forces along the path do not run away");
+}
+
 void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
   std::vector<ParetoEntry> entries;
   for (ChartPoint& point : points) {
@@ -132,7 +139,7 @@ void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
                        .error = point.error_jnd,
                        .parameters = point.parameters,
                        .name = point.law,
-                       .competes = point.stable && point.rate_hz == rate_hz});
+                       .competes = point.stability.stable != Stable::no && point.rate_hz == rate_hz});
   }
   for (const std::size_t place : pareto_front(entries, {.error_floor = shown_from_jnd}))
     points[place].on_front = true;
@@ -179,11 +186,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
     if (options.stopped()) break;
     reference.compare(render(point.file, reference.axes(), motions.at(point.rate_hz)), point);
     if (!law.law.is_spatial()) add_aids(point.file, motions.at(options.rate_hz), reference.axes().front());
-    if (!point.stable || !options.unstable) continue;
-    if (const auto why = options.unstable(point.file, point.rate_hz)) {
-      point.stable = false;
-      point.why = *why;
-    }
+    if (point.stability.stable != Stable::no) judge_stability(point, options);
   }
   if (!options.stopped()) time_points(reference.axes(), motions, options, chart);
   chart.stopped = chart.stopped || options.stopped();

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "fits/fit_recording.h"
 #include "laws/law_file.h"
 #include "scene/scene.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 
@@ -26,8 +26,7 @@ struct ChartPoint {
   double error_jnd = 0.0;  ///< the same in JNDs
   double worst_n = 0.0;    ///< the largest, on that axis [N]
   std::string axis;
-  bool stable = true;
-  std::string why;  ///< not stable
+  StabilityVerdict stability;
   bool on_front = false;
   LawFile file;
 };
@@ -50,9 +49,9 @@ struct ChartOptions {
   fitting::Jnd jnd;
   std::size_t folds = 5;
   std::size_t threads = 1;
-  /// Why a closed loop with this law at this rate is not stable, in words; nothing if it is. Empty: only what
-  /// it renders along the path is looked at.
-  std::function<std::optional<std::string>(const LawFile&, double rate_hz)> unstable;
+  /// Judges the closed loop with this law at this rate. Empty: nobody does, and only what it renders along
+  /// the path is looked at.
+  std::function<StabilityVerdict(const LawFile&, double rate_hz)> stability;
   TickCostOptions timing;
   const std::atomic<bool>* stop = nullptr;
   std::atomic<std::size_t>* done = nullptr;  ///< counts up to chart_steps
@@ -78,9 +77,9 @@ struct ScriptedPath {
 /// Each axis is judged by its own JND at the root mean square of its reference; a torque in N·m counts as the
 /// force at the hand (fitting::felt_lever). A point is judged by its
 /// worst axis. Not stable: a force that is not finite or above ten times the largest of the reference, or
-/// what options.unstable says. Laws with two branches are judged as they are, and timed and held with the
-/// rendering aids of [Okamura2003] where they have none. Only points at the chart's own rate compete for the
-/// front.
+/// what options.stability says; without that a point is not judged, but competes. Laws with two branches are
+/// judged as they are, and timed and held with the rendering aids of [Okamura2003] where they have none. Only
+/// points at the chart's own rate compete for the front.
 /// @throws std::invalid_argument if the path never meets the tissue.
 [[nodiscard]] SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path,
                                         const ChartOptions& options);
@@ -97,6 +96,9 @@ struct ScriptedPath {
 /// @throws std::invalid_argument: it has no such axis.
 [[nodiscard]] FitSource charted(const schema::Recording& recording, const std::string& name,
                                 const std::string& axis);
+
+/// Judges a point whose forces along the path were none that run away.
+void judge_stability(ChartPoint& point, const ChartOptions& options);
 
 /// Marks the points of the front (pareto_front.h), costs p50 and warm, errors in JNDs, those under a
 /// thousandth of a JND alike.

@@ -72,11 +72,10 @@ bool CandidateSearch::passes_checks(Candidate& candidate) {
   end_if_stopped();
   if (options_.begins && (options_.deadline || options_.stability)) options_.begins(candidate.law.name);
   if (options_.stability) {
-    const std::optional<std::string> why = options_.stability(*candidate.file, recording_);
-    candidate.stable = !why;
-    if (why) candidate.why = *why;
+    candidate.stability = options_.stability(*candidate.file, recording_);
+    if (candidate.stability.stable == Stable::no) candidate.why = candidate.stability.why;
   }
-  if (options_.deadline && candidate.stable.value_or(true)) {
+  if (options_.deadline && candidate.stability.stable != Stable::no) {
     candidate.deadline = options_.deadline(*candidate.file);
     if (!candidate.deadline->held && !candidate.deadline->machine_late)
       candidate.why = candidate.deadline->why;
@@ -139,6 +138,14 @@ void CandidateSearch::explain() {
     choice_.why += fmt::format(". The machine was too late to tell whether it holds its deadlines: {}",
                                taken.deadline->why);
   }
+  explain_stability(taken);
+}
+
+void CandidateSearch::explain_stability(const Candidate& candidate) {
+  if (candidate.stability.stable == Stable::not_judged) {
+    choice_.why +=
+        fmt::format(". The stability of {} was not judged: {}", candidate.law.name, candidate.stability.why);
+  }
 }
 
 void CandidateSearch::explain_the_best(const std::string& limit) {
@@ -146,10 +153,12 @@ void CandidateSearch::explain_the_best(const std::string& limit) {
   const Candidate& good = choice_.candidates[*choice_.as_good];
   choice_.why = fmt::format("None is within {}; the best is {} with {:.3g} N on {}, {:.2g} JND", limit,
                             best.law.name, best.error_n, choice_.held_out, best.error_jnd);
-  if (&good == &best) return;
+  if (&good == &best) return explain_stability(best);
   choice_.why += fmt::format(
       ". Against it {} with {} parameters leaves out {:.2g} JND, which nobody would feel beside the rest",
       good.law.name, good.law.parameters, left_out(good.error_n, best.error_n) / choice_.jnd_n);
+  explain_stability(best);
+  explain_stability(good);
 }
 
 double left_out(double error_n, double better_n) noexcept {

@@ -15,6 +15,7 @@
 #include "choose/candidates.h"
 #include "choose/effects.h"
 #include "fits/fit_recording.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 
@@ -30,8 +31,8 @@ struct Deadline {
 
 /// Runs a law by the wall clock.
 using DeadlineCheck = std::function<Deadline(const LawFile&)>;
-/// Why a law is not stable with the given hand and device; nothing if it is.
-using StabilityCheck = std::function<std::optional<std::string>(const LawFile&, const schema::Recording&)>;
+/// Judges a law with the given hand and device.
+using StabilityCheck = std::function<StabilityVerdict(const LawFile&, const schema::Recording&)>;
 
 struct CandidateSearchOptions {
   DeadlineCheck deadline;                              ///< empty: not checked
@@ -51,7 +52,7 @@ struct Candidate {
   double tick_us = 0.0;                                                ///< median
   bool within_jnd = false;                                             ///< and converged
   std::optional<Deadline> deadline;                                    ///< none: not checked
-  std::optional<bool> stable;                                          ///< none: not checked
+  StabilityVerdict stability = not_judged("it was not tried in closed loop");
   std::string why;  ///< it was passed over; empty for the law that was taken
 };
 
@@ -62,7 +63,7 @@ struct LawChoice {
   std::string held_out;               ///< "5 folds of 10 cycles"
   std::vector<Candidate> candidates;  ///< in the order of the search
   std::optional<std::size_t> taken;   ///< the law that serves; where none is within the JND, the best one
-  bool serves = false;                ///< within the JND, in time and stable
+  bool serves = false;                ///< within the JND, in time, and stable where that was judged
   bool in_doubt = false;              ///< it would serve, but the machine was too late to tell
   /// Where none is within the JND: the simplest law that leaves out no more than the JND against the best.
   std::optional<std::size_t> as_good;
@@ -80,8 +81,8 @@ struct LawChoice {
 /// The order is that of the number of parameters; of equal ones that of the cost of a tick in whole
 /// microseconds (a thousandth of the period at 1 kHz: finer differences buy nothing and do not repeat), then
 /// that of the number of effects that a law knows, then that of the error. A law serves that converged, whose
-/// error is within the JND, that holds its deadlines and is stable; the last two are checked only of laws
-/// that come up.
+/// error is within the JND, that holds its deadlines and is stable or was not judged, which is said; the last
+/// two are checked only of laws that come up.
 class CandidateSearch {
  public:
   /// `recording` is what the stability is judged with.
@@ -105,6 +106,7 @@ class CandidateSearch {
   void take_the_best();
   void explain();
   void explain_the_best(const std::string& limit);
+  void explain_stability(const Candidate& candidate);
 
   LawChoice& choice_;
   const CandidateSearchOptions& options_;

@@ -45,7 +45,8 @@ json candidate_as_json(const Candidate& candidate) {
               {"within_jnd", candidate.within_jnd},
               {"tick_us", candidate.tick_us},
               {"deadline", deadline_as_json(candidate.deadline)},
-              {"stable", candidate.stable ? json(*candidate.stable) : json(nullptr)},
+              {"stable", to_json(candidate.stability.stable)},
+              {"why_not_judged", why_not_judged(candidate.stability)},
               {"passed_over", candidate.why}};
   if (std::isfinite(candidate.error_torque_n_m)) result["held_out_torque"] = candidate.error_torque_n_m;
   return result;
@@ -117,7 +118,7 @@ std::string choice_csv(const LawChoice& choice) {
         one.deadline ? fmt::format("{}", one.deadline->missed) : "",
         one.deadline ? fmt::format("{}", one.deadline->ticks) : "",
         one.deadline ? (one.deadline->machine_late ? "machine late" : yes(one.deadline->held)) : "",
-        one.stable ? yes(*one.stable) : "", csv_quoted(one.why));
+        name_of(one.stability.stable), csv_quoted(one.why));
   }
   return text;
 }

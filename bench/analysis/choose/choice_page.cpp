@@ -34,13 +34,13 @@ std::string candidate_table(const json& all) {
   std::vector<std::vector<std::string>> rows{
       {"law", "parameters", "error [N]", "JND", "tick [us]", "deadlines", "stable", "why passed over"}};
   for (const json& one : all.at("candidates")) {
-    const json& stable = one.at("stable");
+    const Stable stable = stable_from(one.at("stable"));
     const auto why = one.at("passed_over").get<std::string>();
-    rows.push_back(
-        {one.at("law").get<std::string>(), fmt::format("{}", one.at("parameters").get<std::size_t>()),
-         number(one.at("held_out")), number(one.at("held_out_jnd"), "{:.2g}"),
-         number(one.at("tick_us"), "{:.3f}"), deadline_in_words(one.at("deadline")),
-         stable.is_null() ? "-" : (stable.get<bool>() ? "yes" : "NO"), why.empty() ? "taken" : why});
+    rows.push_back({one.at("law").get<std::string>(),
+                    fmt::format("{}", one.at("parameters").get<std::size_t>()), number(one.at("held_out")),
+                    number(one.at("held_out_jnd"), "{:.2g}"), number(one.at("tick_us"), "{:.3f}"),
+                    deadline_in_words(one.at("deadline")),
+                    std::string(stable == Stable::no ? "NO" : name_of(stable)), why.empty() ? "taken" : why});
   }
   return html_table(rows);
 }

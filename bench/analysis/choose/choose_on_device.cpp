@@ -30,7 +30,7 @@ void connect(const LoopChecks& checks, TriedBy tried_by, CandidateSearchOptions&
   if (tried_by == TriedBy::wall_clock)
     search.deadline = [&checks](const LawFile& law) { return checks.deadline(law); };
   search.stability = [&checks](const LawFile& law, const schema::Recording&) {
-    return checks.instability(law);
+    return checks.stability(law);
   };
 }
 

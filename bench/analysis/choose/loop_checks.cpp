@@ -147,11 +147,16 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
   return deadline;
 }
 
-std::optional<std::string> LoopChecks::instability(const LawFile& law) const {
-  if (auto limit_cycle =
-          limit_cycle_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_))
-    return fmt::format("on {}, {}", options_.device_uri, *limit_cycle);
-  if (!device_.simulated) return std::nullopt;
+StabilityVerdict LoopChecks::stability(const LawFile& law) const {
+  StabilityVerdict verdict =
+      stability_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_);
+  if (!verdict.why.empty()) verdict.why = fmt::format("on {}, {}", options_.device_uri, verdict.why);
+  if (verdict.stable == Stable::no || !device_.simulated) return verdict;
+  if (auto why = misrendered(law)) return not_stable(*std::move(why));
+  return verdict;
+}
+
+std::optional<std::string> LoopChecks::misrendered(const LawFile& law) const {
   const auto run = [&](double seconds) {
     return run_on_device({.device_uri = options_.device_uri,
                           .seconds = seconds,

@@ -10,6 +10,7 @@
 
 #include "choose/candidate_search.h"
 #include "laws/law_file.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 
@@ -40,11 +41,11 @@ class LoopChecks {
   /// By the wall clock. Where the machine alone was late, up to three times.
   [[nodiscard]] Deadline deadline(const LawFile& law) const;
 
-  /// Nothing if a hand that presses and holds feels no limit cycle, as far as the axis' mass and friction are
-  /// known (limit_cycle_in_hand()), and, on a simulated device in virtual time, fewer than one tick in a
-  /// thousand hits a limit of force or slew and what the rendering gives to the hand does not grow from one
-  /// half of the run to the next.
-  [[nodiscard]] std::optional<std::string> instability(const LawFile& law) const;
+  /// Stable if a hand that presses and holds feels no limit cycle (stability_in_hand()) and, on a simulated
+  /// device in virtual time, fewer than one tick in a thousand hits a limit of force or slew and what the
+  /// rendering gives to the hand does not grow from one half of the run to the next. Not judged where the
+  /// hand cannot be judged and nothing else speaks against the law.
+  [[nodiscard]] StabilityVerdict stability(const LawFile& law) const;
 
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
   [[nodiscard]] bool simulated() const noexcept { return device_.simulated; }
@@ -53,6 +54,8 @@ class LoopChecks {
 
  private:
   [[nodiscard]] LawFile placed(LawFile law) const;
+  /// What of a run in virtual time speaks against a law; nothing if nothing does.
+  [[nodiscard]] std::optional<std::string> misrendered(const LawFile& law) const;
 
   LoopCheckOptions options_;
   const std::atomic<bool>& stop_;

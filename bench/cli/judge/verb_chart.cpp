@@ -67,7 +67,7 @@ SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions o
   const Scene scene = read_scene(arguments.scene);
   try {
     const ScriptedPath path = scripted_path(scene);
-    if (!arguments.no_hold) options.unstable = limit_cycle_check(held_in(scene, path, options.rate_hz));
+    if (!arguments.no_hold) options.stability = limit_cycle_check(held_in(scene, path, options.rate_hz));
     SpeedAccuracy chart = chart_scene(scene.tissue, path, options);
     chart.source = scene.name.empty() ? fs::path(arguments.scene).stem().string() : scene.name;
     if (!scene.deeper.empty())
@@ -78,21 +78,24 @@ SpeedAccuracy chart_of_scene(const ChartVerbArguments& arguments, ChartOptions o
   }
 }
 
+std::string_view mark_of(Stable stable) {
+  if (stable == Stable::yes) return "";
+  return stable == Stable::no ? "x" : "?";
+}
+
 void say_chart(const SpeedAccuracy& chart, Context& context) {
   context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
-  context.say(fmt::format("  {:1} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity",
+  context.say(fmt::format("  {:2} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity",
                           "par.", "p50 us", "p99.9 us", "cold us", "error N", "JND"));
   for (const ChartPoint& point : chart.points) {
     const double cold_us = 1e-3 * point.cost.cold_p50_ns;
     const std::string cold = std::isfinite(cold_us) ? fmt::format("{:.3f}", cold_us) : "-";
-    context.say(fmt::format("  {:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
-                            point.on_front ? "*"
-                            : point.stable ? ""
-                                           : "x",
-                            point.law, point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
+    context.say(fmt::format("  {:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
+                            point.on_front ? "*" : "", mark_of(point.stability.stable), point.law,
+                            point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
                             1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
   }
-  context.say("  * on the front, x not stable");
+  context.say("  * on the front, x not stable, ? stability not judged");
 }
 
 void run_chart(const ChartVerbArguments& arguments, Context& context) {

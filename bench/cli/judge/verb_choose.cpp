@@ -45,14 +45,14 @@ std::string deadline_in_short(const std::optional<Deadline>& deadline) {
 }
 
 void say_choice(const LawChoice& choice, Context& context) {
-  context.say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>6}  {}", "law", "free", "held-out N",
+  context.say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>10}  {}", "law", "free", "held-out N",
                           "JND", "tick us", "deadline", "stable", "why passed over"));
   for (const Candidate& one : choice.candidates) {
     const std::string error = one.file ? fmt::format("{:.4g}", one.error_n) : "-";
     const std::string jnd = one.file ? fmt::format("{:.3g}", one.error_jnd) : "-";
-    context.say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>6}  {}", one.law.name,
+    context.say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>10}  {}", one.law.name,
                             one.law.parameters, error, jnd, one.tick_us, deadline_in_short(one.deadline),
-                            one.stable ? (*one.stable ? "yes" : "NO") : "-",
+                            one.stability.stable == Stable::no ? "NO" : name_of(one.stability.stable),
                             one.why.empty() ? "taken" : one.why));
   }
   context.say("");
@@ -158,8 +158,8 @@ void add_choose(CLI::App& app, Context& context) {
       "  kerf choose --scene examples/scenes/palpation.scene.toml -o choice\n\n"
       "Fits every law that fits the axis, tries them from the fewest parameters and the cheapest tick up,\n"
       "and takes the first whose error on held-out cycles is within the force JND, that holds its\n"
-      "deadlines in closed loop with the device, and that is stable there. Segment a recording of\n"
-      "cycles first. Exit status 1 if no law serves. docs/choosing.md says more.",
+      "deadlines in closed loop with the device, and that is stable there or could not be judged, which\n"
+      "is said. Segment a recording of cycles first. Exit status 1 if no law serves. docs/choosing.md says more.",
       [arguments, &context] { run_choose(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
   verb.add_option("--scene", arguments->scene, "Make a recording of this scene first, in virtual time");

@@ -71,7 +71,7 @@ LawChoice choose_for(const schema::Recording& recording, const LoopChecks& check
   options.candidates.max_segments = 5;
   options.threads = std::max(1U, std::thread::hardware_concurrency());
   options.search.stability = [&](const LawFile& law, const schema::Recording&) {
-    return checks.instability(law);
+    return checks.stability(law);
   };
   options.search.deadline = [&](const LawFile& law) {
     return loop.run(law, checks.device_uri(), seconds, stop);

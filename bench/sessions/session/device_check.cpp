@@ -138,9 +138,10 @@ std::vector<std::string> check_samples(const Protocol& protocol, const std::stri
   std::vector<std::string> remarks;
   for (const NamedSample& sample : samples) {
     if (device.simulated) require_rendered(sample, protocol, device_uri, stop);
-    if (const auto limit_cycle = limit_cycle_in_hand(sample.played.law, device, protocol.rate_hz,
-                                                     grip_named(grip), depth_in(protocol, sample.played.law)))
-      remarks.push_back(fmt::format("sample '{}': {}", sample.name, *limit_cycle));
+    const StabilityVerdict verdict = stability_in_hand(
+        sample.played.law, device, protocol.rate_hz, grip_named(grip), depth_in(protocol, sample.played.law));
+    if (verdict.stable == Stable::no)
+      remarks.push_back(fmt::format("sample '{}': {}", sample.name, verdict.why));
   }
   return remarks;
 }

@@ -20,11 +20,16 @@ HandImpedance grip_named(std::string_view name) {
   throw std::invalid_argument(fmt::format("grip '{}' is not none, light, firm or arm", name));
 }
 
-std::optional<std::string> limit_cycle_in_hand(const LawFile& law, const drivers::DeviceInfo& device,
-                                               double rate_hz, const HandImpedance& hand, double deepest) {
-  if (law.law.is_spatial() || !(deepest > 0.0)) return std::nullopt;
+StabilityVerdict stability_in_hand(const LawFile& law, const drivers::DeviceInfo& device, double rate_hz,
+                                   const HandImpedance& hand, double deepest) {
+  if (law.law.is_spatial()) return not_judged("it acts on several axes, and a hand presses along one");
+  if (!(deepest > 0.0)) return not_judged("nothing says how deep a hand presses it");
   const std::size_t axis = axis_for(law, device);
-  if (!device.axes[axis].mechanics) return std::nullopt;
+  if (!device.axes[axis].mechanics) {
+    return not_judged(
+        fmt::format("axis '{}' of {} has no known mass and friction ('kerf stability' takes them)",
+                    device.axes[axis].name, device.model));
+  }
   SampledDevice held = sampled_device(device, axis, rate_hz);
   held.hand = hand;
   const AxisLaw pressed{.law = law.law, .lever = device.axes[axis].lever};
@@ -32,10 +37,10 @@ std::optional<std::string> limit_cycle_in_hand(const LawFile& law, const drivers
     const double depth_m = part * deepest * pressed.lever;
     const PressVerdict verdict = press(held, pressed, {.depth_m = depth_m});
     if (verdict.stable) continue;
-    return fmt::format("pressed to {:.3g} {} and held, its force swings by {:.2g} N rms", part * deepest,
-                       law.position_unit, verdict.ripple_n);
+    return not_stable(fmt::format("pressed to {:.3g} {} and held, its force swings by {:.2g} N rms",
+                                  part * deepest, law.position_unit, verdict.ripple_n));
   }
-  return std::nullopt;
+  return {.stable = Stable::yes, .why = {}};
 }
 
 }  // namespace kerf::bench

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <string>
 #include <string_view>
 
 #include <kerf/drivers/device.h>
 
 #include "laws/law_file.h"
 #include "stability/device/sampled_device.h"
+#include "stability/stability_verdict.h"
 
 namespace kerf::bench {
 
@@ -22,13 +21,11 @@ inline constexpr HandImpedance arm{.mass_kg = 0.554, .damping_n_s_per_m = 6.45, 
 /// "none", "light", "firm" or "arm". @throws std::invalid_argument for any other.
 [[nodiscard]] HandImpedance grip_named(std::string_view name);
 
-/// Why a law would have a limit cycle in a hand on a device, in words with the ripple of its force; nothing
-/// if it would not. The hand presses to a tenth, a half and all of the deepest penetration [m or rad] and
-/// holds (press()). Laws that act on several axes, axes whose mass and friction nobody knows, and depths of
-/// nothing are not judged: nothing.
-[[nodiscard]] std::optional<std::string> limit_cycle_in_hand(const LawFile& law,
-                                                             const drivers::DeviceInfo& device,
-                                                             double rate_hz, const HandImpedance& hand,
-                                                             double deepest);
+/// Whether a law comes to rest in a hand on a device, or has a limit cycle, said in words with the ripple of
+/// its force. The hand presses to a tenth, a half and all of the deepest penetration [m or rad] and holds
+/// (press()). Not judged are laws that act on several axes, axes whose mass and friction nobody knows, and
+/// depths of nothing.
+[[nodiscard]] StabilityVerdict stability_in_hand(const LawFile& law, const drivers::DeviceInfo& device,
+                                                 double rate_hz, const HandImpedance& hand, double deepest);
 
 }  // namespace kerf::bench

@@ -58,6 +58,22 @@ TEST(ChartPicture, LeadsTheFrontFromTheRightBorderDownItsPointsToTheUpper) {
   EXPECT_FALSE(picture.labels.at(1).left);
 }
 
+TEST(ChartPicture, MarksApartWhatIsNotStableAndWhatNobodyJudged) {
+  ordered_json chart = older_chart();
+  chart["points"][0]["stable"] = nullptr;
+  chart["points"][4]["stable"] = false;
+  const Chart picture = chart_picture(chart);
+  EXPECT_THAT(curve(picture, "stability not judged").x, ElementsAre(chart["points"][0]["error_n"]));
+  EXPECT_THAT(curve(picture, "not stable").x, ElementsAre(chart["points"][4]["error_n"]));
+  EXPECT_NE(curve(picture, "stability not judged").mark, curve(picture, "not stable").mark);
+  EXPECT_EQ(picture.title, "Cost of a tick over error: cut");
+  for (auto& point : chart["points"]) {
+    if (point["stable"] == true) point["stable"] = nullptr;
+  }
+  EXPECT_EQ(chart_picture(chart).title, "Cost of a tick over error: cut, stability not judged");
+  EXPECT_THROW((void)curve(chart_picture(chart), "stability not judged"), std::invalid_argument);
+}
+
 TEST(ChartPicture, KeepsWithinItsBordersWhatIsUnknownOrTooSmall) {
   ordered_json chart = older_chart();
   chart["compared_in"] = "JND";

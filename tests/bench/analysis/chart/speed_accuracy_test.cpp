@@ -1,5 +1,6 @@
 #include "chart/speed_accuracy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,7 @@ namespace kerf::bench {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// Without the cold costs, and each law timed once: nothing here depends on what a tick costs.
 ChartOptions quick() { return {.models = {"kelvin"}, .folds = 0, .timing = {.rounds = 1, .cold_ticks = 0}}; }
@@ -87,12 +89,12 @@ TEST(SpeedAccuracy, CrossesEulerOutPastTwiceTheRelaxationTime) {
   // tau = 0.4 ms: at 1 kHz Euler diverges, at 4 kHz it does not.
   const LawFile fast = law_along_x(models::Law::make("kelvin", std::vector{100.0, 1000.0, 0.4}));
   const SpeedAccuracy chart = chart_scene(fast, strokes_along("x", 0.01), quick());
-  EXPECT_FALSE(point(chart, "kelvin", "Euler").stable);
+  EXPECT_EQ(point(chart, "kelvin", "Euler").stability.stable, Stable::no);
   EXPECT_FALSE(point(chart, "kelvin", "Euler").on_front);
-  EXPECT_FALSE(point(chart, "kelvin", "Euler, 250 Hz").stable);
-  EXPECT_TRUE(point(chart, "kelvin", "Euler, 4000 Hz").stable);
+  EXPECT_EQ(point(chart, "kelvin", "Euler, 250 Hz").stability.stable, Stable::no);
+  EXPECT_NE(point(chart, "kelvin", "Euler, 4000 Hz").stability.stable, Stable::no);
   for (const auto* fidelity : {"exact", "exact, float", "semi-implicit", "semi-implicit, 250 Hz"})
-    EXPECT_TRUE(point(chart, "kelvin", fidelity).stable) << fidelity;
+    EXPECT_NE(point(chart, "kelvin", fidelity).stability.stable, Stable::no) << fidelity;
   const Chart picture = chart_picture(chart_as_json(chart));
   EXPECT_TRUE(std::any_of(picture.curves.begin(), picture.curves.end(),
                           [](const Curve& curve) { return curve.mark == Mark::crosses; }));
@@ -134,16 +136,32 @@ TEST(SpeedAccuracy, FitsOtherLawsToAScalarOne) {
 TEST(SpeedAccuracy, AsksWhetherTheClosedLoopIsStable) {
   const LawFile tissue = law_along_x(models::Law::make("kelvin", std::vector{100.0, 400.0, 40.0}));
   ChartOptions options = quick();
-  options.unstable = [](const LawFile& law, double) -> std::optional<std::string> {
+  options.stability = [](const LawFile& law, double) -> StabilityVerdict {
     const auto precision = law.law.options().find("precision");
     const bool single =
         precision != law.law.options().end() && std::get<std::string>(precision->second) == "float";
-    return single ? std::optional<std::string>("it has a limit cycle") : std::nullopt;
+    return single ? not_stable("it has a limit cycle") : StabilityVerdict{Stable::yes, {}};
   };
   const SpeedAccuracy chart = chart_scene(tissue, strokes_along("x", 0.01), options);
-  EXPECT_TRUE(point(chart, "kelvin", "exact").stable);
-  EXPECT_FALSE(point(chart, "kelvin", "exact, float").stable);
-  EXPECT_THAT(point(chart, "kelvin", "exact, float").why, HasSubstr("it has a limit cycle"));
+  EXPECT_EQ(point(chart, "kelvin", "exact").stability.stable, Stable::yes);
+  EXPECT_EQ(point(chart, "kelvin", "exact, float").stability.stable, Stable::no);
+  EXPECT_THAT(point(chart, "kelvin", "exact, float").stability.why, HasSubstr("it has a limit cycle"));
+}
+
+TEST(SpeedAccuracy, DoesNotCallStableWhatNobodyPressed) {
+  const LawFile tissue = law_along_x(models::Law::make("kelvin", std::vector{100.0, 400.0, 40.0}));
+  const SpeedAccuracy chart = chart_scene(tissue, strokes_along("x", 0.01), quick());
+  EXPECT_TRUE(std::ranges::any_of(chart.points, &ChartPoint::on_front)) << "it competes all the same";
+  const auto json = chart_as_json(chart);
+  for (const auto& one : json.at("points")) {
+    if (one.at("stable") == false) continue;
+    EXPECT_TRUE(one.at("stable").is_null()) << one;
+    EXPECT_THAT(one.at("why_not_judged").get<std::string>(), HasSubstr("no hand pressed")) << one;
+    EXPECT_EQ(one.at("why_not_stable"), "");
+  }
+  EXPECT_THAT(chart_csv(chart), HasSubstr(",not judged,"));
+  EXPECT_THAT(chart_page(chart), HasSubstr("its stability was not judged"));
+  EXPECT_THAT(chart_page(chart), Not(HasSubstr("<td>yes")));
 }
 
 TEST(SpeedAccuracy, RefusesAPathThatNeverMeetsTheTissue) {

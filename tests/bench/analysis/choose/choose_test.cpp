@@ -134,13 +134,34 @@ TEST(Choose, PassesOverALawThatMissesItsDeadlines) {
 TEST(Choose, PassesOverALawThatIsNotStable) {
   ChooseOptions options = small();
   options.search.stability = [](const LawFile& law, const schema::Recording&) {
-    return law.law.model() == "kelvin" ? std::optional<std::string>("it chatters") : std::nullopt;
+    return law.law.model() == "kelvin" ? not_stable("it chatters") : StabilityVerdict{Stable::yes, {}};
   };
   const LawChoice choice = choose(cut_of(known_kelvin()), options);
   EXPECT_EQ(candidate(choice, "kelvin").why, "it chatters");
-  EXPECT_EQ(candidate(choice, "kelvin").stable, false);
-  EXPECT_EQ(candidate(choice, "springpot").stable, true);
+  EXPECT_EQ(candidate(choice, "kelvin").stability.stable, Stable::no);
+  EXPECT_EQ(candidate(choice, "springpot").stability.stable, Stable::yes);
   EXPECT_EQ(taken_name(choice), "springpot");
+  EXPECT_THAT(choice.why, Not(HasSubstr("not judged")));
+}
+
+TEST(Choose, TakesALawThatNobodyCouldJudgeAndSaysSo) {
+  ChooseOptions options = small();
+  options.search.stability = [](const LawFile&, const schema::Recording&) {
+    return not_judged("on falcon:0, axis 'x' has no known mass and friction");
+  };
+  const LawChoice choice = choose(cut_of(known_kelvin()), options);
+  EXPECT_TRUE(choice.serves) << "or nothing could be taken on any real device";
+  EXPECT_EQ(taken_name(choice), "kelvin");
+  EXPECT_THAT(choice.why, HasSubstr("The stability of kelvin was not judged: on falcon:0, axis 'x' has no"));
+  const auto json = choice_as_json(choice);
+  for (const auto& one : json.at("candidates")) {
+    EXPECT_TRUE(one.at("stable").is_null()) << one;
+    const bool is_taken = one.at("law") == "kelvin";
+    EXPECT_THAT(one.at("why_not_judged").get<std::string>(),
+                HasSubstr(is_taken ? "falcon:0" : "not tried in closed loop"));
+  }
+  EXPECT_THAT(choice_csv(choice), HasSubstr(",not judged,"));
+  EXPECT_THAT(choice_csv(choice), Not(HasSubstr(",yes,\"\"")));
 }
 
 TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
@@ -157,9 +178,7 @@ TEST(Choose, DoesNotHoldALateMachineAgainstALaw) {
 
 TEST(Choose, NamesNoneWhereNoneOfThoseWithinTheJndIsStable) {
   ChooseOptions options = small();
-  options.search.stability = [](const LawFile&, const schema::Recording&) {
-    return std::optional<std::string>("no");
-  };
+  options.search.stability = [](const LawFile&, const schema::Recording&) { return not_stable("no"); };
   const LawChoice choice = choose(cut_of(known_line()), options);
   EXPECT_FALSE(choice.serves);
   EXPECT_EQ(taken_name(choice), "none");

@@ -57,23 +57,39 @@ TEST(DeviceFor, IsTheSimulatedOneOrTheFirstWithSuchAnAxis) {
 
 TEST(LoopChecks, FindASoftTissueStable) {
   const LoopChecks checks = checks_on("sim:scissors?noise=off", 0.4);
-  EXPECT_EQ(checks.instability(kelvin(5.0)), std::nullopt);
+  EXPECT_EQ(checks.stability(kelvin(5.0)).stable, Stable::yes);
   EXPECT_EQ(checks.placed_in_words(), "");
 }
 
 TEST(LoopChecks, FindAWallThatIsTooStiffUnstable) {
   const LoopChecks checks = checks_on("sim:scissors?noise=off", 0.02);
-  const auto why = checks.instability(kelvin(3e4));
-  ASSERT_TRUE(why);
-  EXPECT_THAT(*why, HasSubstr("on sim:scissors"));
+  const StabilityVerdict verdict = checks.stability(kelvin(3e4));
+  EXPECT_EQ(verdict.stable, Stable::no);
+  EXPECT_THAT(verdict.why, HasSubstr("on sim:scissors"));
 }
 
 TEST(LoopChecks, FindALawThatGivesEnergyUnstable) {
   LawFile law = kelvin(5.0);
   law.law = models::Law::make("exponential", std::array{0.2, 0.5, -0.1}, {{"thickness", 0.1}});
-  const auto why = checks_on("sim:scissors?noise=off", 0.4).instability(law);
-  ASSERT_TRUE(why);
-  EXPECT_THAT(*why, HasSubstr("gives energy to the hand again and again"));
+  const StabilityVerdict verdict = checks_on("sim:scissors?noise=off", 0.4).stability(law);
+  EXPECT_EQ(verdict.stable, Stable::no);
+  EXPECT_THAT(verdict.why, HasSubstr("gives energy to the hand again and again"));
+}
+
+TEST(LoopChecks, DoNotJudgeALawOnADeviceOfWhichNobodyKnowsMassAndFriction) {
+  LoopChecks checks({.device_uri = "sim:premium"}, go_on);
+  schema::Recording recording = recorded(0.1, 0.1);
+  recording.axes[0].name = "q1";
+  recording.axes[0].force_unit = "N·m";
+  LawFile law = kelvin(0.01);
+  law.axis = "q1";
+  law.force_unit = "N·m";
+  law.contact = {.position = 0.1, .direction = -1.0};
+  checks.place(recording, 0, law.contact);
+  const StabilityVerdict verdict = checks.stability(law);
+  EXPECT_EQ(verdict.stable, Stable::not_judged);
+  EXPECT_THAT(verdict.why, HasSubstr("on sim:premium, axis 'q1' of"));
+  EXPECT_THAT(verdict.why, HasSubstr("has no known mass and friction"));
 }
 
 TEST(LoopChecks, PlaceALawWhereTheHandMeetsIt) {

@@ -114,6 +114,14 @@ async function testChart(page, studio) {
   await page.keyboard.press("ArrowRight");
   const label = await page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   expectEqual(await page.textContent(".chart_plot .readout"), label, "the read-out of the point that the arrow led to");
+  expect(
+    label.includes("stable: not judged: no hand pressed and held it"),
+    `what nobody judged is not stable: ${label}`,
+  );
+  const all = `The stability of ${points.length} of ${points.length} points was not judged.`;
+  expect((await page.textContent("main")).includes(all), all);
+  const verdicts = await page.locator("table tr td:nth-child(7)").allTextContents();
+  expect(verdicts.length >= points.length && verdicts.every((it) => it.startsWith("not judged: ")), verdicts.join());
   await page.keyboard.press("Enter");
   await until("its law is open", async () =>
     label.startsWith((await page.textContent(".law h2").catch(() => "")) || "?"),
@@ -137,6 +145,12 @@ async function testChoice(page, studio) {
   expect((await page.textContent("section.choice h2")).endsWith(written.choice.law), "the law that was taken");
   expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
   expectEqual(await page.locator(".candidates tbody tr").count(), written.candidates.length, "the candidates");
+  const stable = { true: "yes", false: "no", null: "not judged" };
+  expectEqual(
+    await page.locator(".candidates td:nth-child(6)").allTextContents(),
+    written.candidates.map((it) => stable[it.stable]),
+    "which are stable",
+  );
   await page.getByRole("button", { name: `Open ${written.choice.law}` }).click();
   await until(
     "the chosen law is open",

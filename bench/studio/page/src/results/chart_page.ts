@@ -7,7 +7,7 @@ import { ChartPlot } from "./chart_plot";
 import { ChoicePanel } from "./choice_panel";
 import type { JobList } from "./jobs";
 import { LawPanel } from "./law_panel";
-import { byName, lawBeside, recordingsFor, resultName } from "./names";
+import { byName, lawBeside, recordingsFor, resultName, stabilityInWords, stableWord } from "./names";
 
 const microseconds = (ns: number | null): string => (ns === null ? "–" : (1e-3 * ns).toFixed(3));
 
@@ -45,8 +45,8 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "stable",
-      text: (point: ChartPoint) => (point.stable ? "yes" : `no: ${point.why_not_stable}`),
-      key: (point: ChartPoint) => (point.stable ? "yes" : "no"),
+      text: stabilityInWords,
+      key: (point: ChartPoint) => stableWord(point.stable),
     },
     {
       head: "front",
@@ -92,6 +92,7 @@ export class ChartPage {
       .sort(byName)
       .pop();
     if (chosen) void choice.open(chosen);
+    const unjudged = chart.points.filter((it) => it.stable === null).length;
     this.root = element(
       "div",
       { class: "stack" },
@@ -99,6 +100,7 @@ export class ChartPage {
         "p",
         { class: "quiet" },
         `Errors towards ${chart.reference}. JND ${withUnit(chart.jnd_n, "N")}; a tick is ${withUnit(1 / chart.rate_hz, "s")}.`,
+        unjudged > 0 ? ` The stability of ${unjudged} of ${chart.points.length} points was not judged.` : null,
       ),
       element(
         "div",

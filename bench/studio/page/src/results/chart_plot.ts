@@ -3,6 +3,7 @@ import { drawn, element } from "../ui/dom";
 import { FigurePlot } from "../ui/figure";
 import type { Spot } from "../ui/figure";
 import { plain, withUnit } from "../ui/numbers";
+import { stabilityInWords } from "./names";
 
 const reach = 14; // of a pointer
 
@@ -147,7 +148,7 @@ export class ChartPlot {
 function pointInWords(point: ChartPoint): string {
   const cost = `${withUnit(1e-9 * (point.p50_ns ?? 0), "s")} a tick, 99.9 % within ${withUnit(1e-9 * (point.p999_ns ?? NaN), "s")}`;
   const error = `error ${withUnit(point.error_n, "N")} (${plain(point.error_jnd, 2)} JND)`;
-  const stable = point.stable ? "" : `; not stable: ${point.why_not_stable}`;
+  const stable = point.stable ? "" : `; stable: ${stabilityInWords(point)}`;
   const front = point.on_front ? "; on the front" : "";
   return `${point.law}, ${point.fidelity}: ${cost}; ${error}; ${point.parameters} parameters${front}${stable}`;
 }

@@ -3,7 +3,7 @@ import { button, element, table } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";
 import { feelButton } from "./law_panel";
-import { lawBeside } from "./names";
+import { lawBeside, stableWord } from "./names";
 
 function candidateTable(of: readonly ChoiceCandidate[]): HTMLElement {
   const rows = of.map((it) => [
@@ -12,11 +12,12 @@ function candidateTable(of: readonly ChoiceCandidate[]): HTMLElement {
     withUnit(it.held_out, "N"),
     plain(it.held_out_jnd, 2),
     `${plain(it.tick_us, 2)} µs`,
+    stableWord(it.stable),
     it.passed_over || "taken",
   ]);
   const all = table(
     "The candidates, simplest first",
-    ["law", "free", "held out", "JND", "tick", "why passed over"],
+    ["law", "free", "held out", "JND", "tick", "stable", "why passed over"],
     rows,
   );
   return element(
@@ -42,7 +43,7 @@ export class ChoicePanel {
         "p",
         { class: "quiet" },
         "Nothing has been chosen yet for this recording. The search goes from the fewest parameters up and takes " +
-          "the first law within what a hand can feel, that is stable.",
+          "the first law within what a hand can feel, that is stable where that can be judged.",
       ),
     );
   }

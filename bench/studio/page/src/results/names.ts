@@ -1,4 +1,4 @@
-import type { Workspace, WorkspaceFile, WorkspaceLaw, WorkspaceRecording } from "../api";
+import type { ChartPoint, Workspace, WorkspaceFile, WorkspaceLaw, WorkspaceRecording } from "../api";
 
 /** "day/cut.fit" of "day/cut.fit/fit.json". */
 export function folderOf(name: string): string {
@@ -28,4 +28,16 @@ export function recordingsFor(workspace: Workspace, stem: string): WorkspaceReco
 /** Times of a file's name as the server gave them, newest last: "cut", "cut-2", "cut-10". */
 export function byName(one: { name: string }, other: { name: string }): number {
   return one.name.localeCompare(other.name, "en", { numeric: true });
+}
+
+/** What nobody judged is not stable, and not unstable either. */
+export function stableWord(stable: boolean | null): string {
+  if (stable === null) return "not judged";
+  return stable ? "yes" : "no";
+}
+
+/** "no: its force is not finite". */
+export function stabilityInWords(point: ChartPoint): string {
+  const why = point.stable === null ? point.why_not_judged : point.why_not_stable;
+  return why ? `${stableWord(point.stable)}: ${why}` : stableWord(point.stable);
 }
