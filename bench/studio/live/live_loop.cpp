@@ -60,6 +60,7 @@ void LiveLoop::open(const LiveOptions& options) {
   running_ = {};  // of the last loop, which is over
   watching_ = {};
   rendering_.restart(options.ramp_s);
+  (void)hold_.exchange(false);  // what the last loop held
   std::promise<void> opened;
   std::future<void> is_open = opened.get_future();
   {
@@ -95,6 +96,7 @@ void LiveLoop::run(RunOptions options, std::promise<void>& opened) {
                                          double elapsed_s) { return rendering_(sample, elapsed_s); },
                           .finished = {}};
   };
+  options.zero_hold = &hold_;
   options.each_row = [&hub](const schema::Row& row) { hub->push(row); };
   fault_.clear();
   figures_.clear();
@@ -190,6 +192,7 @@ LiveStatus LiveLoop::status() const {
   if (hub) hub->tell(status);
   if (!status.is_running) status.law.clear();
   status.is_released = rendering_.is_released();
+  status.is_held = status.is_running && hold_.is_held();
   status.is_blending = status.is_running && rendering_.is_blending();
   return status;
 }

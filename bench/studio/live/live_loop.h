@@ -78,6 +78,8 @@ class LiveLoop {
   void release_force() noexcept { rendering_.release(); }
   /// The force comes back along the soft start.
   void resume() noexcept { rendering_.resume(); }
+  /// The tool is where it seems to be after a jump: the force comes back along the soft start.
+  void confirm_position() noexcept { hold_.confirm(); }
   [[nodiscard]] bool is_released() const noexcept { return rendering_.is_released(); }
   /// What ended a loop, also one of somebody else's on the same device: the status tells it until it is
   /// dismissed or another loop starts.
@@ -106,6 +108,7 @@ class LiveLoop {
   [[nodiscard]] std::shared_ptr<LiveHub> running_hub() const;
 
   LiveRendering rendering_{0.25};
+  ZeroHold hold_;
   std::function<void()> on_rows_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> closed_{false};

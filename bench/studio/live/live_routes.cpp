@@ -111,6 +111,11 @@ class LiveAnswers {
     return status();
   }
 
+  [[nodiscard]] HttpResponse confirm() const {
+    loop_.confirm_position();
+    return status();
+  }
+
   [[nodiscard]] HttpResponse dismiss() const {
     loop_.dismiss_fault();
     return status();
@@ -170,6 +175,7 @@ void add_live_routes(Routes& routes, LiveLoop& loop, const LiveHooks& hooks) {
   post("/api/live/stop", Pace::at_once, [answers](Request) { return answers->stop(); });
   post("/api/live/feel", Pace::action, [answers](Request it) { return answers->render(it); });
   post("/api/live/resume", Pace::at_once, [answers](Request) { return answers->resume(); });
+  post("/api/live/confirm", Pace::at_once, [answers](Request) { return answers->confirm(); });
   post("/api/live/dismiss", Pace::at_once, [answers](Request) { return answers->dismiss(); });
   post("/api/live/record", Pace::action, [answers](Request it) { return answers->record(it); });
   post("/api/live/record/stop", Pace::action, [answers](Request) { return answers->stop_recording(); });

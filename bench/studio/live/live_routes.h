@@ -33,6 +33,7 @@ struct LiveHooks {
 ///     POST /api/live/feel     {"law": ID} or {"toml": TEXT} or {}: nothing
 ///     POST /api/live/zero     anything, also while a session runs or no loop does
 ///     POST /api/live/resume   {}
+///     POST /api/live/confirm  {}: the tool is where it seems to be after a jump of the position
 ///     POST /api/live/dismiss  {}: the fault that ended the last loop has been read
 ///     POST /api/live/record   {"name"}
 ///     POST /api/live/record/stop   {}

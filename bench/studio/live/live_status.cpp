@@ -14,6 +14,8 @@ std::string_view name_of(ForceState state) noexcept {
       return "rendered";
     case ForceState::zero:
       return "zero";
+    case ForceState::held:
+      return "held";
     case ForceState::lost:
       return "lost";
     case ForceState::session:
@@ -28,11 +30,19 @@ ForceState force_state(const LiveStatus& status) noexcept {
   if (status.is_session) return ForceState::session;
   if (status.is_starting) return ForceState::starting;
   if (!status.is_running) return ForceState::idle;
+  if (status.is_held) return ForceState::held;
   return status.law.empty() ? ForceState::free : ForceState::rendered;
 }
 
 std::string_view force_reason(const LiveStatus& status) noexcept {
-  return force_state(status) == ForceState::lost ? std::string_view(status.ended) : std::string_view();
+  switch (force_state(status)) {
+    case ForceState::lost:
+      return status.ended;
+    case ForceState::held:
+      return "the position has jumped";
+    default:
+      return {};
+  }
 }
 
 }  // namespace kerf::bench

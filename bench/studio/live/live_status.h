@@ -21,6 +21,7 @@ enum class ForceState : std::uint8_t {
   free,      ///< the loop runs and renders nothing
   rendered,  ///< a law is rendered
   zero,      ///< somebody asked for zero force; held until it is let back
+  held,      ///< the position jumped, and nobody has confirmed where the tool is
   lost,      ///< the loop ended by a fault, and nobody has started another or dismissed it
   session    ///< a session runs, of whose forces nothing is told
 };
@@ -41,6 +42,7 @@ struct LiveStatus {
   double rate_hz = 0.0;
   std::string law;           ///< what is rendered, or being blended to; empty: nothing
   bool is_released = false;  ///< zero force was asked for
+  bool is_held = false;      ///< zero force after a jump of the position, until it is confirmed
   bool is_blending = false;
   std::optional<Recording> recording;
   std::string recording_failure;  ///< of the last recording; empty if all is well
@@ -56,7 +58,7 @@ struct LiveStatus {
 };
 
 [[nodiscard]] ForceState force_state(const LiveStatus& status) noexcept;
-/// Why it is so, where a person has to know: the fault of a loop that was lost.
+/// Why it is so, where a person has to know: the fault of a loop that was lost, or what holds the zero.
 [[nodiscard]] std::string_view force_reason(const LiveStatus& status) noexcept;
 
 }  // namespace kerf::bench

@@ -180,6 +180,19 @@ TEST(LiveRoutes, SayInOneWordWhatThereIsOfForce) {
   EXPECT_EQ(site.status()["force"], "session");
 }
 
+TEST(LiveRoutes, HoldZeroAfterAJumpUntilSomebodyConfirms) {
+  LiveSite site;
+  ASSERT_EQ(site.ask("POST", "confirm", "{}").status, 200) << "confirms nothing that is to come";
+  ASSERT_EQ(site.ask("POST", "start", R"({"device": "sim:scissors?fault=jump@0.1:20mm"})").status, 200);
+  ASSERT_EQ(site.ask("POST", "feel", R"({"law": "abc"})").status, 200);
+  ASSERT_TRUE(site.comes_true([](const json& it) { return it["force"] == "held"; }));
+  EXPECT_EQ(site.status()["force_reason"], "the position has jumped");
+  EXPECT_EQ(site.ask("POST", "resume", "{}").status, 200);
+  EXPECT_EQ(site.status()["force"], "held") << "nobody has looked where the tool is";
+  EXPECT_EQ(site.ask("POST", "confirm", "{}").status, 200);
+  EXPECT_TRUE(site.comes_true([](const json& it) { return it["force"] == "rendered"; }));
+}
+
 TEST(LiveRoutes, TellOfALostDeviceUntilItIsDismissedOrAnotherLoopStarts) {
   LiveSite site;
   const auto lose = [&] {
@@ -202,7 +215,8 @@ TEST(LiveRoutes, ShowNothingOfTheLoopWhileASessionRuns) {
   const HttpResponse stream = site.ask("GET", "stream", "", {{"ticks", "1"}});
   site.is_session = true;
   for (const char* path : {"traces", "stream", "view"}) EXPECT_EQ(site.ask("GET", path).status, 409) << path;
-  for (const char* path : {"start", "stop", "feel", "resume", "dismiss", "record", "record/stop"}) {
+  for (const char* path :
+       {"start", "stop", "feel", "resume", "confirm", "dismiss", "record", "record/stop"}) {
     const HttpResponse response = site.ask("POST", path, "{}");
     EXPECT_EQ(response.status, 409) << path;
     EXPECT_THAT(response.body, HasSubstr("A session is running; nothing of the loop is shown."));

@@ -170,6 +170,23 @@ export const tests = {
     await isInState(page, "free");
   },
 
+  async "zero force after a jump is held on every page until somebody confirms where the tool is"({ browser, studio }) {
+    await studio.serve();
+    await startLoop(studio, "sim:scissors?fault=jump@0.2:20mm");
+    const page = await openPage(browser);
+    for (const place of places) {
+      await page.goto(studio.page(place));
+      await isInState(page, "held");
+      expect((await words(page)).includes("the position has jumped"), `${place}: ${await words(page)}`);
+    }
+    await page.keyboard.press("Escape");
+    await isInState(page, "zero");
+    await letBack(page).click();
+    await isInState(page, "held");
+    await page.getByRole("button", { name: "It is there: confirm" }).click();
+    await isInState(page, "free");
+  },
+
   async "what takes the force does not let it back: no double click, no Escape, no key that is kept down"({
     browser,
     studio,
@@ -211,6 +228,7 @@ export const tests = {
       free: { running: true },
       rendered: { running: true, law: "cut.fit/kelvin.law.toml", recording: { name: "a.h5", rows: 1000, seconds: 1 } },
       zero: { running: true, released: true },
+      held: { running: true, force_reason: "the position has jumped" },
       lost: {
         ended: "sim:scissors: the device was lost: it said nothing for 100 ms",
         force_reason: "the device was lost: it said nothing for 100 ms",

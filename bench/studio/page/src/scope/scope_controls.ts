@@ -143,9 +143,9 @@ function put(node: HTMLElement, text: string): void {
   if (node.textContent !== text) node.textContent = text;
 }
 
-function renderedText({ running, released, law }: LoopStatus): string {
+function renderedText({ running, force, law }: LoopStatus): string {
   if (!running) return "";
-  return released && law ? `Held back: ${shortName(law)}` : `Rendered now: ${shortName(law) || "nothing"}`;
+  return law && force !== "rendered" ? `Held back: ${shortName(law)}` : `Rendered now: ${shortName(law) || "nothing"}`;
 }
 
 function recordedText(status: LoopStatus): string {
@@ -158,7 +158,7 @@ function recordedText(status: LoopStatus): string {
 function stateText(status: LoopStatus): string {
   if (status.starting) return "The device is being opened.";
   if (!status.running) return status.ended ? `Ended: ${status.ended}` : "The loop is not running.";
-  if (status.released) return "Zero force: nothing is rendered.";
+  if (status.released || status.force === "held") return "Zero force: nothing is rendered.";
   if (status.blending) return "Force comes back gently.";
   return `Running at ${Math.round(status.rate_hz)} Hz.`;
 }

@@ -17,6 +17,10 @@ const looks = {
     words: (it: LoopStatus) => `Zero force is held${it.running || it.session ? "" : ", and no loop is running"}`,
     act: { text: "Let force back", order: "/api/live/resume" },
   },
+  held: {
+    words: (it: LoopStatus) => `Zero force is held: ${it.force_reason}. See where the tool is`,
+    act: { text: "It is there: confirm", order: "/api/live/confirm" },
+  },
   lost: {
     words: (it: LoopStatus) => `Ended by a fault: ${it.force_reason}`,
     act: { text: "Dismiss", order: "/api/live/dismiss" },
