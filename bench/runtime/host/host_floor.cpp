@@ -124,6 +124,7 @@ HostFloor measure_host_floor(double rate_hz, double seconds) {
   std::jthread([&] {
     const AwakeProcessors awake;
     (void)use_realtime_scheduling();
+    (void)wake_without_slack();
     (void)lock_memory();
     (void)pin_to_processor();
     const auto period_ns = static_cast<std::int64_t>(1e9 / rate_hz);

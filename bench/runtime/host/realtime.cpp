@@ -9,13 +9,14 @@
 #include <fmt/core.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <kerf/drivers/urgent_thread.h>
+
 namespace kerf::bench {
 namespace {
-
-constexpr int priority = 80;
 
 /// Those of the calling thread.
 cpu_set_t allowed_processors() noexcept {
@@ -25,24 +26,12 @@ cpu_set_t allowed_processors() noexcept {
   return allowed;
 }
 
-/// Those of the process, before any thread kept itself off one: a thread inherits what its parent did, and
-/// all have to mean the same one by the loop's.
-const cpu_set_t process_processors = allowed_processors();
-
-/// The last one: the first is where most systems handle their interrupts.
-int loop_processor(const cpu_set_t& allowed) noexcept {
-  int last = -1;
-  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
-    if (CPU_ISSET(cpu, &allowed)) last = cpu;
-  }
-  return last;
-}
-
 std::string reason() { return std::strerror(errno); }
 
 }  // namespace
 
 RealtimeMeasure use_realtime_scheduling() {
+  const int priority = drivers::priorities().loop;
   const sched_param parameters{.sched_priority = priority};
   if (sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) {
     return {
@@ -53,7 +42,7 @@ RealtimeMeasure use_realtime_scheduling() {
       .obtained = false,
       .detail = fmt::format("ordinary scheduling, SCHED_FIFO refused: {}; permit it by 'USER - rtprio {}' in "
                             "/etc/security/limits.conf and log in again",
-                            reason(), priority)};
+                            reason(), drivers::Priorities{}.urgent)};
 }
 
 RealtimeMeasure lock_memory() {
@@ -75,8 +64,28 @@ RealtimeMeasure lock_memory() {
                                 limit.rlim_cur / 1024)};
 }
 
+RealtimeMeasure wake_without_slack() {
+  if (prctl(PR_SET_TIMERSLACK, 1UL) == 0) {
+    return {.name = "timers", .obtained = true, .detail = "woken without slack"};
+  }
+  return {.name = "timers", .obtained = false, .detail = fmt::format("woken with slack: {}", reason())};
+}
+
+std::vector<RealtimeMeasure> urgent_threads() {
+  std::vector<RealtimeMeasure> measures;
+  for (const drivers::UrgentThread& thread : drivers::urgent_threads()) {
+    measures.push_back(
+        {.name = thread.name,
+         .obtained = thread.priority > 0,
+         .detail = thread.priority > 0
+                       ? fmt::format("SCHED_FIFO at priority {}, off the loop's processor", thread.priority)
+                       : "ordinary scheduling, off the loop's processor"});
+  }
+  return measures;
+}
+
 RealtimeMeasure pin_to_processor() {
-  const int processor = loop_processor(process_processors);
+  const int processor = drivers::loop_processor();
   cpu_set_t one;
   CPU_ZERO(&one);
   if (processor >= 0) CPU_SET(processor, &one);
@@ -84,13 +93,6 @@ RealtimeMeasure pin_to_processor() {
     return {.name = "processor", .obtained = true, .detail = fmt::format("stays on processor {}", processor)};
   }
   return {.name = "processor", .obtained = false, .detail = fmt::format("not pinned: {}", reason())};
-}
-
-void stay_off_loop_processor() noexcept {
-  cpu_set_t others = process_processors;
-  if (CPU_COUNT(&others) < 2) return;
-  CPU_CLR(loop_processor(others), &others);
-  (void)sched_setaffinity(0, sizeof others, &others);
 }
 
 void give_way() noexcept {
@@ -105,14 +107,9 @@ std::size_t usable_processors() noexcept {
   return static_cast<std::size_t>(std::max(1, CPU_COUNT(&allowed)));
 }
 
-void be_more_urgent_than_the_loop() noexcept {
-  const sched_param parameters{.sched_priority = priority + 1};
-  (void)sched_setscheduler(0, SCHED_FIFO, &parameters);
-}
-
 bool may_use_realtime_scheduling() noexcept {
   rlimit limit{};
-  return geteuid() == 0 || (getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur >= priority);
+  return geteuid() == 0 || (getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur >= 2);
 }
 
 ThreadUsage ThreadUsage::now() noexcept {

@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include <kerf/drivers/urgent_thread.h>
 
 namespace kerf::bench {
 
@@ -21,18 +24,19 @@ struct RealtimeMeasure {
 /// Keeps the calling thread on the last processor that it may use.
 [[nodiscard]] RealtimeMeasure pin_to_processor();
 
-/// Keeps the calling thread off the loop's processor where there is another: what it does in the kernel
-/// cannot always be interrupted.
-void stay_off_loop_processor() noexcept;
+/// Lets the calling thread be woken at the time that it asked for: an ordinary thread is else woken up to 50
+/// us later.
+[[nodiscard]] RealtimeMeasure wake_without_slack();
+/// What the threads obtained that must not wait for the loop: watchdog, and who speaks to a device.
+[[nodiscard]] std::vector<RealtimeMeasure> urgent_threads();
+
+using drivers::stay_off_loop_processor;
 /// Makes the calling thread, and those that it starts, give way to everything else: nice 10, at which a busy
 /// machine still comes to it.
 void give_way() noexcept;
 /// How many processors the calling thread may use, at least 1.
 [[nodiscard]] std::size_t usable_processors() noexcept;
-/// Makes the calling thread more urgent than the loop, where permitted.
-void be_more_urgent_than_the_loop() noexcept;
-
-/// Whether this user may run threads at SCHED_FIFO.
+/// Whether this user may run a loop at SCHED_FIFO, and others above it.
 [[nodiscard]] bool may_use_realtime_scheduling() noexcept;
 
 /// What the system has counted for a thread.

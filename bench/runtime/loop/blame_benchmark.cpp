@@ -48,7 +48,8 @@ class Bully {
     sem_init(&asked_, 0, 0);
     thread_ = std::jthread([this](const std::stop_token& stop) {
       (void)pin_to_processor();
-      be_more_urgent_than_the_loop();
+      const sched_param above{.sched_priority = drivers::priorities().urgent};
+      (void)sched_setscheduler(0, SCHED_FIFO, &above);
       while (sem_wait(&asked_) == 0 && !stop.stop_requested()) {
         const std::int64_t from_ns = WallClock::now_ns() + delay_ns_;
         sleep_ns(std::max<std::int64_t>(1, delay_ns_));

@@ -37,6 +37,13 @@ class Recorder {
     std::function<void(std::string_view)> on_failure;  ///< called once, from the writer's thread
   };
 
+  /// Rows of a ring that holds two seconds of a loop: eight times as long as from one flush to the next, for
+  /// a disk that takes its time.
+  [[nodiscard]] static std::size_t ring_rows_at(double rate_hz) noexcept {
+    constexpr std::size_t least = 8192;
+    return std::max(least, static_cast<std::size_t>(2.0 * rate_hz));
+  }
+
   Recorder(schema::RecordingWriter writer, const Options& options);
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

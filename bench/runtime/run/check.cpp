@@ -42,6 +42,7 @@ nlohmann::ordered_json to_json(const Stall& stall) {
   const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
   nlohmann::ordered_json told{{"from_s", seconds(stall.from_ns)}, {"silent_s", seconds(stall.silent_ns)}};
   told["released_after_s"] = nullptr;
+  told["suspended"] = stall.suspended;
   if (stall.released_after_ns != 0) told["released_after_s"] = seconds(stall.released_after_ns);
   return told;
 }

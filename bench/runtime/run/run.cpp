@@ -24,6 +24,25 @@ namespace {
 constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP};
 
 std::atomic<bool> stop_requested{false};
+// Ctrl-Z: with a watchdog that gives zero force first.
+std::atomic<bool> suspension_requested{false};
+std::atomic<bool> has_watchdog{false};
+
+void stop_process(int) {
+  if (has_watchdog) {
+    suspension_requested = true;
+  } else {
+    (void)std::raise(SIGSTOP);
+  }
+}
+
+/// While it lives Ctrl-Z is the watchdog's.
+struct WatchdogLives {
+  WatchdogLives() { has_watchdog = true; }
+  WatchdogLives(const WatchdogLives&) = delete;
+  WatchdogLives& operator=(const WatchdogLives&) = delete;
+  ~WatchdogLives() { has_watchdog = false; }
+};
 
 /// Leaves a device with zero force, however its scope is left.
 class ZeroForceAtExit {
@@ -171,7 +190,9 @@ class Run {
         begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
     return std::make_unique<Recorder>(
         std::move(writer),
-        Recorder::Options{.lossless = options_.virtual_time, .on_failure = [this](std::string_view why) {
+        Recorder::Options{.ring_rows = Recorder::ring_rows_at(options_.rate_hz),
+                          .lossless = options_.virtual_time,
+                          .on_failure = [this](std::string_view why) {
                             if (!options_.warn) return;
                             options_.warn(
                                 fmt::format("{}; the loop goes on, and nothing more is recorded", why));
@@ -200,13 +221,16 @@ class Run {
   template <typename Log>
   void run_by_clock(Log& log, const LoopControl& control) {
     if (options_.virtual_time) return run_laws(virtual_clock_, log, control);
-    const Watchdog watchdog(*device_, heartbeat_, result_.period_s);
+    const Watchdog watchdog(*device_, heartbeat_, result_.period_s, &suspension_requested);
+    const WatchdogLives lives;
     // A thread of its own takes the real-time measures, so that they end with it.
     std::exception_ptr failure;
     std::jthread([&] {
       try {
         const AwakeProcessors awake;
-        result_.realtime = {use_realtime_scheduling(), lock_memory(), pin_to_processor(), awake.measure()};
+        result_.realtime = {use_realtime_scheduling(), lock_memory(), pin_to_processor(), awake.measure(),
+                            wake_without_slack()};
+        for (RealtimeMeasure& measure : urgent_threads()) result_.realtime.push_back(std::move(measure));
         if (result_.spin_ns == 0) {
           result_.spin_ns = learn_spin_ns(static_cast<std::int64_t>(1e9 * result_.period_s));
         }
@@ -259,6 +283,9 @@ class Run {
 
 std::string in_words(const Stall& stall) {
   const double silent_s = 1e-9 * static_cast<double>(stall.silent_ns);
+  if (stall.suspended) {
+    return fmt::format("the process was stopped for {:.4g} s, after zero force", silent_s);
+  }
   if (stall.released_after_ns == 0) {
     return fmt::format("the loop was silent for {:.4g} s, and nobody released the device meanwhile",
                        silent_s);
@@ -282,9 +309,11 @@ StopOnSignal::StopOnSignal() {
     // What was started with nohup stays alive without its terminal.
     if (signal == SIGHUP && before == SIG_IGN) (void)std::signal(signal, SIG_IGN);
   }
+  if (std::signal(SIGTSTP, stop_process) == SIG_IGN) (void)std::signal(SIGTSTP, SIG_IGN);
 }
 StopOnSignal::~StopOnSignal() {
   for (const int signal : stop_signals) (void)std::signal(signal, SIG_DFL);
+  (void)std::signal(SIGTSTP, SIG_DFL);
 }
 const std::atomic<bool>& StopOnSignal::requested() const noexcept { return stop_requested; }
 

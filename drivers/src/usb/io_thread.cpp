@@ -4,28 +4,13 @@
 #include <system_error>
 
 #include <poll.h>
-#include <pthread.h>
-#include <sched.h>
 #include <sys/eventfd.h>
-#include <sys/prctl.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "kerf/drivers/urgent_thread.h"
+
 namespace kerf::drivers::usb {
-namespace {
-
-// One above the loop's own (80), below the kernel's interrupt threads only where those were raised.
-constexpr int priority = 81;
-
-void be_prompt() noexcept {
-  const sched_param parameters{.sched_priority = priority};
-  pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters);  // without the right to it, as it is
-  prctl(PR_SET_TIMERSLACK, 1UL);
-  pthread_setname_np(pthread_self(), "kerf-usb");
-}
-
-}  // namespace
-
 std::int64_t now_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
@@ -43,7 +28,7 @@ IoThread::~IoThread() {
 
 void IoThread::start(std::function<void(const std::stop_token&)> work) {
   thread_ = std::jthread([work = std::move(work)](const std::stop_token& stop) {
-    be_prompt();
+    become_urgent("kerf-usb");
     work(stop);
   });
 }

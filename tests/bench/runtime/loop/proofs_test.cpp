@@ -188,6 +188,68 @@ TEST(KilledRecording, HoldsEveryRowThatAFollowerHadSeen) {
   EXPECT_GE(expect_sound_and_repair(folder / "r.h5"), seen);
 }
 
+/// A record of a law that pushes all the time, to which a signal comes at 600 rows and SIGCONT a while later.
+schema::Recording stopped_by(int signal) {
+  const TemporaryFolder folder;
+  test::write_text(folder / "k.law.toml", test::kelvin_law);
+  const pid_t child =
+      start_kerf({"record", "--seconds", "3", "--law", folder / "k.law.toml", "-o", folder / "r.h5"});
+  std::uint64_t seen = 0;
+  while (seen < 600) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (std::filesystem::exists(folder / "r.h5.partial"))
+      seen = schema::read_tail(folder / "r.h5.partial").rows;
+  }
+  kill(child, signal);
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, WUNTRACED), child);
+  EXPECT_TRUE(WIFSTOPPED(status));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  kill(child, SIGCONT);
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  return schema::read_recording(folder / "r.h5");
+}
+
+/// The row after the longest gap in time.
+std::size_t row_after_the_gap(const schema::Recording& recording) {
+  std::size_t longest = 1;
+  for (std::size_t row = 1; row < recording.rows(); ++row) {
+    if (recording.tick[row] - recording.tick[row - 1] > recording.tick[longest] - recording.tick[longest - 1])
+      longest = row;
+  }
+  return longest;
+}
+
+std::string stall_told_at(const schema::Recording& recording, std::size_t row) {
+  for (const schema::Event& event : recording.events) {
+    if (event.kind == "stall" && std::abs(event.time_s - recording.time[row]) < 0.1) return event.text;
+  }
+  return "";
+}
+
+TEST(StoppedProcess, HasGivenZeroForceWhereItCould) {
+  const schema::Recording recording = stopped_by(SIGTSTP);
+  const std::size_t row = row_after_the_gap(recording);
+  ASSERT_GT(recording.tick[row] - recording.tick[row - 1], 400U);
+  EXPECT_EQ(recording.force_commanded[2 * (row - 1)], 0.0) << "before it stopped";
+  EXPECT_EQ(recording.force_commanded[2 * row], 0.0) << "and when it went on";
+  EXPECT_THAT(stall_told_at(recording, row), HasSubstr("after zero force"));
+}
+
+TEST(StoppedProcess, SaysThatNobodyReleasedTheDeviceInTime) {
+  const schema::Recording recording = stopped_by(SIGSTOP);
+  const std::size_t row = row_after_the_gap(recording);
+  ASSERT_GT(recording.tick[row] - recording.tick[row - 1], 400U);
+  EXPECT_EQ(recording.force_commanded[2 * row], 0.0);
+  const std::string told = stall_told_at(recording, row);
+  EXPECT_THAT(told, HasSubstr("the loop was silent for"));
+  EXPECT_THAT(
+      told, testing::AnyOf(HasSubstr("nobody released the device"), testing::ContainsRegex("after 0\\.[4-9]"),
+                           testing::ContainsRegex("after [1-9]")))
+      << "and not that the watchdog did after 10 ms";
+}
+
 TEST(Recording, IsNeverMadeTwiceAtOnce) {
   const TemporaryFolder folder;
   const pid_t child = start_kerf({"record", "--seconds", "60", "-o", folder / "r.h5"});
