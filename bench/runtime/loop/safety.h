@@ -34,10 +34,13 @@ class ZeroHold {
   /// Says so: the force comes back along the soft start. Does nothing where no zero is held.
   void confirm() noexcept { confirmed_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool is_held() const noexcept { return held_.load(std::memory_order_relaxed); }
+  /// Whether it was, up to the end of the loop.
+  [[nodiscard]] bool was_held() const noexcept { return was_held_.load(std::memory_order_relaxed); }
 
   /// The loop's, once a tick: tells whether zero is held, and takes a confirmation.
   [[nodiscard]] bool exchange(bool held) noexcept {
     held_.store(held, std::memory_order_relaxed);
+    if (held) was_held_.store(true, std::memory_order_relaxed);
     // A confirmation from before the jump confirms nothing.
     const bool confirmed = confirmed_.load(std::memory_order_relaxed);
     if (confirmed) confirmed_.store(false, std::memory_order_relaxed);
@@ -46,6 +49,7 @@ class ZeroHold {
 
  private:
   std::atomic<bool> held_{false};
+  std::atomic<bool> was_held_{false};
   std::atomic<bool> confirmed_{false};
 };
 

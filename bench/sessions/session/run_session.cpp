@@ -6,6 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "session/blind_rendering.h"
 
 namespace kerf::bench {
@@ -13,6 +15,7 @@ namespace {
 
 constexpr double longest_s = 1e6;  ///< of a run
 constexpr std::chrono::milliseconds poll_period(5);
+constexpr auto jumped = "the position had jumped, and zero force was held";
 
 /// The loop on one side, the subject on the other.
 class SessionRun {
@@ -28,8 +31,11 @@ class SessionRun {
     loop.rate_hz = store_.protocol().rate_hz;
     loop.seconds = longest_s;
     loop.rendering = [&](const drivers::DeviceInfo& device) { return start(device); };
+    loop.zero_hold = &hold_;
     loop.each_row = [this](const schema::Row& row) {
       rendering_.record(row);
+      // Nobody who may answer may also say where the tool is, and a trial without a force is none.
+      if (hold_.is_held()) done_.store(true, std::memory_order_release);
       if (options_.loop.each_row) options_.loop.each_row(row);
     };
     SessionRunResult result;
@@ -42,7 +48,11 @@ class SessionRun {
     }
     asking_ = {};
     if (failure_) std::rethrow_exception(failure_);
-    if (!director_->over()) store_.note("quit", "by a signal");
+    if (!director_->over()) store_.note("quit", hold_.was_held() ? jumped : "by a signal");
+    if (hold_.was_held() && options_.loop.warn) {
+      options_.loop.warn(
+          fmt::format("{}; the trial at work is not counted: see where the tool is, and go on", jumped));
+    }
     result.end = director_->over() ? director_->end() : SessionEnd::quit;
     result.answered = director_->sequence().answered();
     result.at_most = director_->sequence().at_most();
@@ -89,6 +99,7 @@ class SessionRun {
   Subject& subject_;
   const SessionRunOptions& options_;
   BlindRendering rendering_;
+  ZeroHold hold_;
   std::optional<Director> director_;
   std::atomic<bool> done_{false};
   std::exception_ptr failure_;

@@ -39,7 +39,6 @@ class BlindRun {
   }
   static bench::SessionRunResult run(bench::SessionStore& running, bench::Subject& subject,
                                      bench::SessionRunOptions options = {}) {
-    options.loop.device_uri = "sim:scissors";
     options.loop.virtual_time = true;
     const std::atomic<bool> stop = false;
     return run_session(running, subject, options, stop);

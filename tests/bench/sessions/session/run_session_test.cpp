@@ -156,6 +156,23 @@ TEST(RunSession, LosesAtMostTheTrialAtWorkAndGoesOn) {
   EXPECT_EQ(std::ranges::count(kinds_of(store), "run"), 2);
 }
 
+TEST(RunSession, EndsForNowWhereThePositionJumpsAndCountsNoTrialWithoutAForce) {
+  const Protocol protocol = abx();
+  test::BlindRun session(protocol, 5);
+  RehearsalSubject subject(7);
+  SessionRunOptions options;
+  options.loop.device_uri = "sim:scissors?fault=jump@3:20mm";
+  std::string warning;
+  options.loop.warn = [&](std::string_view text) { warning = text; };
+  EXPECT_EQ(session.run(subject, options).end, SessionEnd::quit);
+  EXPECT_THAT(warning, testing::HasSubstr("the trial at work is not counted"));
+  const std::size_t counted = session.read().trials().size();
+  EXPECT_LT(counted, 4U);
+  RehearsalSubject again(9);
+  EXPECT_EQ(session.run(again).end, SessionEnd::finished);
+  EXPECT_EQ(session.read().trials().size(), 4U);
+}
+
 TEST(RunSession, RefusesAnAnswerOutOfTurnInWords) {
   test::BlindRun session(abx());
   std::vector<std::string> notices;
