@@ -1,5 +1,7 @@
 #include <atomic>
 #include <csignal>
+#include <cstdio>
+#include <exception>
 #include <functional>
 #include <thread>
 
@@ -237,4 +239,11 @@ int benchmark() {
 
 }  // namespace kerf::bench
 
-int main() { return kerf::bench::benchmark(); }
+int main() {
+  try {
+    return kerf::bench::benchmark();
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    return 1;
+  }
+}

@@ -215,7 +215,8 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     evidence.end(clock, Stage::read, woken_ns, read_ns);
     bool stood_still = control.heartbeat.stands_still(read_ns, silence_ns);
     const bool stalled = control.heartbeat.beat(read_ns, silence_ns);
-    const std::uint64_t periods = grid.current(tick, read_ns) + 1;
+    // A reading that ends with its period belongs to that one: the next tick has a period of its own.
+    const std::uint64_t periods = grid.current(tick, read_ns - 1) + 1;
     const auto since = [&](std::uint64_t earlier) {
       return static_cast<double>(periods - earlier) * period_s;
     };

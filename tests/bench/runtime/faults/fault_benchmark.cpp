@@ -1,6 +1,8 @@
 #include <atomic>
 #include <charconv>
+#include <cstdio>
 #include <cstring>
+#include <exception>
 #include <thread>
 #include <vector>
 
@@ -11,7 +13,9 @@
 // Random fault schedules on all processors: kerf_fault_benchmark EXAMPLES FIRST COUNT. Prints every violation
 // with its seed, and JSON at the end.
 
-int main(int argc, char** argv) {
+namespace {
+
+int benchmark(int argc, char** argv) {
   using namespace kerf;
   std::uint64_t first = 1;
   std::uint64_t count = 0;
@@ -46,4 +50,15 @@ int main(int argc, char** argv) {
              "\n",
              count, ticks.load(), with_force.load(), violations.load());
   return violations == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return benchmark(argc, argv);
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    return 1;
+  }
 }

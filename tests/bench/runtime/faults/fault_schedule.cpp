@@ -120,7 +120,7 @@ class ScheduledDevice final : public drivers::Device {
 
   [[nodiscard]] Status read(double now_s, drivers::Sample& sample) noexcept override {
     now_tick = static_cast<std::uint64_t>(std::llround(now_s / period_s));
-    first_write_of_tick = true;
+    first_write_of_tick_ = true;
     demands_zero = false;
     if (lost_) return Status::lost;
     // Ticks that were missed had events too.
@@ -171,7 +171,7 @@ class ScheduledDevice final : public drivers::Device {
   }
 
   [[nodiscard]] Status write(const drivers::Axes& force) noexcept override {
-    if (std::exchange(first_write_of_tick, false)) {
+    if (std::exchange(first_write_of_tick_, false)) {
       if (late_s_ > 0.0) pass_time_(std::exchange(late_s_, 0.0));
       if (schedule_.is(Wrong::write_fault, now_tick)) return Status::fault;
     }
@@ -214,7 +214,7 @@ class ScheduledDevice final : public drivers::Device {
   double late_s_ = 0.0;
   double offset_ = 0.0;
   double flip_ = 0.0;
-  bool first_write_of_tick = false;
+  bool first_write_of_tick_ = false;
   bool lost_ = false;
   int regular_ = 0;
 };

@@ -55,6 +55,20 @@ TEST(Loop, KeepsADeadlineThatItReachesToTheNanosecond) {
   EXPECT_EQ(bench.run(10).missed(), 0U);
 }
 
+TEST(Loop, GivesEveryStepAtLeastAPeriodHoweverLateAReadingEnds) {
+  for (const double periods : {0.999999, 1.0, 1.000001, 2.0, 5.0}) {
+    Bench bench;
+    bench.script.delay(Stage::read, 3, periods);
+    (void)bench.run(12);
+    double sum_s = 0.0;
+    for (const double step_s : bench.periods_s) {
+      EXPECT_GE(step_s, test::period_s * (1.0 - 1e-12)) << periods;
+      sum_s += step_s;
+    }
+    EXPECT_NEAR(sum_s, 12 * test::period_s, 1e-12) << "none is lost, and none counted twice";
+  }
+}
+
 class LateStage : public testing::TestWithParam<Stage> {};
 
 TEST_P(LateStage, IsChargedWithWhatItMadeTheLoopMiss) {
