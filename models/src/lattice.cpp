@@ -77,14 +77,14 @@ template <typename Real>
 using Terms = std::array<Real, max_columns>;
 template <typename Real>
 double total(const Terms<Real>& terms, int count) noexcept {
-  constexpr int lanes = 8;
+  constexpr std::size_t lanes = 8;
   std::array<Real, lanes> sum{};
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    for (int l = 0; l < lanes; ++l)
-      sum[static_cast<std::size_t>(l)] += terms[static_cast<std::size_t>(i + l)];
+  const auto end = static_cast<std::size_t>(count);
+  std::size_t i = 0;
+  for (; i + lanes <= end; i += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) sum[l] += terms[i + l];
   }
-  for (; i < count; ++i) sum[0] += terms[static_cast<std::size_t>(i)];
+  for (; i < end; ++i) sum[0] += terms[i];
   double all = 0.0;
   for (const Real one : sum) all += static_cast<double>(one);
   return all;

@@ -201,11 +201,11 @@ UsbDevice::Endpoints UsbDevice::endpoints() const noexcept {
 }
 
 std::vector<std::uint8_t> UsbDevice::report_descriptor() noexcept {
-  constexpr std::uint8_t interface_in = 0x81;
-  constexpr std::uint16_t report_type = 0x2200;
+  constexpr std::uint8_t from_interface = 0x81;
+  constexpr std::uint16_t of_reports = 0x2200;
   std::vector<std::uint8_t> told(4096);
   const int size =
-      libusb_control_transfer(handle_, interface_in, LIBUSB_REQUEST_GET_DESCRIPTOR, report_type, 0,
+      libusb_control_transfer(handle_, from_interface, LIBUSB_REQUEST_GET_DESCRIPTOR, of_reports, 0,
                               told.data(), static_cast<std::uint16_t>(told.size()), control_timeout_ms);
   told.resize(static_cast<std::size_t>(std::max(size, 0)));
   return told;

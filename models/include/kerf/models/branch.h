@@ -84,8 +84,8 @@ template <typename T, typename Place, typename ForceAt, typename Force>
   const double x = std::max(penetration, static_cast<double>(place(0)));
   T most(0);
   struct Walk {
-    T force;
-    double at;
+    T force{0};
+    double at = 0.0;
     T sum{0};
   };
   const auto go = [&](Walk& walk, double to, T next) {
