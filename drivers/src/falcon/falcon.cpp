@@ -98,7 +98,8 @@ Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options,
                const std::atomic<bool>* stop)
     : options_(options), info_(describe(uri, options)), device_(falcon_identity, number) {
   set_up_falcon(device_, {.uri = uri, .firmware = options.firmware, .homing = options.homing, .stop = stop});
-  link_ = std::make_unique<FalconLink>(device_, thread_, options.homing, options.led);
+  guard_.emplace(falcon_identity.what, device_.descriptor(), falcon::letting_go(falcon_out, options.homing));
+  link_ = std::make_unique<FalconLink>(device_, thread_, *guard_, options.homing, options.led);
   thread_.start([this](const std::stop_token& token) { link_->run(token); });
   wait_for_report(stop);
   if (options.homing) wait_until_homed(stop);
@@ -177,7 +178,7 @@ Status Falcon::write(const Axes& force) noexcept {
   if (limited_) limited_ticks_.fetch_add(1, std::memory_order_relaxed);
   link_->command(motors.value);
   if (link_->lost()) return Status::lost;
-  return good ? Status::ok : Status::fault;
+  return good && guard_->lives() ? Status::ok : Status::fault;
 }
 
 void Falcon::release(double) noexcept { link_->release(); }

@@ -27,9 +27,11 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& p) { return {p[0], p[1], 
 
 }  // namespace
 
-FalconLink::FalconLink(usb::UsbDevice& device, usb::IoThread& thread, bool homing, Falcon::Led led)
+FalconLink::FalconLink(usb::UsbDevice& device, usb::IoThread& thread, usb::Guard& guard, bool homing,
+                       Falcon::Led led)
     : device_(device),
       thread_(thread),
+      guard_(guard),
       homing_(homing),
       led_(led),
       nearby_(vector_of(middle)),
@@ -66,6 +68,7 @@ void FalconLink::run(const std::stop_token& stop) noexcept {
   while (!stop.stop_requested() && !lost()) {
     recover();
     send_if_due();
+    tell_guard();
     if (device_.handle_events(wait_ns(), thread_.wake_descriptor())) thread_.take_wakes();
   }
   if (!lost()) let_go();
@@ -136,7 +139,8 @@ void FalconLink::send_if_due() noexcept {
   (void)orders_.take(order_);
   if (lost()) return;
   const std::int64_t now = now_ns();
-  const bool holds = order_.number > released_.load() && now - order_.at_ns <= max_command_age_ns;
+  const bool holds =
+      order_.number > released_.load() && now - order_.at_ns <= max_command_age_ns && guard_.lives();
   const auto& motor = holds ? order_.motor : zero;
   const bool lets_go = !holds && sent_motor_ != zero;  // waits for no answer
   if (out_.pending()) {
@@ -161,14 +165,19 @@ void FalconLink::send(const std::array<int, 3>& motor, Falcon::Led led) noexcept
                                                     .blue = led == Falcon::Led::blue,
                                                     .red = led == Falcon::Led::red});
   std::ranges::copy(frame, out_.buffer().begin());
+  sent_motor_ = motor;
+  tell_guard();  // before the device can have it
   if (!out_.submit()) {
     lost_.store(true);
     return;
   }
   sent_order_ = order_.number;
-  sent_motor_ = motor;
   sent_ns_ = now_ns();
   ++unanswered_;
+}
+
+void FalconLink::tell_guard() noexcept {
+  guard_.hold_until(sent_motor_ == zero ? 0 : guarded_until_ns(now_ns(), order_.at_ns));
 }
 
 void FalconLink::let_go() noexcept {

@@ -12,6 +12,7 @@
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/protocols/falcon.h"
 #include "kerf/drivers/triple_buffer.h"
+#include "kerf/drivers/usb/guard.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "kerf/drivers/usb/usb_device.h"
 
@@ -31,9 +32,9 @@ class FalconLink {
     std::int64_t at_ns = 0;        ///< when it arrived, or an earlier time at which it may have been true
   };
 
-  FalconLink(usb::UsbDevice& device, usb::IoThread& thread, bool homing, Falcon::Led led);
+  FalconLink(usb::UsbDevice& device, usb::IoThread& thread, usb::Guard& guard, bool homing, Falcon::Led led);
 
-  /// Motor values that hold until the next, at most for 50 ms.
+  /// Motor values that hold until the next, at most for 50 ms, and only while the guard lives.
   void command(const std::array<int, 3>& motor) noexcept;
   /// Takes the newest reading, if there is one since the last time, and gives the last one taken; at_ns is 0
   /// before the first.
@@ -77,10 +78,12 @@ class FalconLink {
   void send_if_due() noexcept;
   void send(const std::array<int, 3>& motor, Falcon::Led led) noexcept;
   void let_go() noexcept;
+  void tell_guard() noexcept;
   [[nodiscard]] std::int64_t wait_ns() const noexcept;
 
   usb::UsbDevice& device_;
   usb::IoThread& thread_;
+  usb::Guard& guard_;
   bool homing_;
   Falcon::Led led_;
 

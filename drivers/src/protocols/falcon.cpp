@@ -67,6 +67,12 @@ Frame encode(const Report& report) noexcept {
   return with_numbers(report.encoder, bits);
 }
 
+LettingGo letting_go(std::uint8_t endpoint, bool homing) noexcept {
+  LettingGo transfers{.rounds = 2};
+  transfers.send(endpoint, encode(Command{.homing = homing}));
+  return transfers;
+}
+
 std::optional<Report> parse_report(const Frame& frame) noexcept {
   if (!is_frame(frame)) return std::nullopt;
   const unsigned bits = static_cast<unsigned>(frame[bits_at] - zero);

@@ -78,6 +78,16 @@ Output set_currents(const std::array<int, 3>& current_ma, Generation generation)
   return output;
 }
 
+LettingGo letting_go(std::uint8_t endpoint_out, std::uint8_t endpoint_in, Generation generation) noexcept {
+  const Output order = set_currents({}, generation);
+  LettingGo transfers{.rounds = 2};
+  transfers.send(endpoint_out, std::span(order.bytes).subspan(1, order.size - 1));
+  // The two orders that its hardware may hold, and this one.
+  const int reports = generation == Generation::v1 ? 3 : 1;
+  for (int i = 0; i < reports; ++i) transfers.receive(endpoint_in, report_size(generation));
+  return transfers;
+}
+
 std::optional<Output> preset_counters(const std::array<int, 6>& counts, Generation generation) noexcept {
   if (generation == Generation::v1) return std::nullopt;
   Output output;

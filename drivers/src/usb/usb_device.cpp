@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <libusb.h>
 #include <poll.h>
@@ -13,12 +16,15 @@
 #include <unistd.h>
 
 #include "kerf/drivers/device.h"
+#include "kerf/drivers/usb/io_thread.h"
 #include "usb/holders.h"
 
 namespace kerf::drivers::usb {
 namespace {
 
 constexpr int control_timeout_ms = 1000;
+constexpr std::int64_t max_claim_ns = 300'000'000;
+constexpr std::chrono::milliseconds claim_pause(5);
 constexpr std::uint8_t vendor_out = 0x40;
 
 std::string node_of(libusb_device* device) {
@@ -98,27 +104,25 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
         fmt::format("{}: no USB here ({}); is /dev/bus/usb there?", what_, libusb_error_name(error)));
   }
   std::size_t count = 0;
-  int error = LIBUSB_ERROR_NOT_FOUND;
   for_each(context_, identity.vendor, identity.product, [&](libusb_device* device) {
     if (count++ < index) return true;
     node_ = node_of(device);
-    error = libusb_open(device, &handle_);
+    sys_folder_ = sys_folder_of(device);
     return false;
   });
   try {
-    if (error == LIBUSB_ERROR_NOT_FOUND && node_.empty()) {
+    if (node_.empty()) {
       throw DeviceError(
           fmt::format("{}: number {} is not attached ({} of {:04x}:{:04x} found); plug it in, or start its "
                       "emulator: kerf-emulate",
                       what_, index, count, identity.vendor, identity.product));
     }
-    if (error != LIBUSB_SUCCESS) fail("opening it", error);
+    open_node();
     refuse_if_held();
-    libusb_set_auto_detach_kernel_driver(handle_, 1);
-    if (error = libusb_claim_interface(handle_, 0); error != LIBUSB_SUCCESS)
-      fail("claiming its interface", error);
+    claim();
   } catch (...) {
     if (handle_ != nullptr) libusb_close(handle_);
+    if (descriptor_ >= 0) close(descriptor_);
     libusb_exit(context_);
     throw;
   }
@@ -129,9 +133,33 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
   libusb_free_pollfds(all);
 }
 
+/// Opened here, not by libusb, whose descriptor could not be handed on.
+void UsbDevice::open_node() {
+  descriptor_ = open(node_.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    const bool forbidden = errno == EACCES || errno == EPERM;
+    const bool gone = errno == ENOENT || errno == ENODEV || errno == ENXIO;
+    fail("opening it", forbidden ? LIBUSB_ERROR_ACCESS : gone ? LIBUSB_ERROR_NO_DEVICE : LIBUSB_ERROR_IO);
+  }
+  const int error = libusb_wrap_sys_device(context_, descriptor_, &handle_);
+  if (error != LIBUSB_SUCCESS) fail("opening it", error);
+}
+
+void UsbDevice::claim() {
+  libusb_set_auto_detach_kernel_driver(handle_, 1);
+  // The guard of a program that died has it for a moment still.
+  const std::int64_t until_ns = now_ns() + max_claim_ns;
+  int error = libusb_claim_interface(handle_, 0);
+  while (error == LIBUSB_ERROR_BUSY && now_ns() < until_ns) {
+    std::this_thread::sleep_for(claim_pause);
+    error = libusb_claim_interface(handle_, 0);
+  }
+  if (error != LIBUSB_SUCCESS) fail("claiming its interface", error);
+}
+
 /// Who has its hidraw node open would lose it in the middle of what it does.
 void UsbDevice::refuse_if_held() const {
-  for (const std::string& hidraw : hidraw_nodes_of(sys_folder_of(libusb_get_device(handle_)))) {
+  for (const std::string& hidraw : hidraw_nodes_of(sys_folder_)) {
     if (const auto holder = process_that_holds(hidraw)) {
       throw DeviceError(fmt::format("{}: {} is in use by another program (process {}); close that program",
                                     what_, hidraw, *holder));
@@ -142,6 +170,7 @@ void UsbDevice::refuse_if_held() const {
 UsbDevice::~UsbDevice() {
   libusb_release_interface(handle_, 0);
   libusb_close(handle_);
+  close(descriptor_);
   libusb_exit(context_);
 }
 

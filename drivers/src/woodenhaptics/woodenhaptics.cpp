@@ -126,6 +126,8 @@ WoodenHaptics::WoodenHaptics(std::string_view uri, const Product& product, const
       device_({product.vendor, product.product, product.what}, options.index),
       generation_(recognise(product)),
       mechanism_(with_most_current(options), signs_for(generation_, *options.model)) {
+  const auto [in, out] = device_.endpoints();
+  guard_.emplace(product.what, device_.descriptor(), woodenhaptics::letting_go(out, in, generation_));
   meet(product, stop);
   describe(uri, product);
   opened_ns_ = usb::now_ns();
@@ -201,7 +203,7 @@ void WoodenHaptics::meet(const Product& product, const std::atomic<bool>* stop) 
   const double least_step_m = steps_in_the_middle(mechanism_).colwise().norm().minCoeff();
   // Nearer to the column a count is half as long.
   link_ = std::make_unique<WoodenHapticsLink>(
-      device_, thread_, generation_,
+      device_, thread_, *guard_, generation_,
       WoodenHapticsLink::Plausible{.count_rate = 2.0 * speed_limit_m_s / least_step_m,
                                    .count_step = static_cast<int>(2.5 * workspace_m / least_step_m)});
   link_->begin(report);
@@ -304,7 +306,7 @@ Status WoodenHaptics::write(const Axes& force) noexcept {
   }
   link_->command(current_ma);
   if (link_->lost()) return Status::lost;
-  return finite && !link_->refuses() ? Status::ok : Status::fault;
+  return finite && !link_->refuses() && guard_->lives() ? Status::ok : Status::fault;
 }
 
 void WoodenHaptics::release(double) noexcept { link_->release(); }

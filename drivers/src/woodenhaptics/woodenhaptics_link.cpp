@@ -31,10 +31,11 @@ constexpr WoodenHapticsLink::Currents zero{};
 
 }  // namespace
 
-WoodenHapticsLink::WoodenHapticsLink(usb::UsbDevice& device, usb::IoThread& thread, Generation generation,
-                                     const Plausible& plausible)
+WoodenHapticsLink::WoodenHapticsLink(usb::UsbDevice& device, usb::IoThread& thread, usb::Guard& guard,
+                                     Generation generation, const Plausible& plausible)
     : device_(device),
       thread_(thread),
+      guard_(guard),
       generation_(generation),
       plausible_(plausible),
       endpoints_(device.endpoints()),
@@ -71,6 +72,7 @@ void WoodenHapticsLink::run(const std::stop_token& stop) noexcept {
     recover();
     const std::int64_t now = now_ns();
     speak(now);
+    tell_guard();
     if (device_.handle_events(next_turn_ns(now), thread_.wake_descriptor())) thread_.take_wakes();
     hear();
   }
@@ -170,7 +172,7 @@ void WoodenHapticsLink::hear(const Report& report, std::int64_t now) noexcept {
 }
 
 WoodenHapticsLink::Currents WoodenHapticsLink::wanted(std::int64_t now) const noexcept {
-  const bool released = command_.releases != releases_.load(std::memory_order_acquire);
+  const bool released = command_.releases != releases_.load(std::memory_order_acquire) || !guard_.lives();
   return released || now - command_.at_ns > max_command_age_ns ? zero : command_.current_ma;
 }
 
@@ -201,12 +203,17 @@ void WoodenHapticsLink::speak(std::int64_t now) noexcept {
 void WoodenHapticsLink::send(const Currents& current_ma, std::int64_t now) noexcept {
   const auto order = woodenhaptics::set_currents(current_ma, generation_);
   std::ranges::copy(std::span(order.bytes).subspan(1, order.size - 1), out_.buffer().begin());
+  sent_ma_ = current_ma;
+  tell_guard();  // before the device can have it
   if (!out_.submit()) return lost_.store(true);
   sent_ns_ = now;
   answered_ = false;
   fresh_ = false;
-  sent_ma_ = current_ma;
   sent_.put(current_ma);
+}
+
+void WoodenHapticsLink::tell_guard() noexcept {
+  guard_.hold_until(sent_ma_ == zero ? 0 : guarded_until_ns(now_ns(), command_.at_ns));
 }
 
 /// Zero, and some reports more: a device that nobody reads from any more does not come to its next order

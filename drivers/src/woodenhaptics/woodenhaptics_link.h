@@ -9,6 +9,7 @@
 
 #include "kerf/drivers/protocols/woodenhaptics.h"
 #include "kerf/drivers/triple_buffer.h"
+#include "kerf/drivers/usb/guard.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "kerf/drivers/usb/usb_device.h"
 #include "kerf/drivers/woodenhaptics.h"
@@ -29,13 +30,13 @@ class WoodenHapticsLink {
     int count_step = 0;
   };
 
-  WoodenHapticsLink(usb::UsbDevice& device, usb::IoThread& thread, woodenhaptics::Generation generation,
-                    const Plausible& plausible);
+  WoodenHapticsLink(usb::UsbDevice& device, usb::IoThread& thread, usb::Guard& guard,
+                    woodenhaptics::Generation generation, const Plausible& plausible);
 
   /// The report from which the counters go on. Before run().
   void begin(const woodenhaptics::Report& report) noexcept;
 
-  /// Currents that hold until the next, at most for 50 ms.
+  /// Currents that hold until the next, at most for 50 ms, and only while the guard lives.
   void command(const Currents& current_ma) noexcept;
   /// Takes the newest reading; false, and no change, if there is none since the last time.
   bool take(Reading& reading) noexcept { return readings_.take(reading); }
@@ -80,6 +81,7 @@ class WoodenHapticsLink {
   void speak(std::int64_t now_ns) noexcept;
   void send(const Currents& current_ma, std::int64_t now_ns) noexcept;
   void let_go() noexcept;
+  void tell_guard() noexcept;
   [[nodiscard]] Currents wanted(std::int64_t now_ns) const noexcept;
   [[nodiscard]] bool is_due(std::int64_t now_ns, bool stops) noexcept;
   [[nodiscard]] std::int64_t next_turn_ns(std::int64_t now_ns) const noexcept;
@@ -87,6 +89,7 @@ class WoodenHapticsLink {
 
   usb::UsbDevice& device_;
   usb::IoThread& thread_;
+  usb::Guard& guard_;
   woodenhaptics::Generation generation_;
   Plausible plausible_;
   usb::UsbDevice::Endpoints endpoints_;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/drivers/report_velocity.h>
 #include <kerf/drivers/uri.h>
+#include <kerf/drivers/usb/guard.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
 
@@ -40,7 +42,7 @@ class FalconLink;
 /// gives is at most 1.3 ms old, 3.3 ms where ticks are rarer. A force is on its way at once if no answer is
 /// outstanding, and reaches the motors within 0.3 ms; else with the next answer, within 1.3 ms. One command
 /// is under way at a time; one whose answer does not come within 5 ms is sent again. Without a command for
-/// 50 ms the motors are let go.
+/// 50 ms the motors are let go, and by the guard when this program dies or hangs (usb/guard.h).
 class Falcon final : public Device {
  public:
   enum class Led : std::uint8_t { off, red, green, blue };
@@ -69,6 +71,7 @@ class Falcon final : public Device {
   /// Fault without a report for 20 ms, outside of the workspace, and where homing was lost; lost after 1 s or
   /// when unplugged.
   [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
+  /// Fault, and zero, also where the guard has died.
   [[nodiscard]] Status write(const Axes& force) noexcept override;
   void release(double at_s) noexcept override;
   [[nodiscard]] std::vector<Figure> figures() const override;
@@ -80,6 +83,7 @@ class Falcon final : public Device {
   Options options_;
   DeviceInfo info_;
   usb::UsbDevice device_;
+  std::optional<usb::Guard> guard_;
   std::unique_ptr<FalconLink> link_;
   ReportVelocity velocity_{3};
   bool limited_ = false;

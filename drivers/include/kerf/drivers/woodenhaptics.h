@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include <kerf/drivers/protocols/woodenhaptics.h>
 #include <kerf/drivers/report_velocity.h>
 #include <kerf/drivers/uri.h>
+#include <kerf/drivers/usb/guard.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
 #include <kerf/mechanisms/woodenhaptics.h>
@@ -46,7 +48,8 @@ struct WoodenHapticsReading {
 /// again.
 ///
 /// The device makes its force zero after 0.5 s without an order. The driver does not wait for that: a command
-/// older than 50 ms is not held any longer, because the loop that gave it is dead.
+/// older than 50 ms is not held any longer, because the loop that gave it is dead; and the guard lets go when
+/// this program dies or hangs (usb/guard.h).
 class WoodenHaptics final : public Device {
  public:
   struct Product {
@@ -81,7 +84,8 @@ class WoodenHaptics final : public Device {
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
   /// Fault without a report for 20 ms and where counters are of no place; lost after 1 s or when unplugged.
   [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
-  /// Fault also where the device takes no orders, for 20 ms or three in a row.
+  /// Fault also where the device takes no orders, for 20 ms or three in a row, and, with zero, where the
+  /// guard has died.
   [[nodiscard]] Status write(const Axes& force) noexcept override;
   void release(double at_s) noexcept override;
   [[nodiscard]] std::vector<Figure> figures() const override;
@@ -99,6 +103,7 @@ class WoodenHaptics final : public Device {
 
   Options options_;
   usb::UsbDevice device_;
+  std::optional<usb::Guard> guard_;
   woodenhaptics::Generation generation_;
   mechanisms::WoodenHaptics mechanism_;
   DeviceInfo info_;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 
+#include <kerf/drivers/protocols/letting_go.h>
+
 /// The Novint Falcon on the wire: 16 bytes to it, 16 bytes back, behind an FTDI bridge. Pure functions.
 ///
 /// A frame is '<', three 16-bit numbers, two bytes of bits, '>'. A number is four nibbles, least significant
@@ -44,6 +46,9 @@ struct Report {
 /// Motor values are cut to +-4095 one by one; clamped() keeps the direction of the force instead.
 [[nodiscard]] Frame encode(const Command& command) noexcept;
 [[nodiscard]] Frame encode(const Report& report) noexcept;
+
+/// All motors at zero, twice: the first may complete a frame that was torn. With `homing` it stays homed.
+[[nodiscard]] LettingGo letting_go(std::uint8_t endpoint, bool homing) noexcept;
 
 /// Nothing unless every byte is where it belongs.
 [[nodiscard]] std::optional<Report> parse_report(const Frame& frame) noexcept;

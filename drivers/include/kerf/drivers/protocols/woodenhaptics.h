@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include <kerf/drivers/protocols/letting_go.h>
+
 /// WoodenHaptics and Polhem on the wire: HID reports of little-endian 16-bit numbers. Pure functions.
 ///
 /// Three generations, told apart by the length of a report: V1 8 bytes (three encoders and a counter), V2 14
@@ -52,6 +54,10 @@ struct Output {
 };
 /// Currents of the three motors [mA], cut to +-5999.
 [[nodiscard]] Output set_currents(const std::array<int, 3>& current_ma, Generation generation) noexcept;
+/// Zero currents, twice, each followed by reports that are read: a device that nobody reads from does not
+/// come to its next order.
+[[nodiscard]] LettingGo letting_go(std::uint8_t endpoint_out, std::uint8_t endpoint_in,
+                                   Generation generation) noexcept;
 /// Presets the six counters; motors get zero for that cycle (V2 and V3 only, else nothing).
 [[nodiscard]] std::optional<Output> preset_counters(const std::array<int, 6>& counts,
                                                     Generation generation) noexcept;

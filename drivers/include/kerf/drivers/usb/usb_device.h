@@ -80,13 +80,19 @@ class UsbDevice {
 
   [[nodiscard]] libusb_device_handle* handle() const noexcept { return handle_; }
   [[nodiscard]] const std::string& node() const noexcept { return node_; }
+  /// Of the node. A duplicate keeps the interface claimed, also when this program is dead.
+  [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 
  private:
+  void open_node();
+  void claim();
   void refuse_if_held() const;
   [[noreturn]] void fail(std::string_view doing, int error) const;
 
   std::string what_;
   std::string node_;
+  std::string sys_folder_;
+  int descriptor_ = -1;
   libusb_context* context_ = nullptr;
   libusb_device_handle* handle_ = nullptr;
   struct Waited {
