@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -52,6 +54,17 @@ std::vector<falcon::Report> read_all(const std::vector<std::uint8_t>& bytes, fal
     if (const auto frame = reader.take(byte)) reports.push_back(*falcon::parse_report(*frame));
   }
   return reports;
+}
+
+TEST(FalconProtocol, LetsGoByTwoFramesOfZerosThatKeepTheHoming) {
+  const LettingGo homed = falcon::letting_go(0x02, true);
+  ASSERT_EQ(homed.count, 1);
+  EXPECT_EQ(homed.rounds, 2);
+  EXPECT_EQ(homed.transfers[0].endpoint, 0x02);
+  EXPECT_EQ(std::string(homed.transfers[0].bytes.begin(), homed.transfers[0].bytes.begin() + 16),
+            "<AAAAAAAAAAAABA>");
+  EXPECT_EQ(homed.transfers[0].size, 16);
+  EXPECT_EQ(falcon::letting_go(0x02, false).transfers[0].bytes[13], 'A');
 }
 
 TEST(FalconProtocol, FindsItsFramesAgainAfterALostByteWhereverItWas) {
@@ -162,6 +175,24 @@ TEST(WoodenHapticsProtocol, WritesCurrentsAndCounters) {
               ElementsAre(0, 4, 0, 5, 0, 6, 0, 1, 0, 1, 0, 2, 0, 3, 0));
   EXPECT_FALSE(woodenhaptics::preset_counters({}, Generation::v1));
   EXPECT_EQ(woodenhaptics::wrapped_difference(-32760, 32760), 16) << "over the end of 16 bits";
+}
+
+TEST(WoodenHapticsProtocol, LetsGoByZeroCurrentsWhoseReportsAreRead) {
+  using woodenhaptics::Generation;
+  const auto size_of = [](Generation generation) { return woodenhaptics::report_size(generation); };
+  for (const auto& [generation, reports] :
+       {std::pair{Generation::v1, 3}, {Generation::v2, 1}, {Generation::v3, 1}}) {
+    const LettingGo transfers = woodenhaptics::letting_go(0x01, 0x82, generation);
+    ASSERT_EQ(transfers.count, 1 + reports);
+    EXPECT_EQ(transfers.rounds, 2);
+    EXPECT_EQ(transfers.transfers[0].endpoint, 0x01);
+    EXPECT_THAT(transfers.transfers[0].bytes, testing::Each(0));
+    for (int i = 0; i < transfers.count; ++i) {
+      const auto& one = transfers.transfers[static_cast<std::size_t>(i)];
+      EXPECT_EQ(one.size, size_of(generation));
+      EXPECT_EQ(one.endpoint, i == 0 ? 0x01 : 0x82);
+    }
+  }
 }
 
 TEST(WoodenHapticsProtocol, ADeviceReadsWhatTheHostWrites) {

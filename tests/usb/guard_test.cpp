@@ -66,12 +66,10 @@ std::vector<Told> read_told(const Guarded& device, const fs::path& trace) {
   return told;
 }
 
-/// How often the motors were turned on, and for how long the last force stood after the last order that gave
-/// one.
+/// When the last order that gave a force was taken, and the first zero after it; -1: none.
 struct Ends {
   double last_force_s = -1.0;
   double zero_s = -1.0;
-  bool stays_zero = false;
 };
 Ends ends_of(const std::vector<Told>& told) {
   Ends ends;
@@ -82,7 +80,6 @@ Ends ends_of(const std::vector<Told>& told) {
       ends.zero_s = one.time_s;
     }
   }
-  ends.stays_zero = ends.zero_s >= 0.0;
   return ends;
 }
 
@@ -132,46 +129,43 @@ class HeldWall {
   pid_t process_ = 0;
 };
 
-/// Processes named kerf-guard that run; with `parent` only its children.
-std::vector<pid_t> guards(pid_t parent = 0) {
+/// Processes named kerf-guard, also those that have ended and nobody has asked how.
+std::vector<pid_t> guards() {
   std::vector<pid_t> found;
   for (const auto& entry : fs::directory_iterator("/proc")) {
     const std::string stat = read_text(entry.path() / "stat");
-    const auto at = stat.find("(kerf-guard) ");
-    if (at == std::string::npos) continue;
-    std::istringstream words(stat.substr(at + 13));
-    char state = 0;
-    pid_t of = 0;
-    words >> state >> of;
-    if (state != 'Z' && (parent == 0 || of == parent)) found.push_back(std::stoi(stat));
+    if (stat.find(" (kerf-guard) ") != std::string::npos) found.push_back(std::stoi(stat));
   }
   return found;
 }
 
 void rest_for(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-/// Holds the wall, does something to the program after 2 s, and looks 2 s later at what the motors were told.
+/// What the motors were told while the wall was held, something was done to the program, and 0.2 s more: less
+/// than the half second after which a WoodenHaptics lets go by itself.
 template <typename F>
-Ends ends_after(const Guarded& device, F act) {
+std::vector<Told> told_when(const Guarded& device, F act, double seconds = 60.0) {
   const TemporaryFolder folder;
   const auto trace = folder / "trace.csv";
   {
     const Emulator emulator(device.emulator + "&trace=" + trace.string());
     EXPECT_TRUE(becomes_attached(device.uri));
-    HeldWall recording(device, folder, 60.0);
-    rest_for(2.0);
+    HeldWall recording(device, folder, seconds);
+    rest_for(1.2);
     EXPECT_EQ(guards().size(), 1U) << read_text(folder / "said");
     act(recording);
-    rest_for(0.4);  // less than the watchdog of a WoodenHaptics
+    rest_for(0.2);
+    EXPECT_TRUE(guards().empty());
   }
-  EXPECT_TRUE(guards().empty());
-  return ends_of(read_told(device, trace));
+  return read_told(device, trace);
 }
 
-void expect_let_go(const Guarded& device, const char* signal, const Ends& ends) {
-  ASSERT_GE(ends.last_force_s, 1.0) << "the wall was held";
-  ASSERT_TRUE(ends.stays_zero) << "the motors were not let go";
-  std::printf("%s %s: zero %.3f ms after the last force\n", device.name.c_str(), signal,
+/// The last order was given at most a millisecond before the program was hit.
+void expect_let_go(const Guarded& device, const char* by, const std::vector<Told>& told) {
+  const Ends ends = ends_of(told);
+  ASSERT_GE(ends.last_force_s, 0.5) << "the wall was held";
+  ASSERT_GE(ends.zero_s, 0.0) << "the motors were not let go";
+  std::printf("%s, %s: zero %.3f ms after the last force\n", device.name.c_str(), by,
               1e3 * (ends.zero_s - ends.last_force_s));
   EXPECT_LE(ends.zero_s - ends.last_force_s, 0.05);
 }
@@ -185,7 +179,7 @@ TEST(Guard, LetsGoWhenTheProgramDies) {
     for (const Death& death :
          {Death{SIGKILL, "SIGKILL"}, Death{SIGSEGV, "SIGSEGV"}, Death{SIGABRT, "SIGABRT"}}) {
       SCOPED_TRACE(device.name + " " + death.name);
-      expect_let_go(device, death.name, ends_after(device, [&](HeldWall& recording) {
+      expect_let_go(device, death.name, told_when(device, [&](HeldWall& recording) {
                       recording.signal(death.number);
                       EXPECT_EQ(WTERMSIG(recording.end()), death.number);
                     }));
@@ -193,27 +187,133 @@ TEST(Guard, LetsGoWhenTheProgramDies) {
   }
 }
 
-TEST(Guard, LetsGoWhenTheProgramIsStopped) {
+TEST(Guard, LetsGoWhenTheProgramIsStoppedAndGoesWhenItIsKilled) {
   for (const Guarded& device : guarded()) {
     SCOPED_TRACE(device.name);
-    expect_let_go(device, "SIGSTOP", ends_after(device, [](HeldWall& recording) {
+    expect_let_go(device, "SIGSTOP", told_when(device, [](HeldWall& recording) {
                     recording.signal(SIGSTOP);
-                    rest_for(0.4);
-                    // From here on the guard is to be gone too.
+                    rest_for(0.2);
+                    EXPECT_EQ(guards().size(), 1U);
                     recording.signal(SIGKILL);
                     (void)recording.end();
                   }));
   }
 }
 
-TEST(Guard, ComesToAnEndWithTheProgram) {
+TEST(Guard, GoesOnWatchingAProgramThatComesBack) {
   for (const Guarded& device : guarded()) {
     SCOPED_TRACE(device.name);
-    expect_let_go(device, "SIGTERM", ends_after(device, [](HeldWall& recording) {
+    const auto told = told_when(device, [](HeldWall& recording) {
+      for (int times = 0; times < 2; ++times) {
+        recording.signal(SIGSTOP);
+        rest_for(0.3);
+        recording.signal(SIGCONT);
+        rest_for(0.5);
+      }
+      recording.signal(SIGTERM);
+      const int status = recording.end();
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    });
+    int gaps = 0;
+    bool force_since = false;
+    for (std::size_t i = 1; i < told.size(); ++i) {
+      force_since = force_since || told[i].motor != no_motor;
+      if (told[i].time_s - told[i - 1].time_s < 0.2) continue;
+      ++gaps;
+      EXPECT_TRUE(force_since) << "the force came back in between";
+      force_since = false;
+      EXPECT_EQ(told[i - 1].motor, no_motor) << "let go while it was stopped";
+      EXPECT_EQ(told[i].motor, no_motor) << "and it began with zero";
+    }
+    EXPECT_EQ(gaps, 2);
+    EXPECT_TRUE(force_since);
+    expect_let_go(device, "SIGSTOP, SIGCONT, SIGTERM", told);
+  }
+}
+
+TEST(Guard, EndsWithTheProgram) {
+  for (const Guarded& device : guarded()) {
+    SCOPED_TRACE(device.name);
+    expect_let_go(device, "SIGTERM", told_when(device, [](HeldWall& recording) {
                     recording.signal(SIGTERM);
                     const int status = recording.end();
                     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+                    EXPECT_TRUE(guards().empty());
                   }));
+  }
+}
+
+TEST(Guard, IsDeafToWhatEndsTheProgram) {
+  const Guarded device = guarded().front();
+  expect_let_go(device, "SIGKILL", told_when(device, [](HeldWall& recording) {
+                  const auto all = guards();
+                  ASSERT_EQ(all.size(), 1U);
+                  EXPECT_EQ(getsid(all.front()), all.front()) << "no terminal reaches it";
+                  for (const int number : {SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGTSTP}) {
+                    kill(all.front(), number);
+                  }
+                  rest_for(0.1);
+                  EXPECT_EQ(guards(), all);
+                  recording.signal(SIGKILL);
+                  (void)recording.end();
+                }));
+}
+
+TEST(Guard, TheNextProgramHasTheDeviceAtOnce) {
+  for (const Guarded& device : guarded()) {
+    SCOPED_TRACE(device.name);
+    const auto told = told_when(device, [&](HeldWall& recording) {
+      recording.signal(SIGKILL);
+      (void)recording.end();
+      const TemporaryFolder another;
+      HeldWall next(device, another, 0.5);
+      const int status = next.end();
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << read_text(another / "said");
+    });
+    expect_let_go(device, "the next run", told);
+  }
+}
+
+TEST(Guard, WithoutOneADeviceIsRefused) {
+  const TemporaryFolder folder;
+  fs::copy_file(KERF_PROGRAM, folder / "kerf");
+  for (const Guarded& device : guarded()) {
+    const Emulator emulator(device.emulator);
+    ASSERT_TRUE(becomes_attached(device.uri));
+    const auto outcome =
+        run({folder / "kerf", "record", "--device", device.uri, "--seconds", "1", "-o", folder / "none.h5"});
+    EXPECT_EQ(outcome.exit_status, 3);
+    EXPECT_THAT(outcome.errors, HasSubstr((folder / "kerf-guard").string() + ", which lets the motors go"));
+    EXPECT_FALSE(fs::exists(folder / "none.h5"));
+  }
+}
+
+TEST(Guard, WhereItHasDiedTheForceEnds) {
+  for (const Guarded& one : guarded()) {
+    SCOPED_TRACE(one.name);
+    const TemporaryFolder folder;
+    const auto trace = folder / "trace.csv";
+    {
+      const Emulator emulator(one.emulator + "&trace=" + trace.string());
+      ASSERT_TRUE(becomes_attached(one.uri));
+      const auto device = drivers::open_device(one.uri);
+      int faults_before = 0;
+      Status last = Status::ok;
+      loop(*device, 400, [&](int tick, Status, const Sample&) {
+        if (tick == 200) {
+          for (const pid_t guard : guards()) kill(guard, SIGKILL);
+        }
+        last = device->write({0.0, 0.0, 1.0});
+        faults_before += tick < 200 && last != Status::ok;
+      });
+      EXPECT_EQ(faults_before, 0);
+      EXPECT_EQ(last, Status::fault);
+    }
+    EXPECT_TRUE(guards().empty()) << "nor is it left unburied";
+    const auto told = read_told(one, trace);
+    const Ends ends = ends_of(told);
+    ASSERT_GE(ends.zero_s, 0.0);
+    EXPECT_GT(told.back().time_s - ends.last_force_s, 0.15) << "zero long before the end";
   }
 }
 
