@@ -17,6 +17,7 @@
 
 #include <kerf/drivers/device.h>
 #include <kerf/mechanisms/woodenhaptics.h>
+#include <kerf/schema/recording.h>
 
 #include "emulator.h"
 #include "falcon_bench.h"
@@ -315,6 +316,28 @@ TEST(Guard, WhereItHasDiedTheForceEnds) {
     ASSERT_GE(ends.zero_s, 0.0);
     EXPECT_GT(told.back().time_s - ends.last_force_s, 0.15) << "zero long before the end";
   }
+}
+
+TEST(Guard, ARecordingShowsThatItHasDied) {
+  const Guarded device = guarded().front();
+  const TemporaryFolder folder;
+  const Emulator emulator(device.emulator);
+  ASSERT_TRUE(becomes_attached(device.uri));
+  HeldWall recording(device, folder, 2.0);
+  rest_for(1.2);
+  for (const pid_t guard : guards()) kill(guard, SIGKILL);
+  const int status = recording.end();
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << read_text(folder / "said");
+  const auto rows = schema::read_recording(folder / "wall.h5");
+  std::size_t faults = 0;
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    const bool fault = (rows.flags[row] & schema::flag_device_fault) != 0;
+    faults += fault;
+    EXPECT_TRUE(!fault || rows.force_commanded[3 * row + 2] == 0.0) << row;
+    EXPECT_TRUE(fault || faults == 0) << "it stays so, " << row;
+  }
+  EXPECT_GT(faults, 500U);
+  EXPECT_LT(faults, rows.rows());
 }
 
 }  // namespace

@@ -165,12 +165,15 @@ void FalconLink::send(const std::array<int, 3>& motor, Falcon::Led led) noexcept
                                                     .blue = led == Falcon::Led::blue,
                                                     .red = led == Falcon::Led::red});
   std::ranges::copy(frame, out_.buffer().begin());
-  sent_motor_ = motor;
-  tell_guard();  // before the device can have it
+  // Of a force the guard knows before the device can have it, of zero once it is on its way.
+  if (motor != zero) sent_motor_ = motor;
+  tell_guard();
   if (!out_.submit()) {
     lost_.store(true);
     return;
   }
+  sent_motor_ = motor;
+  tell_guard();
   sent_order_ = order_.number;
   sent_ns_ = now_ns();
   ++unanswered_;

@@ -113,10 +113,10 @@ Guard::Guard(std::string_view what, int descriptor, const LettingGo& letting_go)
   socket_ = program.release();
   pollfd waited{.fd = socket_, .events = POLLIN, .revents = 0};
   char said = 0;
-  if (poll(&waited, 1, start_timeout_ms) != 1 || recv(socket_, &said, 1, MSG_DONTWAIT) != 1 ||
-      said != guard_is_ready) {
+  const bool spoke = poll(&waited, 1, start_timeout_ms) == 1;
+  if (!spoke || recv(socket_, &said, 1, MSG_DONTWAIT) != 1 || said != guard_is_ready) {
     end();
-    refuse(what, guard, ETIMEDOUT);
+    refuse(what, guard, spoke ? ECONNRESET : ETIMEDOUT);
   }
   lives_.store(true);
 }

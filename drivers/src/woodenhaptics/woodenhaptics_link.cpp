@@ -203,9 +203,12 @@ void WoodenHapticsLink::speak(std::int64_t now) noexcept {
 void WoodenHapticsLink::send(const Currents& current_ma, std::int64_t now) noexcept {
   const auto order = woodenhaptics::set_currents(current_ma, generation_);
   std::ranges::copy(std::span(order.bytes).subspan(1, order.size - 1), out_.buffer().begin());
-  sent_ma_ = current_ma;
-  tell_guard();  // before the device can have it
+  // Of a force the guard knows before the device can have it, of zero once it is on its way.
+  if (current_ma != zero) sent_ma_ = current_ma;
+  tell_guard();
   if (!out_.submit()) return lost_.store(true);
+  sent_ma_ = current_ma;
+  tell_guard();
   sent_ns_ = now;
   answered_ = false;
   fresh_ = false;
