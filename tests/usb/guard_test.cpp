@@ -152,7 +152,7 @@ std::vector<Told> told_when(const Guarded& device, F act, double seconds = 60.0)
     const Emulator emulator(device.emulator + "&trace=" + trace.string());
     EXPECT_TRUE(becomes_attached(device.uri));
     HeldWall recording(device, folder, seconds);
-    rest_for(1.2);
+    rest_for(1.0);
     EXPECT_EQ(guards().size(), 1U) << read_text(folder / "said");
     act(recording);
     rest_for(0.2);
@@ -201,7 +201,7 @@ TEST(Guard, LetsGoWhenTheProgramIsStoppedAndGoesWhenItIsKilled) {
   }
 }
 
-TEST(Guard, GoesOnWatchingAProgramThatComesBack) {
+TEST(GuardLife, GoesOnWatchingAProgramThatComesBack) {
   for (const Guarded& device : guarded()) {
     SCOPED_TRACE(device.name);
     const auto told = told_when(device, [](HeldWall& recording) {
@@ -232,7 +232,7 @@ TEST(Guard, GoesOnWatchingAProgramThatComesBack) {
   }
 }
 
-TEST(Guard, EndsWithTheProgram) {
+TEST(GuardLife, EndsWithTheProgram) {
   for (const Guarded& device : guarded()) {
     SCOPED_TRACE(device.name);
     expect_let_go(device, "SIGTERM", told_when(device, [](HeldWall& recording) {
@@ -244,7 +244,7 @@ TEST(Guard, EndsWithTheProgram) {
   }
 }
 
-TEST(Guard, IsDeafToWhatEndsTheProgram) {
+TEST(GuardLife, IsDeafToWhatEndsTheProgram) {
   const Guarded device = guarded().front();
   expect_let_go(device, "SIGKILL", told_when(device, [](HeldWall& recording) {
                   const auto all = guards();
@@ -260,7 +260,7 @@ TEST(Guard, IsDeafToWhatEndsTheProgram) {
                 }));
 }
 
-TEST(Guard, TheNextProgramHasTheDeviceAtOnce) {
+TEST(GuardLife, TheNextProgramHasTheDeviceAtOnce) {
   for (const Guarded& device : guarded()) {
     SCOPED_TRACE(device.name);
     const auto told = told_when(device, [&](HeldWall& recording) {
@@ -275,7 +275,7 @@ TEST(Guard, TheNextProgramHasTheDeviceAtOnce) {
   }
 }
 
-TEST(Guard, WithoutOneADeviceIsRefused) {
+TEST(GuardLife, WithoutOneADeviceIsRefused) {
   const TemporaryFolder folder;
   fs::copy_file(KERF_PROGRAM, folder / "kerf");
   for (const Guarded& device : guarded()) {
@@ -289,7 +289,7 @@ TEST(Guard, WithoutOneADeviceIsRefused) {
   }
 }
 
-TEST(Guard, WhereItHasDiedTheForceEnds) {
+TEST(GuardLife, WhereItHasDiedTheForceEnds) {
   for (const Guarded& one : guarded()) {
     SCOPED_TRACE(one.name);
     const TemporaryFolder folder;
@@ -318,13 +318,13 @@ TEST(Guard, WhereItHasDiedTheForceEnds) {
   }
 }
 
-TEST(Guard, ARecordingShowsThatItHasDied) {
+TEST(GuardLife, ARecordingShowsThatItHasDied) {
   const Guarded device = guarded().front();
   const TemporaryFolder folder;
   const Emulator emulator(device.emulator);
   ASSERT_TRUE(becomes_attached(device.uri));
   HeldWall recording(device, folder, 2.0);
-  rest_for(1.2);
+  rest_for(1.0);
   for (const pid_t guard : guards()) kill(guard, SIGKILL);
   const int status = recording.end();
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << read_text(folder / "said");

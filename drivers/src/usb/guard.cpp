@@ -59,6 +59,14 @@ class Owned {
   int number_;
 };
 
+/// Also when it ends; whatever signals come meanwhile.
+bool becomes_readable(int descriptor, int timeout_ms) noexcept {
+  pollfd waited{.fd = descriptor, .events = POLLIN, .revents = 0};
+  int ready = poll(&waited, 1, timeout_ms);
+  while (ready < 0 && errno == EINTR) ready = poll(&waited, 1, timeout_ms);
+  return ready > 0;
+}
+
 /// Starts it with nothing but those descriptors, deaf to signals, in a session of its own: what ends this
 /// program from outside, or its group, does not end the guard. @returns an error number; 0: it runs.
 int spawn(const std::string& guard, int device, int program, int page, pid_t& process) {
@@ -111,9 +119,8 @@ Guard::Guard(std::string_view what, int descriptor, const LettingGo& letting_go)
   // Its own end only it may hold: then the stream ends when it does.
   its_own.reset();
   socket_ = program.release();
-  pollfd waited{.fd = socket_, .events = POLLIN, .revents = 0};
   char said = 0;
-  const bool spoke = poll(&waited, 1, start_timeout_ms) == 1;
+  const bool spoke = becomes_readable(socket_, start_timeout_ms);
   if (!spoke || recv(socket_, &said, 1, MSG_DONTWAIT) != 1 || said != guard_is_ready) {
     end();
     refuse(what, guard, spoke ? ECONNRESET : ETIMEDOUT);
@@ -128,12 +135,12 @@ void Guard::end() noexcept {
     // Where the last force did not end the guard shall end it, as if this program were dead.
     if (page_->until_ns.load() == 0) (void)send(socket_, &guard_may_go, 1, MSG_NOSIGNAL);
     (void)shutdown(socket_, SHUT_WR);
-    pollfd waited{.fd = socket_, .events = POLLIN, .revents = 0};
     // Somebody may have stopped it.
-    if (poll(&waited, 1, end_timeout_ms) <= 0) (void)kill(process_, SIGKILL);
+    if (!becomes_readable(socket_, end_timeout_ms)) (void)kill(process_, SIGKILL);
   }
   if (socket_ >= 0) close(socket_);
-  if (process_ > 0) (void)waitpid(process_, nullptr, 0);
+  while (process_ > 0 && waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+  }
   if (page_ != nullptr) munmap(page_, sizeof(GuardPage));
 }
 
