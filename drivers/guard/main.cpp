@@ -34,10 +34,11 @@ std::int64_t now_ns() noexcept {
   return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
 }
 
-/// Each as far as it is permitted: more urgent than the loop and the thread of the device (80 and 81), off
-/// the loop's processor, which is the last, not to be swapped out, nor to be chosen when memory is short.
+/// Each as far as it is permitted: more urgent than the loop (79) and, for root, the thread of the device
+/// (80), off the loop's processor, which is the last, not to be swapped out, nor to be chosen when memory is
+/// short.
 void be_prompt() noexcept {
-  constexpr int priority = 82;
+  constexpr int priority = 81;
   rlimit permitted{};
   getrlimit(RLIMIT_RTPRIO, &permitted);
   for (const int wanted : {priority, static_cast<int>(std::min<rlim_t>(priority, permitted.rlim_cur))}) {
