@@ -1,11 +1,24 @@
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
 
+#include "probe/kept_probes.h"
+#include "probe/probe.h"
+#include "program/confirm_on_enter.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
 namespace {
+
+struct ProbeArguments {
+  std::string uri;
+  bool yes = false;
+};
 
 nlohmann::ordered_json to_json(const drivers::DeviceInfo& device) {
   nlohmann::ordered_json axes = nlohmann::ordered_json::array();
@@ -43,6 +56,53 @@ void list_attached(Context& context) {
     context.say("On the USB: none that Kerf knows. kerf-emulate plays one; docs/devices.md says how.");
 }
 
+/// "6 axes, one after the other: at most 48 pushes of 0.85 N along x, ..."
+std::string plan_in_words(const drivers::DeviceInfo& device, const std::vector<ProbedAxis>& axes) {
+  std::string text;
+  for (const ProbedAxis& probed : axes) {
+    const drivers::AxisInfo& axis = device.axes[probed.axis];
+    text += fmt::format("{}{:.3g} {} along {}", text.empty() ? "" : ", ", probed.force, axis.force_unit,
+                        axis.name);
+  }
+  return fmt::format(
+      "Hold the handle of {} lightly and still, in the middle: at most {} short pushes along each axis, of "
+      "{}.",
+      device.uri, 2 * most_push_pairs, text);
+}
+
+void run_probe(const ProbeArguments& arguments, Context& context) {
+  const bool simulated = arguments.uri.starts_with("sim:");
+  const bool asks = !simulated && !arguments.yes;
+  if (asks && !is_at_terminal()) {
+    throw std::invalid_argument(
+        "--probe pushes the handle, and nobody is at a terminal here to say that they hold it: give --yes");
+  }
+  const StopOnSignal signals;
+  ProbeOptions options;
+  options.before = [&](const drivers::DeviceInfo& device, const std::vector<ProbedAxis>& axes) {
+    if (simulated) return;
+    note(plan_in_words(device, axes));
+    if (!asks) return;
+    note("Enter begins, Ctrl-C gives up.");
+    if (!wait_for_enter(signals.requested()))
+      throw std::invalid_argument("nobody pressed Enter; nothing was pushed");
+  };
+  const ProbeResult result = probe_device(arguments.uri, options, signals.requested());
+  context.result = probe_as_json(result);
+  context.result["kept"] = nullptr;
+  context.say(fmt::format("{}  {}", result.device.uri, result.device.model));
+  for (const std::string& line : probe_lines(result)) context.say(line);
+  if (!result.all_right()) context.exit = Exit::check_failed;
+  if (!result.finished) return warn("it ended before every axis was probed; nothing is kept of it");
+  if (simulated) return;
+  const KeptProbes kept(KeptProbes::usual_file());
+  if (kept.file().empty())
+    return warn("neither XDG_DATA_HOME nor HOME is set, so that the probe is not kept");
+  kept.keep(result);
+  context.result["kept"] = kept.file().string();
+  context.say(fmt::format("kept in {}", kept.file().string()));
+}
+
 void run_devices(Context& context) {
   context.result["devices"] = nlohmann::ordered_json::array();
   for (const drivers::DeviceInfo& device : drivers::list_devices()) {
@@ -60,9 +120,13 @@ void run_devices(Context& context) {
 }  // namespace
 
 void add_devices(CLI::App& app, Context& context) {
-  add_verb(
+  auto arguments = std::make_shared<ProbeArguments>();
+  Verb verb = add_verb(
       app, context, "devices", "List the devices that can be opened, simulated or on the USB",
-      "kerf devices --json\n\n"
+      "kerf devices --probe falcon:0\n\n"
+      "--probe finds out by small pushes whether a device pushes the way that it should, which nobody has\n"
+      "seen of yours: a wrong sign makes a wall pull. It ends with 1 unless every axis is right. The result\n"
+      "is kept, and nothing is rendered on a device with an axis that is wrong.\n"
       "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
       "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"
       "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
@@ -71,7 +135,11 @@ void add_devices(CLI::App& app, Context& context) {
       "  u6:N              LabJack U6 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
       "  spacemouse:N      3Dconnexion, a source of trajectories\n"
       "Options, permissions and what was verified: docs/devices.md.",
-      [&context] { run_devices(context); });
+      [arguments, &context] {
+        arguments->uri.empty() ? run_devices(context) : run_probe(*arguments, context);
+      });
+  verb.add_option("--probe", arguments->uri, "URI of a device to push, a little, along each axis");
+  verb.add_flag("--yes", arguments->yes, "With --probe: do not wait for Enter; somebody holds the handle");
 }
 
 }  // namespace kerf::bench

@@ -74,6 +74,7 @@ SessionRunOptions run_options_of(const SessionRunVerbArguments& arguments, const
   SessionRunOptions options{.loop = arguments.loop};
   options.loop.device_uri = uri_of(arguments, protocol);
   options.loop.virtual_time = arguments.rehearse;
+  options.loop.warn = warn;
   // The subject's terminal is no place for progress: it is on the screen there already.
   if (arguments.page) {
     const std::string_view of = is_adaptive(protocol.design) ? "at most " : "";

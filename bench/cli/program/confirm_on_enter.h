@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <thread>
 
 #include "loop/safety.h"
@@ -21,5 +22,11 @@ class ConfirmOnEnter {
   ZeroHold hold_;
   std::jthread thread_;  ///< last: uses the rest
 };
+
+/// Whether somebody can press Enter here.
+[[nodiscard]] bool is_at_terminal();
+/// Waits for Enter; what was typed before does not count. @returns false if `stop` was set meanwhile, or
+/// nobody sits there any more.
+[[nodiscard]] bool wait_for_enter(const std::atomic<bool>& stop);
 
 }  // namespace kerf::bench

@@ -15,6 +15,7 @@
 #include "laws/placement.h"
 #include "loop/clock.h"
 #include "loop/law_switch.h"
+#include "probe/kept_probes.h"
 #include "record/device_recording.h"
 #include "record/recorder.h"
 
@@ -95,7 +96,10 @@ class Run {
              .safety = {.period_s = result_.period_s,
                         .soft_start_s = options.ramp_s,
                         .passivity_control = options.passivity_control}};
-    (void)laws();  // before anything is written or moves
+    const std::vector<SwitchedLaw> laws_to_render = laws();  // before anything is written or moves
+    if (!options.is_probe && (options.rendering || !laws_to_render.empty())) {
+      require_probed(result_.device, options.warn);
+    }
     if (!options.rendering) return;
     other_ = options.rendering(result_.device);
     if (other_.max_ticks > 0) loop_.ticks = std::min(loop_.ticks, other_.max_ticks);

@@ -49,6 +49,7 @@ struct RunOptions {
   std::function<void(const schema::Row&)> each_row;
   double ramp_s = 0.25;  ///< of the soft start, and from law to law
   bool passivity_control = false;
+  bool is_probe = false;  ///< finds out itself which way the device pushes: no kept probe is asked for
   ZeroHold* zero_hold = nullptr;  ///< where somebody confirms after a jump of the position; none: nobody can
   std::optional<Scene> scene;     ///< what a simulated device meets
   std::optional<std::filesystem::path> record;  ///< where to record
@@ -58,7 +59,7 @@ struct RunOptions {
   double floor_s = 0.0;
   bool floor_anew = false;
   ShowProgress progress = show_no_progress;
-  std::function<void(std::string_view)> warn;  ///< told at once what is wrong with the recording
+  std::function<void(std::string_view)> warn;  ///< told at once what is wrong with recording or device
 };
 
 struct RunResult {
@@ -78,8 +79,8 @@ struct RunResult {
 /// How long a loop was silent, and when the device was released.
 [[nodiscard]] std::string in_words(const Stall& stall);
 
-/// Runs the loop on a device and records it if asked to. `stop` ends it early and cleanly. However it ends,
-/// the device is left with zero force.
+/// Runs the loop on a device and records it if asked to. What renders is held to require_probed(). `stop`
+/// ends it early and cleanly. However it ends, the device is left with zero force.
 /// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be begun).
 [[nodiscard]] RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop);
 

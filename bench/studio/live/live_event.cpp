@@ -77,6 +77,7 @@ nlohmann::ordered_json status_as_json(const LiveStatus& status) {
                               {"released", status.is_released},
                               {"blending", status.is_blending},
                               {"recording", nullptr},
+                              {"warning", status.warning},
                               {"recording_failure", status.recording_failure},
                               {"ticks", status.ticks},
                               {"missed", status.missed},

@@ -44,6 +44,7 @@ void LiveLoop::start(const LiveOptions& options) {
     phase_ = Phase::starting;
     stop_ = is_run_over_ = false;
     ended_.clear();
+    warning_.clear();
   }
   if (closed_) stop_ = true;  // close() may have come before the line above
   try {
@@ -95,6 +96,10 @@ void LiveLoop::run(RunOptions options, std::promise<void>& opened) {
     return OtherRendering{.step = [this](const drivers::Sample& sample,
                                          double elapsed_s) { return rendering_(sample, elapsed_s); },
                           .finished = {}};
+  };
+  options.warn = [this](std::string_view line) {
+    const std::lock_guard lock(mutex_);
+    warning_ = line;
   };
   options.zero_hold = &hold_;
   options.each_row = [&hub](const schema::Row& row) { hub->push(row); };
@@ -187,6 +192,7 @@ LiveStatus LiveLoop::status() const {
     status.is_starting = phase_ == Phase::starting;
     status.run = runs_;
     status.ended = ended_;
+    status.warning = warning_;
     hub = hub_;
   }
   if (hub) hub->tell(status);

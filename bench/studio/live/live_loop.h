@@ -124,6 +124,7 @@ class LiveLoop {
   std::uint64_t runs_ = 0;
   std::shared_ptr<LiveHub> hub_;
   std::string ended_;
+  std::string warning_;
 
   std::jthread running_;
   std::jthread watching_;  ///< last: uses the rest

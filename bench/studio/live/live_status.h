@@ -45,6 +45,7 @@ struct LiveStatus {
   bool is_held = false;      ///< zero force after a jump of the position, until it is confirmed
   bool is_blending = false;
   std::optional<Recording> recording;
+  std::string warning;            ///< what is to be known of the device of this loop; else empty
   std::string recording_failure;  ///< of the last recording; empty if all is well
   std::uint64_t ticks = 0;        ///< deadlines behind the loop
   std::uint64_t missed = 0;

@@ -107,6 +107,10 @@ void SessionHost::run(Running& running) {
     SessionRunOptions options;
     options.loop.device_uri = running.order_.device_uri;
     options.loop.sensor_uri = running.order_.sensor_uri;
+    options.loop.warn = [this](std::string_view line) {
+      const std::lock_guard lock(mutex_);
+      progress_.warnings.emplace_back(line);
+    };
     options.progress = [this](std::size_t answered, std::size_t at_most) {
       const std::lock_guard lock(mutex_);
       progress_.answered = answered;

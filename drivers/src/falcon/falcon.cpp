@@ -97,6 +97,8 @@ Falcon::Options Falcon::parse_options(Uri uri) {
 Falcon::Falcon(std::string_view uri, std::size_t number, const Options& options,
                const std::atomic<bool>* stop)
     : options_(options), info_(describe(uri, options)), device_(falcon_identity, number) {
+  info_.serial = device_.serial();
+  info_.port = device_.port();
   set_up_falcon(device_, {.uri = uri, .firmware = options.firmware, .homing = options.homing, .stop = stop});
   guard_.emplace(falcon_identity.what, device_.descriptor(), falcon::letting_go(falcon_out, options.homing));
   link_ = std::make_unique<FalconLink>(device_, thread_, *guard_, options.homing, options.led);

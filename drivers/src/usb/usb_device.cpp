@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -32,16 +33,19 @@ std::string node_of(libusb_device* device) {
                      libusb_get_device_address(device));
 }
 
-/// The folder of a device in /sys, by bus number and port chain: "1-2.3".
-std::string sys_folder_of(libusb_device* device) {
+/// By bus number and port chain: "1-2.3".
+std::string port_of(libusb_device* device) {
   std::array<std::uint8_t, 8> ports{};
   const int count = libusb_get_port_numbers(device, ports.data(), static_cast<int>(ports.size()));
-  std::string name = fmt::format("/sys/bus/usb/devices/{}", libusb_get_bus_number(device));
+  std::string name = fmt::format("{}", libusb_get_bus_number(device));
   for (int i = 0; i < count; ++i) {
     name += fmt::format("{}{}", i == 0 ? '-' : '.', ports[static_cast<std::size_t>(i)]);
   }
   return name;
 }
+
+/// The folder of a device in /sys.
+std::string sys_folder_of(libusb_device* device) { return "/sys/bus/usb/devices/" + port_of(device); }
 
 std::string first_line_of(const std::string& file) {
   std::ifstream in(file);
@@ -212,6 +216,13 @@ std::size_t UsbDevice::receive(std::uint8_t endpoint, std::span<std::uint8_t> bu
   if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_TIMEOUT) fail("receiving", error);
   return static_cast<std::size_t>(received);
 }
+
+std::optional<std::string> UsbDevice::serial() const {
+  std::string told = first_line_of(sys_folder_of(libusb_get_device(handle_)) + "/serial");
+  return told.empty() ? std::nullopt : std::optional(std::move(told));
+}
+
+std::string UsbDevice::port() const { return port_of(libusb_get_device(handle_)); }
 
 UsbDevice::Endpoints UsbDevice::endpoints() const noexcept {
   libusb_config_descriptor* told = nullptr;

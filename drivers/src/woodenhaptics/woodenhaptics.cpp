@@ -232,7 +232,9 @@ void WoodenHaptics::describe(std::string_view uri, const Product& product) {
                     axis("z", middle[2], resolution[2], force)},
            .channels = {{"current_a", "A"}, {"current_b", "A"}, {"current_c", "A"}, {"report_age", "s"}},
            .report_jitter_s = max_report_jitter_s,
-           .configuration = configuration()};
+           .configuration = configuration(),
+           .serial = device_.serial(),
+           .port = device_.port()};
   if (generation_ != Generation::v1) {
     info_.channels.insert(info_.channels.end(),
                           {{"button", "1"}, {"gimbal_d", "1"}, {"gimbal_e", "1"}, {"gimbal_f", "1"}});

@@ -86,6 +86,7 @@ export interface LoopStatus {
   released: boolean; // zero force was asked for
   blending: boolean;
   recording: { name: string; rows: number; seconds: number } | null;
+  warning?: string; // what is to be known of the device of this loop; else empty
   recording_failure: string;
   ticks: number;
   missed: number;

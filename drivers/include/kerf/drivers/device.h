@@ -72,6 +72,8 @@ struct DeviceInfo {
   std::optional<std::size_t> button_channel;  ///< not 0 while a person presses a button of the device
   std::string configuration;                  ///< the settings that it runs with, as TOML, for the recording
   std::vector<ForceMount> mounts;             ///< of a force sensor, beside axes of its own names
+  std::optional<std::string> serial{};  ///< as its descriptor says; makers may give all of theirs the same
+  std::string port{};                   ///< of the USB that it is plugged in at, "1-2.3"
 };
 
 /// Something that a device counted while it ran.

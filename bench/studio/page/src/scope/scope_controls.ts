@@ -160,7 +160,8 @@ function stateText(status: LoopStatus): string {
   if (!status.running) return status.ended ? `Ended: ${status.ended}` : "The loop is not running.";
   if (status.released || status.force === "held") return "Zero force: nothing is rendered.";
   if (status.blending) return "Force comes back gently.";
-  return `Running at ${Math.round(status.rate_hz)} Hz.`;
+  const running = `Running at ${Math.round(status.rate_hz)} Hz.`;
+  return status.warning ? `${running} ${status.warning}` : running;
 }
 
 function nameOfNow(): string {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -68,6 +69,10 @@ class UsbDevice {
     std::uint8_t out = 0;
   };
   [[nodiscard]] Endpoints endpoints() const noexcept;
+  /// The serial number that it tells; nothing if it tells none.
+  [[nodiscard]] std::optional<std::string> serial() const;
+  /// Where it is plugged in, by bus and chain of ports: "1-2.3".
+  [[nodiscard]] std::string port() const;
   /// The report descriptor of a HID device; empty if it does not tell.
   [[nodiscard]] std::vector<std::uint8_t> report_descriptor() noexcept;
 
