@@ -159,7 +159,8 @@ void add_choose(CLI::App& app, Context& context) {
       "Fits every law that fits the axis, tries them from the fewest parameters and the cheapest tick up,\n"
       "and takes the first whose error on held-out cycles is within the force JND, that holds its\n"
       "deadlines in closed loop with the device, and that is stable there or could not be judged, which\n"
-      "is said. Segment a recording of cycles first. Exit status 1 if no law serves. docs/choosing.md says more.",
+      "is said. Segment a recording of cycles first. Exit status 1 if no law serves. docs/choosing.md says "
+      "more.",
       [arguments, &context] { run_choose(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
   verb.add_option("--scene", arguments->scene, "Make a recording of this scene first, in virtual time");
