@@ -112,6 +112,7 @@ UsbDevice::UsbDevice(const Identity& identity, std::size_t index) : what_(identi
     if (count++ < index) return true;
     node_ = node_of(device);
     sys_folder_ = sys_folder_of(device);
+    port_ = port_of(device);
     return false;
   });
   try {
@@ -218,11 +219,11 @@ std::size_t UsbDevice::receive(std::uint8_t endpoint, std::span<std::uint8_t> bu
 }
 
 std::optional<std::string> UsbDevice::serial() const {
-  std::string told = first_line_of(sys_folder_of(libusb_get_device(handle_)) + "/serial");
+  std::string told = first_line_of(sys_folder_ + "/serial");
   return told.empty() ? std::nullopt : std::optional(std::move(told));
 }
 
-std::string UsbDevice::port() const { return port_of(libusb_get_device(handle_)); }
+std::string UsbDevice::port() const { return port_; }
 
 UsbDevice::Endpoints UsbDevice::endpoints() const noexcept {
   libusb_config_descriptor* told = nullptr;

@@ -96,6 +96,8 @@ class UsbDevice {
 
   std::string what_;
   std::string node_;
+  // Of the device that was found: one that is opened by its node does not tell them.
+  std::string port_;
   std::string sys_folder_;
   int descriptor_ = -1;
   libusb_context* context_ = nullptr;
