@@ -47,9 +47,10 @@ class Plausibility {
   /// Time has passed without an answer that could be read.
   void pass(double elapsed_s) noexcept { now_s_ += elapsed_s; }
 
-  /// A reading with finite numbers, `elapsed_s` after the last call.
-  [[nodiscard]] Trust judge(const drivers::Sample& sample, double elapsed_s) noexcept {
+  /// A reading with finite numbers, `elapsed_s` after the last call, which is known to `within_s`.
+  [[nodiscard]] Trust judge(const drivers::Sample& sample, double elapsed_s, double within_s = 0.0) noexcept {
     pass(elapsed_s);
+    within_s_ = std::max(within_s, within_s_ - elapsed_s);
     const bool is_repeated =
         started_ && sample.position == last_.position && sample.age_s - age_s_ >= 0.5 * elapsed_s;
     age_s_ = sample.age_s;
@@ -86,7 +87,7 @@ class Plausibility {
   };
 
   [[nodiscard]] bool can_follow(const Place& here, const Place& from) const noexcept {
-    const double time_s = std::max(here.taken_s - from.taken_s, 0.0) + jitter_s_;
+    const double time_s = std::max(here.taken_s - from.taken_s, 0.0) + jitter_s_ + within_s_;
     for (std::size_t axis = 0; axis < count_; ++axis) {
       double farthest = unlimited;
       if (speed_limit_[axis] > 0.0) farthest = speed_limit_[axis] * time_s;
@@ -140,6 +141,7 @@ class Plausibility {
   Place last_;
   Place before_;  ///< the jump
   double now_s_ = 0.0;
+  double within_s_ = 0.0;
   double age_s_ = 0.0;
   int to_come_ = 0;
   int agreeing_ = 0;

@@ -90,7 +90,9 @@ class Safety {
       plausibility_.pass(elapsed_s);
       wrong |= schema::flag_device_fault;
     } else {
-      wrong |= flag_of(plausibility_.judge(sample, elapsed_s));
+      // When a reading that was late has ended is known to a period.
+      const double within_s = elapsed_s > 1.5 * options_.period_s ? options_.period_s : 0.0;
+      wrong |= flag_of(plausibility_.judge(sample, elapsed_s, within_s));
       note_button(sample);
     }
     if (wrong != 0) {

@@ -151,10 +151,11 @@ class ScheduledDevice final : public drivers::Device {
     // After a gap the tool may be anywhere: a jump is one beside reports that come regularly.
     regular_ = said_.taken_s - before.taken_s < 1.5 * period_s ? regular_ + 1 : 0;
     const bool stands_out = regular_ > 3;
-    demands_zero = stands_out && said_.offset_m != before.offset_m;
+    // Two of them in a tick may cancel each other.
+    const double out_of_place_m = said_.offset_m - before.offset_m + flip_;
+    demands_zero = stands_out && std::abs(out_of_place_m) >= 0.01;
     if (flip_ != 0.0) {
       sample.position[0] += std::exchange(flip_, 0.0) / info().axes[0].lever;
-      demands_zero = demands_zero || stands_out;
     }
     if (schedule_.is(Wrong::no_sensor, now_tick)) sample.force_measured.fill(not_a_number);
     if (schedule_.is(Wrong::nan, now_tick)) {
