@@ -67,18 +67,18 @@ class Evidence {
     miss_ = {};
   }
   /// A stage is over; one that was long is looked at.
-  void end(const Clock& clock, Stage stage, std::int64_t begin_ns, std::int64_t end_ns) noexcept {
-    const std::int64_t wall_ns = end_ns - begin_ns;
+  void end(const Clock& clock, Stage stage, std::int64_t from_ns, std::int64_t until_ns) noexcept {
+    const std::int64_t wall_ns = until_ns - from_ns;
     if (wall_ns < long_ns_) return;
     const std::int64_t cpu_ns = clock.cpu_ns();
     if (wall_ns > miss_.wall_ns) {
       miss_.stage = stage;
       miss_.wall_ns = wall_ns;
       miss_.most_cpu_ns = std::min(cpu_ns - cpu_ns_, wall_ns);
-      miss_.least_cpu_ns = std::max<std::int64_t>(0, cpu_ns - cpu_ns_ - (begin_ns - known_ns_));
+      miss_.least_cpu_ns = std::max<std::int64_t>(0, cpu_ns - cpu_ns_ - (from_ns - known_ns_));
       miss_.least_cpu_ns = std::min(miss_.least_cpu_ns, miss_.most_cpu_ns);
     }
-    know_cpu(cpu_ns, end_ns);
+    know_cpu(cpu_ns, until_ns);
   }
   /// The tick has cost deadlines, most by this stage.
   [[nodiscard]] Miss judge(const Clock& clock, Miss about, double period_ns) noexcept {
