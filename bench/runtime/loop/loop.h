@@ -65,10 +65,14 @@ struct Grid {
   [[nodiscard]] std::int64_t deadline_ns(std::uint64_t tick) const noexcept {
     return start_ns + static_cast<std::int64_t>(tick) * period_ns;
   }
+  /// Periods that have begun when a loop that slept for `tick` is this far; also after the last tick.
+  [[nodiscard]] std::uint64_t begun(std::uint64_t tick, std::int64_t now_ns) const noexcept {
+    const auto passed = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns - start_ns, 0) / period_ns);
+    return std::max(tick, passed) + 1;
+  }
   /// The tick in whose period a loop is that slept for `tick`; at most the last one.
   [[nodiscard]] std::uint64_t current(std::uint64_t tick, std::int64_t now_ns) const noexcept {
-    const auto passed = static_cast<std::uint64_t>(std::max<std::int64_t>(now_ns - start_ns, 0) / period_ns);
-    return std::max(tick, std::min(passed, ticks - 1));
+    return std::min(begun(tick, now_ns), ticks) - 1;
   }
   /// The first tick after `tick` whose deadline has not passed; `ticks` if there is none.
   [[nodiscard]] std::uint64_t next(std::uint64_t tick, std::int64_t now_ns) const noexcept {
@@ -216,7 +220,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
     bool stood_still = control.heartbeat.stands_still(read_ns, silence_ns);
     const bool stalled = control.heartbeat.beat(read_ns, silence_ns);
     // A reading that ends with its period belongs to that one: the next tick has a period of its own.
-    const std::uint64_t periods = grid.current(tick, read_ns - 1) + 1;
+    const std::uint64_t periods = grid.begun(tick, read_ns - 1);
     const auto since = [&](std::uint64_t earlier) {
       return static_cast<double>(periods - earlier) * period_s;
     };

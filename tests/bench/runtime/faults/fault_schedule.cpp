@@ -148,12 +148,17 @@ class ScheduledDevice final : public drivers::Device {
     if (said_.taken_s < 0.0) said_ = history_.back();
     sample = said_.sample;
     sample.age_s = taken_s - said_.taken_s;
-    // After a gap the tool may be anywhere: a jump is one beside reports that come regularly.
-    regular_ = said_.taken_s - before.taken_s < 1.5 * period_s ? regular_ + 1 : 0;
+    // After a gap, or a jump before this one, the tool may be anywhere: a jump is one beside reports that
+    // come regularly.
+    const double step_s = said_.taken_s - before.taken_s;
+    if (step_s > 0.0) regular_ = step_s < 1.5 * period_s ? regular_ + 1 : 0;
     const bool stands_out = regular_ > 3;
-    // Two of them in a tick may cancel each other.
+    // Two of them in a tick may cancel each other, and one the motion of a fast hand.
     const double out_of_place_m = said_.offset_m - before.offset_m + flip_;
-    demands_zero = stands_out && std::abs(out_of_place_m) >= 0.01;
+    const double way_m =
+        info().axes[0].lever * (said_.sample.position[0] - before.sample.position[0]) + flip_;
+    demands_zero = stands_out && std::min(std::abs(out_of_place_m), std::abs(way_m)) >= 0.01;
+    if (out_of_place_m != 0.0) regular_ = 0;
     if (flip_ != 0.0) {
       sample.position[0] += std::exchange(flip_, 0.0) / info().axes[0].lever;
     }
