@@ -6,6 +6,7 @@
 
 #include "hdf5/files.h"
 #include "hdf5/h5.h"
+#include "in_process.h"
 #include "layout/regression_layout.h"
 
 namespace kerf::schema {
@@ -124,12 +125,8 @@ void require_schema(const std::filesystem::path& file, hid_t root) {
 
 }  // namespace
 
-std::vector<StoredForces> read_regression(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw std::invalid_argument(file.string() + ": there is no such file; expected stored forces");
-  require_readable(file);
-  if (!h5::is_hdf5(file)) refuse(file, "not an HDF5 file; expected stored forces");
+std::vector<StoredForces> in_process::read_regression(const std::filesystem::path& file) {
+  require_hdf5(file, "stored forces");
   try {
     const auto opened = h5::open_file(file);
     require_schema(file, h5::open(opened.id(), "/").id());

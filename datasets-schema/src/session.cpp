@@ -7,6 +7,7 @@
 #include <kerf/schema/session.h>
 
 #include "hdf5/files.h"
+#include "in_process.h"
 #include "layout/session_layout.h"
 
 namespace kerf::schema {
@@ -171,15 +172,10 @@ Session read_facts(hid_t file) {
   return session;
 }
 
-[[noreturn]] void refuse_damage(const std::filesystem::path& file, const h5::Error& error) {
-  throw FormatError(one_line(file.string() + ": damaged HDF5 file (" + error.what() +
-                             "); expected a sound session, take it from a copy"));
-}
-
 /// Does `read` with the open file once its tree is known to be that of a session.
 template <typename Read>
 auto read_checked(const std::filesystem::path& file, Read read) {
-  layout::require_session_file(file);
+  require_hdf5(file, "a session");
   try {
     TreeCheck tree(file);
     layout::check(tree);
@@ -191,13 +187,15 @@ auto read_checked(const std::filesystem::path& file, Read read) {
     }
     return read(tree.file());
   } catch (const h5::Error& error) {
-    refuse_damage(file, error);
+    throw DamageError(file, error);
   } catch (const std::bad_alloc&) {
     throw FormatError(file.string() + ": more bytes than fit into the memory; expected a session");
   }
 }
 
 }  // namespace
+
+namespace in_process {
 
 Session read_session(const std::filesystem::path& file) {
   return read_checked(file, [](hid_t opened) {
@@ -212,7 +210,7 @@ Session read_session_facts(const std::filesystem::path& file) {
 }
 
 std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry) {
-  layout::require_session_file(file);
+  require_hdf5(file, "a session");
   try {
     // No text is read: their heaps, for which the whole file would be searched, need not be sound.
     const auto opened = h5::open_file(file);
@@ -227,9 +225,11 @@ std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::si
     }
     return read_box(opened.id(), entry);
   } catch (const h5::Error& error) {
-    refuse_damage(file, error);
+    throw DamageError(file, error);
   }
 }
+
+}  // namespace in_process
 
 void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of) {
   require_texts(session);

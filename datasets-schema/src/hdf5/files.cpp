@@ -9,6 +9,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <kerf/schema/recording.h>
+
 namespace kerf::schema {
 namespace {
 
@@ -125,12 +127,19 @@ std::system_error write_error(const std::filesystem::path& file, const h5::Error
                            file.string() + ": cannot write (" + error.what() + ')');
 }
 
-void require_readable(const std::filesystem::path& file) {
+void require_hdf5(const std::filesystem::path& file, std::string_view expected) {
+  if (!h5::is_hdf5(file)) {
+    throw FormatError(file.string() + ": not an HDF5 file; expected " + std::string(expected));
+  }
+}
+
+void require_readable(const std::filesystem::path& file, std::string_view expected) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
     const auto partial = partial_name(file);
     if (!std::filesystem::exists(partial, ignored)) {
-      throw std::invalid_argument(file.string() + ": there is no such file; expected a recording");
+      throw std::invalid_argument(file.string() + ": there is no such file; expected " +
+                                  std::string(expected));
     }
     throw std::invalid_argument(file.string() + ": there is no such file; " + partial.string() +
                                 (is_marked(partial)
@@ -138,7 +147,7 @@ void require_readable(const std::filesystem::path& file) {
                                      : " holds a recording that was not closed; 'kerf repair' closes it"));
   }
   if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw std::invalid_argument(file.string() + ": not a file; expected a recording");
+    throw std::invalid_argument(file.string() + ": not a file; expected " + std::string(expected));
   }
   if (::access(file.c_str(), R_OK) != 0)
     throw std::invalid_argument(file.string() + ": cannot be read: " + std::strerror(errno));

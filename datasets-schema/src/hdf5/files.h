@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -69,8 +70,12 @@ void rename_file(const std::filesystem::path& from, const std::filesystem::path&
 /// What a user can act on when writing `file` failed.
 [[nodiscard]] std::system_error write_error(const std::filesystem::path& file, const h5::Error& error);
 
+/// @param expected "a recording", "a session", ...
 /// @throws std::invalid_argument if there is no such file, it is a folder or it may not be read: the caller
 ///         named it wrongly.
-void require_readable(const std::filesystem::path& file);
+void require_readable(const std::filesystem::path& file, std::string_view expected);
+
+/// @throws FormatError
+void require_hdf5(const std::filesystem::path& file, std::string_view expected);
 
 }  // namespace kerf::schema

@@ -112,13 +112,4 @@ void check(TreeCheck& tree) {
   check_entries(tree);
 }
 
-void require_session_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw std::invalid_argument(file.string() + ": there is no such file; expected a session");
-  }
-  require_readable(file);
-  if (!h5::is_hdf5(file)) throw FormatError(file.string() + ": not an HDF5 file; expected a session");
-}
-
 }  // namespace kerf::schema::session_layout

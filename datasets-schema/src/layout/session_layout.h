@@ -33,7 +33,4 @@ inline const std::string sealed = "/sealed";
 /// Compares the tree of a session with the layout.
 void check(TreeCheck& tree);
 
-/// @throws std::invalid_argument, FormatError (no HDF5), std::system_error.
-void require_session_file(const std::filesystem::path& file);
-
 }  // namespace kerf::schema::session_layout

@@ -5,6 +5,7 @@
 #include <kerf/schema/live_recording.h>
 
 #include "hdf5/files.h"
+#include "in_process.h"
 #include "recording/build.h"
 #include "validate/inspect.h"
 
@@ -85,11 +86,11 @@ Place find_recording(const std::filesystem::path& name) {
   }
   auto closed = name;
   if (named_partial) closed.replace_extension();
-  require_readable(closed);
+  require_readable(closed, "a recording");
   return {.file = closed};
 }
 
-Tail read_tail(const std::filesystem::path& file) {
+Tail in_process::read_tail(const std::filesystem::path& file) {
   // No look through all texts: that takes as long as reading the file.
   const auto inspection = inspect_readable(file, false);
   const hid_t opened = inspection.file.id();

@@ -1,4 +1,3 @@
-#include <new>
 #include <type_traits>
 #include <variant>
 
@@ -44,17 +43,6 @@ Recording read_inspected(const Inspection& inspection) {
     channel.values = read_values<double>(file, channel_path(channel.name), rows);
   }
   return recording;
-}
-
-Recording read_recording(const std::filesystem::path& file) {
-  const auto inspection = inspect_readable(file);
-  try {
-    return read_inspected(inspection);
-  } catch (const h5::Error& error) {
-    throw DamageError(file, error);
-  } catch (const std::bad_alloc&) {
-    throw FormatError(file.string() + ": more rows than fit into the memory");
-  }
 }
 
 }  // namespace kerf::schema

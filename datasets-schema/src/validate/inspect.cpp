@@ -317,11 +317,7 @@ const Finding* Inspection::first_fatal() const {
 }
 
 Inspection inspect(const std::filesystem::path& file, bool look_through_texts) {
-  require_readable(file);
-  if (!h5::is_hdf5(file)) {
-    throw FormatError(file.string() + ": not an HDF5 file; expected a recording of schema '" +
-                      std::string(schema_name) + '\'');
-  }
+  require_hdf5(file, "a recording of schema '" + std::string(schema_name) + '\'');
   Inspection inspection;
   try {
     inspection.file = h5::open_file(file);

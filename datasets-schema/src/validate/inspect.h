@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <kerf/schema/recording.h>
@@ -31,16 +32,16 @@ struct Inspection {
 
 /// An HDF5 file that HDF5 cannot make sense of: cut short, overwritten in places.
 struct DamageError : FormatError {
-  DamageError(const std::filesystem::path& file, const h5::Error& cause)
-      : FormatError(one_line(file.string() + ": damaged HDF5 file (" + cause.what() +
-                             "); expected a sound recording, take it from a copy")),
-        reason(cause.what()) {}
+  DamageError(const std::filesystem::path& file, std::string why)
+      : FormatError(one_line(file.string() + ": damaged HDF5 file (" + why +
+                             "); expected a sound one, take it from a copy")),
+        reason(std::move(why)) {}
+  DamageError(const std::filesystem::path& file, const h5::Error& cause) : DamageError(file, cause.what()) {}
   std::string reason;
 };
 
 /// Texts need no look where the same file was looked through before and has not changed.
-/// @throws FormatError if it is no HDF5 file, DamageError; std::invalid_argument if there is no such file or
-///         it may not be read.
+/// @throws FormatError if it is no HDF5 file, DamageError.
 [[nodiscard]] Inspection inspect(const std::filesystem::path& file, bool look_through_texts = true);
 
 /// As inspect(). @throws also FormatError that names the first finding for which the recording cannot be

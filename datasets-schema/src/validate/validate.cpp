@@ -7,6 +7,7 @@
 #include <kerf/schema/validate.h>
 
 #include "hdf5/text_heaps.h"
+#include "in_process.h"
 #include "validate/inspect.h"
 #include "validate/validators.h"
 
@@ -166,7 +167,7 @@ void validate_recording(const std::filesystem::path& file, std::vector<Violation
 
 }  // namespace
 
-std::string schema_of(const std::filesystem::path& file) {
+std::string in_process::schema_of(const std::filesystem::path& file) {
   try {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(file, ignored) || !h5::is_hdf5(file)) return {};
@@ -182,7 +183,7 @@ std::string schema_of(const std::filesystem::path& file) {
   }
 }
 
-std::vector<Violation> validate(const std::filesystem::path& file) {
+std::vector<Violation> in_process::validate(const std::filesystem::path& file) {
   std::vector<Violation> violations;
   const std::string schema = schema_of(file);
   try {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "in_process.h"
 #include "layout/regression_layout.h"
 #include "validate/validators.h"
 
@@ -70,7 +71,7 @@ void validate_regression(const std::filesystem::path& file, std::vector<Violatio
     for (const Finding& finding : tree.findings()) violations.push_back(finding.violation);
     if (tree.first_fatal() != nullptr) return;
   }
-  for (const StoredForces& one : read_regression(file)) check_content(one, violations);
+  for (const StoredForces& one : in_process::read_regression(file)) check_content(one, violations);
 }
 
 }  // namespace kerf::schema

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "in_process.h"
 #include "layout/session_layout.h"
 #include "validate/validators.h"
 
@@ -80,7 +81,7 @@ void validate_session(const std::filesystem::path& file, std::vector<Violation>&
     for (const Finding& finding : tree.findings()) violations.push_back(finding.violation);
     if (tree.first_fatal() != nullptr) return;
   }
-  SessionContentCheck(read_session(file), violations).run();
+  SessionContentCheck(in_process::read_session(file), violations).run();
 }
 
 }  // namespace kerf::schema

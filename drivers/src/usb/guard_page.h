@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cstdint>
 
+#include <kerf/processes/helper.h>
+
 #include "kerf/drivers/protocols/letting_go.h"
 
 /// What a program and the guard of its device agree upon.
@@ -18,9 +20,10 @@ struct GuardPage {
 };
 
 /// The descriptors with which a guard begins.
-inline constexpr int guard_of_device = 3;   ///< usbfs, with the interface claimed
-inline constexpr int guard_to_program = 4;  ///< a stream socket; its end is the program's death
-inline constexpr int guard_of_page = 5;
+inline constexpr int guard_of_device = processes::first_descriptor;  ///< usbfs, with the interface claimed
+inline constexpr int guard_to_program =
+    guard_of_device + 1;  ///< a stream socket; its end is the program's death
+inline constexpr int guard_of_page = guard_of_device + 2;
 
 /// What goes over the socket, one byte each.
 inline constexpr char guard_is_ready = 'r';

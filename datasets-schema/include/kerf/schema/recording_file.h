@@ -27,8 +27,8 @@ enum class Column : std::uint8_t {
 /// writer that is still at work or has died. What is in it when it is opened is what it holds: open it again
 /// for the rows that came since. A file that is written is never kept open, and may be renamed meanwhile.
 ///
-/// May be read by several threads. HDF5 has one lock for the whole process, so that every read is cut into
-/// pieces of some milliseconds at most: a recorder in the same process never waits for longer.
+/// It is read by a process of its own, `kerf-reader`: damage that HDF5 falls over ends that one, and nobody
+/// here waits for it but who asks. May be read by several threads, one at a time.
 class RecordingFile {
  public:
   /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
@@ -63,6 +63,8 @@ class RecordingFile {
   void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const;
   void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const;
   void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const;
+  /// Everything, in memory.
+  [[nodiscard]] Recording whole() const;
 
  private:
   struct Implementation;

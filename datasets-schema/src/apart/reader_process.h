@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include <sys/types.h>
+
+#include <kerf/processes/helper.h>
+
+#include "apart/archive.h"
+#include "apart/pieces.h"
+
+namespace kerf::schema::apart {
+
+/// A process of its own, `kerf-reader` beside this program, that reads one file with HDF5: what a damaged
+/// file does to HDF5, it does there. For one thread at a time.
+class ReaderProcess {
+ public:
+  /// @throws std::invalid_argument (there is no such file, or it may not be read), std::system_error (the
+  ///         reader does not start).
+  /// @param expected "a recording", "a session", ...
+  ReaderProcess(const std::filesystem::path& file, std::string_view expected);
+  ReaderProcess(const ReaderProcess&) = delete;
+  ReaderProcess& operator=(const ReaderProcess&) = delete;
+  ~ReaderProcess();
+
+  /// @throws what the reader does; DamageError if it falls over or does not answer.
+  template <typename T>
+  [[nodiscard]] T ask(const Request& request) {
+    begin(request);
+    T value{};
+    ValueReader(*this).read(value);
+    end();
+    return value;
+  }
+  /// Fills `bytes` with what is asked for.
+  void ask(const Request& request, std::span<std::byte> bytes);
+
+  /// The next so many bytes of the answer.
+  void get(void* to, std::size_t bytes);
+
+ private:
+  void begin(const Request& request);
+  void end();
+  void next_piece();
+  void copied();
+  [[nodiscard]] std::string text_of_piece() const;
+  [[nodiscard]] std::string in_our_words(std::string text) const;
+  [[noreturn]] void refuse_as_it_does(Kind kind, int error_number);
+  [[noreturn]] void give_up(const std::string& why);
+  [[nodiscard]] std::string how_it_ended();
+
+  std::filesystem::path file_;
+  int timeout_ms_ = 0;
+  pid_t process_ = 0;
+  processes::Descriptor socket_;
+  std::byte* window_ = nullptr;
+  std::size_t half_ = 0;                ///< that the next piece lies in
+  std::span<const std::byte> piece_{};  ///< what of it was not read yet
+  bool is_last_ = true;
+};
+
+}  // namespace kerf::schema::apart

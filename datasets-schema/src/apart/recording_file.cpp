@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <kerf/schema/recording_file.h>
+
+#include "apart/reader_process.h"
+
+namespace kerf::schema {
+namespace {
+
+constexpr std::size_t index_of(Column column) { return static_cast<std::size_t>(column); }
+
+constexpr bool is_of_floats(Column column) { return column >= Column::wake_latency; }
+
+}  // namespace
+
+struct RecordingFile::Implementation {
+  Implementation(const std::filesystem::path& file, Texts texts) : path(file), reader(file, "a recording") {
+    facts = reader.ask<in_process::RecordingFacts>({.what = texts == Texts::looked_through
+                                                                ? apart::Ask::recording
+                                                                : apart::Ask::recording_with_trusted_texts});
+  }
+
+  template <typename T>
+  void read(std::size_t dataset, std::uint64_t first, std::uint64_t count, std::span<T> values) const {
+    const std::size_t width = dataset < facts.widths.size() ? facts.widths.at(dataset) : 1;
+    if (width == 0) throw std::invalid_argument(path.string() + " has no such column");
+    if (first > facts.rows || count > facts.rows - first) {
+      throw std::out_of_range(path.string() + " has " + std::to_string(facts.rows) + " rows, not the " +
+                              std::to_string(count) + " from " + std::to_string(first) + " on");
+    }
+    if (values.size() != count * width) throw std::invalid_argument("values and rows differ in number");
+    if (count == 0) return;
+    const std::scoped_lock one_at_a_time(mutex);
+    reader.ask({.what = apart::Ask::rows,
+                .dataset = static_cast<std::uint32_t>(dataset),
+                .first = first,
+                .rows = count},
+               std::as_writable_bytes(values));
+  }
+
+  /// All rows of a dataset; none if there is no such one.
+  template <typename T>
+  void read_whole(std::size_t dataset, std::vector<T>& values) const {
+    const std::size_t width = dataset < facts.widths.size() ? facts.widths.at(dataset) : 1;
+    values.resize(facts.rows * width);
+    if (!values.empty()) read(dataset, 0, facts.rows, std::span(values));
+  }
+
+  std::filesystem::path path;
+  mutable std::mutex mutex;
+  mutable apart::ReaderProcess reader;
+  in_process::RecordingFacts facts;
+};
+
+RecordingFile::RecordingFile(const std::filesystem::path& file, Texts texts)
+    : implementation_(std::make_unique<Implementation>(file, texts)) {}
+
+RecordingFile::RecordingFile(RecordingFile&&) noexcept = default;
+RecordingFile& RecordingFile::operator=(RecordingFile&&) noexcept = default;
+RecordingFile::~RecordingFile() = default;
+
+const Recording& RecordingFile::about() const noexcept { return implementation_->facts.about; }
+
+std::uint64_t RecordingFile::rows() const noexcept { return implementation_->facts.rows; }
+
+bool RecordingFile::is_live() const noexcept { return implementation_->facts.is_live; }
+
+double RecordingFile::first_time_s() const noexcept { return implementation_->facts.first_time_s; }
+
+double RecordingFile::last_time_s() const noexcept { return implementation_->facts.last_time_s; }
+
+double RecordingFile::period_s() const noexcept { return implementation_->facts.period_s; }
+
+std::size_t RecordingFile::width(Column column) const noexcept {
+  return implementation_->facts.widths[index_of(column)];
+}
+
+bool RecordingFile::has_flags() const noexcept {
+  return implementation_->facts.widths[in_process::flags_dataset] > 0;
+}
+
+void RecordingFile::read(Column column, std::uint64_t first_row, std::uint64_t rows,
+                         std::span<double> values) const {
+  const auto& self = *implementation_;
+  if (!is_of_floats(column)) return self.read(index_of(column), first_row, rows, values);
+  std::vector<float> floats(values.size());
+  self.read(index_of(column), first_row, rows, std::span(floats));
+  std::ranges::copy(floats, values.begin());
+}
+
+void RecordingFile::read_channel(std::size_t channel, std::uint64_t first_row,
+                                 std::span<double> values) const {
+  const auto& self = *implementation_;
+  const std::size_t channels = self.facts.about.channels.size();
+  if (channel >= channels) {
+    throw std::invalid_argument(self.path.string() + " has " + std::to_string(channels) +
+                                " channels, there is no channel " + std::to_string(channel));
+  }
+  self.read(in_process::first_channel + channel, first_row, values.size(), values);
+}
+
+void RecordingFile::read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const {
+  implementation_->read(in_process::tick_dataset, first_row, values.size(), values);
+}
+
+void RecordingFile::read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const {
+  implementation_->read(in_process::flags_dataset, first_row, values.size(), values);
+}
+
+Recording RecordingFile::whole() const {
+  const auto& self = *implementation_;
+  Recording all = self.facts.about;
+  try {
+    self.read_whole(index_of(Column::time), all.time);
+    self.read_whole(in_process::tick_dataset, all.tick);
+    self.read_whole(index_of(Column::position), all.position);
+    self.read_whole(index_of(Column::velocity), all.velocity);
+    self.read_whole(index_of(Column::force_commanded), all.force_commanded);
+    self.read_whole(index_of(Column::force_measured), all.force_measured);
+    self.read_whole(index_of(Column::wake_latency), all.wake_latency);
+    self.read_whole(index_of(Column::read_time), all.read_time);
+    self.read_whole(index_of(Column::compute_time), all.compute_time);
+    self.read_whole(index_of(Column::write_time), all.write_time);
+    self.read_whole(in_process::flags_dataset, all.flags);
+    for (std::size_t i = 0; i < all.channels.size(); ++i) {
+      self.read_whole(in_process::first_channel + i, all.channels[i].values);
+    }
+  } catch (const std::bad_alloc&) {
+    throw FormatError(self.path.string() + ": more rows than fit into the memory");
+  }
+  return all;
+}
+
+Recording read_recording(const std::filesystem::path& file) { return RecordingFile(file).whole(); }
+
+}  // namespace kerf::schema
