@@ -41,8 +41,9 @@ void give_up_the_rest(std::uint64_t file_bytes) {
   // Who starts it may be one of those that keep a deadline.
   const sched_param lowest{};
   static_cast<void>(sched_setscheduler(0, SCHED_OTHER, &lowest));
-  // A file names the filters that it wants; none is loaded for it.
+  // A file names filters that it wants, and other files that it goes on in: none is loaded or read for it.
   static_cast<void>(H5PLset_loading_state(0));
+  static_cast<void>(H5Lunregister(H5L_TYPE_EXTERNAL));
 }
 
 }  // namespace

@@ -31,6 +31,15 @@ inline constexpr std::size_t first_channel = 11;  ///< /samples/channels follow
   return dataset == flags_dataset || (dataset >= first_of_floats && dataset < tick_dataset) ? 4 : 8;
 }
 
+[[nodiscard]] constexpr bool is_per_axis(std::size_t dataset) noexcept {
+  return dataset >= 1 && dataset <= 4;
+}
+
+/// Time, position, velocity and ticks.
+[[nodiscard]] constexpr bool is_required(std::size_t dataset) noexcept {
+  return dataset <= 2 || dataset == tick_dataset;
+}
+
 /// What an open recording says of itself.
 struct RecordingFacts {
   Recording about;  ///< without a row

@@ -8,6 +8,7 @@
 #include "hdf5/h5.h"
 #include "in_process.h"
 #include "layout/regression_layout.h"
+#include "validate/inspect.h"
 
 namespace kerf::schema {
 namespace {
@@ -129,6 +130,7 @@ std::vector<StoredForces> in_process::read_regression(const std::filesystem::pat
   require_hdf5(file, "stored forces");
   try {
     const auto opened = h5::open_file(file);
+    require_sound_texts(file, opened);
     require_schema(file, h5::open(opened.id(), "/").id());
     if (!h5::is_group(opened.id(), group_of_cases)) refuse(file, "there is no group " + group_of_cases);
     const auto cases = h5::open(opened.id(), group_of_cases);
@@ -136,7 +138,7 @@ std::vector<StoredForces> in_process::read_regression(const std::filesystem::pat
     for (const std::string& name : h5::children(cases.id())) all.push_back(read_case(file, cases.id(), name));
     return all;
   } catch (const h5::Error& error) {
-    refuse(file, std::string("cannot be read (") + error.what() + ")");
+    throw DamageError(file, error);
   }
 }
 

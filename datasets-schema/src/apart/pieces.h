@@ -14,6 +14,7 @@ inline constexpr int reader_to_asker = 4;  ///< SOCK_SEQPACKET; its end ends the
 inline constexpr int reader_of_window = 5;
 
 enum class Ask : std::uint32_t {
+  whole_recording,               ///< RecordingFacts, then all rows of one dataset after the other
   recording,                     ///< RecordingFacts; it stays open
   recording_with_trusted_texts,  ///< the same, without a look through all texts
   rows,                          ///< of the open recording, as they lie in memory

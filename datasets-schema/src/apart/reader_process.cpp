@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,13 +21,11 @@ namespace kerf::schema::apart {
 namespace {
 
 /// As long as the slowest disk takes to give the whole file, and a minute.
-int patience_ms(const std::filesystem::path& file) {
+int patience_ms(std::uintmax_t file_bytes) {
   constexpr std::uintmax_t slow_bytes_per_ms = 5000;
   constexpr std::uintmax_t minute_ms = 60'000;
   constexpr std::uintmax_t day_ms = 24 * 60 * minute_ms;
-  std::error_code unknown;
-  const auto bytes = std::filesystem::file_size(file, unknown);
-  return static_cast<int>(minute_ms + (unknown ? 0 : std::min(bytes / slow_bytes_per_ms, day_ms)));
+  return static_cast<int>(minute_ms + std::min(file_bytes / slow_bytes_per_ms, day_ms));
 }
 
 [[noreturn]] void refuse_start(const std::filesystem::path& file, const std::filesystem::path& reader,
@@ -58,10 +57,14 @@ processes::Descriptor new_window() {
 
 }  // namespace
 
-ReaderProcess::ReaderProcess(const std::filesystem::path& file, std::string_view expected)
-    : file_(file), timeout_ms_(patience_ms(file)) {
+ReaderProcess::ReaderProcess(const std::filesystem::path& file, std::string_view expected) : file_(file) {
   const auto reader = processes::beside_this_program("kerf-reader");
   const auto descriptor = opened(file, expected);
+  struct stat status {};
+  if (::fstat(descriptor.number(), &status) != 0) refuse_start(file, reader, errno);
+  const auto file_bytes = static_cast<std::uintmax_t>(status.st_size);
+  max_bytes_ = h5::max_deflated * file_bytes;
+  timeout_ms_ = patience_ms(file_bytes);
   const auto window = new_window();
   auto [ours, theirs] = processes::connection(SOCK_SEQPACKET);
   if (window.number() < 0 || ours.number() < 0) refuse_start(file, reader, errno);
@@ -83,12 +86,6 @@ ReaderProcess::~ReaderProcess() {
     processes::wait_for(process_);
   }
   ::munmap(window_, window_bytes);
-}
-
-void ReaderProcess::ask(const Request& request, std::span<std::byte> bytes) {
-  begin(request);
-  get(bytes.data(), bytes.size());
-  end();
 }
 
 void ReaderProcess::begin(const Request& request) {
@@ -119,6 +116,20 @@ void ReaderProcess::get(void* to, std::size_t bytes) {
     piece_ = piece_.subspan(now);
     if (piece_.empty()) copied();
   }
+}
+
+in_process::RecordingFacts ReaderProcess::get_facts() {
+  in_process::RecordingFacts facts;
+  ValueReader(*this).read(facts);
+  const std::size_t dimensions = facts.about.dimensions();
+  bool is_sound = dimensions >= 1 && dimensions <= max_axes && facts.rows <= max_bytes_;
+  for (std::size_t dataset = 0; dataset < facts.widths.size(); ++dataset) {
+    const std::size_t width = in_process::is_per_axis(dataset) ? dimensions : 1;
+    const bool may_lack = !in_process::is_required(dataset);
+    is_sound = is_sound && (facts.widths[dataset] == width || (may_lack && facts.widths[dataset] == 0));
+  }
+  if (!is_sound) give_up("its reader says what does not go together");
+  return facts;
 }
 
 void ReaderProcess::next_piece() {

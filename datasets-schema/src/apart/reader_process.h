@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <sys/types.h>
 
@@ -30,21 +31,30 @@ class ReaderProcess {
   /// @throws what the reader does; DamageError if it falls over or does not answer.
   template <typename T>
   [[nodiscard]] T ask(const Request& request) {
-    begin(request);
     T value{};
+    begin(request);
     ValueReader(*this).read(value);
     end();
     return value;
   }
-  /// Fills `bytes` with what is asked for.
-  void ask(const Request& request, std::span<std::byte> bytes);
 
-  /// The next so many bytes of the answer.
+  // An answer of several parts: begin(), as many get() as it has, end().
+  void begin(const Request& request);
+  /// The next so many bytes.
   void get(void* to, std::size_t bytes);
+  void get(std::span<std::byte> bytes) { get(bytes.data(), bytes.size()); }
+  /// So many numbers: no more than the file can hold, whatever the reader says.
+  template <typename Number>
+  void get(std::vector<Number>& numbers, std::uint64_t count) {
+    if (count > max_bytes_ / sizeof(Number)) give_up("its reader says more than the file can hold");
+    numbers.resize(count);
+    get(std::as_writable_bytes(std::span(numbers)));
+  }
+  void end();
+  /// The facts of a recording, which the answer begins with. @throws DamageError if they do not go together.
+  [[nodiscard]] in_process::RecordingFacts get_facts();
 
  private:
-  void begin(const Request& request);
-  void end();
   void next_piece();
   void copied();
   [[nodiscard]] std::string text_of_piece() const;
@@ -54,6 +64,7 @@ class ReaderProcess {
   [[nodiscard]] std::string how_it_ended();
 
   std::filesystem::path file_;
+  std::uintmax_t max_bytes_ = 0;
   int timeout_ms_ = 0;
   pid_t process_ = 0;
   processes::Descriptor socket_;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <mutex>
-#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -19,9 +18,11 @@ constexpr bool is_of_floats(Column column) { return column >= Column::wake_laten
 
 struct RecordingFile::Implementation {
   Implementation(const std::filesystem::path& file, Texts texts) : path(file), reader(file, "a recording") {
-    facts = reader.ask<in_process::RecordingFacts>({.what = texts == Texts::looked_through
-                                                                ? apart::Ask::recording
-                                                                : apart::Ask::recording_with_trusted_texts});
+    using apart::Ask;
+    reader.begin(
+        {.what = texts == Texts::looked_through ? Ask::recording : Ask::recording_with_trusted_texts});
+    facts = reader.get_facts();
+    reader.end();
   }
 
   template <typename T>
@@ -35,19 +36,12 @@ struct RecordingFile::Implementation {
     if (values.size() != count * width) throw std::invalid_argument("values and rows differ in number");
     if (count == 0) return;
     const std::scoped_lock one_at_a_time(mutex);
-    reader.ask({.what = apart::Ask::rows,
-                .dataset = static_cast<std::uint32_t>(dataset),
-                .first = first,
-                .rows = count},
-               std::as_writable_bytes(values));
-  }
-
-  /// All rows of a dataset; none if there is no such one.
-  template <typename T>
-  void read_whole(std::size_t dataset, std::vector<T>& values) const {
-    const std::size_t width = dataset < facts.widths.size() ? facts.widths.at(dataset) : 1;
-    values.resize(facts.rows * width);
-    if (!values.empty()) read(dataset, 0, facts.rows, std::span(values));
+    reader.begin({.what = apart::Ask::rows,
+                  .dataset = static_cast<std::uint32_t>(dataset),
+                  .first = first,
+                  .rows = count});
+    reader.get(std::as_writable_bytes(values));
+    reader.end();
   }
 
   std::filesystem::path path;
@@ -110,31 +104,5 @@ void RecordingFile::read_ticks(std::uint64_t first_row, std::span<std::uint64_t>
 void RecordingFile::read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const {
   implementation_->read(in_process::flags_dataset, first_row, values.size(), values);
 }
-
-Recording RecordingFile::whole() const {
-  const auto& self = *implementation_;
-  Recording all = self.facts.about;
-  try {
-    self.read_whole(index_of(Column::time), all.time);
-    self.read_whole(in_process::tick_dataset, all.tick);
-    self.read_whole(index_of(Column::position), all.position);
-    self.read_whole(index_of(Column::velocity), all.velocity);
-    self.read_whole(index_of(Column::force_commanded), all.force_commanded);
-    self.read_whole(index_of(Column::force_measured), all.force_measured);
-    self.read_whole(index_of(Column::wake_latency), all.wake_latency);
-    self.read_whole(index_of(Column::read_time), all.read_time);
-    self.read_whole(index_of(Column::compute_time), all.compute_time);
-    self.read_whole(index_of(Column::write_time), all.write_time);
-    self.read_whole(in_process::flags_dataset, all.flags);
-    for (std::size_t i = 0; i < all.channels.size(); ++i) {
-      self.read_whole(in_process::first_channel + i, all.channels[i].values);
-    }
-  } catch (const std::bad_alloc&) {
-    throw FormatError(self.path.string() + ": more rows than fit into the memory");
-  }
-  return all;
-}
-
-Recording read_recording(const std::filesystem::path& file) { return RecordingFile(file).whole(); }
 
 }  // namespace kerf::schema

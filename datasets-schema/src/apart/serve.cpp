@@ -51,12 +51,14 @@ class Server {
 
   void answer(const Request& request) {
     switch (request.what) {
+      case Ask::whole_recording:
+        return put_whole();
       case Ask::recording:
         return open(true);
       case Ask::recording_with_trusted_texts:
         return open(false);
       case Ask::rows:
-        return put_rows(request);
+        return put_rows(request.dataset, request.first, request.rows);
       case Ask::tail:
         return put(in_process::read_tail(file_));
       case Ask::stored_forces:
@@ -84,13 +86,21 @@ class Server {
     put(recording_->facts());
   }
 
-  void put_rows(const Request& request) {
-    const std::size_t row_bytes = recording_.value().row_bytes(request.dataset);
-    std::uint64_t first = request.first;
-    for (std::uint64_t left = request.rows; left > 0;) {
+  void put_whole() {
+    open(true);
+    const auto& facts = recording_->facts();
+    const std::size_t datasets = in_process::first_channel + facts.about.channels.size();
+    for (std::size_t dataset = 0; dataset < datasets; ++dataset) {
+      if (recording_->row_bytes(dataset) > 0) put_rows(dataset, 0, facts.rows);
+    }
+  }
+
+  void put_rows(std::size_t dataset, std::uint64_t first, std::uint64_t left) {
+    const std::size_t row_bytes = recording_.value().row_bytes(dataset);
+    while (left > 0) {
       const auto room = sink_.room(row_bytes);
       const auto rows = std::min<std::uint64_t>(left, room.size() / std::max<std::size_t>(row_bytes, 1));
-      recording_->read(request.dataset, first, rows, room.first(rows * row_bytes));
+      recording_->read(dataset, first, rows, room.first(rows * row_bytes));
       sink_.filled(rows * row_bytes);
       first += rows;
       left -= rows;

@@ -1,4 +1,9 @@
+#include <new>
+#include <utility>
+#include <vector>
+
 #include <kerf/schema/live_recording.h>
+#include <kerf/schema/recording.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
@@ -11,6 +16,53 @@ namespace kerf::schema {
 
 using apart::Ask;
 using apart::ReaderProcess;
+
+namespace {
+
+/// The rows of one dataset after the other, as a reader's process sends them.
+class WholeDatasets {
+ public:
+  WholeDatasets(ReaderProcess& reader, const in_process::RecordingFacts& facts)
+      : reader_(reader), facts_(facts) {}
+
+  template <typename Number>
+  void next(std::vector<Number>& values) {
+    const std::size_t width = dataset_ < facts_.widths.size() ? facts_.widths.at(dataset_) : 1;
+    ++dataset_;
+    reader_.get(values, facts_.rows * width);
+  }
+
+ private:
+  ReaderProcess& reader_;
+  const in_process::RecordingFacts& facts_;
+  std::size_t dataset_ = 0;
+};
+
+}  // namespace
+
+Recording read_recording(const std::filesystem::path& file) try {
+  ReaderProcess reader(file, "a recording");
+  reader.begin({.what = Ask::whole_recording});
+  auto facts = reader.get_facts();
+  Recording all = std::move(facts.about);
+  WholeDatasets datasets(reader, facts);
+  datasets.next(all.time);
+  datasets.next(all.position);
+  datasets.next(all.velocity);
+  datasets.next(all.force_commanded);
+  datasets.next(all.force_measured);
+  datasets.next(all.wake_latency);
+  datasets.next(all.read_time);
+  datasets.next(all.compute_time);
+  datasets.next(all.write_time);
+  datasets.next(all.tick);
+  datasets.next(all.flags);
+  for (Channel& channel : all.channels) datasets.next(channel.values);
+  reader.end();
+  return all;
+} catch (const std::bad_alloc&) {
+  throw FormatError(file.string() + ": more rows than fit into the memory");
+}
 
 Tail read_tail(const std::filesystem::path& file) {
   return ReaderProcess(file, "a recording").ask<Tail>({.what = Ask::tail});

@@ -363,8 +363,18 @@ Description describe(hid_t dataset) {
   return {type_name(type.id()), extent_of(Handle(call(H5Dget_space, dataset)))};
 }
 
+namespace {
+
+/// Values that lie in other files, by names that this one gives.
+bool lies_elsewhere(hid_t dataset) {
+  const Handle creation(call(H5Dget_create_plist, dataset));
+  return H5Pget_layout(creation.id()) == H5D_VIRTUAL || call(H5Pget_external_count, creation.id()) > 0;
+}
+
+}  // namespace
+
 bool is_plausible(hid_t dataset, std::uintmax_t file_size) {
-  constexpr std::uintmax_t max_deflated = 1100;
+  if (lies_elsewhere(dataset)) return false;
   std::uintmax_t bytes = H5Tget_size(Handle(call(H5Dget_type, dataset)).id());
   for (const hsize_t length : extent_of(Handle(call(H5Dget_space, dataset)))) {
     if (__builtin_mul_overflow(bytes, length, &bytes)) return false;

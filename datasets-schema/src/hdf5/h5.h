@@ -157,8 +157,10 @@ struct DatasetOptions {
 [[nodiscard]] Handle create_dataset(hid_t parent, const std::string& path, hid_t type,
                                     const DatasetOptions& options);
 [[nodiscard]] Description describe(hid_t dataset);
-/// Whether a file of so many bytes can hold a dataset's values; deflate packs 1000 : 1 at most. A damaged
-/// extent must not make the reader ask for all the memory there is.
+/// Deflate packs 1000 : 1 at most.
+inline constexpr std::uintmax_t max_deflated = 1100;
+/// Whether a file of so many bytes can hold a dataset's values, and does not name other files that do. A
+/// damaged extent must not make the reader ask for all the memory there is.
 [[nodiscard]] bool is_plausible(hid_t dataset, std::uintmax_t file_size);
 void write(hid_t dataset, hid_t memory_type, const void* values);
 /// Adds rows after the first `rows_before`.

@@ -23,8 +23,6 @@ constexpr std::array<const char*, first_channel> dataset_paths{
 
 constexpr std::size_t time_dataset = 0;
 
-bool is_per_axis(std::size_t dataset) { return dataset >= 1 && dataset <= 4; }
-
 hid_t native_type(std::size_t dataset) {
   if (dataset == tick_dataset) return h5::native<std::uint64_t>();
   if (dataset == flags_dataset) return h5::native<std::uint32_t>();

@@ -316,14 +316,18 @@ const Finding* Inspection::first_fatal() const {
   return found == findings.end() ? nullptr : &*found;
 }
 
+void require_sound_texts(const std::filesystem::path& file, const h5::Handle& opened) {
+  if (!are_text_heaps_sound(file, h5::block_alignment(opened.id()))) {
+    throw h5::Error("its texts are overwritten or cut off", 0);
+  }
+}
+
 Inspection inspect(const std::filesystem::path& file, bool look_through_texts) {
   require_hdf5(file, "a recording of schema '" + std::string(schema_name) + '\'');
   Inspection inspection;
   try {
     inspection.file = h5::open_file(file);
-    if (look_through_texts && !are_text_heaps_sound(file, h5::block_alignment(inspection.file.id()))) {
-      throw h5::Error("its texts are overwritten or cut off", 0);
-    }
+    if (look_through_texts) require_sound_texts(file, inspection.file);
     Inspector(inspection, std::filesystem::file_size(file)).run();
   } catch (const h5::Error& error) {
     throw DamageError(file, error);

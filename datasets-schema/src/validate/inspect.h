@@ -40,6 +40,9 @@ struct DamageError : FormatError {
   std::string reason;
 };
 
+/// @throws h5::Error where HDF5 would fall over the file's texts.
+void require_sound_texts(const std::filesystem::path& file, const h5::Handle& opened);
+
 /// Texts need no look where the same file was looked through before and has not changed.
 /// @throws FormatError if it is no HDF5 file, DamageError.
 [[nodiscard]] Inspection inspect(const std::filesystem::path& file, bool look_through_texts = true);

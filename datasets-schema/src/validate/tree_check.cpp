@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <regex>
 
-#include "hdf5/text_heaps.h"
-
 namespace kerf::schema {
 namespace {
 
@@ -27,8 +25,8 @@ std::string attribute_of(const std::string& object, std::string_view name) {
 }  // namespace
 
 TreeCheck::TreeCheck(const std::filesystem::path& file) {
-  if (!are_text_heaps_sound(file)) throw h5::Error("its texts are overwritten or cut off", 0);
   opened_ = h5::open_file(file);
+  require_sound_texts(file, opened_);
   size_ = std::filesystem::file_size(file);
 }
 

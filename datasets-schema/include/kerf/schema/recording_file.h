@@ -63,8 +63,6 @@ class RecordingFile {
   void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const;
   void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const;
   void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const;
-  /// Everything, in memory.
-  [[nodiscard]] Recording whole() const;
 
  private:
   struct Implementation;
