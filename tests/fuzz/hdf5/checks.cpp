@@ -2,25 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <kerf/schema/live_recording.h>
 #include <kerf/schema/recording.h>
-#include <kerf/schema/recording_file.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/repair.h>
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
 #include "fuzz/target.h"
+#include "in_process.h"
 
 namespace kerf::fuzz {
 namespace {
 
 using schema::FormatError;
+// Within this process, where the sanitizers and the fuzzer's counters see it.
+namespace in_process = schema::in_process;
 
 /// Why `action` refuses; empty if it does not.
 template <typename Action>
@@ -36,7 +39,7 @@ std::string refusal(const Action& action) {
 }
 
 void require_valid(const std::filesystem::path& file, const std::string& what) {
-  const auto violations = schema::validate(file);
+  const auto violations = in_process::validate(file);
   if (violations.empty()) return;
   const auto& [where, found, expected] = violations.front();
   promise(false, what + ": " + where + ": found " + found + ", expected " + expected);
@@ -47,49 +50,65 @@ bool are_same(const std::vector<double>& a, const std::vector<double>& b) {
                             [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });
 }
 
+/// A column, so many rows at once.
+template <typename Number>
+std::vector<Number> column_of(const in_process::OpenRecording& file, std::size_t dataset,
+                              std::uint64_t at_once) {
+  const std::uint64_t rows = file.row_bytes(dataset) > 0 ? file.facts().rows : 0;
+  const std::size_t width = file.row_bytes(dataset) / sizeof(Number);
+  std::vector<Number> values(rows * width);
+  for (std::uint64_t row = 0; row < rows; row += at_once) {
+    const std::uint64_t count = std::min(at_once, rows - row);
+    file.read(dataset, row, count,
+              std::as_writable_bytes(std::span(values).subspan(row * width, count * width)));
+  }
+  return values;
+}
+
+schema::Recording read_by(const in_process::OpenRecording& file, std::uint64_t at_once) {
+  schema::Recording all = file.facts().about;
+  std::size_t dataset = 0;
+  for (auto column : {&schema::Recording::time, &schema::Recording::position, &schema::Recording::velocity,
+                      &schema::Recording::force_commanded, &schema::Recording::force_measured}) {
+    all.*column = column_of<double>(file, dataset++, at_once);
+  }
+  for (auto column : {&schema::Recording::wake_latency, &schema::Recording::read_time,
+                      &schema::Recording::compute_time, &schema::Recording::write_time}) {
+    all.*column = column_of<float>(file, dataset++, at_once);
+  }
+  all.tick = column_of<std::uint64_t>(file, in_process::tick_dataset, at_once);
+  all.flags = column_of<std::uint32_t>(file, in_process::flags_dataset, at_once);
+  dataset = in_process::first_channel;
+  for (schema::Channel& channel : all.channels) channel.values = column_of<double>(file, dataset++, at_once);
+  return all;
+}
+
 /// A recording piece by piece is what it is as a whole.
-void check_pieces(const std::filesystem::path& path, const schema::Recording& whole) {
-  const schema::RecordingFile file(path);
-  promise(file.rows() == whole.rows(), "as many rows, by pieces and as a whole");
-  const auto rows = whole.rows();
-  const std::vector<std::pair<schema::Column, const std::vector<double>*>> columns{
-      {schema::Column::time, &whole.time},
-      {schema::Column::position, &whole.position},
-      {schema::Column::velocity, &whole.velocity},
-      {schema::Column::force_commanded, &whole.force_commanded},
-      {schema::Column::force_measured, &whole.force_measured}};
-  for (const auto& [column, expected] : columns) {
-    std::vector<double> values(rows * file.width(column));
-    if (!values.empty()) file.read(column, 0, rows, values);
-    promise(are_same(values, *expected), "the same values, by pieces and as a whole");
+schema::Recording read_both_ways(const std::filesystem::path& path) {
+  const in_process::OpenRecording file(path, true);
+  schema::Recording whole = read_by(file, std::numeric_limits<std::uint32_t>::max());
+  const schema::Recording pieces = read_by(file, 3);
+  for (auto column : {&schema::Recording::time, &schema::Recording::position, &schema::Recording::velocity,
+                      &schema::Recording::force_commanded, &schema::Recording::force_measured}) {
+    promise(are_same(whole.*column, pieces.*column), "the same values, by pieces and as a whole");
   }
+  promise(whole.tick == pieces.tick, "the same ticks, by pieces and as a whole");
+  promise(whole.flags == pieces.flags, "the same flags, by pieces and as a whole");
   for (std::size_t i = 0; i < whole.channels.size(); ++i) {
-    std::vector<double> values(rows);
-    file.read_channel(i, 0, values);
-    promise(are_same(values, whole.channels[i].values), "the same channels, by pieces and as a whole");
+    promise(are_same(whole.channels[i].values, pieces.channels[i].values),
+            "the same channels, by pieces and as a whole");
   }
-  std::vector<std::uint64_t> ticks(rows);
-  file.read_ticks(0, ticks);
-  promise(ticks == whole.tick, "the same ticks, by pieces and as a whole");
-  std::vector<std::uint32_t> flags(file.has_flags() ? rows : 0);
-  if (!flags.empty()) file.read_flags(0, flags);
-  promise(flags == whole.flags, "the same flags, by pieces and as a whole");
+  return whole;
 }
 
 void check_recording(const std::filesystem::path& file, bool is_valid) {
   schema::Recording recording;
-  const std::string why = refusal([&] { recording = schema::read_recording(file); });
-  if (!why.empty()) {
-    promise(refusal([&] { const schema::RecordingFile opened(file); }) == why,
-            "both readers refuse alike: " + why);
-    return;
-  }
-  check_pieces(file, recording);
+  if (!refusal([&] { recording = read_both_ways(file); }).empty()) return;
   const auto copy = file.parent_path() / "copy.h5";
   if (is_valid) {
     schema::write_recording(copy, recording);
     require_valid(copy, "a valid recording is written as one");
-    promise(schema::read_recording(copy).time == recording.time, "a recording is written as it is read");
+    promise(read_both_ways(copy).time == recording.time, "a recording is written as it is read");
   }
   std::error_code ignored;
   std::filesystem::remove(copy, ignored);
@@ -97,7 +116,7 @@ void check_recording(const std::filesystem::path& file, bool is_valid) {
   try {
     const auto repaired = schema::repair(file, {.output = copy});
     promise(repaired.rows == recording.rows(), "every row is repaired");
-    promise(schema::read_recording(copy).rows() == recording.rows(), "what is repaired can be read");
+    promise(read_both_ways(copy).rows() == recording.rows(), "what is repaired can be read");
   } catch (const std::invalid_argument&) {
     promise(!is_valid, "a valid recording that was not closed is repaired");
   }
@@ -106,7 +125,7 @@ void check_recording(const std::filesystem::path& file, bool is_valid) {
 
 void check_stored_forces(const std::filesystem::path& file, bool is_valid) {
   std::vector<schema::StoredForces> cases;
-  const std::string why = refusal([&] { cases = schema::read_regression(file); });
+  const std::string why = refusal([&] { cases = in_process::read_regression(file); });
   promise(why.empty() || !is_valid, "valid stored forces are read, not refused: " + why);
   if (!is_valid) return;
   for (const schema::StoredForces& one : cases)
@@ -119,34 +138,34 @@ void check_stored_forces(const std::filesystem::path& file, bool is_valid) {
 
 void check_session(const std::filesystem::path& file, bool is_valid) {
   schema::Session session;
-  const std::string why = refusal([&] { session = schema::read_session(file); });
+  const std::string why = refusal([&] { session = in_process::read_session(file); });
   promise(why.empty() || !is_valid, "a valid session is read, not refused: " + why);
   if (!why.empty()) return;
   schema::Session facts;
-  promise(refusal([&] { facts = schema::read_session_facts(file); }).empty(),
+  promise(refusal([&] { facts = in_process::read_session_facts(file); }).empty(),
           "of a session that is read so are the facts");
   promise(facts.entries.size() == session.entries.size(), "as many entries, with what is sealed and without");
   for (std::size_t i = 0; i < session.entries.size(); ++i)
-    promise(schema::read_sealed(file, i) == session.entries[i].sealed, "one seal is that of the whole");
+    promise(in_process::read_sealed(file, i) == session.entries[i].sealed, "one seal is that of the whole");
 }
 
 }  // namespace
 
 void check_readers(const std::filesystem::path& file) {
   bool is_valid = false;
-  (void)refusal([&] { is_valid = schema::validate(file).empty(); });
-  const std::string schema = schema::schema_of(file);
+  (void)refusal([&] { is_valid = in_process::validate(file).empty(); });
+  const std::string schema = in_process::schema_of(file);
   if (schema == schema::regression_schema_name) {
     check_stored_forces(file, is_valid);
-    promise(!refusal([&] { (void)schema::read_session(file); }).empty(), "stored forces are no session");
+    promise(!refusal([&] { (void)in_process::read_session(file); }).empty(), "stored forces are no session");
   } else if (schema == schema::session_schema_name) {
     check_session(file, is_valid);
-    promise(!refusal([&] { (void)schema::read_recording(file); }).empty(), "a session is no recording");
+    promise(!refusal([&] { in_process::OpenRecording(file, true); }).empty(), "a session is no recording");
   } else {
     check_recording(file, is_valid);
-    (void)refusal([&] { (void)schema::read_tail(file); });
+    (void)refusal([&] { (void)in_process::read_tail(file); });
     if (!is_valid) return;
-    promise(!refusal([&] { (void)schema::read_regression(file); }).empty(),
+    promise(!refusal([&] { (void)in_process::read_regression(file); }).empty(),
             "a recording is no stored forces");
   }
 }
