@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <kerf/schema/live_recording.h>
@@ -18,12 +19,22 @@
 
 /// What reads files with HDF5 in the very process that calls it. Damage can make HDF5 fall over: only
 /// `kerf-reader` calls these on files that it was given; everybody else asks it (apart/).
+namespace kerf::schema {
+struct Inspection;
+}
+
 namespace kerf::schema::in_process {
 
-/// The datasets of /samples that have a value or one an axis a row: those of Column, then ticks and flags.
+/// The datasets of /samples that have a value or one an axis a row: those of Column in its order, then ticks
+/// and flags.
+inline constexpr std::array<std::string_view, 11> dataset_paths{
+    "/samples/time",           "/samples/position",     "/samples/velocity",  "/samples/force_commanded",
+    "/samples/force_measured", "/samples/wake_latency", "/samples/read_time", "/samples/compute_time",
+    "/samples/write_time",     "/samples/tick",         "/samples/flags"};
+inline constexpr std::size_t time_dataset = 0;
 inline constexpr std::size_t tick_dataset = 9;
 inline constexpr std::size_t flags_dataset = 10;
-inline constexpr std::size_t first_channel = 11;  ///< /samples/channels follow
+inline constexpr std::size_t first_channel = dataset_paths.size();  ///< /samples/channels follow
 
 /// Bytes of a value of such a dataset.
 [[nodiscard]] constexpr std::size_t value_bytes(std::size_t dataset) noexcept {
@@ -56,6 +67,8 @@ class OpenRecording {
  public:
   /// @throws as RecordingFile.
   OpenRecording(const std::filesystem::path& file, bool look_through_texts);
+  /// One that was inspected and has nothing fatal.
+  OpenRecording(const std::filesystem::path& file, Inspection&& inspection);
   ~OpenRecording();
 
   [[nodiscard]] const RecordingFacts& facts() const noexcept;

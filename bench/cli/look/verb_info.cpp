@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <kerf/schema/live_recording.h>
-#include <kerf/schema/recording.h>
+#include <kerf/schema/recording_file.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
@@ -105,7 +105,7 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
     context.result = stored_facts(schema::read_regression(file));
     context.say(stored_facts_table(context.result));
   } else {
-    context.result = recording_summary(schema::read_recording(file));
+    context.result = recording_summary(schema::RecordingFile(file));
     context.say(summary_table(context.result));
   }
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());

@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/schema/recording_file.h>
+
 #include "program/confirm_on_enter.h"
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
@@ -39,14 +41,14 @@ void run_record(const RecordVerbArguments& arguments, Context& context) {
   options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
   if (!result.recording_failure.empty()) throw std::runtime_error(result.recording_failure);
-  const schema::Recording recording = schema::read_recording(arguments.output);
+  const schema::RecordingFile recording(arguments.output);
   context.result = recording_summary(recording);
   context.result["missed"] = result.report.missed();
   context.result["rows_lost"] = result.rows_lost;
   context.result["device_figures"] = figures_as_json(result.figures);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   context.say(fmt::format("{}: {} samples over {:.3f} s, {} deadlines missed, {} rows lost", arguments.output,
-                          recording.rows(), recording.time.empty() ? 0.0 : recording.time.back(),
+                          recording.rows(), recording.rows() == 0 ? 0.0 : recording.last_time_s(),
                           result.report.missed(), result.rows_lost));
 }
 

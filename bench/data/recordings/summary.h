@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
 namespace kerf::bench {
@@ -12,6 +13,8 @@ namespace kerf::bench {
 /// rate_hz (of the median period), gaps (jumps of the tick, and periods beyond 2.5 times the median),
 /// channels with unit, min and max, warnings, and what the file says of itself (schema, status, uuid, axes,
 /// cycles, ...).
+/// Looks at some rows at a time: in the same memory for a day as for a second.
+[[nodiscard]] nlohmann::ordered_json recording_summary(const schema::RecordedRows& rows);
 [[nodiscard]] nlohmann::ordered_json recording_summary(const schema::Recording& recording);
 
 /// The same as lines for people.

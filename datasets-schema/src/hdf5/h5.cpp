@@ -386,28 +386,41 @@ void write(hid_t dataset, hid_t memory_type, const void* values) {
   call(H5Dwrite, dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
 }
 
+namespace {
+
+/// Rows [first, first + rows) of a dataset, in the file and alone.
+struct RowsOf {
+  RowsOf(hid_t dataset, hsize_t rows, hsize_t first) : in_file(call(H5Dget_space, dataset)) {
+    Extent extent = extent_of(in_file);
+    extent.front() = rows;
+    Extent start(extent.size(), 0);
+    start.front() = first;
+    call(H5Sselect_hyperslab, in_file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+    alone = dataspace(extent, false);
+  }
+  Handle in_file;
+  Handle alone;
+};
+
+}  // namespace
+
+void write(hid_t dataset, hid_t memory_type, hsize_t rows, const void* values, hsize_t first) {
+  const RowsOf part(dataset, rows, first);
+  call(H5Dwrite, dataset, memory_type, part.alone.id(), part.in_file.id(), H5P_DEFAULT, values);
+}
+
 void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows, const void* values) {
   Extent extent = extent_of(Handle(call(H5Dget_space, dataset)));
   extent.front() = rows_before + rows;
   call(H5Dset_extent, dataset, extent.data());
-  const Handle in_file(call(H5Dget_space, dataset));
-  Extent start(extent.size(), 0);
-  start.front() = rows_before;
-  extent.front() = rows;
-  call(H5Sselect_hyperslab, in_file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
-  call(H5Dwrite, dataset, memory_type, dataspace(extent, false).id(), in_file.id(), H5P_DEFAULT, values);
+  write(dataset, memory_type, rows, values, rows_before);
 }
 
 void flush(hid_t dataset) { call(H5Dflush, dataset); }
 
 void read(hid_t dataset, hid_t memory_type, hsize_t rows, void* values, hsize_t first) {
-  const Handle in_file(call(H5Dget_space, dataset));
-  Extent extent = extent_of(in_file);
-  extent.front() = rows;
-  Extent start(extent.size(), 0);
-  start.front() = first;
-  call(H5Sselect_hyperslab, in_file.id(), H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
-  call(H5Dread, dataset, memory_type, dataspace(extent, false).id(), in_file.id(), H5P_DEFAULT, values);
+  const RowsOf part(dataset, rows, first);
+  call(H5Dread, dataset, memory_type, part.alone.id(), part.in_file.id(), H5P_DEFAULT, values);
 }
 
 namespace {

@@ -163,6 +163,8 @@ inline constexpr std::uintmax_t max_deflated = 1100;
 /// damaged extent must not make the reader ask for all the memory there is.
 [[nodiscard]] bool is_plausible(hid_t dataset, std::uintmax_t file_size);
 void write(hid_t dataset, hid_t memory_type, const void* values);
+/// Writes `rows` rows from row `first` on, which are there.
+void write(hid_t dataset, hid_t memory_type, hsize_t rows, const void* values, hsize_t first);
 /// Adds rows after the first `rows_before`.
 void append(hid_t dataset, hid_t memory_type, hsize_t rows_before, hsize_t rows, const void* values);
 /// Hands it to the operating system.

@@ -16,13 +16,6 @@
 namespace kerf::schema::in_process {
 namespace {
 
-constexpr std::array<const char*, first_channel> dataset_paths{
-    "/samples/time",           "/samples/position",     "/samples/velocity",  "/samples/force_commanded",
-    "/samples/force_measured", "/samples/wake_latency", "/samples/read_time", "/samples/compute_time",
-    "/samples/write_time",     "/samples/tick",         "/samples/flags"};
-
-constexpr std::size_t time_dataset = 0;
-
 hid_t native_type(std::size_t dataset) {
   if (dataset == tick_dataset) return h5::native<std::uint64_t>();
   if (dataset == flags_dataset) return h5::native<std::uint32_t>();
@@ -55,14 +48,13 @@ struct Dataset {
 }  // namespace
 
 struct OpenRecording::Implementation {
-  Implementation(const std::filesystem::path& file, bool look_through_texts) : path(file) {
-    auto inspection = inspect_readable(file, look_through_texts);
+  Implementation(const std::filesystem::path& file, Inspection inspection) : path(file) {
     facts.is_live = inspection.live;
     guarded([&] {
       facts.about = read_all_but_rows(inspection);
       facts.rows = rows_in_every_dataset(inspection);
       const hid_t id = inspection.file.id();
-      for (const char* name : dataset_paths) datasets.push_back(dataset_at(id, name));
+      for (const auto name : dataset_paths) datasets.push_back(dataset_at(id, std::string(name)));
       for (const auto& channel : facts.about.channels) {
         datasets.push_back(dataset_at(id, channel_path(channel.name)));
       }
@@ -150,7 +142,10 @@ struct OpenRecording::Implementation {
 };
 
 OpenRecording::OpenRecording(const std::filesystem::path& file, bool look_through_texts)
-    : implementation_(std::make_unique<Implementation>(file, look_through_texts)) {}
+    : implementation_(std::make_unique<Implementation>(file, inspect_readable(file, look_through_texts))) {}
+
+OpenRecording::OpenRecording(const std::filesystem::path& file, Inspection&& inspection)
+    : implementation_(std::make_unique<Implementation>(file, std::move(inspection))) {}
 
 OpenRecording::~OpenRecording() = default;
 

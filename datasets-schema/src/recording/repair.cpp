@@ -1,7 +1,8 @@
 #include <stdexcept>
 
 #include <kerf/schema/live_recording.h>
-#include <kerf/schema/recording.h>
+#include <kerf/schema/recorded_rows.h>
+#include <kerf/schema/recording_file.h>
 #include <kerf/schema/repair.h>
 
 #include "hdf5/files.h"
@@ -18,7 +19,8 @@ Repaired repair(const std::filesystem::path& name, const RepairOptions& options)
   if (place.being_written) {
     throw std::invalid_argument(place.file.string() + ": is still being recorded; stop that program first");
   }
-  Recording recording = read_recording(place.file);
+  const RecordingFile rows(place.file);
+  Recording recording = rows.about();
   if (recording.header.status != "recording") {
     throw std::invalid_argument(place.file.string() + ": was closed, its status is '" +
                                 recording.header.status + "'; there is nothing to repair");
@@ -32,14 +34,14 @@ Repaired repair(const std::filesystem::path& name, const RepairOptions& options)
   if (!in_place && !options.replace && std::filesystem::exists(output)) {
     throw std::invalid_argument(output.string() + ": exists already; give another name with -o, or --force");
   }
-  const double end_s = recording.time.empty() ? 0.0 : recording.time.back();
+  const double end_s = rows.rows() == 0 ? 0.0 : rows.last_time_s();
   recording.header.status = status_of_repaired;
   recording.events.push_back(
       {.time_s = end_s, .kind = "repair", .text = "closed by kerf repair; the last rows may be missing"});
-  write_recording(output, recording);
+  write_recording(output, recording, rows);
   synchronise(output);
   if (place.partial && options.output.empty()) std::filesystem::remove(place.file);
-  return {.file = output, .rows = recording.rows(), .duration_s = end_s};
+  return {.file = output, .rows = rows.rows(), .duration_s = end_s};
 }
 
 }  // namespace kerf::schema

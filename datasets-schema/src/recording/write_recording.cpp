@@ -1,11 +1,15 @@
 #include <algorithm>
+#include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <type_traits>
 #include <variant>
 
+#include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
 #include "hdf5/files.h"
+#include "in_process.h"
 #include "recording/build.h"
 
 namespace kerf::schema {
@@ -14,10 +18,10 @@ namespace {
 constexpr hsize_t chunk_rows = 65536;
 
 /// The lengths behind the letters of layout::Dataset::shape.
-hsize_t length_of(char letter, const Recording& recording) {
+hsize_t length_of(char letter, const Recording& recording, hsize_t rows) {
   switch (letter) {
     case 'N':
-      return recording.rows();
+      return rows;
     case 'D':
       return recording.dimensions();
     case 'E':
@@ -31,9 +35,9 @@ hsize_t length_of(char letter, const Recording& recording) {
   }
 }
 
-h5::Extent extent_of(const layout::Dataset& rule, const Recording& recording) {
+h5::Extent extent_of(const layout::Dataset& rule, const Recording& recording, hsize_t rows) {
   h5::Extent extent;
-  for (const char letter : rule.shape) extent.push_back(length_of(letter, recording));
+  for (const char letter : rule.shape) extent.push_back(length_of(letter, recording, rows));
   return extent;
 }
 
@@ -46,18 +50,19 @@ void require_length(std::string_view path, std::size_t found, hsize_t expected) 
 /// Writes a recording's datasets into a file that has its head.
 class DatasetWriter {
  public:
-  DatasetWriter(hid_t file, const Recording& recording)
+  DatasetWriter(hid_t file, const Recording& recording, const RecordedRows& rows)
       : file_(file),
         recording_(recording),
+        rows_(rows),
         sources_{recording.header, recording.axes, recording.cycles ? &*recording.cycles : nullptr} {}
 
   void write_samples() {
     for (const auto& rule : layout::datasets()) {
-      if (layout::parent(rule.path) == layout::samples) write(rule);
+      if (layout::parent(rule.path) == layout::samples) write_sample(rule);
     }
     if (recording_.channels.empty()) return;
     static_cast<void>(h5::create_group(file_, std::string(layout::channels)));
-    for (const auto& channel : recording_.channels) write(channel);
+    for (std::size_t i = 0; i < recording_.channels.size(); ++i) write_channel(i);
   }
 
   void write_events() {
@@ -74,7 +79,7 @@ class DatasetWriter {
     write_group("/cycles");
     write_records(layout::dataset("/cycles/phases"), phase_type(), recording_.cycles->phases.data());
     for (const auto& rule : layout::datasets()) {
-      if (layout::parent(rule.path) == layout::cycles) write(rule);
+      if (layout::parent(rule.path) == layout::cycles) write_of_cycles(rule);
     }
   }
 
@@ -84,48 +89,103 @@ class DatasetWriter {
     write_attributes(group.id(), path, sources_);
   }
 
-  void write(const layout::Dataset& rule) {
+  void write_sample(const layout::Dataset& rule) {
+    const auto number = static_cast<std::size_t>(std::ranges::find(in_process::dataset_paths, rule.path) -
+                                                 in_process::dataset_paths.begin());
+    if (number == in_process::tick_dataset) {
+      write_rows<std::uint64_t>(rule, 1,
+                                [&](auto first, auto, auto values) { rows_.read_ticks(first, values); });
+    } else if (number == in_process::flags_dataset) {
+      if (!rows_.has_flags()) return;
+      write_rows<std::uint32_t>(rule, 1,
+                                [&](auto first, auto, auto values) { rows_.read_flags(first, values); });
+    } else if (number < in_process::tick_dataset) {
+      write_column(rule, static_cast<Column>(number));
+    }
+  }
+
+  void write_column(const layout::Dataset& rule, Column column) {
+    const std::size_t width = rows_.width(column);
+    if (width == 0 && !rule.required) return;
+    const auto read = [&](auto first, auto rows, std::span<double> values) {
+      rows_.read(column, first, rows, values);
+    };
+    if (column < Column::wake_latency) return write_rows<double>(rule, width, read);
+    std::vector<double> wide;
+    write_rows<float>(rule, width, [&](auto first, auto rows, std::span<float> values) {
+      wide.resize(values.size());
+      read(first, rows, wide);
+      std::ranges::transform(wide, values.begin(), [](double value) { return static_cast<float>(value); });
+    });
+  }
+
+  template <typename T, typename Read>
+  void write_rows(const layout::Dataset& rule, std::size_t width, const Read& read) {
+    auto dataset = create(rule, h5::native<T>(), extent_of(rule, recording_, rows_.rows()));
+    write_in_blocks<T>(dataset, width, read);
+    if (rule.path == layout::dataset("/samples/time").path) {
+      keep_as_scale(rule, std::move(dataset));
+    } else {
+      attach_time(dataset, scale_);
+    }
+  }
+
+  template <typename T, typename Read>
+  void write_in_blocks(const h5::Handle& dataset, std::size_t width, const Read& read) {
+    std::vector<T> values;
+    for (hsize_t first = 0; first < rows_.rows(); first += chunk_rows) {
+      const hsize_t rows = std::min(chunk_rows, rows_.rows() - first);
+      values.resize(rows * width);
+      read(first, rows, std::span(values));
+      h5::write(dataset.id(), h5::native<T>(), rows, values.data(), first);
+    }
+  }
+
+  void write_channel(std::size_t number) {
+    const h5::Extent extent{rows_.rows()};
+    const auto dataset = make_channel(file_, recording_.channels[number],
+                                      {.extent = extent, .chunk_rows = std::min(extent[0], chunk_rows)});
+    write_in_blocks<double>(dataset, 1, [&](auto first, auto, std::span<double> values) {
+      rows_.read_channel(number, first, values);
+    });
+    attach_time(dataset, scale_);
+  }
+
+  void keep_as_scale(const layout::Dataset& rule, h5::Handle dataset) {
+    h5::make_scale(dataset.id(), std::string(layout::last_name(rule.path)));
+    scale_ = std::move(dataset);
+  }
+
+  void write_of_cycles(const layout::Dataset& rule) {
     std::visit(
         [&](auto member) {
           using Pointer = decltype(member);
           if constexpr (std::is_same_v<Pointer, std::vector<double> Cycles::*>) {
-            write_values(rule, *recording_.cycles.*member);
+            write_branches(rule, *recording_.cycles.*member);
           } else if constexpr (std::is_same_v<Pointer, std::vector<std::vector<double>> Cycles::*>) {
-            write_values(rule, flattened(rule, *recording_.cycles.*member));
-          } else if constexpr (!std::is_same_v<Pointer, std::monostate>) {
-            write_values(rule, recording_.*member);
+            write_branches(rule, flattened(rule, *recording_.cycles.*member));
           }
         },
         rule.member);
   }
 
-  template <typename T>
-  void write_values(const layout::Dataset& rule, const std::vector<T>& values) {
+  void write_branches(const layout::Dataset& rule, const std::vector<double>& values) {
     if (values.empty() && !rule.required) return;
-    const auto extent = extent_of(rule, recording_);
+    const auto extent = extent_of(rule, recording_, rows_.rows());
     hsize_t count = 1;
     for (const auto length : extent) count *= length;
     require_length(rule.path, values.size(), count);
-    auto dataset = create(rule, h5::native<T>(), extent);
-    if (count > 0) h5::write(dataset.id(), h5::native<T>(), values.data());
-    if (rule.path == "/samples/time" || rule.path == "/cycles/grid") {
-      h5::make_scale(dataset.id(), std::string(layout::last_name(rule.path)));
-      scale_ = std::move(dataset);
+    auto dataset = create(rule, h5::native<double>(), extent);
+    if (count > 0) h5::write(dataset.id(), h5::native<double>(), values.data());
+    if (rule.path == layout::dataset("/cycles/grid").path) {
+      keep_as_scale(rule, std::move(dataset));
     } else {
-      attach(dataset, rule.shape);
-    }
-  }
-
-  void attach(const h5::Handle& dataset, std::string_view shape) {
-    if (shape.starts_with('N')) {
-      attach_time(dataset, scale_);
-    } else {
-      h5::attach_scale(dataset.id(), scale_.id(), static_cast<unsigned>(shape.find('G')));
+      h5::attach_scale(dataset.id(), scale_.id(), static_cast<unsigned>(rule.shape.find('G')));
     }
   }
 
   void write_records(const layout::Dataset& rule, const h5::Handle& type, const void* records) {
-    const auto extent = extent_of(rule, recording_);
+    const auto extent = extent_of(rule, recording_, rows_.rows());
     const auto dataset = create(rule, h5::packed(type).id(), extent);
     if (extent.front() > 0) h5::write(dataset.id(), type.id(), records);
   }
@@ -145,47 +205,63 @@ class DatasetWriter {
     return values;
   }
 
-  void write(const Channel& channel) {
-    require_length(std::string(layout::channels) + '/' + channel.name, channel.values.size(),
-                   recording_.rows());
-    const h5::Extent extent{recording_.rows()};
-    const auto dataset =
-        make_channel(file_, channel, {.extent = extent, .chunk_rows = std::min(extent[0], chunk_rows)});
-    if (extent[0] > 0) h5::write(dataset.id(), h5::native<double>(), channel.values.data());
-    attach_time(dataset, scale_);
-  }
-
   hid_t file_;
   const Recording& recording_;
+  const RecordedRows& rows_;
   Sources sources_;
   h5::Handle scale_;
 };
 
-void write_datasets(hid_t file, const Recording& recording) {
-  DatasetWriter writer(file, recording);
-  writer.write_samples();
-  writer.write_events();
-  writer.write_cycles();
+void require_axes(const Recording& recording) {
+  if (!recording.axes.empty() && recording.axes.size() <= max_axes) return;
+  throw std::invalid_argument("recording: found " + std::to_string(recording.axes.size()) +
+                              " axes, expected 1 to " + std::to_string(max_axes));
+}
+
+/// Every column has as many rows as there are times, or none if it need not be there.
+void require_lengths(const Recording& recording) {
+  for (const auto& rule : layout::datasets()) {
+    std::visit(
+        [&](auto member) {
+          if constexpr (std::is_invocable_v<decltype(member), const Recording&>) {
+            const std::size_t found = (recording.*member).size();
+            if (!rule.shape.starts_with('N') || (found == 0 && !rule.required)) return;
+            const hsize_t width = rule.shape == "ND" ? recording.dimensions() : 1;
+            require_length(rule.path, found, recording.rows() * width);
+          }
+        },
+        rule.member);
+  }
+  for (const Channel& channel : recording.channels) {
+    require_length(std::string(layout::channels) + '/' + channel.name, channel.values.size(),
+                   recording.rows());
+  }
 }
 
 }  // namespace
 
-void write_recording(const std::filesystem::path& file, const Recording& recording) {
-  if (recording.axes.empty() || recording.axes.size() > max_axes) {
-    throw std::invalid_argument("recording: found " + std::to_string(recording.axes.size()) +
-                                " axes, expected 1 to " + std::to_string(max_axes));
-  }
+void write_recording(const std::filesystem::path& file, const Recording& about, const RecordedRows& rows) {
+  require_axes(about);
   TemporaryFile temporary(file);
   h5::WritableFile output;
   try {
     output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
-    write_head(output.id(), {recording.header, recording.axes});
-    write_datasets(output.id(), recording);
+    write_head(output.id(), {about.header, about.axes});
+    DatasetWriter writer(output.id(), about, rows);
+    writer.write_samples();
+    writer.write_events();
+    writer.write_cycles();
     output.close();
   } catch (const h5::Error& error) {
     throw write_error(file, output.cause_of(error));
   }
   temporary.commit();
+}
+
+void write_recording(const std::filesystem::path& file, const Recording& recording) {
+  require_axes(recording);
+  require_lengths(recording);
+  write_recording(file, recording, RowsInMemory(recording));
 }
 
 }  // namespace kerf::schema

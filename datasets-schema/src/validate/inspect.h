@@ -51,7 +51,4 @@ void require_sound_texts(const std::filesystem::path& file, const h5::Handle& op
 /// read.
 [[nodiscard]] Inspection inspect_readable(const std::filesystem::path& file, bool look_through_texts = true);
 
-/// Reads what was inspected; nothing in it may be fatal.
-[[nodiscard]] Recording read_inspected(const Inspection& inspection);
-
 }  // namespace kerf::schema

@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <new>
+#include <optional>
 #include <regex>
+#include <span>
 #include <string_view>
+#include <utility>
 
 #include <kerf/schema/validate.h>
 
@@ -22,8 +26,8 @@ bool is_status(const std::string& text) {
 /// What the tables cannot say: how values hang together.
 class ContentCheck {
  public:
-  ContentCheck(const Recording& recording, std::vector<Violation>& violations)
-      : recording_(recording), violations_(violations) {}
+  ContentCheck(const in_process::OpenRecording& file, std::vector<Violation>& violations)
+      : file_(file), recording_(file.facts().about), violations_(violations) {}
 
   void run() {
     check_header();
@@ -84,28 +88,61 @@ class ContentCheck {
       ++count;
     }
     if (count == 0) return;
+    add(where, of_rows(describe(first), first, count), expected);
+  }
+
+  static std::string of_rows(const std::string& found, std::uint64_t first, std::uint64_t count) {
     const std::string others = count == 1 ? "" : ", and " + std::to_string(count - 1) + " more such rows";
-    add(where, describe(first) + " in row " + std::to_string(first) + others, expected);
+    return found + " in row " + std::to_string(first) + others;
+  }
+
+  /// The same for a column of the file, a block at a time. `breaks` and `describe` get a value and the one
+  /// before it, which is none in the first row.
+  template <typename T, typename Breaks, typename Describe>
+  void check_column(std::size_t dataset, const Breaks& breaks, const Describe& describe,
+                    const std::string& expected) {
+    constexpr std::uint64_t block_rows = 65536;
+    const std::uint64_t rows = file_.facts().rows;
+    std::optional<std::uint64_t> first_row;
+    std::uint64_t count = 0;
+    std::string found;
+    std::optional<T> before;
+    std::vector<T> values;
+    for (std::uint64_t begin = 0; begin < rows; begin += block_rows) {
+      values.resize(std::min(block_rows, rows - begin));
+      file_.read(dataset, begin, values.size(), std::as_writable_bytes(std::span(values)));
+      for (std::size_t i = 0; i < values.size(); before = values[i++]) {
+        if (!breaks(values[i], before)) continue;
+        if (count++ == 0) {
+          first_row = begin + i;
+          found = describe(values[i], before);
+        }
+      }
+    }
+    if (first_row)
+      add(std::string(in_process::dataset_paths.at(dataset)), of_rows(found, *first_row, count), expected);
   }
 
   void check_time() {
-    const auto& time = recording_.time;
-    const auto value = [&](std::size_t row) { return std::to_string(time[row]) + " s"; };
-    check_rows(
-        "/samples/time", time.size(), [&](std::size_t row) { return !std::isfinite(time[row]); }, value,
-        "finite times");
-    check_rows(
-        "/samples/time", time.size(), [&](std::size_t row) { return row > 0 && time[row] <= time[row - 1]; },
-        [&](std::size_t row) { return value(row) + " after " + value(row - 1); },
+    const auto seconds = [](double value) { return std::to_string(value) + " s"; };
+    using Before = std::optional<double>;
+    check_column<double>(
+        in_process::time_dataset, [](double value, const Before&) { return !std::isfinite(value); },
+        [&](double value, const Before&) { return seconds(value); }, "finite times");
+    check_column<double>(
+        in_process::time_dataset,
+        [](double value, const Before& before) { return before && value <= *before; },
+        [&](double value, const Before& before) { return seconds(value) + " after " + seconds(*before); },
         "times that increase strictly");
   }
 
   void check_ticks() {
-    const auto& tick = recording_.tick;
-    check_rows(
-        "/samples/tick", tick.size(), [&](std::size_t row) { return row > 0 && tick[row] <= tick[row - 1]; },
-        [&](std::size_t row) {
-          return std::to_string(tick[row]) + " after " + std::to_string(tick[row - 1]);
+    using Before = std::optional<std::uint64_t>;
+    check_column<std::uint64_t>(
+        in_process::tick_dataset,
+        [](std::uint64_t value, const Before& before) { return before && value <= *before; },
+        [](std::uint64_t value, const Before& before) {
+          return std::to_string(value) + " after " + std::to_string(*before);
         },
         "ticks that increase strictly");
   }
@@ -129,13 +166,13 @@ class ContentCheck {
         "/cycles/phases", cycles.phases.size(),
         [&](std::size_t row) {
           const auto& span = cycles.phases[row];
-          return span.begin > span.end || span.end > recording_.rows();
+          return span.begin > span.end || span.end > file_.facts().rows;
         },
         [&](std::size_t row) {
           return "rows [" + std::to_string(cycles.phases[row].begin) + ", " +
                  std::to_string(cycles.phases[row].end) + ")";
         },
-        "rows within [0, " + std::to_string(recording_.rows()) + ")");
+        "rows within [0, " + std::to_string(file_.facts().rows) + ")");
     const auto number = [&](std::size_t row) {
       return std::to_string(static_cast<int>(cycles.phases[row].phase));
     };
@@ -154,15 +191,16 @@ class ContentCheck {
         "positions that increase strictly");
   }
 
-  const Recording& recording_;
+  const in_process::OpenRecording& file_;
+  const Recording& recording_;  ///< without its rows
   std::vector<Violation>& violations_;
 };
 
 void validate_recording(const std::filesystem::path& file, std::vector<Violation>& violations) {
-  const auto inspection = inspect(file);
+  auto inspection = inspect(file);
   for (const auto& finding : inspection.findings) violations.push_back(finding.violation);
   if (inspection.first_fatal() != nullptr) return;
-  ContentCheck(read_inspected(inspection), violations).run();
+  ContentCheck(in_process::OpenRecording(file, std::move(inspection)), violations).run();
 }
 
 }  // namespace

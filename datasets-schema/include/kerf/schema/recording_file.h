@@ -6,22 +6,10 @@
 #include <memory>
 #include <span>
 
+#include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
 namespace kerf::schema {
-
-/// The numbers of `/samples` that are looked at one column at a time.
-enum class Column : std::uint8_t {
-  time,
-  position,
-  velocity,
-  force_commanded,
-  force_measured,
-  wake_latency,
-  read_time,
-  compute_time,
-  write_time
-};
 
 /// An open recording whose rows stay in the file until they are asked for; also the `NAME.partial` of a
 /// writer that is still at work or has died. What is in it when it is opened is what it holds: open it again
@@ -29,7 +17,7 @@ enum class Column : std::uint8_t {
 ///
 /// It is read by a process of its own, `kerf-reader`: damage that HDF5 falls over ends that one, and nobody
 /// here waits for it but who asks. May be read by several threads, one at a time.
-class RecordingFile {
+class RecordingFile final : public RecordedRows {
  public:
   /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
   /// long as reading the file once. Known to be sound are those of a file that was opened before and has not
@@ -40,11 +28,10 @@ class RecordingFile {
   explicit RecordingFile(const std::filesystem::path& file, Texts texts = Texts::looked_through);
   RecordingFile(RecordingFile&&) noexcept;
   RecordingFile& operator=(RecordingFile&&) noexcept;
-  ~RecordingFile();
+  ~RecordingFile() override;
 
-  /// Header, axes, names and units of the channels, events and cycles; without a row.
-  [[nodiscard]] const Recording& about() const noexcept;
-  [[nodiscard]] std::uint64_t rows() const noexcept;
+  [[nodiscard]] const Recording& about() const noexcept override;
+  [[nodiscard]] std::uint64_t rows() const noexcept override;
   /// Still written, or left by a writer that died.
   [[nodiscard]] bool is_live() const noexcept;
   [[nodiscard]] double first_time_s() const noexcept;  ///< NaN without a row
@@ -52,17 +39,14 @@ class RecordingFile {
   /// Median step of the time at the begin, in the middle and at the end; 0 if it does not grow there.
   [[nodiscard]] double period_s() const noexcept;
 
-  /// Values a row: the number of axes, or 1; 0 if the recording has none of it.
-  [[nodiscard]] std::size_t width(Column column) const noexcept;
-  [[nodiscard]] bool has_flags() const noexcept;
+  [[nodiscard]] std::size_t width(Column column) const noexcept override;
+  [[nodiscard]] bool has_flags() const noexcept override;
 
-  // Rows [first_row, first_row + rows); of several axes all of a row, one row after the other. Exact.
-  // @throws std::out_of_range if there are no such rows, std::invalid_argument if there is no such column or
-  //         `values` is of another size; FormatError if the file turns out to be damaged there.
-  void read(Column column, std::uint64_t first_row, std::uint64_t rows, std::span<double> values) const;
-  void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const;
-  void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const;
-  void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const;
+  void read(Column column, std::uint64_t first_row, std::uint64_t rows,
+            std::span<double> values) const override;
+  void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const override;
+  void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const override;
+  void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const override;
 
  private:
   struct Implementation;

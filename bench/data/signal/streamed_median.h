@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace kerf::bench {
+
+/// The median of values that are gone through three times instead of being kept: exactly what median() gives,
+/// in 64 MB however many there are.
+///
+/// Numbers ordered as their bits are: each pass counts by further bits those that begin as the median does,
+/// as far as that is known.
+class StreamedMedian {
+ public:
+  /// @param for_each calls what it is given with every value, each time in any order
+  /// @returns NaN without values
+  template <typename ForEach>
+  [[nodiscard]] static double of(const ForEach& for_each) {
+    std::uint64_t count = 0;
+    for_each([&](double) { ++count; });
+    if (count == 0) return std::numeric_limits<double>::quiet_NaN();
+    std::array<Searched, 2> middle{Searched{.rank = (count - 1) / 2}, Searched{.rank = count / 2}};
+    unsigned known_bits = 0;
+    for (const unsigned bits : {22U, 21U, 21U}) {
+      for (Searched& one : middle) one.counts.assign(std::size_t{1} << bits, 0);
+      for_each([&](double value) {
+        const std::uint64_t ordered = in_order(value);
+        for (Searched& one : middle) {
+          if (known_bits > 0 && ordered >> (64U - known_bits) != one.prefix) continue;
+          ++one.counts[(ordered << known_bits) >> (64U - bits)];
+        }
+      });
+      for (Searched& one : middle) one.narrow(bits);
+      known_bits += bits;
+    }
+    return 0.5 * (value_of(middle[0].prefix) + value_of(middle[1].prefix));
+  }
+
+ private:
+  struct Searched {
+    std::uint64_t rank = 0;    ///< among those that begin with
+    std::uint64_t prefix = 0;  ///< these bits
+    std::vector<std::uint64_t> counts{};
+
+    void narrow(unsigned bits) {
+      std::size_t bin = 0;
+      while (rank >= counts[bin]) rank -= counts[bin++];
+      prefix = (prefix << bits) | bin;
+    }
+  };
+
+  static constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
+
+  [[nodiscard]] static std::uint64_t in_order(double value) noexcept {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    return (bits & sign) != 0 ? ~bits : bits | sign;
+  }
+  [[nodiscard]] static double value_of(std::uint64_t ordered) noexcept {
+    return std::bit_cast<double>((ordered & sign) != 0 ? ordered & ~sign : ~ordered);
+  }
+};
+
+}  // namespace kerf::bench
