@@ -124,7 +124,7 @@ std::string damaged(std::string bytes, std::mt19937_64& random) {
   return bytes;
 }
 
-void break_files(const fs::path& folder, std::vector<fs::path> sound, std::uint64_t count,
+void break_files(const fs::path& folder, const std::vector<fs::path>& sound, std::uint64_t count,
                  std::uint64_t seed) {
   std::vector<std::string> bytes;
   for (const fs::path& file : sound) bytes.push_back(bytes_of(file));

@@ -69,8 +69,8 @@ double RecordingFile::last_time_s() const noexcept { return implementation_->fac
 
 double RecordingFile::period_s() const noexcept { return implementation_->facts.period_s; }
 
-std::size_t RecordingFile::width(Column column) const noexcept {
-  return implementation_->facts.widths[index_of(column)];
+std::size_t RecordingFile::width(Column column) const {
+  return implementation_->facts.widths.at(index_of(column));
 }
 
 bool RecordingFile::has_flags() const noexcept {

@@ -29,13 +29,10 @@ void copy_part(const std::vector<From>& from, std::size_t first, std::span<To> t
 
 }  // namespace
 
-std::size_t RowsInMemory::width(Column column) const noexcept {
-  return std::visit(
-      [&](auto member) {
-        const std::size_t values = (recording_->*member).size();
-        return recording_->rows() == 0 ? 0 : values / recording_->rows();
-      },
-      members[static_cast<std::size_t>(column)]);
+std::size_t RowsInMemory::width(Column column) const {
+  if (recording_->rows() == 0) return 0;
+  return std::visit([&](auto member) { return (recording_->*member).size() / recording_->rows(); },
+                    members.at(static_cast<std::size_t>(column)));
 }
 
 void RowsInMemory::read(Column column, std::uint64_t first_row, std::uint64_t rows,

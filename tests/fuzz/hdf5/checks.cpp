@@ -57,10 +57,10 @@ std::vector<Number> column_of(const in_process::OpenRecording& file, std::size_t
   const std::uint64_t rows = file.row_bytes(dataset) > 0 ? file.facts().rows : 0;
   const std::size_t width = file.row_bytes(dataset) / sizeof(Number);
   std::vector<Number> values(rows * width);
-  for (std::uint64_t row = 0; row < rows; row += at_once) {
-    const std::uint64_t count = std::min(at_once, rows - row);
-    file.read(dataset, row, count,
-              std::as_writable_bytes(std::span(values).subspan(row * width, count * width)));
+  for (std::uint64_t first = 0; first < rows; first += at_once) {
+    const std::uint64_t piece = std::min(at_once, rows - first);
+    file.read(dataset, first, piece,
+              std::as_writable_bytes(std::span(values).subspan(first * width, piece * width)));
   }
   return values;
 }

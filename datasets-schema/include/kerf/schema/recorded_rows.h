@@ -37,7 +37,7 @@ class RecordedRows {
   [[nodiscard]] virtual const Recording& about() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t rows() const noexcept = 0;
   /// Values a row: the number of axes, or 1; 0 if the recording has none of it.
-  [[nodiscard]] virtual std::size_t width(Column column) const noexcept = 0;
+  [[nodiscard]] virtual std::size_t width(Column column) const = 0;
   [[nodiscard]] virtual bool has_flags() const noexcept = 0;
 
   // Rows [first_row, first_row + rows); of several axes all of a row, one row after the other. Exact.
@@ -57,7 +57,7 @@ class RowsInMemory final : public RecordedRows {
 
   [[nodiscard]] const Recording& about() const noexcept override { return *recording_; }
   [[nodiscard]] std::uint64_t rows() const noexcept override { return recording_->rows(); }
-  [[nodiscard]] std::size_t width(Column column) const noexcept override;
+  [[nodiscard]] std::size_t width(Column column) const override;
   [[nodiscard]] bool has_flags() const noexcept override { return !recording_->flags.empty(); }
   void read(Column column, std::uint64_t first_row, std::uint64_t rows,
             std::span<double> values) const override;

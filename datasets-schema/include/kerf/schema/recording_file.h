@@ -39,7 +39,7 @@ class RecordingFile final : public RecordedRows {
   /// Median step of the time at the begin, in the middle and at the end; 0 if it does not grow there.
   [[nodiscard]] double period_s() const noexcept;
 
-  [[nodiscard]] std::size_t width(Column column) const noexcept override;
+  [[nodiscard]] std::size_t width(Column column) const override;
   [[nodiscard]] bool has_flags() const noexcept override;
 
   void read(Column column, std::uint64_t first_row, std::uint64_t rows,
