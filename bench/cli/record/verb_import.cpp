@@ -66,7 +66,11 @@ void add_import(CLI::App& app, Context& context) {
       "comma,\n"
       "quotes, preamble, header, units row and encoding are recognised. Lines that are not data are reported "
       "and\n"
-      "left out, and so are lines whose time repeats or goes back; NaN and infinity are kept and reported.\n"
+      "left out, and so are lines whose time repeats or goes back; a file that would lose more lines than it "
+      "keeps\n"
+      "is refused, and so are infinities and more numbers in a line than names in the header. NaN is kept "
+      "and\n"
+      "reported.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data, "Text file").required();

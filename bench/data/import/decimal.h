@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include <fast_float/fast_float.h>
 
 namespace kerf::bench {
@@ -14,6 +16,13 @@ inline const char* parse_decimal(const char* begin, const char* end, char point,
   const fast_float::parse_options options(fast_float::chars_format::general, point);
   const auto [stop, error] = fast_float::from_chars_advanced(number, end, value, options);
   return error == std::errc::invalid_argument ? begin : stop;
+}
+
+/// Whether a whole field is a decimal number.
+inline bool is_decimal(std::string_view field, char point) noexcept {
+  double value = 0.0;
+  const char* const end = field.data() + field.size();
+  return !field.empty() && parse_decimal(field.data(), end, point, value) == end;
 }
 
 }  // namespace kerf::bench

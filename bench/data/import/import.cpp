@@ -53,6 +53,20 @@ class Rows {
   [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }
   [[nodiscard]] const std::vector<std::size_t>& bad_lines() const { return table_.bad_lines; }
 
+  /// Infinity is what a logger writes that divided by zero or overflowed: no chart, filter or fit can use it.
+  /// @throws std::invalid_argument that names the first.
+  void require_finite(const std::vector<MappedColumn>& columns, const std::string& name) const {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto& values = table_.columns[i];
+      const auto found = std::find_if(values.begin(), values.end(), [](double v) { return std::isinf(v); });
+      if (found == values.end()) continue;
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: column {}, mapped to {}, is infinite; expected a finite number, or nan where there is none",
+          name, table_.line_of(static_cast<std::size_t>(found - values.begin())), columns[i].index + 1,
+          columns[i].channel));
+    }
+  }
+
   /// Leaves out the rows whose times do not increase; returns their lines.
   std::vector<std::size_t> leave_out_misplaced(std::size_t time_column) {
     const auto& time = table_.columns[time_column];
@@ -101,6 +115,25 @@ void number_ticks(Imported& imported, double period_s) {
     imported.warnings.push_back(fmt::format("{} gaps of more than {} periods, the longest {:.4g} s", gaps,
                                             gap_in_periods, longest_s));
   }
+}
+
+/// What is left of a file that was misread, with the wrong column for the time or the wrong decimal sign,
+/// looks like data.
+/// @throws std::invalid_argument if more lines are left out than kept.
+void require_most_lines(const Imported& imported, const std::string& name) {
+  const std::vector<std::size_t>& bad = imported.bad_lines;
+  const std::vector<std::size_t>& misplaced = imported.misplaced_lines;
+  const std::size_t lost = bad.size() + misplaced.size();
+  const std::size_t kept = imported.recording.time.size();
+  if (lost <= kept) return;
+  const std::size_t first = std::min(bad.empty() ? misplaced.front() : bad.front(),
+                                     misplaced.empty() ? bad.front() : misplaced.front());
+  throw std::invalid_argument(fmt::format(
+      "{}:{}: the first of {} lines in {} that would be left out: {} are not data, and of {} the time "
+      "repeats, "
+      "goes back or is not finite; expected fewer than are kept: are columns and decimal sign right? If its "
+      "clock restarts or is coarse, map no time and give --rate HZ",
+      name, first, lost, lost + kept, bad.size(), misplaced.size()));
 }
 
 void report_irregular_lines(Imported& imported) {
@@ -215,6 +248,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
                     imported.bad_lines.size(), named_lines(imported.bad_lines)));
   }
 
+  rows.require_finite(imported.columns, name);
   schema::Recording& recording = imported.recording;
   recording.axes.resize(1);
   take_time(imported, rows, name, options);
@@ -224,6 +258,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
                     "they are left out",
                     name, named_lines(imported.misplaced_lines)));
   }
+  require_most_lines(imported, name);
   const double period_s = median_period(recording.time);
   take_channels(imported, rows, options, period_s);
   report_irregular_lines(imported);

@@ -37,9 +37,9 @@ struct Imported {
 ///
 /// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
 /// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
-/// `misplaced_lines`, a warning and an event. Gaps become jumps of `tick`. NaN and infinity
-/// stay as they are and are told of. The velocity is derived from the position by a zero-phase parabolic fit
-/// unless the map names one.
+/// `misplaced_lines`, a warning and an event. A file of which more lines would be left out than kept is
+/// refused, and so is infinity. Gaps become jumps of `tick`. NaN stays as it is and is told of. The velocity
+/// is derived from the position by a zero-phase parabolic fit unless the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -13,7 +11,7 @@
 
 #include "files/trimmed.h"
 #include "import/decimal.h"
-#include "units/units.h"
+#include "import/text_header.h"
 
 namespace kerf::bench {
 namespace {
@@ -22,12 +20,6 @@ constexpr std::size_t max_preamble_lines = 1000;
 constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
-
-bool is_number(std::string_view field, char point) noexcept {
-  double value = 0.0;
-  return !field.empty() && parse_decimal(field.data(), field.data() + field.size(), point, value) ==
-                               field.data() + field.size();
-}
 
 /// One way to read the lines, and how well it reads them.
 struct Reading {
@@ -41,7 +33,7 @@ struct Reading {
     if (trimmed(line).empty()) return false;
     const auto fields = split_line(line, separator);
     const auto numbers =
-        std::count_if(fields.begin(), fields.end(), [&](auto f) { return is_number(f, point); });
+        std::count_if(fields.begin(), fields.end(), [&](auto f) { return is_decimal(f, point); });
     const auto filled = std::count_if(fields.begin(), fields.end(), [](auto f) { return !f.empty(); });
     return numbers >= 1 && 2 * numbers > filled && 2 * static_cast<std::size_t>(numbers) >= columns;
   }
@@ -60,7 +52,7 @@ Reading best_reading(const std::vector<std::string_view>& lines) {
       if (!reading.reads(line)) continue;
       ++reading.lines;
       for (const auto field : split_line(line, reading.separator)) {
-        if (is_number(field, reading.point)) {
+        if (is_decimal(field, reading.point)) {
           ++numbers;
         } else if (!field.empty()) {
           ++reading.strangers;
@@ -74,88 +66,6 @@ Reading best_reading(const std::vector<std::string_view>& lines) {
     if (worth(reading) > worth(best)) best = reading;
   }
   return best;
-}
-
-/// "Time [ms]" -> {"Time", "ms"}; "t_s" -> {"t_s", "s"}: the name keeps what may be part of it.
-TextColumn named_column(std::string_view field) {
-  const std::string heading = to_utf8(trimmed(field));
-  TextColumn column{.heading = heading, .name = heading, .unit = {}};
-  const auto known = [](std::string_view text) {
-    try {
-      (void)parse_unit(text);
-      return true;
-    } catch (const std::invalid_argument&) {
-      return false;
-    }
-  };
-  for (const auto& brackets : {std::string_view("[]"), std::string_view("()")}) {
-    const auto open = column.name.rfind(brackets[0]);
-    if (open == std::string::npos || open == 0 || column.name.back() != brackets[1]) continue;
-    const std::string unit = column.name.substr(open + 1, column.name.size() - open - 2);
-    if (!known(unit)) continue;
-    column.unit = unit;
-    column.name = std::string(trimmed(std::string_view(column.name).substr(0, open)));
-    return column;
-  }
-  const auto underscore = column.name.rfind('_');
-  if (underscore != std::string::npos && underscore > 0) {
-    const std::string unit = column.name.substr(underscore + 1);
-    if (!unit.empty() && std::isalpha(static_cast<unsigned char>(unit[0])) && known(unit)) column.unit = unit;
-  }
-  return column;
-}
-
-/// The unit in a field of a units row, "(mm)" or "[N]" or "mm"; none if it does not look like one.
-std::optional<std::string> unit_field(std::string_view field) {
-  if (field.empty()) return std::string();
-  const bool bracketed = field.size() > 2 && ((field.front() == '(' && field.back() == ')') ||
-                                              (field.front() == '[' && field.back() == ']'));
-  const std::string unit(bracketed ? field.substr(1, field.size() - 2) : field);
-  try {
-    (void)parse_unit(unit);
-    return unit;
-  } catch (const std::invalid_argument&) {
-    if (bracketed) return std::string();  // a units row all the same, with a unit that is not known here
-    return std::nullopt;
-  }
-}
-
-bool is_units_row(const std::vector<std::string_view>& fields) {
-  return std::any_of(fields.begin(), fields.end(), [](auto f) { return !f.empty(); }) &&
-         std::all_of(fields.begin(), fields.end(), [](auto f) { return unit_field(f).has_value(); });
-}
-
-std::string_view without_comment_sign(std::string_view line) {
-  line = trimmed(line);
-  while (!line.empty() && (line.front() == '%' || line.front() == '#')) line.remove_prefix(1);
-  return line;
-}
-
-/// Reads header and units out of the lines before the data.
-void read_header(TextLayout& layout, const std::vector<std::string_view>& preamble, std::size_t width) {
-  layout.columns.resize(width);
-  std::vector<std::size_t> filled;
-  for (std::size_t i = 0; i < preamble.size(); ++i) {
-    if (!trimmed(preamble[i]).empty()) filled.push_back(i);
-  }
-  if (filled.empty()) return;
-  auto fields = split_line(without_comment_sign(preamble[filled.back()]), layout.separator);
-  std::vector<std::string> units;
-  if (is_units_row(fields)) {
-    layout.units_line = filled.back() + 1;
-    for (const auto field : fields) units.push_back(*unit_field(field));
-    filled.pop_back();
-    if (!filled.empty()) fields = split_line(without_comment_sign(preamble[filled.back()]), layout.separator);
-  }
-  // A header has a name for most columns; a sentence before the data does not.
-  if (!filled.empty() && 2 * fields.size() > width && (fields.size() > 1 || width == 1)) {
-    layout.header_line = filled.back() + 1;
-    layout.columns.resize(std::max(width, fields.size()));
-    for (std::size_t i = 0; i < fields.size(); ++i) layout.columns[i] = named_column(fields[i]);
-  }
-  for (std::size_t i = 0; i < std::min(units.size(), layout.columns.size()); ++i) {
-    if (!units[i].empty()) layout.columns[i].unit = units[i];
-  }
 }
 
 bool is_utf8(std::string_view text) noexcept {
@@ -288,7 +198,12 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
       std::any_of(first, lines.end(), [](auto line) { return line.find('"') != std::string_view::npos; });
   auto width = split_line(*first, layout.separator).size();
   if (split_line(*first, layout.separator).back().empty() && width > 1) --width;  // a separator ends the line
-  read_header(layout, {lines.begin(), first}, width);
+  const HeaderLine header = read_header(layout, {lines.data(), layout.preamble_lines}, width);
+  for (auto line = first; line != lines.end(); ++line) {
+    const auto number = static_cast<std::size_t>(line - lines.begin()) + 1;
+    if (reading.reads(*line))
+      require_names_for_numbers(header, layout, {.text = *line, .number = number}, name);
+  }
   return layout;
 }
 

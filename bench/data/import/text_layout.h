@@ -28,7 +28,8 @@ struct TextLayout {
 };
 
 /// Finds the layout. `name` stands for the file in messages.
-/// @throws std::invalid_argument for an empty file, a binary one, or one without a line of numbers.
+/// @throws std::invalid_argument for an empty file, a binary one, one without a line of numbers, or one whose
+///         lines hold more numbers than its header has names.
 [[nodiscard]] TextLayout find_layout(std::string_view text, const std::string& name);
 
 /// Splits a line into its fields: blanks around them and quotes taken off.

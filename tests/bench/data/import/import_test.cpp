@@ -97,9 +97,9 @@ TEST(Import, LosesOneRowToAStampThatLeapsAhead) {
 }
 
 TEST(Import, DoubtsAClockThatMakesItLeaveOutMuchOfTheFile) {
-  const auto text = table(40, [](int i) { return std::to_string(i / 4) + ",1,2"; });
+  const auto text = table(40, [](int i) { return std::to_string(i / 2) + ",1,2"; });
   const Imported result = imported(text);
-  EXPECT_THAT(result.recording.time, testing::SizeIs(10));
+  EXPECT_THAT(result.recording.time, testing::SizeIs(20));
   EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("map no time and give --rate HZ")));
 }
 
@@ -116,10 +116,8 @@ TEST(Import, DoesNotCountATimeThatIsMapped) {
   EXPECT_THROW((void)imported("0,1,2\n1,1,2\n", {.rate_hz = 10.0}), std::invalid_argument);
 }
 
-TEST(Import, KeepsNaNAndInfinity) {
-  const auto recording = imported("0,1,nan\n1,1,inf\n2,1,3\n").recording;
-  EXPECT_TRUE(std::isnan(recording.force_measured[0]));
-  EXPECT_TRUE(std::isinf(recording.force_measured[1]));
+TEST(Import, KeepsNaN) {
+  EXPECT_TRUE(std::isnan(imported("0,1,nan\n1,1,2\n2,1,3\n").recording.force_measured[0]));
 }
 
 TEST(Import, MarksGapsByAJumpOfTheTick) {

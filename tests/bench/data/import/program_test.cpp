@@ -115,6 +115,46 @@ TEST_F(ImportProgram, RefusesFilesThatAreNoTables) {
   expect_refusal(import("0,1,2\nbad\n1,2,3\n", {"--map", map, "--strict"}), "1 lines are not data: 2");
 }
 
+TEST_F(ImportProgram, RefusesCommasThatSeparateColumnsAndDecimals) {
+  const std::string names = "t_s,x_mm,F_N\n";
+  const std::string expected =
+      "but line 1 names 3 columns; expected no more numbers than names: where commas are decimal signs, "
+      "separate the columns by semicolons or tabs";
+  expect_refusal(import(names + "0,000,0,000,0,000\n0,010,0,050,0,023\n"),
+                 "data.txt:2: 6 numbers, " + expected);
+  expect_refusal(import(names + "0,0,0\n0,01,0,05,0\n"), "data.txt:3: 5 numbers, " + expected);
+  expect_refusal(import("x_mm\n1,25\n1,50\n", {"--map", "position=1[mm]", "--rate", "100"}),
+                 "data.txt:2: 2 numbers, but line 1 names one column");
+  for (const auto* const separated : {"t_s;x_mm;F_N\n0,00;0,00;0,00\n0,01;0,05;0,023\n",
+                                      "t_s\tx_mm\tF_N\n0,00\t0,00\t0,00\n0,01\t0,05\t0,023\n"}) {
+    EXPECT_EQ(import(separated, {"--map", map, "--force"}).exit_status, 0);
+  }
+}
+
+TEST_F(ImportProgram, RefusesMoreNumbersThanNames) {
+  expect_refusal(
+      import("t,x,F\n0.0,1.5,2,3\n"),
+      "data.txt:2: 4 numbers, but line 1 names 3 columns; expected no more numbers than names: name "
+      "every column, or take the header out");
+  EXPECT_EQ(import("t,x,F\n0.0,1.5,2,a remark\n1.0,1.5,2\n").exit_status, 0);
+}
+
+TEST_F(ImportProgram, RefusesAFileThatWouldLoseMostOfItsLines) {
+  const std::string message =
+      "data.txt:2: the first of 3 lines in 5 that would be left out: 0 are not data, "
+      "and of 3 the time repeats, goes back or is not finite";
+  expect_refusal(import("0,1,2\n0,2,2\n0,3,2\n1,4,2\n1,5,2\n"), message);
+  expect_refusal(import("0,1,2\n-\n-\n"), "data.txt:2: the first of 2 lines in 3");
+  EXPECT_EQ(import("0,1,2\n-\n0,3,2\n1,4,2\n").exit_status, 0) << "as many as are kept";
+}
+
+TEST_F(ImportProgram, RefusesInfinity) {
+  expect_refusal(import("t,x,F\n0,1,2\n!\n1,2,-inf\n2,2,inf\n"),
+                 "data.txt:4: column 3, mapped to force_measured, is infinite; expected a finite number, or "
+                 "nan where there is none");
+  expect_refusal(import("0,1e999,2\n1,1,2\n"), "data.txt:1: column 2, mapped to position, is infinite");
+}
+
 TEST_F(ImportProgram, RefusesAFileThatDoesNotExist) {
   const Outcome outcome = run_kerf({"import", (folder_ / "none.txt").string(), "--map", map, "-o", output()});
   EXPECT_EQ(outcome.exit_status, 2);
