@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 
 #include "kerf/drivers/device.h"
 
@@ -78,6 +79,12 @@ std::optional<std::string> UriOptions::text(const std::string& name) {
   const auto place = uri_.options.find(name);
   if (place == uri_.options.end()) return std::nullopt;
   return place->second;
+}
+
+std::optional<std::string> UriOptions::file(const std::string& name) {
+  if (std::find(file_options.begin(), file_options.end(), name) == file_options.end())
+    throw std::logic_error(name + " is not among the options that name files");
+  return text(name);
 }
 
 void UriOptions::refuse_others() const {

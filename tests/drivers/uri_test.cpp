@@ -46,6 +46,13 @@ TEST(Uri, TakesNumbersWithTheirUnit) {
   EXPECT_EQ(options.number("pause", {"s", 0.3, 0.0, 10.0}), 0.3);
 }
 
+TEST(Uri, KnowsWhichOptionsNameFiles) {
+  UriOptions options(parse_uri("falcon:0?firmware=a.bin"));
+  EXPECT_EQ(options.file("firmware"), "a.bin");
+  EXPECT_EQ(options.file("calibration"), std::nullopt);
+  EXPECT_THROW((void)options.file("led"), std::logic_error);
+}
+
 TEST(Uri, RefusesWhatIsNoDevice) {
   EXPECT_THAT(refusal("sim:saw"), AllOf(HasSubstr("sim:saw"), HasSubstr("kerf devices")));
   EXPECT_THAT(refusal(""), HasSubstr("kerf devices"));

@@ -58,7 +58,7 @@ fitting::RuptureSamples liver_ruptures() {
 }
 
 fitting::RuptureSamples read_ruptures(const std::filesystem::path& file) {
-  const std::string text = read_named_file(file);
+  const std::string text = read_named_file(file, LargestInput::table);
   const TextLayout layout = find_layout(text, file.string());
   constexpr Wanted wanted[] = {{"depth", "m"}, {"speed", "m/s"}, {"force", "N"}};
   std::vector<std::size_t> columns;

@@ -23,7 +23,7 @@ using json = nlohmann::ordered_json;
 
 json read_json(const std::filesystem::path& file) {
   try {
-    return json::parse(read_named_file(file));
+    return json::parse(read_named_file(file, LargestInput::table));
   } catch (const json::exception& error) {
     throw std::invalid_argument(fmt::format("{}: not JSON: {}", file.string(), error.what()));
   }

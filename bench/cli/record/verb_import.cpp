@@ -24,10 +24,12 @@ struct ImportVerbArguments {
   bool force = false;
 };
 
-void run_import(const ImportVerbArguments& arguments, Context& context) {
+void run_import(ImportVerbArguments arguments, Context& context) {
+  if (arguments.data == "-") arguments.data = "/dev/stdin";
   if (arguments.maps.empty()) {
     throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}",
-                                            arguments.data, explain_columns(arguments.data)));
+                                            arguments.data,
+                                            explain_columns(arguments.data, arguments.options.max_bytes)));
   }
   if (arguments.output.empty())
     throw std::invalid_argument("-o is needed: the recording to write, for example -o r.h5");
@@ -73,7 +75,7 @@ void add_import(CLI::App& app, Context& context) {
       "reported.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data, "Text file").required();
+  verb.add_option("DATA", arguments->data, "Text file; - is standard input").required();
   verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
@@ -82,6 +84,7 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--velocity-window", arguments->options.velocity_window_s,
                   "Window of the derived velocity [s] (default: 0.02, within 5 to 401 samples)")
       .positive();
+  verb.add_option("--max-bytes", arguments->options.max_bytes, "Refuse a larger text").with_default();
   verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
   verb.add_flag("--force", arguments->force, "Replace an existing recording");
 }

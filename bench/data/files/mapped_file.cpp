@@ -1,22 +1,22 @@
 #include "files/mapped_file.h"
 
 #include <cerrno>
-#include <stdexcept>
 #include <system_error>
 
 #include <sys/mman.h>
-#include <sys/stat.h>
 
 #include "files/named_file.h"
 
 namespace kerf::bench {
 
-MappedFile::MappedFile(const std::filesystem::path& file) {
+MappedFile::MappedFile(const std::filesystem::path& file, std::uintmax_t at_most) {
   const NamedFile named(file);
-  struct stat facts {};
-  if (fstat(named.descriptor(), &facts) != 0 || !S_ISREG(facts.st_mode))
-    throw std::invalid_argument(file.string() + ": not a regular file; expected a text file");
-  size_ = static_cast<std::size_t>(facts.st_size);
+  if (named.is_pipe()) {
+    piped_ = named.read_all(at_most);
+    return;
+  }
+  named.require_at_most(at_most);
+  size_ = static_cast<std::size_t>(named.size());
   if (size_ == 0) return;
   void* const mapped = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, named.descriptor(), 0);
   if (mapped == MAP_FAILED)

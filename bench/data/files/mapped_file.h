@@ -1,25 +1,34 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <string>
 #include <string_view>
 
 namespace kerf::bench {
 
-/// A file's content in memory, mapped for reading while the object lives.
+/// A file's content in memory while the object lives: mapped for reading, or read where it is a pipe.
 class MappedFile {
  public:
-  /// @throws as NamedFile does, and for what is no regular file; std::system_error if it cannot be mapped.
-  explicit MappedFile(const std::filesystem::path& file);
+  /// @throws as NamedFile does, and for what holds more than `at_most` bytes; std::system_error if it cannot
+  ///         be mapped.
+  explicit MappedFile(const std::filesystem::path& file,
+                      std::uintmax_t at_most = std::numeric_limits<std::uintmax_t>::max());
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
   ~MappedFile();
 
-  [[nodiscard]] std::string_view text() const noexcept { return {static_cast<const char*>(begin_), size_}; }
+  [[nodiscard]] std::string_view text() const noexcept {
+    return begin_ == nullptr ? std::string_view(piped_)
+                             : std::string_view(static_cast<const char*>(begin_), size_);
+  }
 
  private:
   void* begin_ = nullptr;
   std::size_t size_ = 0;
+  std::string piped_;
 };
 
 }  // namespace kerf::bench

@@ -1,5 +1,6 @@
 #include "files/named_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -8,11 +9,14 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 namespace kerf::bench {
 namespace {
+
+constexpr int longest_silence_s = 10;  ///< of a pipe
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view why) {
   throw std::invalid_argument(fmt::format("{}: {}", file.string(), why));
@@ -22,32 +26,86 @@ namespace {
   refuse(file, fmt::format("cannot be read: {}", std::strerror(errno)));
 }
 
+/// A name for what this process has open already: nobody meets a pipe there by chance.
+bool is_handed_over(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.parent_path();
+  return file == "/dev/stdin" || folder == "/dev/fd" || folder == "/proc/self/fd";
+}
+
+std::string_view why_unfit(mode_t mode, bool handed_over) {
+  if (S_ISREG(mode) || (handed_over && S_ISFIFO(mode))) return {};
+  if (S_ISDIR(mode)) return "a folder; expected a file";
+  if (S_ISFIFO(mode))
+    return "a FIFO; expected a regular file, or a pipe handed over as /dev/stdin or <(command)";
+  return "a device; expected a regular file";
+}
+
+std::string in_words(std::uintmax_t bytes) {
+  if (bytes >> 20U == 0) return fmt::format("{} bytes", bytes);
+  return bytes >> 30U > 0 ? fmt::format("{} GiB", bytes >> 30U) : fmt::format("{} MiB", bytes >> 20U);
+}
+
 }  // namespace
 
+// Without O_NONBLOCK a FIFO is waited for until somebody writes to it; O_NOCTTY lets no terminal become ours.
 NamedFile::NamedFile(const std::filesystem::path& file)
-    : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    : file_(file), descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
   if (descriptor_ < 0 && errno == ENOENT) refuse(file, "no such file");
   if (descriptor_ < 0) refuse_unreadable(file);
   struct stat facts {};
-  if (fstat(descriptor_, &facts) == 0 && S_ISDIR(facts.st_mode)) {
+  const bool known = fstat(descriptor_, &facts) == 0;
+  if (const auto why = known ? why_unfit(facts.st_mode, is_handed_over(file)) : std::strerror(errno);
+      !why.empty()) {
     close(descriptor_);
-    refuse(file, "a folder; expected a file");
+    refuse(file, why);
   }
+  is_pipe_ = !S_ISREG(facts.st_mode);
+  if (!is_pipe_) size_ = static_cast<std::uintmax_t>(facts.st_size);
 }
 
 NamedFile::~NamedFile() { close(descriptor_); }
 
-std::string read_named_file(const std::filesystem::path& file) {
-  const NamedFile named(file);
+void NamedFile::wait_for_a_writer() const {
+  pollfd pipe{.fd = descriptor_, .events = POLLIN, .revents = 0};
+  int ready = 0;
+  do {
+    ready = poll(&pipe, 1, longest_silence_s * 1000);
+  } while (ready < 0 && errno == EINTR);
+  if (ready == 0)
+    refuse(file_,
+           fmt::format("nothing came through the pipe for {} s; is its writer at work?", longest_silence_s));
+}
+
+std::size_t NamedFile::read(void* bytes, std::size_t room) const {
+  for (;;) {
+    const ssize_t count = ::read(descriptor_, bytes, room);
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno == EAGAIN) {
+      wait_for_a_writer();
+    } else if (errno != EINTR) {
+      throw std::system_error(errno, std::generic_category(), "cannot read " + file_.string());
+    }
+  }
+}
+
+void NamedFile::require_at_most(std::uintmax_t bytes) const {
+  if (size_ > bytes) refuse(file_, fmt::format("{} bytes; expected {} at most", size_, in_words(bytes)));
+}
+
+std::string NamedFile::read_all(std::uintmax_t at_most) const {
+  require_at_most(at_most);
   std::string content;
   std::array<char, 1 << 16> piece{};
-  for (;;) {
-    const ssize_t count = read(named.descriptor(), piece.data(), piece.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw std::system_error(errno, std::generic_category(), "cannot read " + file.string());
-    if (count == 0) return content;
-    content.append(piece.data(), static_cast<std::size_t>(count));
+  while (const std::size_t count = read(piece.data(), piece.size())) {
+    if (content.size() + count > at_most)
+      refuse(file_, fmt::format("more than {}; expected that at most", in_words(at_most)));
+    content.append(piece.data(), count);
   }
+  return content;
+}
+
+std::string read_named_file(const std::filesystem::path& file, std::uintmax_t at_most) {
+  return NamedFile(file).read_all(at_most);
 }
 
 void require_named_folder(const std::filesystem::path& folder) {

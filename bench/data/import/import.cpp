@@ -221,7 +221,7 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
 
 Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
   const std::string name = file.string();
-  const MappedFile mapped(file);
+  const MappedFile mapped(file, options.max_bytes);
   Imported imported;
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
@@ -282,8 +282,8 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   return imported;
 }
 
-std::string explain_columns(const std::filesystem::path& file) {
-  const MappedFile mapped(file);
+std::string explain_columns(const std::filesystem::path& file, std::size_t max_bytes) {
+  const MappedFile mapped(file, max_bytes);
   const TextLayout layout = find_layout(mapped.text(), file.string());
   return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
                      suggest_map(layout));

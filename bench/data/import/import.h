@@ -7,6 +7,7 @@
 
 #include <kerf/schema/recording.h>
 
+#include "files/named_file.h"
 #include "files/progress.h"
 #include "import/column_map.h"
 #include "import/text_layout.h"
@@ -18,7 +19,8 @@ struct ImportOptions {
   double rate_hz = 0.0;            ///< of a file without a time column; 0: there is one
   double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
   double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, within 5 to 401 samples
-  bool strict = false;             ///< refuse a file that has lines which are not data
+  std::size_t max_bytes = LargestInput::import;  ///< of the file
+  bool strict = false;                           ///< refuse a file that has lines which are not data
   ShowProgress progress = show_no_progress;
 };
 
@@ -44,6 +46,6 @@ struct Imported {
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
 
 /// The columns of a file and a map to begin with, for a user who gave none.
-[[nodiscard]] std::string explain_columns(const std::filesystem::path& file);
+[[nodiscard]] std::string explain_columns(const std::filesystem::path& file, std::size_t max_bytes);
 
 }  // namespace kerf::bench

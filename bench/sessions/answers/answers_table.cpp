@@ -196,7 +196,7 @@ Study parse_answers(std::string_view content, const std::string& name, std::opti
 }
 
 Study read_answers(const std::filesystem::path& file, std::optional<Design> design) {
-  return parse_answers(read_named_file(file), file.string(), design);
+  return parse_answers(read_named_file(file, LargestInput::table), file.string(), design);
 }
 
 }  // namespace kerf::bench

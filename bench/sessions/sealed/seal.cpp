@@ -73,11 +73,9 @@ std::size_t read_all(const std::filesystem::path& file, std::uint8_t* bytes, std
   const NamedFile named(file);
   std::size_t size = 0;
   while (size < room) {
-    const ssize_t count = ::read(named.descriptor(), bytes + size, room - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw_cannot(file, "read");
+    const std::size_t count = named.read(bytes + size, room - size);
     if (count == 0) break;
-    size += static_cast<std::size_t>(count);
+    size += count;
   }
   return size;
 }

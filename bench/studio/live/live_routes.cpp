@@ -72,8 +72,9 @@ class LiveAnswers {
   [[nodiscard]] HttpResponse start(const HttpRequest& request) const {
     const nlohmann::json body = json_in(request);
     if (loop_.status().is_running) throw RequestError(409, "The loop is running: stop it first.");
-    LiveOptions options{
-        .device_uri = text_or(body, "device", ""), .sensor_uri = text_or(body, "sensor", ""), .scene = {}};
+    LiveOptions options{.device_uri = hooks_.uri_of(text_or(body, "device", "")),
+                        .sensor_uri = hooks_.uri_of(text_or(body, "sensor", "")),
+                        .scene = {}};
     const std::string scene = text_or(body, "scene_id", "");
     if (!scene.empty()) options.scene = hooks_.scene_of(scene);
     loop_.start(options);

@@ -11,9 +11,10 @@
 
 namespace kerf::bench {
 
-/// What the routes of a running loop ask of the rest of the program. Both that look things up throw
+/// What the routes of a running loop ask of the rest of the program. Those that look things up throw
 /// RequestError.
 struct LiveHooks {
+  std::function<std::string(const std::string& uri)> uri_of;  ///< to open, for the one that a page has sent
   std::function<LawFile(const std::string& id)> law_of;
   std::function<std::string(const std::string& id)> law_name_of;  ///< for people; empty: the id
   std::function<Scene(const std::string& id)> scene_of;

@@ -1,7 +1,5 @@
 #include "server/session_routes.h"
 
-#include <utility>
-
 namespace kerf::bench {
 namespace {
 
@@ -16,25 +14,22 @@ nlohmann::ordered_json as_json(const SessionProgress& progress) {
 
 }  // namespace
 
-void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
-                        std::filesystem::path key_file, std::function<void()> prepare) {
+void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host, const SessionHooks& hooks) {
   routes.get("/api/session", Pace::at_once,
              [&host](const HttpRequest&) { return json_response(as_json(host.progress())); });
-  routes.post("/api/session/start", Pace::action,
-              [&host, &workspace, key_file = std::move(key_file),
-               prepare = std::move(prepare)](const HttpRequest& request) {
-                const nlohmann::json json = json_in(request);
-                const WorkspaceEntry entry = workspace.find(text_in(json, "session"), FileKind::session);
-                host.start({.file = entry.path,
-                            .name = entry.name,
-                            .device_uri = text_or(json, "device", ""),
-                            .sensor_uri = text_or(json, "sensor", ""),
-                            .key_file = key_file,
-                            .passphrase = text_or(json, "passphrase", ""),
-                            .check = flag_in(json, "check", true)},
-                           prepare);
-                return json_response(as_json(host.progress()));
-              });
+  routes.post("/api/session/start", Pace::action, [&host, &workspace, hooks](const HttpRequest& request) {
+    const nlohmann::json json = json_in(request);
+    const WorkspaceEntry entry = workspace.find(text_in(json, "session"), FileKind::session);
+    host.start({.file = entry.path,
+                .name = entry.name,
+                .device_uri = hooks.uri_of(text_or(json, "device", "")),
+                .sensor_uri = hooks.uri_of(text_or(json, "sensor", "")),
+                .key_file = hooks.key_file,
+                .passphrase = text_or(json, "passphrase", ""),
+                .check = flag_in(json, "check", true)},
+               hooks.prepare);
+    return json_response(as_json(host.progress()));
+  });
   routes.post("/api/session/stop", Pace::at_once, [&host](const HttpRequest&) {
     host.stop();
     return json_response({{"stopping", true}});

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <string>
 
 #include "http/routes.h"
 #include "server/session_host.h"
@@ -8,15 +10,20 @@
 
 namespace kerf::bench {
 
+/// What the routes of sessions ask of the rest of the program.
+struct SessionHooks {
+  std::filesystem::path key_file;                             ///< of whoever keeps the blinding; empty: none
+  std::function<std::string(const std::string& uri)> uri_of;  ///< to open, for the one that a page has sent
+  /// SessionHost::start()'s: whatever else moves the device has to end, and its forces are shown to nobody.
+  std::function<void()> prepare;
+};
+
 /// The experimenter's page.
 ///
 ///     GET  /api/session         how far it is
 ///     POST /api/session/start   {"session": ID, "device", "sensor", "passphrase", "check"}
 ///     POST /api/session/stop
 ///
-/// `prepare` is SessionHost::start()'s: whatever else moves the device has to end, and its forces are shown
-/// to nobody.
-void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host,
-                        std::filesystem::path key_file, std::function<void()> prepare);
+void add_session_routes(Routes& routes, Workspace& workspace, SessionHost& host, const SessionHooks& hooks);
 
 }  // namespace kerf::bench

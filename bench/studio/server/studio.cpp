@@ -18,6 +18,7 @@
 #include "server/studio_page.h"
 #include "views/recording_routes.h"
 #include "views/recording_views.h"
+#include "workspace/page_uri.h"
 #include "workspace/workspace.h"
 #include "workspace/workspace_routes.h"
 
@@ -33,6 +34,7 @@ class Studio::State {
  public:
   explicit State(const StudioOptions& options)
       : workspace_(options.folder),
+        own_device_(options.device_uri),
         server_({.address = options.address, .port = options.port, .max_body = max_body}),
         access_(server_.hosts()),
         sessions_(
@@ -46,7 +48,10 @@ class Studio::State {
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
-    add_session_routes(routes_, workspace_, sessions_, options.key_file, [this] { leave_the_device(); });
+    add_session_routes(routes_, workspace_, sessions_,
+                       {.key_file = options.key_file,
+                        .uri_of = [this](const std::string& uri) { return uri_of(uri); },
+                        .prepare = [this] { leave_the_device(); }});
     server_.start([this](const HttpRequest& request, bool overdue) { return respond(request, overdue); });
   }
   State(const State&) = delete;
@@ -68,8 +73,14 @@ class Studio::State {
     return workspace_.find(id, kind).path;
   }
 
+  /// Whoever has started the studio may name any file.
+  [[nodiscard]] std::string uri_of(const std::string& uri) const {
+    return uri == own_device_ ? uri : uri_from_page(workspace_, uri);
+  }
+
   [[nodiscard]] LiveHooks live_hooks() {
-    return {.law_of = [this](const std::string& id) { return read_law_file(path_of(id, FileKind::law)); },
+    return {.uri_of = [this](const std::string& uri) { return uri_of(uri); },
+            .law_of = [this](const std::string& id) { return read_law_file(path_of(id, FileKind::law)); },
             .law_name_of = [this](const std::string& id) { return workspace_.find(id, FileKind::law).name; },
             .scene_of = [this](const std::string& id) { return read_scene(path_of(id, FileKind::scene)); },
             .new_recording = [this](const std::string& name) { return workspace_.new_file(name, ".h5"); },
@@ -115,6 +126,7 @@ class Studio::State {
 
   // In the order in which they may go, the last one first, once the server has stopped.
   Workspace workspace_;
+  const std::string own_device_;
   HttpServer server_;
   AccessControl access_;
   RecordingViews views_;

@@ -149,6 +149,15 @@ fs::path Workspace::new_file(const std::string& name, std::string_view ending, b
   return file;
 }
 
+std::optional<fs::path> Workspace::regular_file(const std::string& name) const {
+  std::error_code error;
+  const fs::path file = folder_ / name;
+  // What is its own canonical name holds neither a link nor a step up.
+  if (fs::path(name).is_absolute() || fs::canonical(file, error) != file || error) return std::nullopt;
+  if (!fs::is_regular_file(fs::symlink_status(file, error))) return std::nullopt;
+  return file;
+}
+
 std::string Workspace::id_of(const fs::path& file) const {
   const fs::path relative = fs::weakly_canonical(file).lexically_relative(folder_);
   if (relative.empty() || *relative.begin() == "..")

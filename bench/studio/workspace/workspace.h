@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,6 +55,9 @@ class Workspace {
   ///         letter or digit; 409 if it is there and may not be replaced.
   [[nodiscard]] std::filesystem::path new_file(const std::string& name, std::string_view ending,
                                                bool replace = false) const;
+  /// Where a file of the folder is, by its path in there. Nothing for what is no regular file, is a symbolic
+  /// link on any step of the way, or leads out of the folder.
+  [[nodiscard]] std::optional<std::filesystem::path> regular_file(const std::string& name) const;
   /// The id that a file of this folder has. @throws std::invalid_argument if it is not within the folder.
   [[nodiscard]] std::string id_of(const std::filesystem::path& file) const;
 

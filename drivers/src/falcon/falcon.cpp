@@ -85,7 +85,7 @@ std::vector<usb::Attached> find_falcons() {
 Falcon::Options Falcon::parse_options(Uri uri) {
   UriOptions given(std::move(uri));
   Options options;
-  options.firmware = given.text("firmware").value_or("");
+  options.firmware = given.file("firmware").value_or("");
   options.homing = given.flag("homing", options.homing);
   options.homing_timeout_s = given.number("homing_timeout", {"s", options.homing_timeout_s, 0.1, 3600.0});
   if (const auto led = given.text("led")) options.led = led_of(*led);

@@ -4,8 +4,6 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <vector>
@@ -17,6 +15,7 @@
 #include "kerf/drivers/protocols/c2000_image.h"
 #include "kerf/drivers/protocols/falcon.h"
 #include "kerf/drivers/usb/io_thread.h"
+#include "small_file.h"
 
 namespace kerf::drivers {
 namespace {
@@ -107,18 +106,12 @@ bool runs(usb::UsbDevice& device, std::int64_t max_ns, const FalconSetup& setup)
 }
 
 std::vector<std::uint8_t> read_image(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const bool is_folder = std::filesystem::is_directory(path);
-  if (!file || is_folder)
+  const SmallFile file = read_small_file(path, max_image);
+  if (!file.problem.empty())
     throw std::invalid_argument(
         fmt::format("firmware={} cannot be read ({}); give the path of the image that came with your Falcon",
-                    path, std::strerror(is_folder ? EISDIR : errno)));
-  std::vector<std::uint8_t> image;
-  std::vector<char> piece(4096);
-  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
-    image.insert(image.end(), piece.begin(), piece.begin() + file.gcount());
-    if (image.size() > max_image) break;
-  }
+                    path, file.problem));
+  const std::vector<std::uint8_t> image(file.content.begin(), file.content.end());
   const auto problem = c2000::problem_of(image);
   if (!problem.empty()) {
     fail(fmt::format(

@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,12 +13,14 @@
 #include <toml++/toml.h>
 
 #include "kerf/drivers/toml_text.h"
+#include "small_file.h"
 
 namespace kerf::drivers {
 namespace {
 
 constexpr double pound_force_n = 4.4482216152605;  // exact, by definition
 constexpr double inch_m = 0.0254;
+constexpr std::size_t largest_calibration = 1U << 20U;  // bytes
 
 struct UnitFactor {
   std::string_view name;
@@ -217,16 +216,14 @@ ForceCalibration parse_force_calibration(const std::string& text, const std::str
 }
 
 ForceCalibration read_force_calibration(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || std::filesystem::is_directory(file)) {
+  const SmallFile read = read_small_file(file, largest_calibration);
+  if (!read.problem.empty()) {
     throw std::invalid_argument(
-        fmt::format("{}: the force calibration cannot be read; is the path right? "
+        fmt::format("{}: the force calibration cannot be read ({}); is the path right? "
                     "examples/u6.calibration.toml is an example",
-                    file));
+                    file, read.problem));
   }
-  return parse_force_calibration(text.str(), file);
+  return parse_force_calibration(read.content, file);
 }
 
 std::string to_toml(const ForceCalibration& calibration) {

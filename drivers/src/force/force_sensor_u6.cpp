@@ -47,7 +47,7 @@ std::vector<usb::Attached> find_labjack_u6() {
 
 ForceSensorU6::Options ForceSensorU6::parse_options(std::string_view text, Uri uri) {
   UriOptions given(std::move(uri));
-  const auto file = given.text("calibration");
+  const auto file = given.file("calibration");
   given.refuse_others();
   if (!file || file->empty()) {
     throw DeviceError(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -14,6 +15,10 @@ struct Uri {
   std::string name;
   std::map<std::string, std::string> options;
 };
+
+/// The options, of any device, whose value is the path of a file that its driver opens. Whoever takes a URI
+/// from outside has to look at these.
+inline constexpr std::array<std::string_view, 2> file_options{"calibration", "firmware"};
 
 /// @throws DeviceError if an option has no '=' or stands twice.
 [[nodiscard]] Uri parse_uri(std::string_view text);
@@ -40,6 +45,8 @@ class UriOptions {
 
   /// As it stands; nothing if it is not given.
   [[nodiscard]] std::optional<std::string> text(const std::string& name);
+  /// The same of one of the file_options. @throws std::logic_error for another.
+  [[nodiscard]] std::optional<std::string> file(const std::string& name);
 
   /// Leaves an option to somebody else.
   void allow(const std::string& name) { known_.push_back(name); }

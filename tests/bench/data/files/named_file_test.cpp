@@ -1,13 +1,17 @@
 #include "files/named_file.h"
 
+#include <array>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "files/mapped_file.h"
 #include "support/program.h"
@@ -40,11 +44,70 @@ TEST(NamedFile, HoldsWhatStandsInIt) {
   EXPECT_EQ(MappedFile(folder / "empty").text(), "");
 }
 
-TEST(NamedFile, MayBeAPipe) {
+/// A pipe as a shell hands it over.
+struct HandedOver {
+  HandedOver() {
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  }
+  HandedOver(const HandedOver&) = delete;
+  HandedOver& operator=(const HandedOver&) = delete;
+  ~HandedOver() {
+    close(ends[0]);
+    close_writer();
+  }
+  void close_writer() {
+    if (ends[1] >= 0) close(std::exchange(ends[1], -1));
+  }
+  void write_text(const std::string& text) const {
+    EXPECT_EQ(write(ends[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  }
+  [[nodiscard]] fs::path name() const { return "/dev/fd/" + std::to_string(ends[0]); }
+
+  std::array<int, 2> ends{};
+};
+
+TEST(NamedFile, MayBeAPipeThatIsHandedOver) {
+  for (const auto& read : {+[](const fs::path& file) { return read_named_file(file); },
+                           +[](const fs::path& file) { return std::string(MappedFile(file).text()); }}) {
+    HandedOver pipe;
+    pipe.write_text("through ");
+    std::jthread writer([&] {
+      pipe.write_text("a pipe");
+      pipe.close_writer();
+    });
+    EXPECT_EQ(read(pipe.name()), "through a pipe");
+  }
+  HandedOver ended;
+  ended.close_writer();
+  EXPECT_EQ(read_named_file(ended.name()), "");
+}
+
+TEST(NamedFile, IsNoFifoOrDeviceThatIsMerelyNamed) {
   const test::TemporaryFolder folder;
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
-  const std::jthread writer([&] { test::write_text(folder / "pipe", "through a pipe"); });
-  EXPECT_EQ(read_named_file(folder / "pipe"), "through a pipe");
+  const std::string fifo = refusal([&] { (void)read_named_file(folder / "pipe"); });
+  EXPECT_THAT(fifo, HasSubstr("pipe: a FIFO; expected a regular file, or a pipe handed over"));
+  for (const char* device : {"/dev/zero", "/dev/null"}) {
+    EXPECT_EQ(refusal([&] { (void)read_named_file(device); }),
+              std::string(device) + ": a device; expected a regular file");
+    EXPECT_THAT(refusal([&] { const MappedFile mapped(device); }), HasSubstr(": a device;"));
+  }
+}
+
+TEST(NamedFile, HasALimit) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "x", "");
+  fs::resize_file(folder / "x", LargestInput::text);
+  EXPECT_EQ(read_named_file(folder / "x").size(), LargestInput::text);
+  fs::resize_file(folder / "x", LargestInput::text + 1);
+  const std::string expected = "x: 16777217 bytes; expected 16 MiB at most";
+  EXPECT_THAT(refusal([&] { (void)read_named_file(folder / "x"); }), HasSubstr(expected));
+  EXPECT_THAT(refusal([&] { const MappedFile mapped(folder / "x", LargestInput::text); }),
+              HasSubstr(expected));
+  HandedOver pipe;
+  pipe.write_text("12345");
+  pipe.close_writer();
+  EXPECT_THAT(refusal([&] { (void)read_named_file(pipe.name(), 4); }), HasSubstr("more than"));
 }
 
 TEST(NamedFile, IsNamedWronglyWhereItCannotBeOpened) {
@@ -56,7 +119,6 @@ TEST(NamedFile, IsNamedWronglyWhereItCannotBeOpened) {
     EXPECT_THAT(refusal([&] { open(folder.path()); }), EndsWith(": a folder; expected a file"));
     EXPECT_THAT(refusal([&] { open(folder / "loop"); }), HasSubstr("loop: cannot be read: Too many levels"));
   }
-  EXPECT_THAT(refusal([] { const MappedFile mapped("/dev/null"); }), HasSubstr("not a regular file"));
 }
 
 TEST(NamedFolder, IsNamedWronglyWhereThereIsNone) {

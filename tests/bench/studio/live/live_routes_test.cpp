@@ -48,7 +48,8 @@ struct LiveSite {
 
   LiveSite() {
     add_live_routes(routes, loop,
-                    {.law_of =
+                    {.uri_of = [](const std::string& uri) { return uri; },
+                     .law_of =
                          [](const std::string& id) {
                            if (id != "abc") throw RequestError(404, "There is no such law.");
                            return parse_law_file(law_text, "a.law.toml");

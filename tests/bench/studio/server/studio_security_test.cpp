@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include "server/studio.h"
 #include "support/plain_client.h"
@@ -239,6 +240,33 @@ TEST_F(StudioUnderAttack, TakesNoDeviceThatIsAFileOrACommand) {
     const std::string body = fmt::format(R"({{"device": "sim:scissors", "scene_id": "{}"}})", scene);
     EXPECT_EQ(status_of(post("/api/live/start", body)), "404") << scene;
   }
+}
+
+TEST_F(StudioUnderAttack, LetsNoDriverOpenAFileOutsideOfTheFolder) {
+  test::write_text(folder_ / "bad.toml", "matrix = secret\n");
+  ASSERT_EQ(mkfifo((folder_ / "fifo").c_str(), 0600), 0);
+  std::filesystem::create_symlink("/etc/passwd", folder_ / "link");
+  const auto answer_to_file = [&](const std::string& path, const std::string& field,
+                                  const std::string& file) {
+    return post(path, fmt::format(R"({{"session": "0", "{}": "{}"}})", field, file));
+  };
+  for (const char* const uri :
+       {"u6:0?calibration=", "falcon:0?firmware=", "sim:scissors?seed=3&calibration="}) {
+    for (const std::string& file :
+         {std::string("/etc/passwd"), std::string("../../etc/passwd"), (folder_ / "bad.toml").string(),
+          std::string("./bad.toml"), std::string("link"), std::string("fifo"), std::string("/dev/zero"),
+          std::string(".")}) {
+      for (const char* const field : {"device", "sensor"}) {
+        const std::string answer = answer_to_file("/api/live/start", field, uri + file);
+        EXPECT_EQ(status_of(answer), "400") << uri << file;
+        EXPECT_THAT(body_of(answer), HasSubstr("from a page only a file of the studio's folder")) << file;
+      }
+    }
+  }
+  EXPECT_THAT(body_of(answer_to_file("/api/live/start", "sensor", "u6:0?calibration=bad.toml")),
+              HasSubstr("bad.toml:1: "))
+      << "this one may be opened";
+  start_the_loop();
 }
 
 TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {

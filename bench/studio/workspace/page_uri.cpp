@@ -1,0 +1,41 @@
+#include "workspace/page_uri.h"
+
+#include <fmt/format.h>
+
+#include <kerf/drivers/uri.h>
+
+#include "http/routes.h"
+
+namespace kerf::bench {
+
+namespace {
+
+std::string as_text(const drivers::Uri& uri) {
+  std::string text = uri.name;
+  for (const auto& [name, value] : uri.options)
+    text += fmt::format("{}{}={}", text.size() == uri.name.size() ? '?' : '&', name, value);
+  return text;
+}
+
+}  // namespace
+
+std::string uri_from_page(const Workspace& workspace, const std::string& uri) {
+  drivers::Uri parts = drivers::parse_uri(uri);
+  bool names_a_file = false;
+  for (const std::string_view option : drivers::file_options) {
+    const auto named = parts.options.find(std::string(option));
+    if (named == parts.options.end()) continue;
+    const auto file = workspace.regular_file(named->second);
+    if (!file) {
+      throw RequestError(400,
+                         fmt::format("{}={}: from a page only a file of the studio's folder can be named, by "
+                                     "its path in there; or give the URI to kerf studio with --device",
+                                     option, named->second));
+    }
+    named->second = file->string();
+    names_a_file = true;
+  }
+  return names_a_file ? as_text(parts) : uri;
+}
+
+}  // namespace kerf::bench
