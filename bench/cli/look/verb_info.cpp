@@ -12,6 +12,7 @@
 #include <kerf/schema/session.h>
 #include <kerf/schema/validate.h>
 
+#include "files/for_terminal.h"
 #include "program/standard_streams.h"
 #include "program/verbs.h"
 #include "recordings/summary.h"
@@ -38,7 +39,7 @@ void print_schema(Context& context) {
                       {"markdown", markdown},
                       {"markdown_of_sessions", schema::session_schema_as_markdown()}};
   } else {
-    context.print(markdown);
+    context.print(for_terminal(markdown));
   }
 }
 
@@ -70,7 +71,7 @@ void follow(const std::string& name) {
     try {
       const schema::Tail tail = schema::read_tail(place.file);
       if (terminal) {
-        write_error_text(fmt::format("\r{}\033[K", in_one_line(tail)));
+        write_error_text(fmt::format("\r{}\033[K", for_terminal(in_one_line(tail))));
       } else if (tail.rows != shown) {
         note(in_one_line(tail));
       }

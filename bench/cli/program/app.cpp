@@ -17,6 +17,7 @@
 #include <kerf/schema/recording.h>
 #include <kerf/version.h>
 
+#include "files/for_terminal.h"
 #include "files/json_file.h"
 #include "program/nearest_word.h"
 #include "program/standard_streams.h"
@@ -125,7 +126,7 @@ std::string wrong_options(const Typed& typed, const CLI::ParseError& error) {
 }
 
 int fail(Exit status, std::string_view message) {
-  write_error_text(fmt::format("kerf: {}\n", message));
+  write_error_text(fmt::format("kerf: {}\n", for_terminal(message)));
   return static_cast<int>(status);
 }
 
@@ -166,7 +167,7 @@ int run_words(std::vector<std::string> words) {
 }  // namespace
 
 void Context::say(std::string_view line) {
-  if (!json) print(fmt::format("{}\n", line));
+  if (!json) print(fmt::format("{}\n", for_terminal(line)));
 }
 
 void Context::print(std::string_view text) {
@@ -176,9 +177,9 @@ void Context::print(std::string_view text) {
     output_error = errno != 0 ? errno : EIO;
 }
 
-void note(std::string_view line) { write_error_text(fmt::format("{}\n", line)); }
+void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_terminal(line))); }
 
-void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", line)); }
+void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "files/for_terminal.h"
 #include "program/standard_streams.h"
 
 namespace kerf::bench {
@@ -17,7 +18,7 @@ constexpr std::size_t bar_width = 40;
 }  // namespace
 
 Progress::Progress(std::string label, std::size_t total)
-    : label_(std::move(label)), total_(std::max<std::size_t>(total, 1)) {
+    : label_(for_terminal(label)), total_(std::max<std::size_t>(total, 1)) {
   if (!label_.empty() && isatty(STDERR_FILENO) != 0)
     thread_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });
 }

@@ -2,13 +2,14 @@
 
 #include <kerf/version.h>
 
+#include "files/for_terminal.h"
 #include "files/whole_file.h"
 
 namespace kerf::bench {
 
 std::string json_text(nlohmann::ordered_json result) {
   result["software"] = software();
-  return result.dump(2) + "\n";
+  return for_terminal(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
 void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& result) {

@@ -7,7 +7,8 @@
 
 namespace kerf::bench {
 
-/// A result as text, indented, with the program that made it under "software".
+/// A result as text, indented, with the program that made it under "software"; no character of it steers a
+/// terminal (for_terminal()).
 [[nodiscard]] std::string json_text(nlohmann::ordered_json result);
 
 /// Writes it as write_whole_file() does.

@@ -4,6 +4,8 @@
 
 #include <kerf/version.h>
 
+#include "files/for_terminal.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -40,7 +42,7 @@ code { font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em
 
 std::string escaped(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : for_terminal(text)) {
     switch (c) {
       case '&':
         result += "&amp;";

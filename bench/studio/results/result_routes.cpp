@@ -12,6 +12,7 @@
 
 #include "chart/chart_picture.h"
 #include "chart/fit_plan.h"
+#include "files/for_terminal.h"
 #include "files/named_file.h"
 #include "laws/law_file.h"
 #include "plot/chart_json.h"
@@ -129,7 +130,7 @@ HttpResponse result(const HttpRequest& request, Workspace& workspace) {
   if (std::filesystem::file_size(entry.path) > largest_result)
     throw RequestError(413, fmt::format("{} is larger than {} MB", entry.name, largest_result >> 20U));
   HttpResponse response = json_response({});
-  response.body = read_named_file(entry.path, largest_result);
+  response.body = json_for_page(read_named_file(entry.path, largest_result));
   if (entry.kind != FileKind::chart && entry.kind != FileKind::stability) return response;
   try {
     auto result = nlohmann::ordered_json::parse(response.body);

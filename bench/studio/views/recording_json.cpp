@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "files/for_terminal.h"
 #include "files/json_number.h"
 #include "segment/segment.h"
 #include "views/hysteresis_loops.h"
@@ -21,7 +22,7 @@ constexpr std::size_t max_spans = 20'000;
 
 /// Texts of a damaged file may be no UTF-8.
 std::string dumped(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_for_page(json.dump(-1, ' ', false, ordered_json::error_handler_t::replace));
 }
 
 /// A loop has some hundred numbers, and there may be a hundred loops.

@@ -6,6 +6,7 @@
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
+#include "files/for_terminal.h"
 #include "host/realtime.h"
 #include "loop/without_signals.h"
 
@@ -33,7 +34,7 @@ HttpResponse guarded(const Routes::Answer& answer, const HttpRequest& request) {
 
 HttpResponse json_response(const nlohmann::ordered_json& json) {
   return {.type = "application/json",
-          .body = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)};
+          .body = json_for_page(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace))};
 }
 
 HttpResponse json_error(int status, std::string_view why) {

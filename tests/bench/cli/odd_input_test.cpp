@@ -7,8 +7,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <kerf/schema/recording.h>
+
 #include "support/kelvin_law.h"
 #include "support/program.h"
+#include "support/recordings.h"
 
 namespace kerf {
 namespace {
@@ -86,6 +89,35 @@ TEST_F(OddInput, IsReadFromAPipeThatIsMeant) {
   const auto checked = shell(kerf + " check <(cat " + law() + ") --virtual --seconds 0.2");
   EXPECT_LE(checked.exit_status, 1) << checked.errors;
   EXPECT_THAT(checked.output, HasSubstr("200 ticks"));
+}
+
+TEST_F(OddInput, SteersNoTerminal) {
+  const std::string clear = "\x1b[2J\u009B2J\u202E";
+  schema::Recording recording = test::punch();
+  recording.header.source = clear;
+  recording.header.history = clear;
+  recording.channels.push_back(
+      {.name = clear, .unit = "1", .values = std::vector<double>(recording.rows(), 0.0)});
+  recording.events.push_back({.time_s = 0.0, .kind = "note", .text = clear});
+  const std::string file = (folder_ / ("a" + clear + ".h5")).string();
+  schema::write_recording(file, recording);
+  test::write_text(folder_ / "clear.toml", R"(model = "\u001b[2J\u009b2J\u202e")");
+  const std::vector<std::vector<std::string>> commands{{"info", file},
+                                                       {"info", file, "--json"},
+                                                       {"validate", file},
+                                                       {"validate", (folder_ / clear).string()},
+                                                       {"check", (folder_ / "clear.toml").string()},
+                                                       {clear},
+                                                       {"laws", clear},
+                                                       {"info", file, "--" + clear},
+                                                       {"record", "--device", clear, "-o", output()}};
+  for (const auto& words : commands) {
+    const test::Outcome outcome = run_kerf(words);
+    const std::string said = outcome.output + outcome.errors;
+    EXPECT_THAT(said, HasSubstr("\\u001b[2J\\u009b2J\\u202e")) << words[0];
+    for (const char* steering : {"\x1b", "\u009B", "\u202E"})
+      EXPECT_THAT(said, testing::Not(HasSubstr(steering))) << words[0];
+  }
 }
 
 }  // namespace

@@ -145,6 +145,11 @@ TEST(Routes, SayWhatWasWrongInTheAnswer) {
   EXPECT_EQ(answer_to("/e", std::runtime_error("\xff")).status, 500);
 }
 
+TEST(Routes, ShowWhatWouldReorderALine) {
+  EXPECT_EQ(json_response({{"name", "a\u202E\x1b"}}).body, R"({"name":"a\\u202e\\u001b"})");
+  EXPECT_EQ(json_error(400, "\u2066").body, R"({"error":"\\u2066"})");
+}
+
 TEST(RequestValues, AreChecked) {
   const HttpRequest request{.query = {{"n", "12"}, {"x", "-1.5e3"}, {"list", "1,2,3"}, {"empty", ""}}};
   EXPECT_EQ(count_in_query(request, "n", 12), 12U);
