@@ -11,6 +11,7 @@
 #include "experiment/key_arguments.h"
 #include "experiment/verb_session.h"
 #include "sealed/opening.h"
+#include "sealed/receipt.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench {
@@ -18,6 +19,7 @@ namespace {
 
 struct SessionAnalyzeVerbArguments {
   std::vector<std::string> files;
+  std::vector<std::string> receipts;
   std::string output;
   std::string reason;
   std::string design;
@@ -29,11 +31,37 @@ struct SessionAnalyzeVerbArguments {
   bool replace = false;
 };
 
+std::vector<Receipt> receipts_of(const std::vector<std::string>& named) {
+  std::vector<Receipt> receipts;
+  for (const std::string& one : named) {
+    const auto more = receipts_named(one);
+    receipts.insert(receipts.end(), more.begin(), more.end());
+  }
+  return receipts;
+}
+
+/// What a receipt does not bear out is a check that did not pass, and a warning.
+void hold_against(const std::vector<Receipt>& receipts, const std::vector<NamedSession>& sessions,
+                  Context& context) {
+  if (receipts.empty()) return;
+  for (const ReceiptFinding& finding : held_against(receipts, sessions)) {
+    context.result["receipts"].push_back(
+        {{"receipt", finding.receipt.in_full()}, {"holds", finding.holds}, {"finding", finding.text}});
+    if (finding.holds) {
+      context.say(finding.text);
+    } else {
+      warn(finding.text);
+      context.exit = Exit::check_failed;
+    }
+  }
+}
+
 bool is_table(const std::string& file) {
   return file.ends_with(".csv") || file.ends_with(".tsv") || file.ends_with(".txt");
 }
 
 Study read_table(const SessionAnalyzeVerbArguments& arguments) {
+  if (!arguments.receipts.empty()) throw std::invalid_argument("--receipt is for sessions; a table has none");
   if (arguments.files.size() != 1)
     throw std::invalid_argument("a table of answers is analysed alone; put all answers into one table");
   if (arguments.design.empty()) return read_answers(arguments.files.front());
@@ -43,8 +71,10 @@ Study read_table(const SessionAnalyzeVerbArguments& arguments) {
 Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
   if (!arguments.design.empty())
     throw std::invalid_argument("--design is for tables: a session knows its design");
+  const std::vector<Receipt> receipts = receipts_of(arguments.receipts);  // before a file is opened
   std::vector<std::unique_ptr<SessionStore>> stores;
   std::vector<const SessionStore*> sessions;
+  std::vector<NamedSession> named;
   context.result["early_openings"] = nlohmann::ordered_json::array();
   for (const std::string& file : arguments.files) {
     if (is_table(file))
@@ -61,7 +91,9 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
     }
     if (was_rehearsed(store.session()))
       warn(fmt::format("{}: a rehearsal, whose answers are by chance", file));
+    named.push_back({.file = file, .session = &store});
   }
+  hold_against(receipts, named, context);
   return study_of(sessions);
 }
 
@@ -102,6 +134,10 @@ void add_session_analyze(CLI::App& session, Context& context) {
   add_key_options(verb, arguments->key);
   verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");
   verb.add_option("--reason", arguments->reason, "Why a session is opened before its end; kept in the file");
+  verb.add_option("--receipt", arguments->receipts,
+                  "Receipt of 'session run', or a file of them (may be repeated); 1 where a file does not "
+                  "bear one out")
+      .one_value_each();
   verb.add_option("--design", arguments->design, "Design of a table that does not say it");
   verb.add_option("--confidence", options.confidence, "Confidence level of the intervals")
       .within(0.5, 0.999)

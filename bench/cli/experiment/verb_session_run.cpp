@@ -1,6 +1,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/core.h>
@@ -8,6 +9,7 @@
 #include "experiment/key_arguments.h"
 #include "experiment/verb_session.h"
 #include "run/check.h"
+#include "sealed/receipt.h"
 #include "session/device_check.h"
 #include "session/rehearsal.h"
 #include "session/run_session.h"
@@ -117,6 +119,19 @@ void report(const SessionRunVerbArguments& arguments, Context& context, const Se
         fmt::format("{} ticks, {} deadlines missed", result.run.report.ticks(), result.run.report.missed()));
 }
 
+/// What proves later that nothing was taken from the session; also where a run has failed.
+void give_receipt(const SessionRunVerbArguments& arguments, const SessionStore& store, Context& context) {
+  const Receipt receipt = receipt_of(store);
+  context.result["receipt"] = receipt.in_full();
+  note(fmt::format("Receipt {}: keep it away from the file, on paper or a photograph; {} has it in full",
+                   receipt.in_short(), receipts_of(arguments.file).string()));
+  try {
+    keep_receipt(arguments.file, receipt);
+  } catch (const std::system_error& error) {
+    warn(error.what());
+  }
+}
+
 void run(SessionRunVerbArguments& arguments, Context& context) {
   if (arguments.rehearse && (arguments.page || arguments.buttons))
     throw std::invalid_argument("--rehearse needs nobody to answer: leave out --page and --buttons");
@@ -137,10 +152,17 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
   {
     Answering answering = answering_of(arguments, context.seed);
     const SessionRunOptions options = run_options_of(arguments, store.protocol(), answering.buttons);
-    result = run_session(store, *answering.group, options, signals.requested());
+    try {
+      result = run_session(store, *answering.group, options, signals.requested());
+    } catch (const std::exception&) {
+      answering = {};  // the subject's screen
+      give_receipt(arguments, store, context);
+      throw;
+    }
   }
   store.close();
   report(arguments, context, result);
+  give_receipt(arguments, store, context);
 }
 
 }  // namespace
@@ -152,7 +174,9 @@ void add_session_run(CLI::App& session, Context& context) {
       "kerf session run S01.h5 --key-file keeper.key --device falcon:0 --page\n\n"
       "Whoever keeps the blinding gives the key; nothing on the screen tells the samples apart. The\n"
       "subject answers at this keyboard, on a page (--page), or by the buttons of the device\n"
-      "(--buttons). Ctrl-C, a crash or a pulled cable lose at most the trial at work.",
+      "(--buttons). Ctrl-C, a crash or a pulled cable lose at most the trial at work. The receipt that is\n"
+      "printed at the end finds later whether the file was replaced, cut short or restored: see\n"
+      "'kerf session analyze --receipt'.",
       [arguments, &context] { run(*arguments, context); });
   verb.add_option("FILE", arguments->file, "The session").required();
   verb.add_option("--device", arguments->device, "Device URI (default: the protocol's)");

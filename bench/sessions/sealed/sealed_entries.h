@@ -48,6 +48,8 @@ class SealedEntries {
   [[nodiscard]] const schema::Session& session() const noexcept { return session_; }
   /// Of an entry, unsealed once more. @throws std::out_of_range.
   [[nodiscard]] std::vector<std::uint8_t> content(std::size_t number) const;
+  /// The chain after so many entries. @throws std::out_of_range.
+  [[nodiscard]] const Digest& chain_after(std::size_t entries) const { return chain_.at(entries); }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
   /// Of a run. On the disk when it returns. @throws std::system_error: then nothing was appended.

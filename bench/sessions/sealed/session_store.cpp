@@ -178,6 +178,10 @@ std::vector<std::string> SessionStore::early_openings() const {
   return openings;
 }
 
+const Digest& SessionStore::chain_after(std::size_t entries) const {
+  return state_->entries.chain_after(entries);
+}
+
 const std::vector<std::string>& SessionStore::warnings() const noexcept { return state_->entries.warnings(); }
 
 void SessionStore::append(const RecordedTrial& trial) {

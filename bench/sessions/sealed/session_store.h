@@ -12,6 +12,7 @@
 
 #include "protocol/judgement.h"
 #include "protocol/plan.h"
+#include "sealed/blake2b.h"
 #include "sealed/seal.h"
 
 namespace kerf::bench {
@@ -74,6 +75,8 @@ class SessionStore {
   [[nodiscard]] bool finished() const;  ///< there is an entry "finished"
   /// Each time that the order was looked at before the session was finished, in words.
   [[nodiscard]] std::vector<std::string> early_openings() const;
+  /// What all entries up to so many are bound to (SealedEntries). @throws std::out_of_range.
+  [[nodiscard]] const Digest& chain_after(std::size_t entries) const;
   /// What is odd and no tampering: a torn last entry that was dropped.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept;
 

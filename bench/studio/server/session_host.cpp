@@ -7,6 +7,7 @@
 #include "http/routes.h"
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
+#include "sealed/receipt.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
 #include "session/run_session.h"
@@ -118,6 +119,9 @@ void SessionHost::run(Running& running) {
     };
     ended = end_in_words(run_session(running.store_, *page(), options, stop_));
     running.store_.close();
+    const Receipt receipt = receipt_of(running.store_);
+    ended += fmt::format(". Receipt {}: keep it away from the file", receipt.in_short());
+    keep_receipt(running.order_.file, receipt);
   } catch (const drivers::DeviceError& error) {
     ended = error.what();
     tell_fault_(ended);

@@ -3,11 +3,13 @@
 #include "support/program.h"
 
 #include <array>
+#include <regex>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -150,6 +152,30 @@ TEST(SessionProgram, MakesTheSessionsOfAWholeStudy) {
     EXPECT_THAT(run_kerf({"info", folder.path(std::string("study/") + name)}).output, HasSubstr("of 3"));
   }
   expect_refused(run_kerf(command), "S01.h5");
+}
+
+TEST(SessionProgram, GivesAReceiptThatFindsAFileCutShort) {
+  const SessionFolder folder;
+  ASSERT_EQ(folder.make().exit_status, 0);
+  const Outcome run = folder.run();
+  std::smatch receipt;
+  ASSERT_TRUE(std::regex_search(run.errors, receipt,
+                                std::regex("Receipt ([0-9a-f]{8}/[0-9]+/[0-9a-f]{16}): keep it away")))
+      << run.errors;
+  const std::string kept = folder.path("s.h5.receipts");
+  for (const std::string& given : {receipt[1].str(), kept}) {
+    const Outcome analysis = folder.analyze({"--receipt", given, "--json"});
+    EXPECT_EQ(analysis.exit_status, 0) << analysis.errors;
+    EXPECT_EQ(nlohmann::json::parse(analysis.output).at("receipts").at(0).at("holds"), true);
+  }
+  schema::Session session = schema::read_session(folder.path("s.h5"));
+  session.entries.erase(session.entries.end() - 2, session.entries.end());
+  schema::write_session(folder.path("s.h5"), session);
+  const Outcome cut = folder.analyze({"--receipt", receipt[1], "--receipt", kept, "--reason", "a test"});
+  EXPECT_EQ(cut.exit_status, 1);
+  EXPECT_THAT(cut.errors, HasSubstr("it was cut short, or an older copy was put back\n"));
+  EXPECT_THAT(cut.output, HasSubstr("trial")) << "the analysis is there all the same";
+  expect_refused(folder.analyze({"--receipt", "nonsense"}), "'nonsense' is no receipt of a session");
 }
 
 TEST(SessionProgram, IsOpenedEarlyOnlyWithAReasonThatItKeeps) {
