@@ -31,7 +31,7 @@ struct SessionAnalyzeVerbArguments {
   bool replace = false;
 };
 
-std::vector<Receipt> receipts_of(const std::vector<std::string>& named) {
+std::vector<Receipt> receipts_in(const std::vector<std::string>& named) {
   std::vector<Receipt> receipts;
   for (const std::string& one : named) {
     const auto more = receipts_named(one);
@@ -71,7 +71,7 @@ Study read_table(const SessionAnalyzeVerbArguments& arguments) {
 Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
   if (!arguments.design.empty())
     throw std::invalid_argument("--design is for tables: a session knows its design");
-  const std::vector<Receipt> receipts = receipts_of(arguments.receipts);  // before a file is opened
+  const std::vector<Receipt> receipts = receipts_in(arguments.receipts);  // before a file is opened
   std::vector<std::unique_ptr<SessionStore>> stores;
   std::vector<const SessionStore*> sessions;
   std::vector<NamedSession> named;

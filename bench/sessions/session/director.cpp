@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -97,7 +98,7 @@ void Director::go_on() {
       if (!protocol.consent.empty() && !was_agreed(store_.session())) return enter(Phase::consent);
       [[fallthrough]];
     case Phase::consent:
-      if (phase_ == Phase::consent) store_.note("consent", "given");
+      if (phase_ == Phase::consent && !stored([&] { store_.note("consent", "given"); })) return;
       if (!protocol.instructions.empty()) return enter(Phase::instructions);
       [[fallthrough]];
     case Phase::instructions:
@@ -180,7 +181,7 @@ bool Director::time_is_over() const noexcept {
 
 void Director::answer(std::size_t slot) {
   const Protocol& protocol = store_.protocol();
-  if (phase_ != Phase::trial) return refuse("There is nothing to answer now.");
+  if (phase_ != Phase::trial && phase_ != Phase::unstored) return refuse("There is nothing to answer now.");
   if (slot >= answers_of(protocol.design)) return refuse("That is none of the answers.");
   if (!all_felt() && !time_is_over()) {
     return refuse(protocol.presentation == Presentation::sequence
@@ -188,10 +189,22 @@ void Director::answer(std::size_t slot) {
                       : "Please feel every one of them first, each for a moment.");
   }
   answer_ = slot;
+  if (phase_ == Phase::unstored) return end_trial();  // it was felt, and how long that took is known
   response_s_ = first_felt_s_ ? now_s_ - *first_felt_s_ : 0.0;
   playing_.reset();
   rendering_.end();
   phase_ = Phase::fading;
+}
+
+bool Director::stored(const std::function<void()>& store) {
+  try {
+    store();
+    return true;
+  } catch (const std::system_error& error) {
+    refuse(fmt::format("That could not be stored ({}). Please call the experimenter, and try again.",
+                       error.code().message()));
+    return false;
+  }
 }
 
 void Director::end_trial() {
@@ -203,7 +216,10 @@ void Director::end_trial() {
       .at = schema::new_header("").created,
       .axes = axes_of(device_),
       .trace = {trial_.trace.begin(), trial_.trace.begin() + static_cast<std::ptrdiff_t>(trial_.rows)}};
-  store_.append(recorded);
+  if (!stored([&] { store_.append(recorded); })) {
+    phase_ = Phase::unstored;
+    return;
+  }
   sequence_.answer(answer_);
   if (options_.progress) options_.progress(sequence_.answered(), sequence_.at_most());
   since_s_ = now_s_;

@@ -35,7 +35,8 @@ class Director {
   Director(SessionStore& store, BlindRendering& rendering, Subject& subject, drivers::DeviceInfo device,
            Options options);
 
-  /// @throws std::system_error: a trial could not be written.
+  /// An answer or a consent that cannot be written, as on a full disk, leaves the question open.
+  /// @throws std::system_error: the end could not be written.
   void poll(double now_s);
   /// The subject, the experimenter or the device ends the session for now; poll() goes on until over().
   void quit(const std::string& why);
@@ -50,6 +51,7 @@ class Director {
     instructions,
     trial,
     fading,
+    unstored,  ///< the answer could not be written: the question is open still
     feedback,
     pause,
     leaving,
@@ -63,6 +65,8 @@ class Director {
   void start_trial();
   void follow_sequence();
   void end_trial();
+  /// Whether an entry is on the disk; why not is told to the subject, who may try again.
+  bool stored(const std::function<void()>& store);
   void after_trial();
   void finish(SessionEnd end, const std::string& kind, const std::string& text);
   void refuse(std::string why) { notice_ = std::move(why); }

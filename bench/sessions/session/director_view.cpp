@@ -15,6 +15,7 @@ void Director::view_of_trial(SubjectView& view) const {
   for (std::size_t slot = 0; slot < slots_; ++slot) view.labels.emplace_back(label_of(protocol.design, slot));
   view.answers = answers_of(protocol.design);
   view.playing = playing_;
+  if (phase_ == Phase::unstored) view.may_answer = true;
   if (phase_ != Phase::trial) return;
   view.may_switch = protocol.presentation == Presentation::free && !time_is_over();
   view.may_answer = all_felt() || time_is_over();
@@ -46,6 +47,7 @@ SubjectView Director::view() const {
       break;
     case Phase::trial:
     case Phase::fading:
+    case Phase::unstored:
       view_of_trial(view);
       break;
     case Phase::feedback: {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +13,8 @@
 
 #include "bench/sessions/session/blind_run.h"
 #include "protocol/samples.h"
+#include "sealed/journal.h"
+#include "support/full_disk.h"
 
 namespace kerf::bench {
 namespace {
@@ -125,6 +129,60 @@ TEST(RunSession, NeverStepsPastTheSlewLimitWhereverItIsSwitched) {
       last = tick.row.force_commanded[0];
     }
   }
+}
+
+/// A disk that is full while the second answer is given, three times over.
+class FullWhileItAnswers : public RehearsalSubject {
+ public:
+  FullWhileItAnswers(SessionStore& store, std::filesystem::path journal)
+      : RehearsalSubject(7), store_(store), journal_(std::move(journal)) {}
+  void show(const SubjectView& view) override {
+    notice_ = view.notice;
+    may_answer_ = view.may_answer;
+    RehearsalSubject::show(view);
+  }
+  std::optional<SubjectAction> next() override {
+    if (!notice_.empty()) return answer_again();
+    const auto action = RehearsalSubject::next();
+    if (action && action->kind == Kind::answer && store_.trials().size() == 1 && refusals_ == 0)
+      disk_.emplace(std::filesystem::file_size(journal_) + 100);
+    return action;
+  }
+  [[nodiscard]] int refusals() const { return refusals_; }
+
+ private:
+  std::optional<SubjectAction> answer_again() {
+    EXPECT_THAT(notice_, HasSubstr("could not be stored (File too large). Please call the experimenter"));
+    EXPECT_TRUE(may_answer_);
+    EXPECT_EQ(store_.trials().size(), 1U);
+    if (++refusals_ == 3) disk_.reset();
+    return SubjectAction{.kind = Kind::answer, .slot = 1};
+  }
+
+  SessionStore& store_;
+  std::filesystem::path journal_;
+  std::optional<kerf::test::FullDisk> disk_;
+  std::string notice_;
+  bool may_answer_ = false;
+  int refusals_ = 0;
+};
+
+TEST(RunSession, KeepsTheQuestionOpenWhileItsAnswerCannotBeStored) {
+  test::BlindRun session(abx());
+  {
+    SessionStore running = session.store(SessionStore::Purpose::run);
+    FullWhileItAnswers subject(running, journal_of(session.file()));
+    EXPECT_EQ(test::BlindRun::run(running, subject).end, SessionEnd::finished);
+    EXPECT_EQ(subject.refusals(), 3);
+    running.close();
+  }
+  const SessionStore store = session.read();
+  ASSERT_EQ(store.trials().size(), 4U);
+  EXPECT_TRUE(store.finished());
+  const RecordedTrial again = store.trial(1);
+  EXPECT_EQ(again.answer, 1U) << "the one that was given at last";
+  EXPECT_GT(again.trace.size(), 2000U) << "with all that was felt";
+  EXPECT_NEAR(again.response_s, store.trial(0).response_s, 0.1) << "the first answer's, not the last one's";
 }
 
 TEST(RunSession, LosesAtMostTheTrialAtWorkAndGoesOn) {
