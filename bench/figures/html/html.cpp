@@ -82,7 +82,9 @@ std::string html_figure(std::string_view svg) { return fmt::format("<figure>{}</
 
 std::string html_page(std::string_view title, std::string_view body) {
   return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+      "http-equiv=\"Content-Security-Policy\" "
+      "content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, "
       "initial-scale=1\">\n<meta name=\"generator\" "
       "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}"

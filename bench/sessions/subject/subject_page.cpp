@@ -116,10 +116,8 @@ std::optional<SubjectAction> PageSubject::next() {
 }
 
 std::optional<HttpResponse> PageSubject::respond(const HttpRequest& request, bool overdue) {
-  if (!access_.admits(request)) {
-    return HttpResponse{.status = 403,
-                        .body = "This address is not valid. Open the one that was shown for this session.\n"};
-  }
+  if (!access_.admits(request))
+    return access_.refuse("This address is not valid. Open the one that was shown for this session.");
   if (request.path == "/action") return request.method == "POST" ? take_action(request) : refusal(405);
   if (request.method != "GET") return refusal(405);
   if (request.path == "/view") return view_after(request, overdue);

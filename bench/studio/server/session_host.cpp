@@ -1,5 +1,7 @@
 #include "server/session_host.h"
 
+#include <chrono>
+#include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
@@ -69,6 +71,10 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
   {
     const std::lock_guard lock(mutex_);
     if (running_) throw RequestError(409, "a session is running");
+    const auto wait = failed_starts_.wait(AttemptLimit::Clock::now());
+    if (wait > AttemptLimit::Clock::duration::zero())
+      throw RequestError(429, fmt::format("too many starts have failed: wait {} s before the next",
+                                          std::chrono::ceil<std::chrono::seconds>(wait).count()));
     stop_ = false;  // before anybody can mean this session by stop()
     running_ = true;
   }
@@ -77,6 +83,11 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
     prepare();
     running = std::make_shared<Running>(order);
     if (stop_ || closed_) throw RequestError(409, "the session was stopped before it had begun");
+  } catch (const std::invalid_argument&) {  // another key, or a file that was changed
+    const std::lock_guard lock(mutex_);
+    failed_starts_.note_failure(AttemptLimit::Clock::now());
+    running_ = false;
+    throw;
   } catch (...) {
     running_ = false;
     throw;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "http/http_server.h"
+#include "pages/attempt_limit.h"
 #include "run/run.h"
 #include "subject/subject_page.h"
 
@@ -81,6 +83,7 @@ class SessionHost {
   std::atomic<bool> closed_{false};
   std::atomic<bool> running_{false};
   mutable std::mutex mutex_;  ///< of what follows
+  AttemptLimit failed_starts_{5, std::chrono::minutes(1)};
   SessionProgress progress_;
   std::shared_ptr<PageSubject> page_;  ///< kept after the end, so that it can show the last screen
   std::jthread thread_;

@@ -111,8 +111,7 @@ class Studio::State {
     const bool asks_for_zero_force = request.path == "/api/live/zero" && request.method == "POST";
     if (!(asks_for_zero_force && server_.is_loopback() ? access_.admits_without_token(request)
                                                        : access_.admits(request))) {
-      return HttpResponse{.status = 403,
-                          .body = "This address is not valid. Open the one that kerf studio shows.\n"};
+      return access_.refuse("This address is not valid. Open the one that kerf studio shows.");
     }
     // Whoever asks for zero force has a reason: it ends a session too, which can be gone on with.
     if (asks_for_zero_force) {

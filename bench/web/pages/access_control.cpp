@@ -52,4 +52,12 @@ bool AccessControl::admits(const HttpRequest& request) const {
          is_same_secret(in_address->second, token_);
 }
 
+HttpResponse AccessControl::refuse(std::string_view why) {
+  const auto now = AttemptLimit::Clock::now();
+  const bool too_many = refusals_.wait(now) > AttemptLimit::Clock::duration::zero();
+  refusals_.note_failure(now);
+  if (too_many) return refusal(429);
+  return {.status = 403, .body = fmt::format("{}\n", why)};
+}
+
 }  // namespace kerf::bench

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "http/http_server.h"
+#include "pages/attempt_limit.h"
 
 namespace kerf::bench {
 
@@ -26,12 +28,16 @@ class AccessControl {
   /// site. Enough to ask for zero force, which is always safe; a foreign page is refused, since it could
   /// spoil an experiment by asking again and again.
   [[nodiscard]] bool admits_without_token(const HttpRequest& request) const;
+  /// The answer to a request that is not admitted: 403 with a sentence. After 100 within 10 s it is 429
+  /// without one. Whoever knows the token is admitted all the while: else anybody could lock them out.
+  [[nodiscard]] HttpResponse refuse(std::string_view why);
 
  private:
   [[nodiscard]] bool is_ours(std::string_view host) const;
 
   std::vector<std::string> hosts_;
   std::string token_;
+  AttemptLimit refusals_{100, std::chrono::seconds(10)};
 };
 
 }  // namespace kerf::bench

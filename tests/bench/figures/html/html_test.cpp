@@ -23,5 +23,14 @@ TEST(Html, APageHasItsTitleAndItsLanguage) {
                      testing::HasSubstr("lang=\"en\""), testing::HasSubstr("<p>x</p>")));
 }
 
+TEST(Html, LetsNothingRunOrBeLoaded) {
+  EXPECT_THAT(html_page("x", ""), testing::HasSubstr("<meta http-equiv=\"Content-Security-Policy\" "
+                                                     "content=\"default-src 'none'; style-src "
+                                                     "'unsafe-inline'; img-src data:\">"));
+  EXPECT_THAT(html_page("x", ""), testing::Not(testing::HasSubstr("<script")));
+}
+
+TEST(Html, ShowsWhatWouldReorderALine) { EXPECT_EQ(escaped("a\u202E\x1b"), "a\\u202e\\u001b"); }
+
 }  // namespace
 }  // namespace kerf::bench

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include "bench/sessions/sealed/stored_session.h"
 #include "server/studio.h"
 #include "support/plain_client.h"
 #include "support/program.h"
@@ -320,6 +321,37 @@ TEST_F(StudioUnderAttack, IsNotHeldUpByOneThatReadsNothing) {
   }
   for (int i = 0; i < 20; ++i) EXPECT_EQ(status_of(post("/api/live/zero", "")), "200");
   expect_the_loop_goes_on();
+}
+
+/// A folder with a session that was sealed with another key than the studio's.
+class StudioWithoutTheKey : public StudioUnderAttack {
+ protected:
+  StudioWithoutTheKey() {
+    SessionStore::create(folder_ / "s.h5", kerf::test::set_up(), kerf::test::key_of('k'),
+                         {.kind = "key file"}, false);
+    kerf::test::write_text(folder_ / "wrong.key", std::string(32, 'x'));
+  }
+};
+
+TEST_F(StudioWithoutTheKey, LetsNobodyTryOneAfterTheOther) {
+  const Studio studio({.folder = folder_.path(), .key_file = folder_ / "wrong.key"});
+  const std::string url = studio.url();
+  const auto port = static_cast<std::uint16_t>(std::stoi(url.substr(url.find("1:") + 2)));
+  const std::string ours =
+      fmt::format("Host: 127.0.0.1:{}\r\nX-Kerf-Token: {}\r\n", port, url.substr(url.find('=') + 1));
+  const auto workspace = nlohmann::json::parse(
+      body_of(answer_to(port, fmt::format("GET /api/workspace HTTP/1.1\r\n{}\r\n", ours))));
+  const std::string body = fmt::format(R"({{"session": "{}", "device": "sim:scissors"}})",
+                                       workspace.at("sessions").at(0).at("id").get<std::string>());
+  const auto start = [&] {
+    return answer_to(port, fmt::format("POST /api/session/start HTTP/1.1\r\n{}Content-Type: "
+                                       "application/json\r\nContent-Length: {}\r\n\r\n{}",
+                                       ours, body.size(), body));
+  };
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(status_of(start()), "400") << i;
+  const std::string answer = start();
+  EXPECT_EQ(status_of(answer), "429");
+  EXPECT_THAT(body_of(answer), HasSubstr("too many starts have failed: wait "));
 }
 
 TEST(StudioOnANetwork, TakesNoAddressThatStandsForAll) {

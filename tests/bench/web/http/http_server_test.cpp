@@ -46,6 +46,8 @@ TEST(HttpServer, LetsNothingOfOthersBeLoadedFramedOrStored) {
     EXPECT_THAT(answer, HasSubstr("frame-ancestors 'none'; base-uri 'none'\r\n"));
     EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff\r\n"));
     EXPECT_THAT(answer, HasSubstr("Referrer-Policy: no-referrer\r\n"));
+    EXPECT_THAT(answer, HasSubstr("Cross-Origin-Opener-Policy: same-origin\r\n"));
+    EXPECT_THAT(answer, HasSubstr("Cross-Origin-Resource-Policy: same-origin\r\n"));
     EXPECT_THAT(answer, HasSubstr("Cache-Control: no-store\r\n"));
   }
 }

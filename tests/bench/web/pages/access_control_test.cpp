@@ -40,6 +40,16 @@ TEST_F(AccessControlOfAServer, RefusesAWrongOrMissingToken) {
   EXPECT_FALSE(access_.admits(request));
 }
 
+TEST_F(AccessControlOfAServer, AnswersGuessesMoreBrieflyAndStillAdmitsWhoKnows) {
+  for (int guess = 0; guess < 100; ++guess) {
+    const HttpResponse answer = access_.refuse("No.");
+    ASSERT_EQ(answer.status, 403) << guess;
+    ASSERT_EQ(answer.body, "No.\n");
+  }
+  EXPECT_EQ(access_.refuse("No.").status, 429);
+  EXPECT_TRUE(access_.admits(asking()));
+}
+
 TEST_F(AccessControlOfAServer, RefusesActionsByAnAddressAlone) {
   HttpRequest request = asking();
   request.headers.erase("x-kerf-token");
