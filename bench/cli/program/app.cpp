@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
@@ -130,6 +132,11 @@ int fail(Exit status, std::string_view message) {
   return static_cast<int>(status);
 }
 
+/// What is said where memory ran out, made ready while there is some: the command names verb and files.
+std::string without_memory(const std::vector<std::string>& words) {
+  return for_terminal(fmt::format("kerf: there was not enough memory for '{}'\n", fmt::join(words, " ")));
+}
+
 /// After a verb has run to its end.
 int finish(Context& context) {
   if (context.output_error == EPIPE) end_by_closed_pipe();
@@ -183,6 +190,7 @@ void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n",
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();
+  const std::string no_memory = without_memory({argv + 1, argv + argc});
   try {
     return run_words({argv + 1, argv + argc});
   } catch (const drivers::DeviceError& error) {
@@ -193,8 +201,11 @@ int run_program(int argc, char** argv) {
     return fail(Exit::bad_input, error.what());
   } catch (const schema::FormatError& error) {
     return fail(Exit::bad_input, error.what());
+  } catch (const std::bad_alloc&) {
+    write_error_text(no_memory);
+    return static_cast<int>(Exit::file_error);
   } catch (const std::exception& error) {
-    return fail(Exit::file_error, error.what());  // no memory, a program that is missing
+    return fail(Exit::file_error, error.what());  // a program that is missing
   }
 }
 

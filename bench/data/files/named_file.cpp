@@ -13,10 +13,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/memory_room.h"
+
 namespace kerf::bench {
 namespace {
 
-constexpr int longest_silence_s = 10;  ///< of a pipe
+constexpr int longest_silence_s = 10;                              ///< of a pipe
+constexpr std::uintmax_t worth_asking = std::uintmax_t{1} << 20U;  ///< for memory [bytes]
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view why) {
   throw std::invalid_argument(fmt::format("{}: {}", file.string(), why));
@@ -94,6 +97,7 @@ void NamedFile::require_at_most(std::uintmax_t bytes) const {
 
 std::string NamedFile::read_all(std::uintmax_t at_most) const {
   require_at_most(at_most);
+  if (size_ > worth_asking) require_memory(file_, size_, "its text");
   std::string content;
   std::array<char, 1 << 16> piece{};
   while (const std::size_t count = read(piece.data(), piece.size())) {

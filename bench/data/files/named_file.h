@@ -34,7 +34,8 @@ class NamedFile {
   /// Up to `room` bytes; 0 at the end. A pipe that stays silent for 10 s is given up.
   /// @throws std::invalid_argument for such a pipe; std::system_error.
   [[nodiscard]] std::size_t read(void* bytes, std::size_t room) const;
-  /// All that can be read. @throws as read(); std::invalid_argument if that is more than `at_most` bytes.
+  /// All that can be read. @throws as read(); std::invalid_argument if that is more than `at_most` bytes;
+  ///         std::system_error if there is no memory for it.
   [[nodiscard]] std::string read_all(std::uintmax_t at_most) const;
   /// @throws std::invalid_argument if the file is larger.
   void require_at_most(std::uintmax_t bytes) const;

@@ -12,6 +12,7 @@
 #include <fmt/ranges.h>
 
 #include "files/mapped_file.h"
+#include "files/memory_room.h"
 #include "import/resample.h"
 #include "import/text_table.h"
 #include "import/time_order.h"
@@ -157,6 +158,16 @@ void report_irregular_lines(Imported& imported) {
   }
 }
 
+/// By the length of the lines in the middle. A row takes its mapped columns, the velocity, tick and flags.
+void require_memory_for_rows(const std::filesystem::path& file, std::string_view text, std::size_t columns) {
+  constexpr std::size_t further = 3;
+  const std::string_view middle = text.substr(text.size() / 2, std::size_t{1} << 16U);
+  const auto lines = static_cast<std::size_t>(std::count(middle.begin(), middle.end(), '\n')) + 1;
+  const auto rows = static_cast<std::uintmax_t>(
+      static_cast<double>(text.size()) / static_cast<double>(middle.size()) * static_cast<double>(lines));
+  require_memory(file, rows * (columns + further) * sizeof(double), fmt::format("about {} rows", rows));
+}
+
 void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
   auto& time = imported.recording.time;
   const MappedColumn* column = find_channel(imported.columns, "time");
@@ -226,6 +237,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
 
+  require_memory_for_rows(file, mapped.text(), imported.columns.size());
   std::vector<std::size_t> indices;
   for (const MappedColumn& column : imported.columns) indices.push_back(column.index);
   const auto begin = std::chrono::steady_clock::now();
