@@ -100,7 +100,8 @@ SealedEntries::SealedEntries(const std::filesystem::path& file, const SealKey& k
   } else if (auto found = Journal::look(file_)) {
     journal_.emplace(std::move(*found));
   }
-  session_ = schema::read_session_facts(file_);
+  opened_.emplace(file_);
+  session_ = opened_->facts();
   in_file_ = session_.entries.size();
   if (in_file_ == 0) {
     throw schema::FormatError(fmt::format("{}: found no entry, expected the plan at least", file_.string()));
@@ -119,7 +120,7 @@ SealedEntries::SealedEntries(const std::filesystem::path& file, const SealKey& k
 }
 
 std::vector<std::uint8_t> SealedEntries::box(std::size_t number) const {
-  if (number < in_file_) return schema::read_sealed(file_, number);
+  if (number < in_file_) return opened_.value().sealed(number);
   return journal_.value().read_sealed(number - in_file_);
 }
 

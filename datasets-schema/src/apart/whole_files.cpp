@@ -76,9 +76,28 @@ Session read_session(const std::filesystem::path& file) {
   return ReaderProcess(file, "a session").ask<Session>({.what = Ask::session});
 }
 
-Session read_session_facts(const std::filesystem::path& file) {
-  return ReaderProcess(file, "a session").ask<Session>({.what = Ask::session_facts});
+struct SessionFile::Implementation {
+  explicit Implementation(const std::filesystem::path& file)
+      : reader(file, "a session"), facts(reader.ask<Session>({.what = Ask::session_facts})) {}
+
+  ReaderProcess reader;
+  Session facts;
+};
+
+SessionFile::SessionFile(const std::filesystem::path& file)
+    : implementation_(std::make_unique<Implementation>(file)) {}
+
+SessionFile::SessionFile(SessionFile&&) noexcept = default;
+SessionFile& SessionFile::operator=(SessionFile&&) noexcept = default;
+SessionFile::~SessionFile() = default;
+
+const Session& SessionFile::facts() const noexcept { return implementation_->facts; }
+
+std::vector<std::uint8_t> SessionFile::sealed(std::size_t entry) const {
+  return implementation_->reader.ask<std::vector<std::uint8_t>>({.what = Ask::sealed, .first = entry});
 }
+
+Session read_session_facts(const std::filesystem::path& file) { return SessionFile(file).facts(); }
 
 std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry) {
   return ReaderProcess(file, "a session")

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,25 @@ struct Session {
 
 /// What is sealed of an entry, counted from 0. @throws as read_session(); FormatError if there is none.
 [[nodiscard]] std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry);
+
+/// An open session, whose sealed parts are read one by one. For one thread at a time.
+class SessionFile {
+ public:
+  /// @throws as read_session().
+  explicit SessionFile(const std::filesystem::path& file);
+  SessionFile(SessionFile&&) noexcept;
+  SessionFile& operator=(SessionFile&&) noexcept;
+  ~SessionFile();
+
+  /// Everything but what is sealed.
+  [[nodiscard]] const Session& facts() const noexcept;
+  /// As read_sealed().
+  [[nodiscard]] std::vector<std::uint8_t> sealed(std::size_t entry) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 /// Writes a session to a temporary name beside `file`, then renames it. An existing file is replaced.
 /// @throws std::invalid_argument (a text with a zero byte, which HDF5 cannot hold), std::system_error.

@@ -108,7 +108,7 @@ TEST(Tick, MakesAtMostFourSystemCallsWithTheSleep) {
   const auto ticks = static_cast<double>(schema::read_recording(folder / "r.h5").rows());
   const double late = 1000.0 - ticks;  // deadlines, at most as many late ticks, in which more is asked
   const int sleeps = calls.by_name.at("clock_nanosleep");
-  EXPECT_GE(sleeps, 0.9 * ticks);
+  EXPECT_GE(sleeps, 0.9 * ticks - late) << "a late tick may find its deadline passed";
   EXPECT_LE(calls.all, 4.0 * ticks + 5.0 * late)
       << "between two ticks the sleep, and a look at what the thread has used "
          "and at its processor time; within every second tick two at the latter";
