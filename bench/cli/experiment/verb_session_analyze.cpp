@@ -11,8 +11,8 @@
 #include "experiment/key_arguments.h"
 #include "experiment/verb_session.h"
 #include "sealed/opening.h"
-#include "sealed/receipt.h"
 #include "sealed/session_store.h"
+#include "session/receipt.h"
 
 namespace kerf::bench {
 namespace {

@@ -9,9 +9,9 @@
 #include "http/routes.h"
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
-#include "sealed/receipt.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
+#include "session/receipt.h"
 #include "session/run_session.h"
 #include "subject/subject_words.h"
 

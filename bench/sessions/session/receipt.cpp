@@ -1,4 +1,4 @@
-#include "sealed/receipt.h"
+#include "session/receipt.h"
 
 #include <algorithm>
 #include <charconv>
