@@ -222,7 +222,8 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
           .position_unit = position_unit,
           .force_unit = force_unit,
           .std_errors = std::move(parameters.std_errors),
-          .fit = read_provenance(place, root)};
+          .fit = read_provenance(place, root),
+          .name = name};
 }
 
 LawFile parse_law_file(const std::string& text, const std::string& name) {

@@ -26,6 +26,7 @@ struct LawFile {
   std::string force_unit = "N";
   std::vector<double> std_errors;  ///< one a parameter, or empty
   FitProvenance fit;               ///< empty strings if it was written by hand
+  std::string name{};              ///< of the file, for messages; empty if it was not read from one
 };
 
 /// Reads a law file. Parameters may be given in any unit of the same kind ("N/mm", "N/deg").

@@ -187,6 +187,7 @@ TEST(KerfCheck, GivesSuchALawNoContactAndNoOtherDevice) {
   const Outcome device = run_kerf({"check", examples + "orthogonal.law.toml", "--virtual", "--seconds", "1"});
   EXPECT_EQ(device.exit_status, 2);
   EXPECT_THAT(device.errors, HasSubstr("acts on axis 'q1', and sim:scissors has none of that name"));
+  EXPECT_THAT(device.errors, HasSubstr(".law.toml: law '")) << "the file is named";
 }
 
 }  // namespace
