@@ -8,6 +8,7 @@
 
 #include "experiment/key_arguments.h"
 #include "experiment/verb_session.h"
+#include "program/standard_streams.h"
 #include "run/check.h"
 #include "session/device_check.h"
 #include "session/receipt.h"
@@ -132,6 +133,13 @@ void give_receipt(const SessionRunVerbArguments& arguments, const SessionStore& 
   }
 }
 
+/// Their number alone: the address of the subject's page may be among them.
+void note_unprinted(SessionStore& store) {
+  const std::size_t lines = unprinted_errors().size();
+  if (lines > 0 && !store.finished())
+    store.note("output", fmt::format("{} lines could not be printed", lines));
+}
+
 void run(SessionRunVerbArguments& arguments, Context& context) {
   if (arguments.rehearse && (arguments.page || arguments.buttons))
     throw std::invalid_argument("--rehearse needs nobody to answer: leave out --page and --buttons");
@@ -160,6 +168,7 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
       throw;
     }
   }
+  note_unprinted(store);
   store.close();
   report(arguments, context, result);
   give_receipt(arguments, store, context);

@@ -39,7 +39,7 @@ void print_schema(Context& context) {
                       {"markdown", markdown},
                       {"markdown_of_sessions", schema::session_schema_as_markdown()}};
   } else {
-    context.print(for_terminal(markdown));
+    print(for_terminal(markdown));
   }
 }
 
@@ -71,7 +71,7 @@ void follow(const std::string& name) {
     try {
       const schema::Tail tail = schema::read_tail(place.file);
       if (terminal) {
-        write_error_text(fmt::format("\r{}\033[K", for_terminal(in_one_line(tail))));
+        draw_error_text(fmt::format("\r{}\033[K", for_terminal(in_one_line(tail))));
       } else if (tail.rows != shown) {
         note(in_one_line(tail));
       }

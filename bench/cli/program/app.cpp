@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -138,11 +138,12 @@ std::string without_memory(const std::vector<std::string>& words) {
 }
 
 /// After a verb has run to its end.
-int finish(Context& context) {
-  if (context.output_error == EPIPE) end_by_closed_pipe();
-  if (context.output_error != 0)
+int finish(const Context& context) {
+  const int output_error = finish_standard_streams();
+  if (output_error == EPIPE) end_by_closed_pipe();
+  if (output_error != 0)
     return fail(Exit::file_error,
-                fmt::format("standard output: cannot write: {}", std::strerror(context.output_error)));
+                fmt::format("standard output: cannot write: {}", std::strerror(output_error)));
   return static_cast<int>(context.exit);
 }
 
@@ -160,39 +161,21 @@ int run_words(std::vector<std::string> words) {
   try {
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app.parse(words);
-    if (context.json) context.print(json_text(context.result));
+    if (context.json) print(json_text(context.result));
   } catch (const CLI::Success& help) {
     std::ostringstream text;
     app.exit(help, text, text);
-    context.print(text.str());
+    print(text.str());
   } catch (const CLI::ParseError& error) {
     return fail(Exit::bad_input, wrong_options(typed, error));
   }
   return finish(context);
 }
 
-}  // namespace
-
-void Context::say(std::string_view line) {
-  if (!json) print(fmt::format("{}\n", for_terminal(line)));
-}
-
-void Context::print(std::string_view text) {
-  if (output_error != 0) return;
-  errno = 0;
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-    output_error = errno != 0 ? errno : EIO;
-}
-
-void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_terminal(line))); }
-
-void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
-
-int run_program(int argc, char** argv) {
-  keep_standard_streams();
-  const std::string no_memory = without_memory({argv + 1, argv + argc});
+int run_caught(std::vector<std::string> words) {
+  const std::string no_memory = without_memory(words);
   try {
-    return run_words({argv + 1, argv + argc});
+    return run_words(std::move(words));
   } catch (const drivers::DeviceError& error) {
     return fail(Exit::device_error, error.what());
   } catch (const std::system_error& error) {
@@ -207,6 +190,25 @@ int run_program(int argc, char** argv) {
   } catch (const std::exception& error) {
     return fail(Exit::file_error, error.what());  // a program that is missing
   }
+}
+
+}  // namespace
+
+void Context::say(std::string_view line) {
+  if (!json) print(fmt::format("{}\n", for_terminal(line)));
+}
+
+void print(std::string_view text) { write_output_text(text); }
+
+void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_terminal(line))); }
+
+void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
+
+int run_program(int argc, char** argv) {
+  keep_standard_streams();
+  const int status = run_caught({argv + 1, argv + argc});
+  finish_standard_streams();
+  return status;
 }
 
 }  // namespace kerf::bench

@@ -18,14 +18,14 @@ struct Context {
   bool seed_given = false;        ///< by --seed
   Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
   nlohmann::ordered_json result;  ///< printed at the end with --json
-  int output_error = 0;           ///< errno of the first write to standard output that failed
 
   /// A line of the result for people, to standard output; nothing with --json.
   void say(std::string_view line);
-  /// To standard output, at once. After a write that failed nothing more is written: the verb goes on, keeps
-  /// its files, and run_program() says what there is to say.
-  void print(std::string_view text);
 };
+
+/// To standard output. Nobody waits for it, and nothing here fails: run_program() says at the end if it could
+/// not be written.
+void print(std::string_view text);
 
 /// A line on standard error about what goes on.
 void note(std::string_view line);

@@ -8,6 +8,7 @@
 
 #include "program/app.h"
 #include "program/progress.h"
+#include "program/standard_streams.h"
 
 namespace kerf::bench {
 namespace {
@@ -74,6 +75,7 @@ RunOptions run_options(const LoopArguments& arguments) {
   if (arguments.seconds) options.seconds = *arguments.seconds;
   for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
   options.warn = warn;
+  options.unprinted = unprinted_errors;
   options.progress = show_bar;
   return options;
 }

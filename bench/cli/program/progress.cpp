@@ -34,12 +34,12 @@ void Progress::draw(const std::stop_token& stop) {
   while (!wake.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
     const double share = std::min(1.0, static_cast<double>(done.load()) / static_cast<double>(total_));
     const auto filled = static_cast<std::size_t>(share * static_cast<double>(bar_width));
-    write_error_text(fmt::format("\r{} [{:=<{}}{:{}}] {:3.0f} %", label_, "", filled, "", bar_width - filled,
-                                 100.0 * share));
+    draw_error_text(fmt::format("\r{} [{:=<{}}{:{}}] {:3.0f} %", label_, "", filled, "", bar_width - filled,
+                                100.0 * share));
     drawn = true;
     pause = std::chrono::milliseconds(100);
   }
-  if (drawn) write_error_text(fmt::format("\r{:{}}\r", "", label_.size() + bar_width + 10));
+  if (drawn) draw_error_text(fmt::format("\r{:{}}\r", "", label_.size() + bar_width + 10));
 }
 
 void show_bar(const std::string& label, std::size_t total, const CountedWork& work) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace kerf::bench {
 
@@ -8,8 +10,23 @@ namespace kerf::bench {
 /// write to a pipe without a reader fail instead of ending the process.
 void keep_standard_streams();
 
-/// To standard error; nobody is told if it cannot be written.
+// Everything that the program prints goes by one thread, in its order: nobody here waits for whoever reads,
+// and none of these throws.
+
+/// To standard output.
+void write_output_text(std::string_view text) noexcept;
+/// To standard error.
 void write_error_text(std::string_view text) noexcept;
+/// To standard error, what is drawn again and again: dropped where something older still waits.
+void draw_error_text(std::string_view text) noexcept;
+
+/// What write_error_text() was given and could not be written, or has waited for a while.
+[[nodiscard]] std::vector<std::string> unprinted_errors();
+
+/// Waits until all is written, as every program's end does; no file is open then, and a signal ends it at
+/// once.
+/// @returns errno of the first write to standard output that failed; 0 if none did.
+int finish_standard_streams() noexcept;
 
 /// Ends the process as a write to a pipe without a reader does.
 [[noreturn]] void end_by_closed_pipe();

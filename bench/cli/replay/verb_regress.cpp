@@ -92,7 +92,7 @@ std::string_view name_of(ChangeKind kind) {
 bool confirmed(bool yes, Context& context) {
   if (yes) return true;
   if (context.json || ::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0) return false;
-  context.print("Store this? [y/N] ");
+  print("Store this? [y/N] ");
   std::string answer;
   return std::getline(std::cin, answer) && (answer == "y" || answer == "yes");
 }

@@ -22,7 +22,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::array stop_signals{SIGINT, SIGTERM, SIGHUP};
+constexpr std::array stop_signals{SIGINT, SIGQUIT, SIGTERM, SIGHUP};
 
 std::atomic<bool> stop_requested{false};
 // Ctrl-Z: with a watchdog that gives zero force first.
@@ -260,6 +260,10 @@ class Run {
       recorder.note({.time_s = 1e-9 * static_cast<double>(stall.from_ns + stall.silent_ns),
                      .kind = "stall",
                      .text = in_words(stall)});
+    }
+    if (options_.unprinted) {
+      for (const std::string& text : options_.unprinted())
+        recorder.note({.time_s = at, .kind = "output", .text = "could not be printed: " + text});
     }
     const schema::Properties figures = note_figures(recorder, result_.figures, at);
     std::string status = "complete";

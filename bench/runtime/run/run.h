@@ -60,6 +60,9 @@ struct RunOptions {
   bool floor_anew = false;
   ShowProgress progress = show_no_progress;
   std::function<void(std::string_view)> warn;  ///< told at once what is wrong with recording or device
+  /// Asked at the end what of that, and of what others had to say meanwhile, nobody could read: it becomes
+  /// events of the recording.
+  std::function<std::vector<std::string>()> unprinted;
 };
 
 struct RunResult {
@@ -84,7 +87,7 @@ struct RunResult {
 /// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be begun).
 [[nodiscard]] RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop);
 
-/// A flag that Ctrl-C, SIGTERM and the end of the terminal set while the object lives.
+/// A flag that Ctrl-C, Ctrl-\, SIGTERM and the end of the terminal set while the object lives.
 class StopOnSignal {
  public:
   StopOnSignal();

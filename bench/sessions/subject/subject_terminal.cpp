@@ -20,6 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr auto longest_to_be_drawn = 1000ms;    // by a terminal that has not stopped
 constexpr auto longest_within_sequence = 50ms;  // between the bytes of an escape sequence
 
 bool is_dumb() {
@@ -47,9 +48,9 @@ TerminalSubject::TerminalSubject(int input, int output) : input_(input), output_
 }
 
 TerminalSubject::~TerminalSubject() {
-  if (!before_) return;
-  write_out("\x1b[?25h\x1b[?1049l");
-  tcsetattr(input_, TCSAFLUSH, &*before_);
+  if (before_) write_out("\x1b[?25h\x1b[?1049l");
+  static_cast<void>(screen_.wait(longest_to_be_drawn));
+  if (before_) tcsetattr(input_, TCSAFLUSH, &*before_);
 }
 
 void TerminalSubject::show(const SubjectView& view) {
@@ -193,14 +194,6 @@ void TerminalSubject::draw() {
   write_out(text);
 }
 
-void TerminalSubject::write_out(const std::string& text) const {
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t count = write(output_, text.data() + written, text.size() - written);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;  // Nobody looks any more; the end of the input will tell.
-    written += static_cast<std::size_t>(count);
-  }
-}
+void TerminalSubject::write_out(const std::string& text) { screen_.write(output_, text); }
 
 }  // namespace kerf::bench

@@ -9,6 +9,7 @@
 #include <sys/ioctl.h>
 #include <termios.h>
 
+#include "host/aside_writer.h"
 #include "subject/subject.h"
 #include "subject/subject_keys.h"
 
@@ -39,7 +40,7 @@ class TerminalSubject final : public Subject {
   [[nodiscard]] winsize size() const;
   [[nodiscard]] bool is_resized() const;
   void draw();
-  void write_out(const std::string& text) const;
+  void write_out(const std::string& text);
 
   enum class Sequence { none, begun, in_brackets, one_more };  ///< of an escape sequence, such as an arrow's
 
@@ -48,6 +49,7 @@ class TerminalSubject final : public Subject {
   std::optional<termios> before_;  ///< of the terminal; none: by lines
   bool shown_ = false;
   bool ended_ = false;
+  AsideWriter screen_;  ///< a terminal that has stopped must not stop whoever shows something
   winsize drawn_{};
   std::size_t page_ = 0;  ///< of a text that is longer than the screen
   std::size_t pages_ = 1;

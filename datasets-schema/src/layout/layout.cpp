@@ -115,7 +115,8 @@ const std::array dataset_table{
         Units::event,
         required,
         "What happened during the recording: `stop`, `gap`, `fault`, `contact`, `release`, `law` (what is "
-        "rendered from then on), `zero`, `resume` (force taken away and let in by hand), `device`, or the "
+        "rendered from then on), `zero`, `resume` (force taken away and let in by hand), `device`, "
+        "`output` (a line that could not be printed), or the "
         "name of a flag",
         {},
         {}},

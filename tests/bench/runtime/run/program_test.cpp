@@ -1,6 +1,7 @@
 #include "support/program.h"
 
 #include <csignal>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -163,8 +164,8 @@ TEST_P(Interrupted, EndsARecordingCleanly) {
   EXPECT_EQ(recording.events.back().kind, "stop");
   EXPECT_FALSE(std::filesystem::exists(at("r.h5.partial")));
 }
-INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGTERM, SIGINT),
-                         [](const auto& tested) { return tested.param == SIGTERM ? "SIGTERM" : "SIGINT"; });
+INSTANTIATE_TEST_SUITE_P(By, Interrupted, testing::Values(SIGTERM, SIGINT, SIGQUIT, SIGHUP),
+                         [](const auto& tested) { return std::string("SIG") + sigabbrev_np(tested.param); });
 
 const std::string examples = std::string(KERF_SOURCE_DIR) + "/examples/";
 
