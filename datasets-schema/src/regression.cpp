@@ -147,7 +147,7 @@ void write_regression(const std::filesystem::path& file, const std::vector<Store
   TemporaryFile temporary(file);
   h5::WritableFile output;
   try {
-    output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
+    output = temporary.create();
     {
       const auto root = h5::open(output.id(), "/");
       h5::write_attribute(root.id(), "schema", std::string(regression_schema_name));
@@ -160,7 +160,7 @@ void write_regression(const std::filesystem::path& file, const std::vector<Store
   } catch (const h5::Error& error) {
     throw write_error(file, output.cause_of(error));
   }
-  temporary.commit();
+  temporary.commit(Existing::replace);
 }
 
 }  // namespace kerf::schema

@@ -231,12 +231,13 @@ std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::si
 
 }  // namespace in_process
 
-void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of) {
+void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of,
+                   Existing existing) {
   require_texts(session);
   TemporaryFile temporary(file);
   h5::WritableFile output;
   try {
-    output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
+    output = temporary.create();
     write_header(output.id(), session);
     write_entries(output.id(), session.entries);
     write_sealed(output.id(), session.entries.size(), sealed_of);
@@ -244,11 +245,12 @@ void write_session(const std::filesystem::path& file, const Session& session, co
   } catch (const h5::Error& error) {
     throw write_error(file, output.cause_of(error));
   }
-  temporary.commit();
+  temporary.commit(existing);
 }
 
-void write_session(const std::filesystem::path& file, const Session& session) {
-  write_session(file, session, [&](std::size_t entry) { return session.entries[entry].sealed; });
+void write_session(const std::filesystem::path& file, const Session& session, Existing existing) {
+  write_session(
+      file, session, [&](std::size_t entry) { return session.entries[entry].sealed; }, existing);
 }
 
 }  // namespace kerf::schema

@@ -28,7 +28,7 @@ schema::Recording record_scene(const Scene& scene, const SceneCut& cut, const st
   } catch (const std::invalid_argument&) {
     return recording;  // no cycles: a press and hold, or less than a stroke
   }
-  schema::write_recording(file, recording);
+  schema::write_recording(file, recording, schema::Existing::replace);
   return recording;
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "files/named_file.h"
+#include "files/whole_folder.h"
 #include "fits/fit_files.h"
 
 namespace kerf::bench {
@@ -32,7 +33,9 @@ void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch,
     const std::string reason = entry.fit.refusal();
     throw std::invalid_argument(reason.empty() ? "no law could be fitted" : reason);
   }
-  write_fits(entry.fit, file, folder);
+  WholeFolder whole(folder, schema::existing_if(batch.replace));
+  write_fits(entry.fit, file, whole.path());
+  whole.commit();
   if (std::none_of(entry.fit.laws.begin(), entry.fit.laws.end(),
                    [](const FittedLaw& law) { return law.result.converged; })) {
     throw std::invalid_argument("no law converged");

@@ -4,6 +4,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "recordings/provenance.h"
 #include "replay/replay_page.h"
 
@@ -102,16 +103,17 @@ void write_open_loop(const fs::path& folder, const Source& source, const OpenLoo
                      const json& all, bool replace) {
   require_output(folder / "replay.json", replace);
   for (const LawTrace& trace : result.laws) require_output(folder / (trace.name + ".h5"), replace);
-  fs::create_directories(folder);
+  WholeFolder whole(folder, schema::existing_if(replace));
   for (const LawTrace& trace : result.laws)
-    schema::write_recording(folder / (trace.name + ".h5"), recording_of(source, trace));
+    schema::write_recording(whole.path() / (trace.name + ".h5"), recording_of(source, trace));
   const std::vector<std::string> charts = draw_all(replay_charts(source, result));
   for (std::size_t i = 0; i < charts.size(); ++i) {
     const std::string name = i == 0 ? "replay.svg" : fmt::format("replay-{}.svg", i + 1);
-    write_whole_file(folder / name, charts[i]);
+    write_whole_file(whole.path() / name, charts[i]);
   }
-  write_whole_file(folder / "replay.html", replay_page(all, charts));
-  write_json_file(folder / "replay.json", all);
+  write_whole_file(whole.path() / "replay.html", replay_page(all, charts));
+  write_json_file(whole.path() / "replay.json", all);
+  whole.commit();
 }
 
 }  // namespace kerf::bench

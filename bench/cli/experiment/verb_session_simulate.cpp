@@ -10,6 +10,7 @@
 #include "experiment/verb_session.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
 #include "program/progress.h"
@@ -65,11 +66,13 @@ void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptio
 void write_files(const SessionSimulateVerbArguments& arguments, const Simulation& simulation,
                  Context& context) {
   const fs::path folder = arguments.output;
-  write_whole_file(folder / "simulate.html", simulation_page(simulation));
-  write_json_file(folder / "simulate.json", simulation_json(simulation));
-  write_whole_file(folder / "simulate.csv", simulation_csv(simulation));
+  WholeFolder whole(folder, schema::existing_if(arguments.replace));
+  write_whole_file(whole.path() / "simulate.html", simulation_page(simulation));
+  write_json_file(whole.path() / "simulate.json", simulation_json(simulation));
+  write_whole_file(whole.path() / "simulate.csv", simulation_csv(simulation));
   for (const Figure& figure : simulation_charts(simulation))
-    write_whole_file(folder / (figure.name + ".svg"), draw(figure.chart) + "\n");
+    write_whole_file(whole.path() / (figure.name + ".svg"), draw(figure.chart) + "\n");
+  whole.commit();
   context.say(
       fmt::format("{}: the charts, and all numbers as JSON and CSV", (folder / "simulate.html").string()));
 }
@@ -83,7 +86,6 @@ void run(const SessionSimulateVerbArguments& arguments, Context& context) {
   if (!arguments.output.empty()) {
     for (const char* file : {"simulate.html", "simulate.json", "simulate.csv"})
       require_output(fs::path(arguments.output) / file, arguments.replace);
-    fs::create_directories(arguments.output);
   }
   Simulation simulation;
   {

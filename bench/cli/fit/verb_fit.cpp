@@ -7,6 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "fit/fit_arguments.h"
 #include "fit/fit_table.h"
 #include "fits/batch.h"
@@ -54,7 +55,9 @@ void run_together(const FitArguments& arguments, Context& context) {
     if (fit.laws.empty()) return;
   }
   const std::vector<fs::path> files(arguments.recordings.begin(), arguments.recordings.end());
-  write_fits(fit, files, folder);
+  WholeFolder whole(folder, schema::existing_if(arguments.force));
+  write_fits(fit, files, whole.path());
+  whole.commit();
   say_fit(fit, context);
   context.say(fmt::format("law files, fit.json and fit.csv are in {}", folder.string()));
 }
@@ -95,10 +98,11 @@ void run_batch_of(const FitArguments& arguments, Context& context) {
     entries = run_batch(recordings, options, signals.requested(), progress.done);
   }
   const double confidence = arguments.options.fit.confidence;
-  fs::create_directories(folder);
-  write_whole_file(folder / "batch.csv", batch_csv(entries, confidence));
+  WholeFolder whole(folder, schema::existing_if(arguments.force));
+  write_whole_file(whole.path() / "batch.csv", batch_csv(entries, confidence));
   context.result = batch_json(entries, confidence);
-  write_json_file(folder / "batch.json", context.result);
+  write_json_file(whole.path() / "batch.json", context.result);
+  whole.commit();
   say_batch(entries, folder, context);
 }
 

@@ -38,7 +38,7 @@ models::Law law_of(const TrainVerbArguments& arguments, const models::Law& thres
 void run_train(const TrainVerbArguments& arguments, Context& context) {
   require_output(arguments.output, arguments.force);
   if (arguments.example) {
-    write_whole_file(arguments.output, as_csv(liver_ruptures()));
+    write_whole_file(arguments.output, as_csv(liver_ruptures()), schema::existing_if(arguments.force));
     context.say(fmt::format("{}: a table made from a formula, to begin with", arguments.output));
     context.result = {{"written", arguments.output}};
     return;
@@ -53,7 +53,7 @@ void run_train(const TrainVerbArguments& arguments, Context& context) {
   const fitting::RuptureFit fit = fitting::train_rupture(samples, options);
   const LawFile file{
       .law = law_of(arguments, fit.law), .contact = {}, .axis = {}, .std_errors = {}, .fit = {}};
-  write_law_file(arguments.output, file);
+  write_law_file(arguments.output, file, schema::existing_if(arguments.force));
   context.result = {{"law", std::string(file.law.model())},
                     {"samples", samples.force_n.size()},
                     {"parameters", fit.law.values().size()},

@@ -14,6 +14,7 @@
 #include "chart/limit_cycle_check.h"
 #include "chart/speed_accuracy.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "run/run.h"
@@ -124,7 +125,9 @@ void run_chart(const ChartVerbArguments& arguments, Context& context) {
   context.result = chart_as_json(chart);
   say_chart(chart, context);
   if (arguments.output.empty()) return;
-  write_chart(chart, arguments.output);
+  WholeFolder whole(arguments.output, schema::existing_if(arguments.force));
+  write_chart(chart, whole.path());
+  whole.commit();
   context.say(fmt::format("chart.svg, chart.csv, chart.json, chart.html and the points' laws are in {}",
                           arguments.output));
 }

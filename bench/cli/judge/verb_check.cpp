@@ -58,7 +58,8 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   const Verdict verdict = judge(result);
   context.result = check_as_json(result, verdict);
   context.result["law"] = std::string(options.law->law.model());
-  if (!arguments.output.empty()) write_json_file(arguments.output, context.result);
+  if (!arguments.output.empty())
+    write_json_file(arguments.output, context.result, schema::existing_if(options.replace));
   if (!verdict.passed) context.exit = Exit::check_failed;
   if (!result.recording_failure.empty()) {
     context.exit = Exit::file_error;

@@ -15,6 +15,7 @@
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "program/contact_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
@@ -61,15 +62,19 @@ void say_choice(const LawChoice& choice, Context& context) {
   context.say("");
 }
 
+/// Where a choice is kept, if it is.
+using Output = std::optional<WholeFolder>;
+
 /// Says, keeps and prints what was chosen.
 void finish(const ChooseVerbArguments& arguments, Context& context, LawChoice& choice,
-            const nlohmann::ordered_json& json, const fs::path& recording) {
+            const nlohmann::ordered_json& json, const fs::path& recording, Output& output) {
   context.result = json;
   for (const std::string& warning : choice.warnings) warn(warning);
   say_choice(choice, context);
   context.say(choice.why);
-  if (!arguments.output.empty()) {
-    write_choice(choice, context.result, recording, arguments.output);
+  if (output) {
+    write_choice(choice, context.result, recording, output->path());
+    output->commit();
     context.say(fmt::format("choose.json, choose.csv, choose.html{} are in {}",
                             choice.taken ? " and the law's file" : "", arguments.output));
   }
@@ -80,8 +85,14 @@ void say_begins(const std::string& law, const std::string& device_uri) {
   note(fmt::format("{} in closed loop with {} ...", law, device_uri));
 }
 
+/// Where a recording is, and where it is to be once its folder has its name.
+struct CutFile {
+  fs::path at;
+  fs::path name;
+};
+
 void choose_for_recording(const ChooseVerbArguments& arguments, Context& context,
-                          const schema::Recording& recording, const fs::path& file,
+                          const schema::Recording& recording, const CutFile& file, Output& output,
                           const std::atomic<bool>& stop) {
   DeviceChoiceOptions options{.choose = arguments.choose,
                               .loop = arguments.loop,
@@ -90,12 +101,13 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
   options.choose.axis = find_cut_axis(recording, arguments.axis);
   options.choose.contact = arguments.contact.over(contact_of(recording, options.choose.axis));
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
-  DeviceChoice made = choose_on_device(recording, file, std::move(options), stop);
-  finish(arguments, context, made.choice, made.json, file);
+  DeviceChoice made = choose_on_device(recording, file.at, std::move(options), stop);
+  made.json["recording"] = file.name.string();
+  finish(arguments, context, made.choice, made.json, file.at, output);
 }
 
 void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, const Scene& scene,
-                      const std::atomic<bool>& stop) {
+                      Output& output, const std::atomic<bool>& stop) {
   FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
   LoopCheckOptions loop = arguments.loop;
   if (loop.device_uri.empty()) loop.device_uri = device_of(scene);
@@ -111,36 +123,38 @@ void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, co
                               {"scene", arguments.scene},
                               {"device", checks ? nlohmann::ordered_json(uri) : nullptr}};
   json.update(choice_as_json(choice));
-  finish(arguments, context, choice, json, {});
+  finish(arguments, context, choice, json, {}, output);
 }
 
-void choose_for_scene(const ChooseVerbArguments& arguments, Context& context, const std::atomic<bool>& stop) {
+void choose_for_scene(const ChooseVerbArguments& arguments, Context& context, Output& output,
+                      const std::atomic<bool>& stop) {
   const Scene scene = read_scene(arguments.scene);
-  if (scene.tissue.law.is_spatial()) return choose_for_blade(arguments, context, scene, stop);
-  if (arguments.output.empty())
-    throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
-  const fs::path file = fs::path(arguments.output) / "cut.h5";
-  require_output(file, arguments.force);
-  fs::create_directories(file.parent_path());
+  if (scene.tissue.law.is_spatial()) return choose_for_blade(arguments, context, scene, output, stop);
+  if (!output) throw std::invalid_argument("--scene records a cut: name a folder for it with -o");
+  const CutFile file{.at = output->path() / "cut.h5", .name = fs::path(arguments.output) / "cut.h5"};
+  require_output(file.name, arguments.force);
   const SceneCut cut{.device_uri = arguments.loop.device_uri,
                      .seconds = arguments.record_s.value_or(0.0),
                      .seed = context.seed};
-  const schema::Recording recording = record_scene(scene, cut, file, stop);
-  context.say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.string(), scene.name,
+  const schema::Recording recording = record_scene(scene, cut, file.at, stop);
+  context.say(fmt::format("{}: {}, cut for {:.3g} s in virtual time on {}", file.name.string(), scene.name,
                           recording.time.empty() ? 0.0 : recording.time.back(), recording.header.device_uri));
-  choose_for_recording(arguments, context, recording, file, stop);
+  choose_for_recording(arguments, context, recording, file, output, stop);
 }
 
 void run_choose(const ChooseVerbArguments& arguments, Context& context) {
   if (arguments.recording.empty() == arguments.scene.empty())
     throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
   if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
+  Output output;
+  if (!arguments.output.empty()) output.emplace(arguments.output, schema::existing_if(arguments.force));
   const StopOnSignal signals;
   const std::string& name = arguments.scene.empty() ? arguments.recording : arguments.scene;
-  if (!arguments.scene.empty()) return choose_for_scene(arguments, context, signals.requested());
+  if (!arguments.scene.empty()) return choose_for_scene(arguments, context, output, signals.requested());
   const schema::Recording recording = schema::read_recording(name);
   try {
-    choose_for_recording(arguments, context, recording, name, signals.requested());
+    choose_for_recording(arguments, context, recording, {.at = name, .name = name}, output,
+                         signals.requested());
   } catch (const std::invalid_argument& error) {
     const std::string what = error.what();
     throw std::invalid_argument(what.starts_with(name) ? what : name + ": " + what);

@@ -7,6 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "program/verbs.h"
 #include "reproduce/reproduce.h"
 
@@ -25,15 +26,16 @@ void run_reproduce(const ReproduceVerbArguments& arguments, Context& context) {
   const std::filesystem::path folder = arguments.output;
   for (const auto* name : {"claims.json", "claims.md"}) require_output(folder / name, arguments.force);
   const Reproduction result = reproduce(arguments.paper, context.seed);
-  std::filesystem::create_directories(folder);
+  WholeFolder whole(folder, schema::existing_if(arguments.force));
   for (const Figure& figure : result.figures) {
     Chart chart = figure.chart;
     for (Curve& curve : chart.curves) curve = decimated(curve, max_points);
-    write_whole_file(folder / (figure.name + ".svg"), draw(chart));
+    write_whole_file(whole.path() / (figure.name + ".svg"), draw(chart));
   }
   context.result = to_json(result);
-  write_whole_file(folder / "claims.md", as_markdown(result));
-  write_json_file(folder / "claims.json", context.result);
+  write_whole_file(whole.path() / "claims.md", as_markdown(result));
+  write_json_file(whole.path() / "claims.json", context.result);
+  whole.commit();
   context.say(fmt::format("[{}]: {}", result.key, result.title));
   for (const Claim& claim : result.claims) {
     context.say(fmt::format("  {:13}  {} ({})", name_of(claim.verdict), claim.claim, claim.where));

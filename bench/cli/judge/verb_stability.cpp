@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "cases/case_findings.h"
+#include "files/whole_folder.h"
 #include "laws/law_file.h"
 #include "program/verbs.h"
 #include "stability/findings.h"
@@ -55,7 +56,9 @@ void run_stability(const StabilityVerbArguments& given, Context& context) {
   context.result = findings.json;
   for (const std::string& line : findings.lines) context.say(line);
   if (given.output.empty()) return;
-  write_findings(findings, given.output);
+  WholeFolder whole(given.output, schema::existing_if(given.force));
+  write_findings(findings, whole.path());
+  whole.commit();
   context.say(fmt::format("stability.json, stability.csv, stability.html and {} picture{} are in {}",
                           findings.figures.size(), findings.figures.size() == 1 ? "" : "s", given.output));
 }

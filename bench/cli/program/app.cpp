@@ -21,6 +21,7 @@
 
 #include "files/for_terminal.h"
 #include "files/json_file.h"
+#include "files/whole_file.h"
 #include "program/nearest_word.h"
 #include "program/standard_streams.h"
 #include "program/verbs.h"
@@ -207,6 +208,8 @@ void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n",
 int run_program(int argc, char** argv) {
   keep_standard_streams();
   const int status = run_caught({argv + 1, argv + argc});
+  for (const auto& left : take_removed_leftovers())
+    note(fmt::format("{}: removed; a run that was killed had left it unfinished", left.string()));
   finish_standard_streams();
   return status;
 }

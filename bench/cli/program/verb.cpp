@@ -21,6 +21,10 @@ std::string wrong_with(const std::string& text, bool may_be_zero) {
   return text + (may_be_zero ? " is negative" : " is not greater than 0");
 }
 
+std::string is_named(const std::string& output) {
+  return output.empty() ? "'' is no name for an output" : "";
+}
+
 }  // namespace
 
 Option& Option::required() {
@@ -75,7 +79,9 @@ Option& Option::one_value_each() {
 
 template <typename Value>
 Option Verb::add_option(const std::string& name, Value& variable, const std::string& description) {
-  return Option(*verb_.add_option(name, variable, description));
+  CLI::Option* const option = verb_.add_option(name, variable, description);
+  if (name.starts_with("-o,")) option->check(is_named);
+  return Option(*option);
 }
 
 template Option Verb::add_option(const std::string&, std::string&, const std::string&);

@@ -45,7 +45,7 @@ void run_import(ImportVerbArguments arguments, Context& context) {
   options.progress = show_bar;
 
   const Imported imported = import_text(arguments.data, options);
-  schema::write_recording(arguments.output, imported.recording);
+  schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
   context.result = imported_as_json(imported);
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   for (const std::string& line : imported_lines(imported)) context.say(line);

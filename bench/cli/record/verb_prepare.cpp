@@ -66,8 +66,9 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
   if (!arguments.filter_chart.empty()) require_output(arguments.filter_chart, arguments.force);
   const Prepared prepared = prepare_file(arguments.recording, options);
   if (!arguments.filter_chart.empty())
-    write_whole_file(arguments.filter_chart, filter_response_svg(*prepared.filter));
-  schema::write_recording(arguments.output, prepared.recording);
+    write_whole_file(arguments.filter_chart, filter_response_svg(*prepared.filter),
+                     schema::existing_if(arguments.force));
+  schema::write_recording(arguments.output, prepared.recording, schema::existing_if(arguments.force));
   context.result = prepared_as_json(prepared);
   for (const std::string& warning : prepared.warnings) warn(warning);
   for (const std::string& line : prepared_lines(prepared)) context.say(line);

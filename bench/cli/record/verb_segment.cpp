@@ -52,11 +52,13 @@ void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   options.axis = find_axis(recording, arguments.axis);
   if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
   segment_recording(recording, options, arguments.recording);
-  schema::write_recording(arguments.recording, recording);
+  schema::write_recording(arguments.recording, recording, schema::Existing::replace);
   if (!arguments.charts.empty()) {
     std::filesystem::create_directories(charts);
-    write_whole_file(charts / "cycles.svg", draw(position_chart(recording, options.axis)));
-    write_whole_file(charts / "loops.svg", draw(loop_chart(recording, options.axis)));
+    write_whole_file(charts / "cycles.svg", draw(position_chart(recording, options.axis)),
+                     schema::Existing::replace);
+    write_whole_file(charts / "loops.svg", draw(loop_chart(recording, options.axis)),
+                     schema::Existing::replace);
   }
   context.result = to_json(recording);
   context.say(fmt::format(

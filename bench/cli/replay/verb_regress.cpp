@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "program/verbs.h"
 #include "regress/context.h"
 #include "regress/junit.h"
@@ -66,9 +67,12 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
   context.say(outcome.failed() == 0
                   ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
                   : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
-  if (!arguments.junit.empty()) write_whole_file(arguments.junit, junit_xml(suite, outcome));
+  if (!arguments.junit.empty())
+    write_whole_file(arguments.junit, junit_xml(suite, outcome), schema::Existing::replace);
   if (!arguments.output.empty()) {
-    write_regress_page(suite, outcome, arguments.output);
+    WholeFolder whole(arguments.output, schema::Existing::replace);
+    write_regress_page(suite, outcome, whole.path());
+    whole.commit();
     context.say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;

@@ -125,7 +125,8 @@ void finish_run(const ReplayVerbArguments& arguments, Context& context, const Ru
   }
   if (!arguments.output.empty()) {
     fs::create_directories(arguments.output);
-    write_json_file(json_in(arguments.output), context.result);
+    write_json_file(json_in(arguments.output), context.result,
+                    schema::existing_if(arguments.loop.options.replace));
   }
   context.say(fmt::format("{}: {} ticks on {}, {} deadlines missed", verdict.passed ? "pass" : "FAIL",
                           result.report.ticks(), result.device.uri, result.report.missed()));
@@ -159,7 +160,9 @@ void play_table(const ReplayVerbArguments& arguments, Context& context, const So
   const RunResult result = run_on_device(options, signals.requested());
   context.result = table_as_json(table, recording.rows());
   finish_run(arguments, context, result);
-  if (!arguments.output.empty()) write_law_file(fs::path(arguments.output) / "table.law.toml", table.file);
+  if (!arguments.output.empty())
+    write_law_file(fs::path(arguments.output) / "table.law.toml", table.file,
+                   schema::existing_if(arguments.loop.options.replace));
 }
 
 void play_path(const ReplayVerbArguments& arguments, Context& context, Source source) {

@@ -24,7 +24,7 @@ void run_report(const ReportVerbArguments& arguments, Context& context) {
   ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
   if (!arguments.fits.empty()) input.fits = arguments.fits;
   if (!arguments.check.empty()) input.check = arguments.check;
-  write_whole_file(arguments.output, report_page(input));
+  write_whole_file(arguments.output, report_page(input), schema::existing_if(arguments.force));
   context.result = {{"report", arguments.output}};
   context.say(arguments.output);
 }

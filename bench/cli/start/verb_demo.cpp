@@ -14,6 +14,7 @@
 #include "files/json_file.h"
 #include "files/named_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "fits/fit_files.h"
 #include "fits/fit_recording.h"
 #include "import/imported_text.h"
@@ -83,16 +84,21 @@ LawChoice choose_for(const schema::Recording& recording, const LoopChecks& check
   return choose_law(recording, options, stop);
 }
 
-void simulated_cut(const DemoVerbArguments& arguments, Context& context) {
-  const fs::path folder = arguments.folder;
+/// Where the demo writes, and the folder that this becomes.
+struct DemoFolder {
+  const fs::path& at;
+  const fs::path& name;
+};
+
+void simulated_cut(const DemoVerbArguments& arguments, const DemoFolder& folder, Context& context) {
   const StopOnSignal signals;
   context.say(
       "1. A hand cuts simulated tissue with simulated scissors: recorded at 1 kHz for 20 s, in virtual time");
-  const fs::path cut = folder / "cut.h5";
+  const fs::path cut = folder.at / "cut.h5";
   const schema::Recording recording =
       record_scene(default_scene(), {.seconds = recorded_s, .seed = context.seed}, cut, signals.requested());
-  context.say(fmt::format("   {}: {} samples, {} closings", cut.string(), recording.rows(),
-                          recording.cycles ? recording.cycles->closing.size() : 0));
+  context.say(fmt::format("   {}: {} samples, {} closings", (folder.name / "cut.h5").string(),
+                          recording.rows(), recording.cycles ? recording.cycles->closing.size() : 0));
 
   context.say("2. Five force laws are fitted to it, with their intervals");
   RecordingFit fit = fit_recording(recording, {});
@@ -105,53 +111,58 @@ void simulated_cut(const DemoVerbArguments& arguments, Context& context) {
   if (!choice.taken || loop.json.empty()) throw std::runtime_error("no law serves: " + choice.why);
   const std::string law = choice.candidates.at(*choice.taken).law.name;
   fit.choice = {.model = law, .why = choice.why};
-  write_fits(fit, cut, folder / "fits");
+  write_fits(fit, cut, folder.at / "fits");
   nlohmann::ordered_json choice_json = choice_as_json(choice);
   choice_json["name"] = "the demo's cut";
-  choice_json["recording"] = cut.string();
+  choice_json["recording"] = (folder.name / "cut.h5").string();
   choice_json["axis"] = recording.axes.front().name;
-  write_choice(choice, choice_json, cut, folder / "choice");
-  const fs::path check = folder / "check.json";
+  write_choice(choice, choice_json, cut, folder.at / "choice");
+  const fs::path check = folder.at / "check.json";
   write_json_file(check, loop.json);
   context.say("   " + choice.why);
   context.say(fmt::format("   {}: {} of {} deadlines missed", loop.verdict.passed ? "pass" : "FAIL",
                           loop.missed, loop.ticks));
   for (const std::string& reason : loop.verdict.reasons) context.say("   " + reason);
 
-  const fs::path report = folder / "report.html";
-  write_whole_file(report, report_page({.recording = cut, .fits = folder / "fits", .check = check}));
+  write_whole_file(folder.at / "report.html",
+                   report_page({.recording = cut, .fits = folder.at / "fits", .check = check}));
+  const fs::path report = folder.name / "report.html";
   context.say(fmt::format("4. The report is {}", fs::absolute(report).string()));
-  context.result = {{"folder", folder.string()},          {"recording", cut.string()},
-                    {"fits", (folder / "fits").string()}, {"check", check.string()},
-                    {"report", report.string()},          {"choice", law},
+  context.result = {{"folder", folder.name.string()},
+                    {"recording", (folder.name / "cut.h5").string()},
+                    {"fits", (folder.name / "fits").string()},
+                    {"check", (folder.name / "check.json").string()},
+                    {"report", report.string()},
+                    {"choice", law},
                     {"verdict", loop.json["verdict"]}};
 }
 
 /// The same way for a lab's text file with columns time, angle and force.
-void text_file(const DemoVerbArguments& arguments, Context& context) {
-  const fs::path folder = arguments.folder;
+void text_file(const DemoVerbArguments& arguments, const DemoFolder& folder, Context& context) {
   const std::string name = fs::path(arguments.text).stem().string();
-  const fs::path file = folder / (name + ".h5");
-  const fs::path fits = folder / (name + "-fits");
-  const fs::path report = folder / (name + ".html");
+  const fs::path recording_at = folder.at / (name + ".h5");
+  const fs::path fits_at = folder.at / (name + "-fits");
+  const fs::path file = folder.name / (name + ".h5");
+  const fs::path fits = folder.name / (name + "-fits");
+  const fs::path report = folder.name / (name + ".html");
   context.say(fmt::format("5. And now a text file, as a lab has it: {}", arguments.text));
   Imported imported = import_text(arguments.text, {.map = parse_map("time=time,position=angle,force=force")});
   for (const std::string& line : imported_lines(imported)) context.say("   " + line);
   for (const std::string& warning : imported.warnings) context.say("   what is wrong with it: " + warning);
   schema::Recording& recording = imported.recording;
   segment_recording(recording, {}, arguments.text);
-  schema::write_recording(file, recording);
+  schema::write_recording(recording_at, recording);
   context.say(fmt::format("   {}: {} samples in SI, {} closings", file.string(), recording.rows(),
                           recording.cycles->closing.size()));
 
   context.say("6. The same five laws are fitted to it");
   RecordingFit fit = fit_recording(recording, {});
-  write_fits(fit, file, fits);
+  write_fits(fit, recording_at, fits_at);
   for (const FittedLaw& law : fit.laws)
     context.say(fmt::format("   {:12} {:.3f} N off in cycles that it had not seen", law.result.model,
                             law.result.cv_rmse));
   context.say(fmt::format("   {}: {}", fit.choice.model, fit.choice.why));
-  write_whole_file(report, report_page({.recording = file, .fits = fits}));
+  write_whole_file(folder.at / (name + ".html"), report_page({.recording = recording_at, .fits = fits_at}));
   context.say(fmt::format("   law files, fit.json and fit.csv are in {}, and its report is {}", fits.string(),
                           fs::absolute(report).string()));
   context.result["text"] = {
@@ -163,9 +174,10 @@ void run_demo(const DemoVerbArguments& arguments, Context& context) {
   const fs::path folder = arguments.folder;
   if (!arguments.text.empty()) const NamedFile there(arguments.text);
   require_output(folder / "report.html", arguments.force);
-  fs::create_directories(folder);
-  simulated_cut(arguments, context);
-  if (!arguments.text.empty()) text_file(arguments, context);
+  WholeFolder whole(folder, schema::existing_if(arguments.force));
+  simulated_cut(arguments, {.at = whole.path(), .name = folder}, context);
+  if (!arguments.text.empty()) text_file(arguments, {.at = whole.path(), .name = folder}, context);
+  whole.commit();
 }
 
 }  // namespace

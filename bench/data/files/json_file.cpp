@@ -12,8 +12,9 @@ std::string json_text(nlohmann::ordered_json result) {
   return for_terminal(result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)) + "\n";
 }
 
-void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& result) {
-  write_whole_file(file, json_text(result));
+void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& result,
+                     schema::Existing existing) {
+  write_whole_file(file, json_text(result), existing);
 }
 
 }  // namespace kerf::bench

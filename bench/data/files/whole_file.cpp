@@ -2,14 +2,46 @@
 
 #include <cerrno>
 #include <fstream>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <kerf/schema/unfinished.h>
+
 namespace kerf::bench {
+namespace {
+
+/// What killed runs had left in the folders that outputs were asked for in.
+class Leftovers {
+ public:
+  static Leftovers& all() {
+    static Leftovers leftovers;
+    return leftovers;
+  }
+  /// Looks into each folder once.
+  void remove_from(const std::filesystem::path& folder) {
+    const std::lock_guard lock(mutex_);
+    if (!folders_.insert(folder).second) return;
+    for (auto& left : schema::remove_unfinished(folder)) removed_.push_back(std::move(left));
+  }
+  std::vector<std::filesystem::path> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(removed_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::filesystem::path> folders_;
+  std::vector<std::filesystem::path> removed_;
+};
+
+}  // namespace
 
 std::string read_whole_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -22,27 +54,33 @@ std::string read_whole_file(const std::filesystem::path& file) {
   return std::move(content).str();
 }
 
-void write_whole_file(const std::filesystem::path& file, std::string_view content) {
-  std::filesystem::path temporary = file;
-  temporary += fmt::format(".{}.tmp", getpid());
+void write_whole_file(const std::filesystem::path& file, std::string_view content,
+                      schema::Existing existing) {
+  const std::filesystem::path temporary = schema::unfinished_name(file);
   errno = 0;
   std::ofstream stream(temporary, std::ios::binary);
+  const schema::WriteMark mark(temporary);
   stream.write(content.data(), static_cast<std::streamsize>(content.size()));
   stream.close();
-  int reason = stream ? 0 : (errno != 0 ? errno : EIO);
-  if (reason == 0) {
-    std::error_code renamed;
-    std::filesystem::rename(temporary, file, renamed);
-    reason = renamed.value();
-  }
-  if (reason != 0) {
+  if (!stream) {
+    const int reason = errno != 0 ? errno : EIO;
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
     throw std::system_error(reason, std::generic_category(), "cannot write " + file.string());
   }
+  try {
+    schema::take_name(temporary, file, existing);
+  } catch (const schema::NameTaken&) {
+    throw;  // it is kept under another name
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw;
+  }
 }
 
 void require_output(const std::filesystem::path& file, bool replace) {
+  if (file.empty()) throw std::invalid_argument("'' is no name for an output");
   if (!replace && std::filesystem::exists(file)) {
     throw std::invalid_argument(fmt::format("{} exists; --force replaces it", file.string()));
   }
@@ -55,6 +93,9 @@ void require_output(const std::filesystem::path& file, bool replace) {
                      : access(folder.c_str(), W_OK | X_OK) != 0      ? errno
                                                                      : 0;
   if (reason != 0) throw std::system_error(reason, std::generic_category(), "cannot write " + file.string());
+  Leftovers::all().remove_from(folder);
 }
+
+std::vector<std::filesystem::path> take_removed_leftovers() { return Leftovers::all().take(); }
 
 }  // namespace kerf::bench

@@ -3,6 +3,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include <kerf/schema/final_name.h>
 
 namespace kerf::bench {
 
@@ -10,12 +13,18 @@ namespace kerf::bench {
 [[nodiscard]] std::string read_whole_file(const std::filesystem::path& file);
 
 /// Writes a file under a temporary name beside it and renames it, so that a half-written one never stands
-/// under the final name. @throws std::system_error that names the file; nothing is left behind then.
-void write_whole_file(const std::filesystem::path& file, std::string_view content);
+/// under the final name. @throws std::system_error that names the file, and nothing is left behind; as
+/// schema::take_name() does.
+void write_whole_file(const std::filesystem::path& file, std::string_view content,
+                      schema::Existing existing = schema::Existing::replace);
 
 /// Asked before the work that ends in `file`, whose folder may yet have to be made.
-/// @throws std::invalid_argument if it exists and `replace` is false, naming --force as the mend;
-///         std::system_error if nothing can be written where it is to stand.
+/// Removes what killed runs have left unfinished there.
+/// @throws std::invalid_argument if it has no name, or exists and `replace` is false, naming --force as the
+///         mend; std::system_error if nothing can be written where it is to stand.
 void require_output(const std::filesystem::path& file, bool replace);
+
+/// What require_output() has removed since this was last asked.
+[[nodiscard]] std::vector<std::filesystem::path> take_removed_leftovers();
 
 }  // namespace kerf::bench

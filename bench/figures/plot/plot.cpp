@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <stdio.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -189,33 +190,30 @@ std::string named(std::string svg, const std::string& title) {
                      fmt::format("<title>{}</title>\n<desc>{}, by gnuplot", escaped(title), software()));
 }
 
-/// A temporary file's name, removed with the object.
-class TemporaryName {
+/// A file in memory that another program can write by its name; whoever is killed leaves nothing behind.
+class NamedMemory {
  public:
-  TemporaryName() : path_((std::filesystem::temp_directory_path() / "kerf-chart-XXXXXX").string()) {
-    const int descriptor = mkstemp(path_.data());
-    if (descriptor < 0) throw std::system_error(errno, std::generic_category(), "cannot write " + path_);
-    close(descriptor);
+  NamedMemory() : descriptor_(memfd_create("kerf-chart", MFD_CLOEXEC)) {
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "no memory for a chart");
+    path_ = fmt::format("/proc/{}/fd/{}", getpid(), descriptor_);
   }
-  TemporaryName(const TemporaryName&) = delete;
-  TemporaryName& operator=(const TemporaryName&) = delete;
-  ~TemporaryName() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
+  NamedMemory(const NamedMemory&) = delete;
+  NamedMemory& operator=(const NamedMemory&) = delete;
+  ~NamedMemory() { close(descriptor_); }
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
+  int descriptor_;
   std::string path_;
 };
 
 }  // namespace
 
 std::vector<std::string> draw_all(std::span<const Chart> charts) {
-  std::deque<TemporaryName> outputs;
+  std::deque<NamedMemory> outputs;
   std::string script;
   for (const Chart& chart : charts) script += script_of(chart, outputs.emplace_back().path());
-  const TemporaryName errors;
+  const NamedMemory errors;
   const std::string command = "gnuplot - 2>" + errors.path();
   FILE* pipe = popen(command.c_str(), "w");
   if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");

@@ -253,8 +253,8 @@ std::string to_toml(const LawFile& file) {
   return text;
 }
 
-void write_law_file(const std::filesystem::path& file, const LawFile& law) {
-  write_whole_file(file, fmt::format("# {}\n{}", software(), to_toml(law)));
+void write_law_file(const std::filesystem::path& file, const LawFile& law, schema::Existing existing) {
+  write_whole_file(file, fmt::format("# {}\n{}", software(), to_toml(law)), existing);
 }
 
 }  // namespace kerf::bench

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <kerf/models/law.h>
+#include <kerf/schema/final_name.h>
 
 namespace kerf::bench {
 
@@ -36,7 +37,8 @@ struct LawFile {
 [[nodiscard]] LawFile read_law_file(const std::filesystem::path& file);
 
 /// Writes a law file under a comment that names the program, whole or not at all. @throws std::system_error.
-void write_law_file(const std::filesystem::path& file, const LawFile& law);
+void write_law_file(const std::filesystem::path& file, const LawFile& law,
+                    schema::Existing existing = schema::Existing::replace);
 
 /// A law file as TOML text, and back; `name` stands for the file in messages.
 [[nodiscard]] std::string to_toml(const LawFile& law);

@@ -61,6 +61,8 @@ std::string close_device_recording(Recorder& recorder, const std::filesystem::pa
                                    const std::string& status, const schema::Properties& figures) {
   try {
     recorder.close(status, figures);
+  } catch (const schema::NameTaken& taken) {
+    return taken.what();
   } catch (const std::exception& error) {
     return fmt::format("{}; what was recorded until then is in {}.partial, and 'kerf repair' closes it",
                        error.what(), file.string());

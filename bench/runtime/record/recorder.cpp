@@ -17,6 +17,27 @@ constexpr auto flush_every = std::chrono::milliseconds(250);
 constexpr std::size_t flush_rows = 10'000;  // in virtual time a quarter of a second is many rows
 constexpr auto pause = std::chrono::milliseconds(5);
 
+/// When what was flushed is brought to the disk next: once a second. A disk that takes long for it gets more
+/// time, so that it has nine tenths of the writer's for the rows, which the ring cannot keep for ever.
+class SynchroniseTimes {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] bool is_due() const { return Clock::now() >= next_; }
+  /// Runs what brings it there.
+  template <typename Action>
+  void run(Action action) {
+    const Clock::time_point begin = Clock::now();
+    action();
+    const Clock::time_point end = Clock::now();
+    next_ = end + std::max<Clock::duration>(every, 9 * (end - begin));
+  }
+
+ private:
+  static constexpr auto every = std::chrono::seconds(1);
+  Clock::time_point next_ = Clock::now() + every;
+};
+
 }  // namespace
 
 Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
@@ -74,6 +95,7 @@ std::size_t Recorder::write_chunk() {
 
 void Recorder::write_until_stopped(const std::stop_token& stop) {
   if (!lossless_) stay_off_loop_processor();
+  SynchroniseTimes synchronise_times;
   auto next_flush = std::chrono::steady_clock::now() + flush_every;
   std::size_t unflushed = 0;
   while (!stop.stop_requested()) {
@@ -83,6 +105,8 @@ void Recorder::write_until_stopped(const std::stop_token& stop) {
       next_flush = now + flush_every;
       unflushed = 0;
       guarded([&] { writer_.flush(); });
+      if (!lossless_ && synchronise_times.is_due())
+        synchronise_times.run([this] { guarded([this] { writer_.synchronise(); }); });
     }
     if (written == 0 && !lossless_) std::this_thread::sleep_for(pause);
   }

@@ -12,6 +12,7 @@
 
 #include <kerf/drivers/sensed_device.h>
 
+#include "files/whole_file.h"
 #include "laws/placement.h"
 #include "loop/clock.h"
 #include "loop/law_switch.h"
@@ -307,6 +308,7 @@ RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop
     throw std::invalid_argument(
         fmt::format("a rate of {} Hz is not between 100 and 10000 Hz", options.rate_hz));
   }
+  if (options.record) require_output(*options.record, options.replace);
   return Run(options, stop).run();
 }
 

@@ -11,6 +11,7 @@
 #include "answers/answers_table.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "html/html.h"
 
 namespace kerf::bench {
@@ -212,19 +213,20 @@ std::string analysis_page(const Analysis& analysis, std::span<const std::string>
 std::vector<std::string> write_analysis(const Study& study, const Analysis& analysis,
                                         const std::filesystem::path& folder, bool replace) {
   require_output(folder / "analysis.html", replace);
-  std::filesystem::create_directories(folder);
   const std::vector<Figure> figures = analysis_figures(study, analysis);
   std::vector<Chart> charts;
   for (const Figure& figure : figures) charts.push_back(figure.chart);
   const std::vector<std::string> drawings = charts.empty() ? std::vector<std::string>() : draw_all(charts);
+  WholeFolder whole(folder, schema::existing_if(replace));
   std::vector<std::string> names{"analysis.html", "analysis.json", "answers.csv"};
   for (std::size_t i = 0; i < figures.size(); ++i) {
     names.push_back(figures[i].name + ".svg");
-    write_whole_file(folder / names.back(), drawings[i] + "\n");
+    write_whole_file(whole.path() / names.back(), drawings[i] + "\n");
   }
-  write_whole_file(folder / "answers.csv", answers_csv(study));
-  write_json_file(folder / "analysis.json", analysis_as_json(analysis));
-  write_whole_file(folder / "analysis.html", analysis_page(analysis, drawings));
+  write_whole_file(whole.path() / "answers.csv", answers_csv(study));
+  write_json_file(whole.path() / "analysis.json", analysis_as_json(analysis));
+  write_whole_file(whole.path() / "analysis.html", analysis_page(analysis, drawings));
+  whole.commit();
   return names;
 }
 

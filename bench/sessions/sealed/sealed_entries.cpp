@@ -80,7 +80,7 @@ void SealedEntries::create(const std::filesystem::path& file, schema::Session se
   schema::SessionEntry entry{.kind = "plan", .time = session.created, .text = "", .sealed = {}};
   entry.sealed = sealed(key, plan, as_text(bound_of(digest_of_header(session), 0, entry).written()));
   session.entries = {std::move(entry)};
-  schema::write_session(target, session);
+  schema::write_session(target, session, schema::existing_if(replace));
   bring_to_disk(target);
   bring_to_disk(target.parent_path());
   journal.remove();
@@ -164,7 +164,8 @@ void SealedEntries::append(const std::string& kind, const std::string& text, Byt
 void SealedEntries::close() {
   if (!runs_ || !journal_) return;
   if (!journal_->entries().empty()) {
-    schema::write_session(file_, session_, [this](std::size_t number) { return box(number); });
+    schema::write_session(
+        file_, session_, [this](std::size_t number) { return box(number); }, schema::Existing::replace);
     // The name of the new file has to be on the disk before that of the journal goes.
     bring_to_disk(file_.parent_path());
     journal_->remove();

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "recordings/provenance.h"
 #include "tables/csv.h"
 
@@ -136,16 +137,17 @@ schema::Recording recording_of(const SessionStore& store, std::size_t index) {
 }  // namespace
 
 void export_session(const SessionStore& store, const fs::path& folder, bool replace) {
-  const fs::path table = folder / "trials.csv";
-  const auto file_of = [&](std::size_t trial) { return folder / fmt::format("trial-{:03}.h5", trial + 1); };
-  require_output(table, replace);
-  for (std::size_t i = 0; i < store.trials().size(); ++i) require_output(file_of(i), replace);
-  fs::create_directories(folder);
+  constexpr auto table = "trials.csv";
+  const auto name_of = [](std::size_t trial) { return fmt::format("trial-{:03}.h5", trial + 1); };
+  require_output(folder / table, replace);
+  for (std::size_t i = 0; i < store.trials().size(); ++i) require_output(folder / name_of(i), replace);
+  WholeFolder whole(folder, schema::existing_if(replace));
   for (std::size_t i = 0; i < store.trials().size(); ++i) {
     const schema::Recording recording = recording_of(store, i);
-    if (recording.rows() > 0) schema::write_recording(file_of(i), recording);
+    if (recording.rows() > 0) schema::write_recording(whole.path() / name_of(i), recording);
   }
-  write_whole_file(table, table_of(store));
+  write_whole_file(whole.path() / table, table_of(store));
+  whole.commit();
 }
 
 }  // namespace kerf::bench

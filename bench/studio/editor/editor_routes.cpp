@@ -72,10 +72,11 @@ HttpResponse existing_law(Workspace& workspace, const std::string& id) {
 
 HttpResponse saved(Workspace& workspace, const KeptCurve& kept, const nlohmann::json& asked) {
   const Knots knots = knots_in(asked, "knots");
-  const auto path = workspace.new_file(text_in(asked, "name"), ".law.toml", flag_in(asked, "replace", false));
+  const bool replace = flag_in(asked, "replace", false);
+  const auto path = workspace.new_file(text_in(asked, "name"), ".law.toml", replace);
   CurveSource source = kept.source;
   source.recording_sha256 = sha256_of(kept.file.path);
-  write_law_file(path, drawn_law(kept.curve, knots, source));
+  write_law_file(path, drawn_law(kept.curve, knots, source), schema::existing_if(replace));
   return json_response({{"id", workspace.id_of(path)},
                         {"name", path.filename().string()},
                         {"error", law_error_as_json(law_error(kept.curve, knots))}});

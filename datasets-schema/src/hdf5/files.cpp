@@ -1,7 +1,6 @@
 #include "hdf5/files.h"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -33,19 +32,18 @@ class Descriptor {
   int number_;
 };
 
-struct flock whole_file_lock() noexcept {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  return lock;
-}
-
 }  // namespace
 
-TemporaryFile::TemporaryFile(std::filesystem::path target) : target_(std::move(target)), path_(target_) {
-  path_ += ".writing-" + std::to_string(::getpid());
+TemporaryFile::TemporaryFile(std::filesystem::path target)
+    : target_(std::move(target)), path_(unfinished_name(target_)) {
   std::error_code ignored;
-  std::filesystem::remove(path_, ignored);
+  std::filesystem::remove(path_, ignored);  // of a process of the same number that was killed here
+}
+
+h5::WritableFile TemporaryFile::create() {
+  auto file = h5::WritableFile::create(path_, h5::WritableFile::Format::oldest_readers);
+  mark_ = WriteMark(path_);
+  return file;
 }
 
 TemporaryFile::~TemporaryFile() {
@@ -53,31 +51,16 @@ TemporaryFile::~TemporaryFile() {
   if (!path_.empty()) std::filesystem::remove(path_, ignored);
 }
 
-void TemporaryFile::commit() {
+void TemporaryFile::commit(Existing existing) {
   // What replaces a recording must not be lost with the power; a new file can be made again.
   if (std::filesystem::exists(target_)) synchronise(path_);
-  rename_file(path_, target_);
-  path_.clear();
-}
-
-WriteMark::WriteMark(const std::filesystem::path& file)
-    : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
-  // A lock of the open file description: unlike those of a process it survives HDF5 closing the file.
-  struct flock lock = whole_file_lock();
-  if (descriptor_ >= 0) static_cast<void>(::fcntl(descriptor_, F_OFD_SETLK, &lock));
-}
-
-WriteMark::~WriteMark() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-bool is_marked(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  struct flock lock = whole_file_lock();
-  const bool marked = ::fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  ::close(descriptor);
-  return marked;
+  try {
+    take_name(path_, target_, existing);
+    path_.clear();
+  } catch (const NameTaken&) {
+    path_.clear();  // it is kept under another name
+    throw;
+  }
 }
 
 std::filesystem::path partial_name(std::filesystem::path file) {
@@ -92,24 +75,19 @@ void reserve(const std::filesystem::path& file, std::size_t bytes) {
   if (errno != 0) throw_errno(file, "write");
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : ".";
+}
+
 void synchronise(const std::filesystem::path& file) {
   const Descriptor descriptor(file);
-  if (::fsync(descriptor.number()) != 0) throw_errno(file, "write to the disk");
+  // EINVAL: of a file system that cannot be asked to.
+  if (::fsync(descriptor.number()) != 0 && errno != EINVAL) throw_errno(file, "write to the disk");
 }
 
-void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
-  std::error_code error;
-  std::filesystem::rename(from, to, error);
-  if (error) throw std::system_error(error, to.string() + ": cannot give the file its name");
-}
-
-bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
-  if (errno == EEXIST) return false;
-  if (errno != EINVAL) throw_errno(to, "give the file its name");
-  if (std::filesystem::exists(to)) return false;  // a file system that cannot do both at once
-  rename_file(from, to);
-  return true;
+void synchronise_data(const std::filesystem::path& file) {
+  const Descriptor descriptor(file);
+  if (::fdatasync(descriptor.number()) != 0) throw_errno(file, "write to the disk");
 }
 
 std::string one_line(std::string text) {

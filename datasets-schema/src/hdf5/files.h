@@ -5,7 +5,9 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
+
+#include <kerf/schema/final_name.h>
+#include <kerf/schema/unfinished.h>
 
 #include "hdf5/h5.h"
 
@@ -19,34 +21,16 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile();
 
-  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// Renames it to its target. @throws std::system_error
-  void commit();
+  /// Begins the file. @throws h5::Error
+  [[nodiscard]] h5::WritableFile create();
+  /// Gives it the name of its target. @throws as take_name() does.
+  void commit(Existing existing);
 
  private:
   std::filesystem::path target_;
   std::filesystem::path path_;
+  WriteMark mark_;
 };
-
-/// Says to other processes that this one is writing a file, for as long as it lives; the system takes it back
-/// when the process dies. On file systems without locks it says nothing.
-class WriteMark {
- public:
-  WriteMark() = default;
-  explicit WriteMark(const std::filesystem::path& file);
-  WriteMark(WriteMark&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  WriteMark& operator=(WriteMark&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~WriteMark();
-
- private:
-  int descriptor_ = -1;
-};
-
-/// Whether a living process has a WriteMark on a file.
-[[nodiscard]] bool is_marked(const std::filesystem::path& file);
 
 /// The name of a recording while it is written: NAME.partial.
 [[nodiscard]] std::filesystem::path partial_name(std::filesystem::path file);
@@ -54,14 +38,13 @@ class WriteMark {
 /// Makes a file longer by so many bytes that the disk then has room for. @throws std::system_error
 void reserve(const std::filesystem::path& file, std::size_t bytes);
 
-/// Waits until the file's bytes are on the disk. @throws std::system_error
+/// The folder that a file stands in.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Waits until the file's bytes, or the names in a folder, are on the disk. @throws std::system_error
 void synchronise(const std::filesystem::path& file);
-
-/// Renames a file. @throws std::system_error that names the target.
-void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
-
-/// Renames a file to a name that nobody has. Returns false if somebody has it. @throws std::system_error
-[[nodiscard]] bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to);
+/// The same of what can be read of a file, and not of its times: while it grows.
+void synchronise_data(const std::filesystem::path& file);
 
 /// A sentence with what a file calls its parts, which must not break the line nor drive the terminal that
 /// shows it: every control character of ASCII becomes a question mark.

@@ -7,11 +7,10 @@
 #include <utility>
 #include <variant>
 
-#include <unistd.h>
-
 #include <kerf/schema/recording_writer.h>
 
 #include "hdf5/files.h"
+#include "names/new_name.h"
 #include "recording/build.h"
 
 namespace kerf::schema {
@@ -93,7 +92,7 @@ struct RecordingWriter::Implementation {
                  const Options& writer_options)
       : target(std::move(final_name)),
         partial(partial_name(target)),
-        path(partial.string() + ".writing-" + std::to_string(::getpid())),
+        path(unfinished_name(partial)),
         header(std::move(recording_header)),
         axes(std::move(recording_axes)),
         options(writer_options) {
@@ -264,7 +263,8 @@ struct RecordingWriter::Implementation {
   std::uint64_t rows = 0;
   std::uint64_t event_rows = 0;
   bool closed = false;
-  std::exception_ptr failure;  ///< the first; nothing is written after it
+  bool has_durable_name = false;  ///< the folder that names the partial file is on the disk
+  std::exception_ptr failure;     ///< the first; nothing is written after it
 };
 
 RecordingWriter::RecordingWriter(std::filesystem::path file, Header header, std::vector<Axis> axes,
@@ -301,6 +301,14 @@ void RecordingWriter::append_event(const Event& event) {
 
 void RecordingWriter::flush() { implementation_->flush(); }
 
+void RecordingWriter::synchronise() {
+  auto& self = *implementation_;
+  self.guarded([&] {
+    synchronise_data(self.path);
+    if (!std::exchange(self.has_durable_name, true)) schema::synchronise(folder_of(self.path));
+  });
+}
+
 void RecordingWriter::close(std::string_view status, const Properties& device) {
   auto& self = *implementation_;
   if (status != "complete" && !status.starts_with("aborted: ")) {
@@ -310,11 +318,17 @@ void RecordingWriter::close(std::string_view status, const Properties& device) {
   for (const auto& property : device) check_property("/device", property.first);
   self.flush();
   self.finish(std::string(status), device);
-  synchronise(self.path);
-  rename_file(self.path, self.target);
-  self.path = self.target;
-  self.mark = {};
+  schema::synchronise(self.path);
   self.closed = true;
+  try {
+    take_name(self.path, self.target, existing_if(self.options.replace));
+    self.path = self.target;
+  } catch (const NameTaken& taken) {
+    self.path = taken.kept();
+    throw;
+  }
+  schema::synchronise(folder_of(self.target));
+  self.mark = {};
 }
 
 std::uint64_t RecordingWriter::rows() const noexcept { return implementation_->rows; }

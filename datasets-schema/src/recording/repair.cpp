@@ -38,8 +38,9 @@ Repaired repair(const std::filesystem::path& name, const RepairOptions& options)
   recording.header.status = status_of_repaired;
   recording.events.push_back(
       {.time_s = end_s, .kind = "repair", .text = "closed by kerf repair; the last rows may be missing"});
-  write_recording(output, recording, rows);
+  write_recording(output, recording, rows, existing_if(in_place || options.replace));
   synchronise(output);
+  synchronise(folder_of(output));
   if (place.partial && options.output.empty()) std::filesystem::remove(place.file);
   return {.file = output, .rows = rows.rows(), .duration_s = end_s};
 }

@@ -240,12 +240,13 @@ void require_lengths(const Recording& recording) {
 
 }  // namespace
 
-void write_recording(const std::filesystem::path& file, const Recording& about, const RecordedRows& rows) {
+void write_recording(const std::filesystem::path& file, const Recording& about, const RecordedRows& rows,
+                     Existing existing) {
   require_axes(about);
   TemporaryFile temporary(file);
   h5::WritableFile output;
   try {
-    output = h5::WritableFile::create(temporary.path(), h5::WritableFile::Format::oldest_readers);
+    output = temporary.create();
     write_head(output.id(), {about.header, about.axes});
     DatasetWriter writer(output.id(), about, rows);
     writer.write_samples();
@@ -255,13 +256,13 @@ void write_recording(const std::filesystem::path& file, const Recording& about, 
   } catch (const h5::Error& error) {
     throw write_error(file, output.cause_of(error));
   }
-  temporary.commit();
+  temporary.commit(existing);
 }
 
-void write_recording(const std::filesystem::path& file, const Recording& recording) {
+void write_recording(const std::filesystem::path& file, const Recording& recording, Existing existing) {
   require_axes(recording);
   require_lengths(recording);
-  write_recording(file, recording, RowsInMemory(recording));
+  write_recording(file, recording, RowsInMemory(recording), existing);
 }
 
 }  // namespace kerf::schema

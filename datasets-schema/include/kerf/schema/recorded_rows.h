@@ -70,6 +70,7 @@ class RowsInMemory final : public RecordedRows {
 };
 
 /// Writes a recording whose rows come from elsewhere, as write_recording() does; `about` says all but them.
-void write_recording(const std::filesystem::path& file, const Recording& about, const RecordedRows& rows);
+void write_recording(const std::filesystem::path& file, const Recording& about, const RecordedRows& rows,
+                     Existing existing = Existing::replace);
 
 }  // namespace kerf::schema

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include <kerf/schema/final_name.h>
+
 namespace kerf::schema {
 
 inline constexpr std::string_view schema_name = "kerf.recording";
@@ -186,8 +188,10 @@ struct Row {
 [[nodiscard]] Recording read_recording(const std::filesystem::path& file);
 
 /// Writes a whole recording: to a temporary name beside `file`, then renamed, so that a half-written file
-/// never stands under the final name. An existing file is replaced.
-/// @throws std::invalid_argument (a column whose length does not fit), std::system_error (no space, ...).
-void write_recording(const std::filesystem::path& file, const Recording& recording);
+/// never stands under the final name.
+/// @throws std::invalid_argument (a column whose length does not fit), std::system_error (no space, ...), and
+/// as take_name() does.
+void write_recording(const std::filesystem::path& file, const Recording& recording,
+                     Existing existing = Existing::replace);
 
 }  // namespace kerf::schema

@@ -46,6 +46,9 @@ class RecordingWriter {
   /// Hands everything to the operating system. @throws std::system_error.
   void flush();
 
+  /// Waits until everything that was flushed is on the disk. @throws as append().
+  void synchronise();
+
   /// Ends the recording with a status ("complete", "aborted: WHY") and further attributes of /device that
   /// were not known before, brings it to the disk and renames it to its final name. Nothing may be appended
   /// after it.

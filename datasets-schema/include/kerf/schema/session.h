@@ -81,12 +81,15 @@ class SessionFile {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Writes a session to a temporary name beside `file`, then renames it. An existing file is replaced.
-/// @throws std::invalid_argument (a text with a zero byte, which HDF5 cannot hold), std::system_error.
-void write_session(const std::filesystem::path& file, const Session& session);
+/// Writes a session to a temporary name beside `file`, then renames it.
+/// @throws std::invalid_argument (a text with a zero byte, which HDF5 cannot hold), std::system_error, and as
+/// take_name() does.
+void write_session(const std::filesystem::path& file, const Session& session,
+                   Existing existing = Existing::replace);
 
 /// The same, but asks for what is sealed entry by entry, so that no more than one is in memory.
 using SealedOf = std::function<std::vector<std::uint8_t>(std::size_t entry)>;
-void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of);
+void write_session(const std::filesystem::path& file, const Session& session, const SealedOf& sealed_of,
+                   Existing existing = Existing::replace);
 
 }  // namespace kerf::schema

@@ -1,0 +1,85 @@
+#include "files/whole_folder.h"
+
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using schema::Existing;
+using test::read_text;
+using test::write_text;
+
+class WholeFolderTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_.path()), {}));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(WholeFolderTest, AppearsOnceItIsCommitted) {
+  WholeFolder fits(folder_ / "fits", Existing::keep);
+  write_text(fits.path() / "f", "new");
+  EXPECT_FALSE(fs::exists(folder_ / "fits"));
+  fits.commit();
+  EXPECT_EQ(read_text(folder_ / "fits" / "f"), "new");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(WholeFolderTest, LeavesNothingWithoutThat) {
+  {
+    const WholeFolder fits(folder_ / "fits", Existing::keep);
+    write_text(fits.path() / "f", "new");
+  }
+  EXPECT_EQ(entries(), 0U);
+}
+
+TEST_F(WholeFolderTest, MayBeNamedWithASlashAndDeep) {
+  WholeFolder fits(folder_ / "a/b/", Existing::keep);
+  write_text(fits.path() / "f", "new");
+  fits.commit();
+  EXPECT_EQ(read_text(folder_ / "a/b/f"), "new");
+}
+
+TEST_F(WholeFolderTest, JoinsTheResultsOfOthers) {
+  fs::create_directories(folder_ / "fits/points");
+  write_text(folder_ / "fits/points/theirs", "theirs");
+  WholeFolder fits(folder_ / "fits", Existing::keep);
+  fs::create_directory(fits.path() / "points");
+  write_text(fits.path() / "points/ours", "ours");
+  EXPECT_FALSE(fs::exists(folder_ / "fits/points/ours"));
+  fits.commit();
+  EXPECT_EQ(read_text(folder_ / "fits/points/theirs"), "theirs");
+  EXPECT_EQ(read_text(folder_ / "fits/points/ours"), "ours");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "fits"), {}), 1);
+}
+
+TEST_F(WholeFolderTest, ReplacesTheSameNamesIfAsked) {
+  fs::create_directory(folder_ / "fits");
+  for (const auto* name : {"f", "g"}) write_text(folder_ / "fits" / name, "old");
+  WholeFolder fits(folder_ / "fits", Existing::replace);
+  write_text(fits.path() / "f", "new");
+  fits.commit();
+  EXPECT_EQ(read_text(folder_ / "fits/f"), "new");
+  EXPECT_EQ(read_text(folder_ / "fits/g"), "old");
+}
+
+TEST_F(WholeFolderTest, KeepsBothWhereSomebodyWroteTheSameMeanwhile) {
+  WholeFolder fits(folder_ / "fits", Existing::keep);
+  for (const auto* name : {"f", "g"}) write_text(fits.path() / name, "ours");
+  fs::create_directory(folder_ / "fits");
+  write_text(folder_ / "fits/f", "theirs");
+  EXPECT_THROW(fits.commit(), schema::NameTaken);
+  EXPECT_EQ(read_text(folder_ / "fits/f"), "theirs");
+  EXPECT_FALSE(fs::exists(folder_ / "fits/g"));
+  EXPECT_EQ(read_text(folder_ / "fits-2/f"), "ours");
+  EXPECT_EQ(read_text(folder_ / "fits-2/g"), "ours");
+}
+
+}  // namespace
+}  // namespace kerf::bench
