@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/spacemouse.h>
 
 namespace kerf::drivers {
 namespace {
@@ -79,6 +80,14 @@ TEST(Uri, RefusesOptionsThatAreNone) {
   EXPECT_THAT(refusal("sim:scissors?noise"), HasSubstr("NAME=VALUE"));
   EXPECT_THAT(refusal("sim:scissors?seed=1&&noise=off"), HasSubstr("NAME=VALUE"));
   EXPECT_THAT(refusal("sim:scissors?seed=1&seed=2"), HasSubstr("twice"));
+}
+
+TEST(Uri, OfASpaceMouseGivesItsTravelInItsUnits) {
+  const auto options = SpaceMouse::parse_options(parse_uri("spacemouse:0?reach=0.05m&swing=90deg"));
+  EXPECT_NEAR(options.reach_m, 0.05, 1e-12);
+  EXPECT_NEAR(options.swing_rad, 0.5 * std::numbers::pi, 1e-12);
+  EXPECT_NO_THROW((void)SpaceMouse::parse_options(parse_uri("spacemouse:0?swing=360deg")));
+  EXPECT_THROW((void)SpaceMouse::parse_options(parse_uri("spacemouse:0?swing=361deg")), DeviceError);
 }
 
 }  // namespace

@@ -116,6 +116,32 @@ TEST(ScissorsMesh, PushingForwardWithoutClosingMeetsASpringAndNoCut) {
   EXPECT_NEAR(state.slab.displacement(state.slab.node(state.slab.cell(0, 9), 0))[0], 0.0, 1e-5);
 }
 
+TEST(ScissorsMesh, LetGoTheSlabSwingsAlikeWhereverTheBladesAre) {
+  const ScissorsMesh law = mesh({{"edge", 0.025}});
+  auto behind = law.initial_state();
+  const double theta = 10.0 * degree;
+  const double touching = 0.025 - law.point(theta);
+  for (int tick = 0; tick < 200; ++tick) {
+    (void)law.step(behind, {{theta, touching + 5e-6 * tick}, {0.0, 5e-3}}, period_s);
+  }
+  const SpatialMotion withdrawn{{theta, touching - 0.02}, {}};
+  (void)law.step(behind, withdrawn, period_s);
+  auto open = behind;
+  const double wide = 2.0;
+  ASSERT_FALSE(law.point.cuts_at(wide));
+  const int node = behind.slab.node(behind.slab.cell(0, 9), 0);
+  double swing = 0.0;
+  for (int tick = 0; tick < 100; ++tick) {
+    (void)law.step(behind, withdrawn, period_s);
+    (void)law.step(open, {{wide, touching - 0.02}, {}}, period_s);
+    const double moved = behind.slab.displacement(node)[0];
+    ASSERT_NEAR(open.slab.displacement(node)[0], moved, 1e-9) << tick;
+    swing = std::max(swing, std::abs(moved));
+  }
+  EXPECT_GT(swing, 1e-4);
+  EXPECT_LT(std::abs(open.slab.displacement(node)[0]), 0.1 * swing);
+}
+
 TEST(ScissorsMesh, TheHandleFeelsTheVirtualWorkOfTheGap) {
   // dz/dtheta of the gap, against a central difference.
   const CuttingPoint point{ScissorsGeometry{}};

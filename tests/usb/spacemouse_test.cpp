@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -34,6 +37,30 @@ TEST(SpaceMouse, FollowsTheCapAtItsOwnPace) {
   // One report each 8 ms: translation and rotation by turns.
   EXPECT_NEAR(figure(*device, "report_rate"), 125.0, 10.0);
   EXPECT_LT(oldest, 0.03);
+}
+
+// The emulated cap begins in the positive direction of each of its own axes: to the right, towards the user
+// and down, and about each of these.
+TEST(SpaceMouse, TurnsThemIntoTheFrameOfTheHouseAndItsUnits) {
+  const Emulator emulator("spacemouse?amplitude=350");
+  ASSERT_TRUE(becomes_attached("spacemouse:0"));
+  const auto device = drivers::open_device("spacemouse:0?reach=0.1m&swing=30deg");
+  std::array<double, 6> first{};
+  std::array<double, 6> farthest{};
+  loop(*device, 4000, [&](int, Status, const drivers::Sample& sample) {
+    for (std::size_t axis = 0; axis < 6; ++axis) {
+      if (first[axis] == 0.0) first[axis] = sample.position[axis];
+      farthest[axis] = std::max(farthest[axis], std::abs(sample.position[axis]));
+    }
+  });
+  const std::array<double, 6> sign{1.0, -1.0, -1.0, 1.0, -1.0, -1.0};
+  for (std::size_t axis = 0; axis < 6; ++axis) {
+    const double travel = axis < 3 ? 0.1 : std::numbers::pi / 6.0;
+    EXPECT_GT(first[axis] * sign[axis], 0.0) << axis;
+    EXPECT_NEAR(farthest[axis], travel, 0.01 * travel) << axis;
+    EXPECT_NEAR(device->info().axes[axis].upper, travel, 1e-12) << axis;
+    EXPECT_NEAR(device->info().axes[axis].resolution, travel / 350.0, 1e-12) << axis;
+  }
 }
 
 TEST(SpaceMouse, OfAReceiverTheCapIsReadAndNotItsOtherInterface) {

@@ -187,24 +187,6 @@ Autoregression autoregression_of(const Eigen::MatrixXd& rows, const std::vector<
   return noise;
 }
 
-/// -2 log of the restricted likelihood, less a constant, with the penalty of AICc.
-double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, const Autoregression& noise) {
-  const Index r = rows.rows() - 1;
-  const auto count = static_cast<double>(rows.cols() - r);
-  const Eigen::MatrixXd white = whitened(rows, runs, noise);
-  const Eigen::LLT<Eigen::MatrixXd> factor(white * white.transpose());
-  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();  // the last: what least squares leaves
-  double first_rows = 0.0;
-  for (Index i = 0; i < noise.order(); ++i) {
-    const double k = noise.reflections[static_cast<std::size_t>(i)];
-    first_rows -= static_cast<double>((i + 1) * static_cast<Index>(runs.size())) * std::log1p(-k * k);
-  }
-  const auto parameters = static_cast<double>(noise.order() + 1);
-  return count * std::log(noise.innovation_variance) + pivots[r] * pivots[r] / noise.innovation_variance +
-         2.0 * pivots.head(r).array().log().sum() + first_rows +
-         2.0 * parameters * count / std::max(1.0, count - parameters - 2.0);
-}
-
 /// Without flicker noise, or with as much of it as is likeliest: from four times as long as the longest run
 /// upwards. Nothing tells where it ends below that.
 Autoregression stage_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, double known_variance) {
@@ -232,6 +214,23 @@ Autoregression stage_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& ru
 }
 
 }  // namespace
+
+double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, const Autoregression& noise) {
+  const Index r = rows.rows() - 1;
+  const auto count = static_cast<double>(rows.cols() - r);
+  const Eigen::MatrixXd white = whitened(rows, runs, noise);
+  const Eigen::LLT<Eigen::MatrixXd> factor(white * white.transpose());
+  const Eigen::VectorXd pivots = factor.matrixLLT().diagonal();  // the last: what least squares leaves
+  double first_rows = 0.0;
+  for (Index i = 0; i < noise.order(); ++i) {
+    const double k = noise.reflections[static_cast<std::size_t>(i)];
+    first_rows -= static_cast<double>((i + 1) * static_cast<Index>(runs.size())) * std::log1p(-k * k);
+  }
+  const auto parameters = static_cast<double>(noise.order() + 1);
+  return count * std::log(noise.innovation_variance) + pivots[r] * pivots[r] / noise.innovation_variance +
+         2.0 * pivots.head(r).array().log().sum() + first_rows +
+         2.0 * parameters * count / std::max(1.0, count - parameters - 2.0);
+}
 
 Eigen::VectorXd Autoregression::coefficients() const {
   Eigen::VectorXd a(order());

@@ -41,6 +41,11 @@ struct Noise {
   [[nodiscard]] double variance_at_zero_frequency() const;
 };
 
+/// -2 log of the restricted likelihood of noise without flicker, less a constant, with the penalty of AICc.
+/// Rows are (Q^T, residuals), Q an orthonormal basis of what the parameters can take.
+[[nodiscard]] double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs,
+                              const Autoregression& noise);
+
 /// Sums over `size` columns in a run, over the root of their number; what is left at the end is left out.
 [[nodiscard]] Eigen::MatrixXd in_blocks(const Eigen::MatrixXd& rows, std::vector<Rows>& runs,
                                         Eigen::Index size);

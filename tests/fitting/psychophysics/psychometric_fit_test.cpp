@@ -191,7 +191,9 @@ TEST(AcrossSubjects, IsStudentsIntervalOfTheLogarithms) {
   const AcrossSubjects found = across_subjects(fits);
   EXPECT_NEAR(found.mean, 2.0, 1e-12);
   EXPECT_NEAR(found.deviation, std::log(2.0), 1e-12);
-  EXPECT_NEAR(found.interval.upper, 2.0 * std::exp(4.302652729911275 * std::log(2.0) / std::sqrt(3.0)), 1e-9);
+  const double half = 4.302652729911275 * std::log(2.0) / std::sqrt(3.0);
+  EXPECT_NEAR(found.interval.upper, 2.0 * std::exp(half), 1e-9);
+  EXPECT_NEAR(found.interval.lower, 2.0 * std::exp(-half), 1e-9);
   EXPECT_THROW((void)across_subjects(std::vector<PsychometricFit>(1)), std::invalid_argument);
 }
 

@@ -78,6 +78,58 @@ TEST(Onset, IsWithinASampleOfTheTruthAndUnbiasedAtASignalToNoiseRatioOf20) {
   EXPECT_LT(std::abs(sum / seeds), 3.0 * rms / std::sqrt(seeds)) << "as the mean of so many scatters";
 }
 
+TEST(Onset, IsAsUncertainInTimeAsInPlaceAtTheSpeedOfTheTool) {
+  constexpr double speed_m_per_s = 0.01;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    ContactSignal signal = pressed(0.05, seed, 40);
+    const auto by_place = find_contacts(signal, {});
+    ASSERT_EQ(by_place.contacts.size(), 1U) << seed;
+    const ContactFound& one = by_place.contacts[0];
+    EXPECT_NEAR(one.onset_error_s, one.onset_position_error / speed_m_per_s, 1e-9) << seed;
+    EXPECT_NEAR(one.onset_s, one.onset_position / speed_m_per_s, 1e-9) << seed;
+
+    signal.position.clear();  // the tool moved evenly until the onset, so that time tells what place told
+    const auto by_time = find_contacts(signal, {});
+    ASSERT_EQ(by_time.contacts.size(), 1U) << seed;
+    EXPECT_NEAR(by_time.contacts[0].onset_s, one.onset_s, 3.0 * one.onset_error_s) << seed;
+    EXPECT_NEAR(by_time.contacts[0].onset_error_s / one.onset_error_s, 1.0, 0.5) << seed;
+  }
+}
+
+TEST(Onset, DoesNotDependOnWhereTheSensorHasItsZero) {
+  ContactSignal signal = pressed(0.02, 3, 60);
+  signal.position.clear();
+  const ContactSignal beside = pressed(0.02, 4, 1'000'000);  // hardly a force
+  signal.components.push_back(beside.components[0]);
+  const auto found = find_contacts(signal, {});
+  ASSERT_EQ(found.contacts.size(), 1U);
+  for (const double zero : {-40.0, 40.0}) {
+    ContactSignal moved = signal;
+    for (double& force : moved.components[1]) force += zero;
+    const auto there = find_contacts(moved, {});
+    ASSERT_EQ(there.contacts.size(), 1U);
+    EXPECT_NEAR(there.contacts[0].onset_s, found.contacts[0].onset_s, 1e-6);
+    EXPECT_NEAR(there.contacts[0].onset_error_s, found.contacts[0].onset_error_s, 1e-6);
+  }
+}
+
+TEST(Onset, OfAContactIsNotDrawnIntoTheOneBefore) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  const auto rise = [](double since_s) { return std::clamp(since_s / 0.8, 0.0, 1.0); };
+  ContactSignal signal{.components = {{}}, .name = "f"};
+  for (int i = 0; i < 6000; ++i) {
+    const double t = 1e-3 * i;
+    const double force = t < 3.0 ? rise(t - 2.0) : t < 3.08 ? 0.0 : t < 4.5 ? rise(t - 3.08) : 0.0;
+    signal.time_s.push_back(t);
+    signal.components[0].push_back(force + normal(random));
+  }
+  const auto found = find_contacts(signal, {});
+  ASSERT_EQ(found.contacts.size(), 2U);
+  EXPECT_NEAR(found.contacts[0].onset_s, 2.0, 0.01);
+  EXPECT_NEAR(found.contacts[1].onset_s, 3.08, 0.01);
+}
+
 TEST(Onset, OfEachContactIsFoundOverADriftOfThirtySigmas) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal(0.0, 0.02);
@@ -133,6 +185,14 @@ TEST(FreeRows, KeepAMarginFromEveryContact) {
   EXPECT_TRUE(free[900]);
   EXPECT_FALSE(free[980]);
   EXPECT_FALSE(free[1999]);
+}
+
+TEST(FreeRows, KeepAMarginWithBothItsEnds) {
+  std::vector<double> time_s;
+  for (int row = 0; row < 64; ++row) time_s.push_back(row / 8.0);
+  const ContactsFound found{.contacts = {{.rows = {.begin = 16, .end = 24}}}};
+  const auto free = free_rows(time_s, found, {}, 0.5);
+  for (std::size_t row = 0; row < free.size(); ++row) EXPECT_EQ(free[row], row < 12 || row > 27) << row;
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "host/host_floor.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include <gtest/gtest.h>
@@ -28,6 +30,13 @@ TEST(HostFloor, IsThatOfAnEmptyLoopOnThisMachine) {
   EXPECT_GT(floor.sleep.p50_us, 0.0) << "no sleeper wakes up at once";
   EXPECT_GE(floor.spin_ns, 10'000);
   EXPECT_LE(floor.spin_ns, 500'000) << "half a period at most";
+  EXPECT_GE(static_cast<double>(floor.spin_ns), std::min(500e3, 1e3 * floor.sleep.p99_us))
+      << "as early as 99 of 100 sleepers are late";
+}
+
+TEST(HostFloor, LeavesHalfOfAShortPeriodToSleep) {
+  // A sleeper on any machine is later than the 12.5 us that half of this period lasts.
+  EXPECT_LE(measure_host_floor(40'000.0, 0.02).spin_ns, 12'500);
 }
 
 TEST(HostFloor, IsKeptUntilTheMachineIsStartedAgain) {

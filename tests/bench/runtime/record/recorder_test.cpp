@@ -1,7 +1,13 @@
 #include "record/recorder.h"
 
+#include <chrono>
+#include <cstdint>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <kerf/schema/live_recording.h>
 
 #include "support/program.h"
 
@@ -89,6 +95,33 @@ TEST(Recorder, KeepsAMarkedEventThroughACrash) {
   const schema::Recording recording = schema::read_recording(folder / "r.h5.partial");
   ASSERT_EQ(recording.events.size(), 1U);
   EXPECT_EQ(recording.events[0].text, "kelvin");
+}
+
+/// Rows that a file holds for whoever looks at it while it is written; none where it is being changed.
+std::uint64_t rows_to_be_seen(const std::filesystem::path& file) {
+  try {
+    return schema::read_tail(file).rows;
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+/// Whether so many rows are to be seen before the recording is closed, however long the machine takes.
+bool shows(const std::filesystem::path& file, std::uint64_t rows) {
+  for (int look = 0; look < 2000; ++look) {
+    if (rows_to_be_seen(file) == rows) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return false;
+}
+
+TEST(Recorder, ShowsTheFewRowsOfALoopThatGoesOn) {
+  const test::TemporaryFolder folder;
+  Recorder recorder(writer_to(folder / "r.h5"), {});
+  for (std::uint64_t tick = 0; tick < 10; ++tick) recorder.push(row_of(tick));
+  EXPECT_TRUE(shows(folder / "r.h5.partial", 10));
+  for (std::uint64_t tick = 10; tick < 15; ++tick) recorder.push(row_of(tick));
+  EXPECT_TRUE(shows(folder / "r.h5.partial", 15)) << "and again at the next flush";
 }
 
 TEST(Recorder, LeavesThePartialFileWhenItIsNotClosed) {

@@ -1,0 +1,115 @@
+"""The copy of the tree in which mutants are built and tried, so that the tree itself is never touched."""
+
+import fcntl
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from rooms import Room
+
+MOST_SECONDS = 20.0  # of a test that counts; who waits for the program does so for ever
+
+
+class Scratch:
+    """build/mutate/source, and build/mutate/build beside it: no unity builds, so that a mutant costs one source."""
+
+    def __init__(self, root: Path, jobs: int) -> None:
+        self.root = root
+        self.source = root / "build/mutate/source"
+        self.build = root / "build/mutate/build"
+        self.jobs = jobs
+        self.bases: dict[str, tuple[list[str], float]] = {}  # of a program: tests that hold, seconds
+
+    def files(self) -> list[str]:
+        listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=self.root,
+                                check=True, capture_output=True, text=True).stdout
+        return sorted(name for name in listed.split("\0") if name and (self.root / name).is_file())
+
+    def refresh(self) -> None:
+        """Makes the copy what the tree is; a file that is the same keeps its time, and is not built again.
+
+        @throws BlockingIOError if another one is at work in it.
+        """
+        self.source.mkdir(parents=True, exist_ok=True)
+        self.lock = (self.source.parent / "lock").open("w")  # until the end
+        fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        files = self.files()
+        for name in files:
+            self.put(name, (self.root / name).read_bytes())
+            (self.source / name).chmod((self.root / name).stat().st_mode)
+        for path in [path for path in self.source.rglob("*") if path.is_file()]:
+            if str(path.relative_to(self.source)) not in set(files):
+                path.unlink()
+        if not (self.build / "build.ninja").exists():
+            subprocess.run(
+                ["cmake", "-S", self.source, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Mutants",
+                 "-DCMAKE_CXX_FLAGS_MUTANTS=-O1", "-DCMAKE_UNITY_BUILD=OFF", "-DKERF_STUDIO=OFF",
+                 "-DKERF_TESTS_WITHOUT_PROGRAM=ON"], check=True, stdout=subprocess.DEVNULL)
+
+    def put(self, name: str, content: bytes) -> None:
+        path = self.source / name
+        if path.exists() and path.read_bytes() == content:
+            return
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+    def restore(self, name: str) -> None:
+        self.put(name, (self.root / name).read_bytes())
+
+    def compiles(self, room: Room) -> bool:
+        return subprocess.run(["ninja", "-j", str(self.jobs), "-C", self.build, *room.programs], capture_output=True,
+                              check=False).returncode == 0
+
+    def take_bases(self, room: Room) -> None:
+        """Learns which tests hold without a mutant, and how long they take, each by itself: some wait for the program for ever."""
+        for program in room.programs:
+            if program not in self.bases:
+                holding, seconds = [], 0.0
+                for case in self.cases(program):
+                    start = time.monotonic()
+                    if self.run(program, [f"--gtest_filter={case}"], MOST_SECONDS) == 0:
+                        holding.append(case)
+                        seconds += time.monotonic() - start
+                self.bases[program] = (holding, seconds)
+
+    def cases(self, program: str) -> list[str]:
+        listed = subprocess.run([self.build / "bin" / program, "--gtest_list_tests"], check=True, capture_output=True, text=True)
+        found = []
+        suite = ""
+        for line in listed.stdout.splitlines()[1:]:
+            name = line.split("#")[0]
+            if name.startswith(" "):
+                found.append(suite + name.strip())
+            else:
+                suite = name.strip()
+        return found
+
+    def kills(self, room: Room) -> str:
+        """ "failed" or "endless"; empty if every test holds."""
+        for program in room.programs:
+            holding, seconds = self.bases[program]
+            flags = self.build / f"{program}.flags"
+            flags.write_text("--gtest_fail_fast\n--gtest_filter=" + ":".join(holding) + "\n")
+            status = self.run(program, [f"--gtest_flagfile={flags}"], 10.0 + 4.0 * seconds)
+            if status is None:
+                return "endless"
+            if status != 0:
+                return "failed"
+        return ""
+
+    def run(self, program: str, arguments: list[str], seconds: float) -> int | None:
+        """The exit status; none if it did not end in time."""
+        with subprocess.Popen([self.build / "bin" / program, *arguments], cwd=self.build, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL, start_new_session=True,
+                              env=dict(os.environ, XDG_CACHE_HOME=str(self.build / "cache"))) as process:
+            try:
+                return process.wait(seconds)
+            except subprocess.TimeoutExpired:
+                return None
+            finally:  # nor does what it started outlive it
+                try:
+                    os.killpg(process.pid, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass

@@ -1,0 +1,47 @@
+#include "uncertainty/statistics.h"
+
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace kerf::fitting {
+namespace {
+
+/// A process of first order, x_i = pole x_{i-1} + w_i, past its transient.
+std::vector<double> first_order(double pole, double deviation) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<double> values;
+  double x = 0.0;
+  for (int i = -1000; i < 100'000; ++i) {
+    x = pole * x + deviation * normal(random);
+    if (i >= 0) values.push_back(7.0 + x);
+  }
+  return values;
+}
+
+// Its correlation at lag k is pole^k, so that 1 + 2 sum pole^k = (1 + pole) / (1 - pole).
+TEST(CorrelationTime, OfAProcessOfFirstOrderIsTheSumOfItsCorrelations) {
+  EXPECT_NEAR(correlation_time(first_order(0.5, 1.0)), 3.0, 0.05 * 3.0);
+  EXPECT_NEAR(correlation_time(first_order(0.8, 1.0)), 9.0, 0.1 * 9.0);
+}
+
+TEST(CorrelationTime, DoesNotDependOnTheUnit) {
+  EXPECT_NEAR(correlation_time(first_order(0.8, 1e-3)), correlation_time(first_order(0.8, 1e3)), 1e-6);
+}
+
+TEST(CorrelationTime, IsNeverLessThanASample) {
+  EXPECT_EQ(correlation_time(first_order(-0.5, 1.0)), 1.0);
+  EXPECT_EQ(correlation_time(std::vector<double>(50, 2.5)), 1.0);
+}
+
+TEST(StudentT, IsThatOfTheTables) {
+  EXPECT_NEAR(student_t(0.95, 10.0), 2.228, 1e-3);
+  EXPECT_NEAR(student_t(0.99, 5.0), 4.032, 1e-3);
+  EXPECT_NEAR(student_t(0.95, 1e6), 1.960, 1e-3);
+  EXPECT_EQ(student_t(0.95, 0.0), student_t(0.95, 1.0)) << "no fewer than one degree of freedom";
+}
+
+}  // namespace
+}  // namespace kerf::fitting
