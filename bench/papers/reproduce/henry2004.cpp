@@ -23,8 +23,11 @@ constexpr double period_s = 1e-3;
 
 /// A scalpel's blade in the plane of y and z, 10 mm wide, 30 mm long, its tip 12 mm under the surface, edge
 /// ahead on -y. Friction is five times as large across the blade as along it; [Henry2004] gives no numbers.
-const models::BladeShape scalpel = models::BladeShape::parse(
-    "0 -0.005 -0.112, 0 0.005 -0.112, 0 0.005 -0.082, 0 -0.005 -0.082", "0 -0.005 -0.112, 0 -0.005 -0.082");
+const models::BladeShape& scalpel() {
+  static const models::BladeShape shape = models::BladeShape::parse(
+      "0 -0.005 -0.112, 0 0.005 -0.112, 0 0.005 -0.082, 0 -0.005 -0.082", "0 -0.005 -0.112, 0 -0.005 -0.082");
+  return shape;
+}
 constexpr models::BladeField friction{.edge = 20.0, .normal = 2e4, .tangential = 4e3};
 
 /// Pose and twist over time, and the wrench that each fidelity gives.
@@ -54,7 +57,7 @@ Path sampled(const std::vector<drivers::PoseKeyframe>& keyframes) {
 std::vector<models::Wrench> wrenches_along(const Path& path, BladeFidelity fidelity) {
   std::vector<models::Wrench> wrenches;
   for (std::size_t i = 0; i < path.time_s.size(); ++i) {
-    wrenches.push_back(models::blade_wrench(scalpel, friction, fidelity, path.pose[i], path.twist[i]));
+    wrenches.push_back(models::blade_wrench(scalpel(), friction, fidelity, path.pose[i], path.twist[i]));
   }
   return wrenches;
 }
@@ -184,7 +187,7 @@ std::vector<Draw> draw_poses(std::uint64_t seed, double turning_rad_s) {
     draw.pose.hand =
         Vector3d(0.0, 0.0, 0.012 * uniform(random)) - draw.pose.rotation * Vector3d(0.0, 0.0, -0.1);
     draw.twist = {.linear = 0.05 * vector(), .angular = turning_rad_s * vector()};
-    draw.exact = models::blade_wrench(scalpel, friction, {}, draw.pose, draw.twist);
+    draw.exact = models::blade_wrench(scalpel(), friction, {}, draw.pose, draw.twist);
     if (draw.exact.force.norm() > 1e-3) draws.push_back(draw);
   }
   return draws;
@@ -196,7 +199,7 @@ struct Errors {
 Errors errors_of(const std::vector<Draw>& draws, BladeFidelity fidelity) {
   std::vector<double> force, moment;
   for (const Draw& draw : draws) {
-    const auto wrenches = models::blade_wrench(scalpel, friction, fidelity, draw.pose, draw.twist);
+    const auto wrenches = models::blade_wrench(scalpel(), friction, fidelity, draw.pose, draw.twist);
     force.push_back((wrenches.force - draw.exact.force).norm() / draw.exact.force.norm());
     moment.push_back((wrenches.moment - draw.exact.moment).norm() / draw.exact.moment.norm());
   }

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -62,7 +63,17 @@ class NewKeyFile {
   ~NewKeyFile() {
     if (number_ >= 0) ::close(number_);
   }
-  [[nodiscard]] int number() const noexcept { return number_; }
+  [[nodiscard]] bool is_open() const noexcept { return number_ >= 0; }
+  /// Writes it all, and brings it to the disk. @returns whether it could; `errno` says why not.
+  [[nodiscard]] bool store(std::span<const std::uint8_t> bytes) const noexcept {
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(number_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return false;
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+    }
+    return ::fsync(number_) == 0;
+  }
 
  private:
   int number_;
@@ -170,17 +181,14 @@ void write_new_key_file(const std::filesystem::path& file) {
   const SecretBytes content = secret(least_key_file);
   randombytes_buf(content.get(), least_key_file);
   const NewKeyFile opened(file);
-  if (opened.number() < 0 && errno == EEXIST) {
+  if (!opened.is_open() && errno == EEXIST) {
     throw std::invalid_argument(fmt::format(
         "{} exists; a key is never replaced, as all that it sealed would be lost: name another file",
         file.string()));
   }
-  if (opened.number() < 0) throw_cannot(file, "write");
-  const ssize_t written = ::write(opened.number(), content.get(), least_key_file);
-  if (written == static_cast<ssize_t>(least_key_file) && ::fsync(opened.number()) == 0) {
-    return bring_to_disk(file.parent_path());
-  }
-  const int reason = written < 0 || errno != 0 ? errno : ENOSPC;
+  if (!opened.is_open()) throw_cannot(file, "write");
+  if (opened.store(std::span(content.get(), least_key_file))) return bring_to_disk(file.parent_path());
+  const int reason = errno;
   ::unlink(file.c_str());
   throw std::system_error(reason, std::generic_category(), fmt::format("cannot write {}", file.string()));
 }
