@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
 #include "report/charts.h"
@@ -54,11 +55,10 @@ void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   segment_recording(recording, options, arguments.recording);
   schema::write_recording(arguments.recording, recording, schema::Existing::replace);
   if (!arguments.charts.empty()) {
-    std::filesystem::create_directories(charts);
-    write_whole_file(charts / "cycles.svg", draw(position_chart(recording, options.axis)),
-                     schema::Existing::replace);
-    write_whole_file(charts / "loops.svg", draw(loop_chart(recording, options.axis)),
-                     schema::Existing::replace);
+    WholeFolder whole(charts, schema::Existing::replace);
+    write_whole_file(whole.path() / "cycles.svg", draw(position_chart(recording, options.axis)));
+    write_whole_file(whole.path() / "loops.svg", draw(loop_chart(recording, options.axis)));
+    whole.commit();
   }
   context.result = to_json(recording);
   context.say(fmt::format(

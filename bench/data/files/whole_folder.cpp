@@ -1,8 +1,13 @@
 #include "files/whole_folder.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <system_error>
 #include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace kerf::bench {
 namespace {
@@ -20,9 +25,40 @@ bool is_there(const fs::path& folder) {
   return fs::is_directory(folder, ignored) && !fs::is_empty(folder, ignored);
 }
 
-/// Beside a folder that is to come; in one that is there, whose neighbourhood may not be ours to write in.
+bool is_where_we_are(const fs::path& folder) {
+  std::error_code unknown;
+  return fs::equivalent(folder, fs::current_path(unknown), unknown);
+}
+
+/// Beside it; in one that is there and cannot be exchanged.
 fs::path place_for(const fs::path& folder) {
-  return schema::unfinished_name(is_there(folder) ? folder / folder.filename() : folder);
+  const bool stays =
+      is_there(folder) && (::access(folder.parent_path().c_str(), W_OK) != 0 || is_where_we_are(folder));
+  return schema::unfinished_name(stays ? folder / folder.filename() : folder);
+}
+
+/// Gives `folder` whatever `from` holds under names that it has not; files are not copied but where they have
+/// to be.
+void take_over(const fs::path& from, const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path name = folder / entry.path().filename();
+    if (entry.is_directory() && !entry.is_symlink()) {
+      fs::create_directories(name);
+      take_over(entry.path(), name);
+    } else if (!fs::exists(fs::symlink_status(name))) {
+      std::error_code has_no_links;
+      fs::create_hard_link(entry.path(), name, has_no_links);
+      if (has_no_links) fs::copy(entry.path(), name, fs::copy_options::copy_symlinks);
+    }
+  }
+}
+
+/// Returns false where the system cannot.
+bool exchange(const fs::path& one, const fs::path& other) {
+  if (::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0) return true;
+  if (errno == EINVAL || errno == ENOSYS || errno == EBUSY || errno == EXDEV) return false;
+  throw std::system_error(errno, std::generic_category(),
+                          other.string() + ": cannot give the folder its name");
 }
 
 void move_into(const fs::path& from, const fs::path& to, schema::Existing existing) {
@@ -59,8 +95,12 @@ bool WholeFolder::has_name_of_ours() const {
 
 void WholeFolder::commit() {
   const bool joins = is_there(folder_) && (existing_ == schema::Existing::replace || !has_name_of_ours());
-  const fs::path finished = std::exchange(path_, {});  // kept, also where its name is taken
-  if (!joins) return schema::take_name(finished, folder_, schema::Existing::keep);
+  if (!joins) return schema::take_name(std::exchange(path_, {}), folder_, schema::Existing::keep);
+  if (path_.parent_path() == folder_.parent_path()) {
+    take_over(folder_, path_);
+    if (exchange(path_, folder_)) return;  // what is left behind is removed
+  }
+  const fs::path finished = std::exchange(path_, {});  // kept where it cannot be moved
   move_into(finished, folder_, existing_);
   fs::remove_all(finished);
 }

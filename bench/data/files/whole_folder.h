@@ -8,8 +8,9 @@
 namespace kerf::bench {
 
 /// A folder of results that appears whole or not at all. What is written goes to a folder beside it; commit()
-/// gives that its name in one step. A folder that is there already, with results of other verbs, stays: what
-/// is new is then moved into it, file by file, once all of it is written.
+/// gives that its name in one step. What a folder that is there already holds besides, results of other
+/// verbs, is taken over. Where the system cannot exchange two folders (another file system, no right to the
+/// folder above), or somebody is in the old one, what is new is moved into it file by file.
 class WholeFolder {
  public:
   /// Makes the folder to write to. @throws std::system_error

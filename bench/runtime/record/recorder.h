@@ -28,9 +28,9 @@ struct NoRecorder {
 /// lost, and `tick` jumps in the file. With
 /// `lossless` (for virtual time, which has no deadlines) push() waits for room instead. The writer appends in
 /// chunks, adds an event where a row's flags say that something began, flushes every 0.25 s or 10,000
-/// rows, and about once a second waits until that is on the disk (in virtual time, whose recordings can be made
-/// again, only at the end). When the disk is full it says so once and
-/// the loop goes on; close() says it again.
+/// rows, and about once a second waits until that is on the disk (in virtual time, whose recordings can be
+/// made again, only at the end). When the disk is full it says so once and the loop goes on; close() says it
+/// again.
 class Recorder {
  public:
   struct Options {

@@ -120,7 +120,10 @@ SealedEntries::SealedEntries(const std::filesystem::path& file, const SealKey& k
 }
 
 std::vector<std::uint8_t> SealedEntries::box(std::size_t number) const {
-  if (number < in_file_) return opened_.value().sealed(number);
+  if (number < in_file_) {
+    if (!opened_) opened_.emplace(file_);
+    return opened_->sealed(number);
+  }
   return journal_.value().read_sealed(number - in_file_);
 }
 
@@ -170,6 +173,7 @@ void SealedEntries::close() {
     bring_to_disk(file_.parent_path());
     journal_->remove();
     in_file_ = session_.entries.size();
+    opened_.reset();  // it holds the file that was replaced
   }
   journal_.reset();
 }

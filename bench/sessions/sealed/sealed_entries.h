@@ -64,7 +64,7 @@ class SealedEntries {
   std::filesystem::path file_;
   SealKey key_;
   bool runs_ = false;
-  std::optional<schema::SessionFile> opened_;  ///< what was there when it was opened
+  mutable std::optional<schema::SessionFile> opened_;  ///< file_ as it is now
   schema::Session session_;
   std::optional<Journal> journal_;
   std::size_t in_file_ = 0;    ///< entries

@@ -212,6 +212,15 @@ class DatasetWriter {
   h5::Handle scale_;
 };
 
+/// Nothing of the file is open any more when it returns: only then does closing the file bring all to it, and
+/// tell what failed.
+void write_datasets(hid_t file, const Recording& about, const RecordedRows& rows) {
+  DatasetWriter writer(file, about, rows);
+  writer.write_samples();
+  writer.write_events();
+  writer.write_cycles();
+}
+
 void require_axes(const Recording& recording) {
   if (!recording.axes.empty() && recording.axes.size() <= max_axes) return;
   throw std::invalid_argument("recording: found " + std::to_string(recording.axes.size()) +
@@ -248,10 +257,7 @@ void write_recording(const std::filesystem::path& file, const Recording& about, 
   try {
     output = temporary.create();
     write_head(output.id(), {about.header, about.axes});
-    DatasetWriter writer(output.id(), about, rows);
-    writer.write_samples();
-    writer.write_events();
-    writer.write_cycles();
+    write_datasets(output.id(), about, rows);
     output.close();
   } catch (const h5::Error& error) {
     throw write_error(file, output.cause_of(error));

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "support/program.h"
 
@@ -67,6 +68,33 @@ TEST_F(WholeFolderTest, ReplacesTheSameNamesIfAsked) {
   fits.commit();
   EXPECT_EQ(read_text(folder_ / "fits/f"), "new");
   EXPECT_EQ(read_text(folder_ / "fits/g"), "old");
+}
+
+TEST_F(WholeFolderTest, ReplacesThemAllAtOnce) {
+  fs::create_directory(folder_ / "fits");
+  write_text(folder_ / "fits/f", "old");
+  const auto inode_of = [&] {
+    struct stat status {};
+    stat((folder_ / "fits").c_str(), &status);
+    return status.st_ino;
+  };
+  const auto before = inode_of();
+  WholeFolder fits(folder_ / "fits", Existing::replace);
+  write_text(fits.path() / "f", "new");
+  fits.commit();
+  EXPECT_NE(inode_of(), before) << "the folder itself is another one: there is no moment with some of each";
+}
+
+TEST_F(WholeFolderTest, StaysTheSameFolderWhereSomebodyIsInIt) {
+  fs::create_directory(folder_ / "fits");
+  write_text(folder_ / "fits/f", "old");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_ / "fits");
+  WholeFolder fits(".", Existing::replace);
+  write_text(fits.path() / "f", "new");
+  fits.commit();
+  EXPECT_EQ(read_text("f"), "new") << "seen from within";
+  fs::current_path(before);
 }
 
 TEST_F(WholeFolderTest, KeepsBothWhereSomebodyWroteTheSameMeanwhile) {

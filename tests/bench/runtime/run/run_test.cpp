@@ -62,6 +62,7 @@ TEST(Run, RecordsTheForcesOfASensorBesideTheDevice) {
   EXPECT_EQ(recording.force_measured.size(), 6 * recording.rows());
   EXPECT_THAT(recording.header.device_toml, testing::HasSubstr("[sensor]\nuri = \"sim:pose6?seed=4\""));
   options.sensor_uri = "sim:scissors";
+  options.record = folder / "other.h5";
   EXPECT_THROW((void)run(options), drivers::DeviceError) << "none of its axes is one of the tool's";
 }
 

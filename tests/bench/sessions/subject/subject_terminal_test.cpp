@@ -245,26 +245,36 @@ class SubjectLines : public testing::Test {
     if (in_[1] >= 0) close(in_[1]);
     in_[1] = -1;
   }
-  [[nodiscard]] std::string said() const {
-    std::array<char, 4096> buffer{};
-    const ssize_t count = read(out_[0], buffer.data(), buffer.size());
-    return count > 0 ? std::string(buffer.data(), static_cast<std::size_t>(count)) : std::string();
+  /// What is printed is printed by another thread.
+  void expect_said(const std::string& expected) const {
+    std::string said;
+    pollfd readable{.fd = out_[0], .events = POLLIN, .revents = 0};
+    constexpr int patience_ms = 20'000;
+    while (said.size() < expected.size() && poll(&readable, 1, patience_ms) > 0) {
+      std::array<char, 4096> buffer{};
+      const ssize_t count = read(out_[0], buffer.data(), buffer.size());
+      if (count <= 0) break;
+      said.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+    EXPECT_EQ(said, expected);
   }
   std::array<int, 2> in_{};
   std::array<int, 2> out_{};
 };
 
+const std::string free_trial_in_words =
+    "Liver\nTrial 5 of 24\nWhich is softer?\nYou feel A now.\nCommands: play A, B or X; answer A or B; "
+    "quit.\n";
+
 TEST_F(SubjectLines, AreReadAsCommands) {
   TerminalSubject subject(in_[0], out_[1]);
   subject.show(test::free_trial(5));
-  EXPECT_EQ(said(),
-            "Liver\nTrial 5 of 24\nWhich is softer?\nYou feel A now.\nCommands: play A, B or X; answer A or "
-            "B; quit.\n");
+  expect_said(free_trial_in_words);
   type("play B\n  PLAY   x\r\nanswer 2\nquit\n");
   for (const char* expected : {"play 1", "play 2", "answer 1", "quit"})
     EXPECT_EQ(in_words(subject.next()), expected);
   subject.show(test::text_view(SessionStage::consent, "You may stop at any time."));
-  EXPECT_EQ(said(), "\nYour consent\nYou may stop at any time.\nCommands: agree; decline; quit.\n");
+  expect_said("\nYour consent\nYou may stop at any time.\nCommands: agree; decline; quit.\n");
   type("agree\ndecline\ngo on\n");
   for (const char* expected : {"go on", "decline", "go on"}) EXPECT_EQ(in_words(subject.next()), expected);
 }
@@ -272,10 +282,10 @@ TEST_F(SubjectLines, AreReadAsCommands) {
 TEST_F(SubjectLines, ThatAreNoCommandAreRefusedInWords) {
   TerminalSubject subject(in_[0], out_[1]);
   subject.show(test::free_trial(5));
-  EXPECT_FALSE(said().empty());
+  expect_said(free_trial_in_words);
   type("answer X\njump\n\nplay Z\n");
   for (int i = 0; i < 4; ++i) EXPECT_EQ(in_words(subject.next()), "nothing");
-  EXPECT_EQ(said(), "Not now.\nNo such command: jump\nNo such command: play Z\n");
+  expect_said("Not now.\nNo such command: jump\nNo such command: play Z\n");
 }
 
 TEST_F(SubjectLines, WaitForTheirTime) {
