@@ -22,6 +22,13 @@ namespace {
 
 using namespace kerf::schema::apart;
 
+/// Sanitizers need a shadow that is larger than any memory, and system calls of their own.
+#ifdef KERF_SANITIZED
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
 void limit(__rlimit_resource resource, rlim_t most) {
   rlimit limits{};
   if (getrlimit(resource, &limits) != 0) return;
@@ -33,9 +40,7 @@ void limit(__rlimit_resource resource, rlim_t most) {
 /// What reading a file of so many bytes may take.
 void give_up_the_rest(std::uint64_t file_bytes) {
   constexpr std::uint64_t gibibyte = std::uint64_t{1} << 30U;
-#ifndef KERF_SANITIZED  // whose shadow is larger than any memory
-  limit(RLIMIT_AS, gibibyte + 4 * file_bytes);
-#endif
+  if (!is_sanitized) limit(RLIMIT_AS, gibibyte + 4 * file_bytes);
   limit(RLIMIT_CPU, 3600);
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_NOFILE, 32);
@@ -50,7 +55,6 @@ void give_up_the_rest(std::uint64_t file_bytes) {
   static_cast<void>(H5Lunregister(H5L_TYPE_EXTERNAL));
 }
 
-#ifndef KERF_SANITIZED
 /// From here on it may read, take memory, talk to who asks, and end. Whatever else a file might make of it is
 /// refused by the system. @returns false where the system knows no such filters.
 bool shut_itself_in() {
@@ -89,14 +93,14 @@ bool shut_itself_in() {
                          SCMP_SYS(exit_group)}) {
     is_whole = seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 0) == 0 && is_whole;
   }
-  const scmp_arg_cmp only_reading = SCMP_A2(SCMP_CMP_MASKED_EQ, O_ACCMODE | O_CREAT | O_TRUNC, O_RDONLY);
+  const scmp_arg_cmp only_reading{
+      .arg = 2, .op = SCMP_CMP_MASKED_EQ, .datum_a = O_ACCMODE | O_CREAT | O_TRUNC, .datum_b = O_RDONLY};
   is_whole =
       seccomp_rule_add_array(filter, SCMP_ACT_ALLOW, SCMP_SYS(openat), 1, &only_reading) == 0 && is_whole;
   is_whole = is_whole && seccomp_load(filter) == 0;
   seccomp_release(filter);
   return is_whole;
 }
-#endif
 
 }  // namespace
 
@@ -106,10 +110,8 @@ int main() {
   give_up_the_rest(static_cast<std::uint64_t>(file.st_size));
   void* const mapped = mmap(nullptr, window_bytes, PROT_READ | PROT_WRITE, MAP_SHARED, reader_of_window, 0);
   if (mapped == MAP_FAILED) return 1;
-#ifndef KERF_SANITIZED
   // Where there are no filters, the limits stand.
-  static_cast<void>(shut_itself_in());
-#endif
+  if (!is_sanitized) static_cast<void>(shut_itself_in());
   try {
     serve("/proc/self/fd/" + std::to_string(reader_of_file), reader_to_asker,
           Window(static_cast<std::byte*>(mapped), window_bytes));
