@@ -17,7 +17,7 @@ constexpr std::size_t bar_width = 40;
 
 }  // namespace
 
-Progress::Progress(std::string label, std::size_t total)
+Progress::Progress(std::string_view label, std::size_t total)
     : label_(for_terminal(label)), total_(std::max<std::size_t>(total, 1)) {
   if (!label_.empty() && isatty(STDERR_FILENO) != 0)
     thread_ = std::jthread([this](const std::stop_token& stop) { draw(stop); });

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "files/progress.h"
@@ -15,7 +16,7 @@ namespace kerf::bench {
 class Progress {
  public:
   /// `total` is what `done` reaches at the end, in any unit. Without a label nothing is drawn.
-  Progress(std::string label, std::size_t total);
+  Progress(std::string_view label, std::size_t total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
