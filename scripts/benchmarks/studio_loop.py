@@ -1,12 +1,15 @@
-"""What watching a loop costs it: alone, with its rows tapped, and with a viewer of sixty frames a second, by turns."""
+"""What watching a loop costs it: alone, with its rows tapped, with a viewer of sixty frames a second, and beside damaged files."""
 
 import json
+import pathlib
 import statistics
 import subprocess
+import tempfile
 
-MODES = ("alone", "tap", "viewer", "law")
+MODES = ("alone", "tap", "viewer", "damaged", "law")
 NAMES = {"alone": "nobody watching, no tap", "tap": "rows tapped and kept, nobody watching",
          "viewer": "a viewer who takes 60 frames a second",
+         "damaged": "one damaged recording of a minute after the other is opened by its process",
          "law": "the law compiled into the loop, as `kerf check` has it"}
 PERCENTILES = ("p50", "p999", "max")
 
@@ -15,12 +18,12 @@ def run(program, *arguments):
     return json.loads(subprocess.run([str(program), *map(str, arguments)], check=True, capture_output=True).stdout)
 
 
-def by_turns(program, turns, seconds):
+def by_turns(program, turns, seconds, recording):
     rounds = {mode: [] for mode in MODES}
     for turn in range(turns):
         first = turn % len(MODES)
         for mode in MODES[first:] + MODES[:first]:
-            rounds[mode].append(run(program, mode, seconds))
+            rounds[mode].append(run(program, mode, seconds, *([recording] if mode == "damaged" else [])))
     return rounds
 
 
@@ -37,7 +40,10 @@ def median_ratio(rounds, mode, what, percentile):
 
 def measure(house, turns=11, seconds=10.0):
     program = house / "build/release/bin/kerf_live_benchmark"
-    rounds = by_turns(program, turns, seconds)
+    with tempfile.TemporaryDirectory() as folder:
+        recording = pathlib.Path(folder, "minute.h5")
+        run(program.parent / "kerf", "record", "--device", "sim:scissors", "--seconds", 60, "--virtual", "-o", recording, "--json")
+        rounds = by_turns(program, turns, seconds, recording)
     cost = run(program, "cost")
     lines = ["`sim:scissors` and a Kelvin law at 1 kHz by the wall clock, %d turns of %g s each, in rotation; medians over "
              "the turns, ratios to the first row in the same turn, whose law can be changed too." % (turns, seconds), "",

@@ -3,11 +3,18 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <fmt/core.h>
+
+#include <kerf/schema/recording.h>
 
 #include "laws/law_file.h"
 #include "live/live_event.h"
@@ -19,8 +26,10 @@
 
 // What watching costs a loop, and what it costs itself. Prints JSON.
 //
-//     kerf_live_benchmark law|alone|tap|viewer SECONDS    wake latency and cycle of one loop by the wall
-//     clock kerf_live_benchmark cost                        a frame of 16 ms and a view of 60 s, of 24 traces
+//     kerf_live_benchmark law|alone|tap|viewer SECONDS   wake latency and cycle of one loop by the wall clock
+//     kerf_live_benchmark damaged SECONDS RECORDING      the same, while damaged copies of that one are
+//     opened kerf_live_benchmark cost                           a frame of 16 ms and a view of 60 s, of 24
+//     traces
 
 namespace {
 
@@ -71,8 +80,12 @@ void run_alone(double seconds, bool is_steered) {
         result.report.missed());
 }
 
-/// With tap and history; with a viewer too, who takes sixty frames a second.
-void run_live(double seconds, bool is_viewed) {
+/// What else the process of a loop does meanwhile; the counter grows sixty times a second, with its rows.
+using Beside =
+    std::function<void(const std::stop_token&, const bench::LiveLoop&, const std::atomic<std::uint64_t>&)>;
+
+/// With tap and history, and whatever is done beside.
+void run_live(double seconds, const Beside& beside) {
   bench::LiveLoop loop;
   std::atomic<std::uint64_t> wakes{0};
   loop.on_rows([&] {
@@ -81,22 +94,41 @@ void run_live(double seconds, bool is_viewed) {
   });
   loop.start({.device_uri = "sim:scissors"});
   loop.render(kelvin(), "kelvin");
-  std::jthread viewer;
-  std::atomic<std::size_t> bytes{0};
-  if (is_viewed) {
-    viewer = std::jthread([&](const std::stop_token& stop) {
-      bench::LiveCursor cursor;
-      for (std::uint64_t seen = 0; !stop.stop_requested(); seen = wakes) {
-        wakes.wait(seen);
-        bytes += bench::live_event(loop, cursor).size();
-      }
-    });
-  }
+  std::jthread other([&](const std::stop_token& stop) { beside(stop, loop, wakes); });
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   const bench::LiveStatus status = loop.status();
-  viewer.request_stop();
+  other.request_stop();
+  other.join();
   loop.stop();
   print(status.whole_wake, status.whole_cycle, status.missed);
+}
+
+/// A viewer who takes sixty frames a second.
+void view(const std::stop_token& stop, const bench::LiveLoop& loop, const std::atomic<std::uint64_t>& wakes) {
+  bench::LiveCursor cursor;
+  for (std::uint64_t seen = 0; !stop.stop_requested(); seen = wakes) {
+    wakes.wait(seen);
+    static_cast<void>(bench::live_event(loop, cursor));
+  }
+}
+
+/// Opens one damaged copy of a recording after the other.
+void open_damaged(const std::stop_token& stop, const std::filesystem::path& recording) {
+  std::ifstream stream(recording, std::ios::binary);
+  const std::string sound{std::istreambuf_iterator<char>(stream), {}};
+  const std::filesystem::path copy = recording.string() + "-damaged";
+  std::mt19937_64 random(1);
+  while (!stop.stop_requested()) {
+    std::string bytes = sound;
+    for (int change = 0; change < 20; ++change)
+      bytes.at(random() % bytes.size()) = static_cast<char>(random());
+    std::ofstream(copy, std::ios::binary) << bytes;
+    try {
+      static_cast<void>(schema::read_recording(copy));
+    } catch (const schema::FormatError&) {
+    }
+  }
+  std::filesystem::remove(copy);
 }
 
 template <typename Action>
@@ -158,12 +190,18 @@ int main(int count, char** arguments) {
   if (count > 2) std::from_chars(arguments[2], arguments[2] + std::strlen(arguments[2]), seconds);
   if (mode == "law" || mode == "alone") {
     run_alone(seconds, mode == "alone");
-  } else if (mode == "tap" || mode == "viewer") {
-    run_live(seconds, mode == "viewer");
+  } else if (mode == "tap") {
+    run_live(seconds, [](const auto&...) {});
+  } else if (mode == "viewer") {
+    run_live(seconds, view);
+  } else if (mode == "damaged" && count > 3) {
+    run_live(seconds, [&](const std::stop_token& stop, const auto&...) { open_damaged(stop, arguments[3]); });
   } else if (mode == "cost") {
     print_cost();
   } else {
-    fmt::print(stderr, "usage: kerf_live_benchmark law|alone|tap|viewer [SECONDS], or cost\n");
+    fmt::print(
+        stderr,
+        "usage: kerf_live_benchmark law|alone|tap|viewer SECONDS, damaged SECONDS RECORDING, or cost\n");
     return 2;
   }
   return 0;

@@ -118,6 +118,9 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
     constexpr hsize_t smallest_hole = 1;
     call(H5Pset_file_space_strategy, creation.id(), H5F_FSPACE_STRATEGY_PAGE, hbool_t{false}, smallest_hole);
     call(H5Pset_file_space_page_size, creation.id(), page);
+    // Rows are written once. HDF5 would keep a megabyte of the chunks of each dataset, in a process whose
+    // memory is locked; it says that the first number is used by nothing.
+    call(H5Pset_cache, access.id(), 0, std::size_t{1}, std::size_t{0}, 1.0);
   }
   return {std::move(failure),
           Handle(call(H5Fcreate, file.c_str(), H5F_ACC_EXCL, creation.id(), access.id()))};

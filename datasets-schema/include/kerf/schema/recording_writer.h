@@ -23,8 +23,8 @@ class RecordingWriter {
   struct Options {
     bool measures_force = false;
     std::vector<Channel> channels;  ///< names and units of Row::channels; their values are not read
-    std::size_t chunk_rows = 1000;
-    bool replace = false;  ///< an existing target is replaced, but only by close()
+    std::size_t chunk_rows = 1024;  ///< of doubles whole pages: HDF5 remembers each gap behind a chunk
+    bool replace = false;           ///< an existing target is replaced, but only by close()
   };
 
   /// @throws std::invalid_argument if the target exists and may not be replaced, if a `NAME.partial` exists
