@@ -4,11 +4,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include <boost/math/statistics/univariate_statistics.hpp>
 
@@ -91,9 +91,11 @@ double cross_validate(const Problem& problem, const Samples& samples, const Weig
     }
   };
   {
-    std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min(threads, samples.folds); ++i) helpers.emplace_back(work);
+    std::vector<std::future<void>> helpers;
+    for (std::size_t i = 1; i < std::min(threads, samples.folds); ++i)
+      helpers.push_back(std::async(std::launch::async, work));
     work();
+    for (auto& helper : helpers) helper.get();  // throws what it threw
   }
   if (failed) return std::numeric_limits<double>::infinity();
   return rms_of(held_out, [&](std::size_t i) { return samples.fold[i] < samples.folds; });

@@ -6,12 +6,12 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
-#include <thread>
 
 #include <fmt/core.h>
 
 #include "chart/tick_cost.h"
 #include "recordings/axis_series.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -145,19 +145,11 @@ class LawSelection {
 
   /// The richest first: they take longest.
   void fit_all(std::span<Candidate> candidates) const {
-    std::atomic<std::size_t> begun{0};
-    const auto work = [&] {
-      for (std::size_t i = begun++; i < candidates.size() && !stop_; i = begun++) {
-        fit_one(candidates[candidates.size() - 1 - i]);
-        if (options_.done != nullptr) ++*options_.done;
-      }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (std::size_t i = 1; i < std::min(options_.threads, candidates.size()); ++i)
-        others.emplace_back(work);
-      work();
-    }
+    for_each_index(candidates.size(), options_.threads, [&](std::size_t i) {
+      if (stop_) return;
+      fit_one(candidates[candidates.size() - 1 - i]);
+      if (options_.done != nullptr) ++*options_.done;
+    });
     search_.end_if_stopped();
   }
 

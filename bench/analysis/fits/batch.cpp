@@ -1,29 +1,22 @@
 #include "fits/batch.h"
 
 #include <algorithm>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include <fmt/core.h>
 
 #include "files/named_file.h"
 #include "files/whole_folder.h"
 #include "fits/fit_files.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// HDF5 serves one thread at a time.
-schema::Recording read_alone(const fs::path& file, std::mutex& hdf5) {
-  const std::scoped_lock lock(hdf5);
-  return schema::read_recording(file);
-}
-
-void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch, std::mutex& hdf5) {
-  const schema::Recording recording = read_alone(file, hdf5);
+void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch) {
+  const schema::Recording recording = schema::read_recording(file);
   const FitSource source = batch.source(recording);
   const FitRecordingOptions options = batch.options(source);
   const fs::path folder = batch.output / fs::path(entry.recording).replace_extension();
@@ -64,23 +57,15 @@ std::vector<BatchEntry> run_batch(const std::vector<fs::path>& recordings, const
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i].recording = recordings[i].lexically_relative(options.folder).generic_string();
   }
-  std::mutex hdf5;
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < entries.size(); i = next++) {
-      try {
-        if (stop) throw std::runtime_error("not begun: the batch was stopped");
-        fit_one(entries[i], recordings[i], options, hdf5);
-      } catch (const std::exception& error) {
-        entries[i].failure = error.what();
-      }
-      ++done;
+  for_each_index(entries.size(), options.jobs, [&](std::size_t i) {
+    try {
+      if (stop) throw std::runtime_error("not begun: the batch was stopped");
+      fit_one(entries[i], recordings[i], options);
+    } catch (const std::exception& error) {
+      entries[i].failure = error.what();
     }
-  };
-  std::vector<std::jthread> workers;
-  const std::size_t count = std::clamp<std::size_t>(options.jobs, 1, entries.size());
-  for (std::size_t i = 0; i < count; ++i) workers.emplace_back(work);
-  workers.clear();
+    ++done;
+  });
   return entries;
 }
 

@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <system_error>
-#include <thread>
 
 #include "stability/bisection.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -16,18 +16,11 @@ bool is_stopped(const MapOptions& options) { return options.stop != nullptr && *
 /// Calls `work(row)` for every row, on so many threads. Rows share nothing.
 template <typename Work>
 void for_each_row(std::size_t rows, const MapOptions& options, const Work& work) {
-  {
-    std::atomic<std::size_t> next{0};
-    const auto run = [&] {
-      for (std::size_t row = next++; row < rows && !is_stopped(options); row = next++) {
-        work(row);
-        if (options.done != nullptr) ++*options.done;
-      }
-    };
-    std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min(options.threads, rows); ++i) others.emplace_back(run);
-    run();
-  }
+  for_each_index(rows, options.threads, [&](std::size_t row) {
+    if (is_stopped(options)) return;
+    work(row);
+    if (options.done != nullptr) ++*options.done;
+  });
   if (is_stopped(options))
     throw std::system_error(std::make_error_code(std::errc::interrupted), "the map is not complete");
 }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "import/decimal.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -130,12 +131,10 @@ void read_part(Part& part, const LineReader& reader, std::span<double* const> co
   }
 }
 
-/// Runs `work` on every part, one thread each, this one included.
+/// Runs `work` on every part, one thread each.
 template <typename Work>
 void on_all_cores(std::vector<Part>& parts, const Work& work) {
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 1; i < parts.size(); ++i) threads.emplace_back([&, i] { work(parts[i]); });
-  if (!parts.empty()) work(parts.front());
+  for_each_index(parts.size(), parts.size(), [&](std::size_t i) { work(parts[i]); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "signal/filters.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -77,9 +78,7 @@ void fit_slopes_on_all_cores(std::span<const double> time_s, std::span<const dou
     fit_slopes(time_s, values, window_s, {.begin = part * count / parts, .end = (part + 1) * count / parts},
                slopes);
   };
-  std::vector<std::jthread> threads;
-  for (std::size_t part = 1; part < parts; ++part) threads.emplace_back(fit_part, part);
-  fit_part(0);
+  for_each_index(parts, parts, fit_part);
 }
 
 /// How many samples a window reaches to each side if the times are uniform; 0 if they are not.

@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <functional>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include <fmt/core.h>
 
 #include "observers/simulated_design.h"
 #include "observers/simulated_findings.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -22,27 +19,6 @@ enum SeedKind : std::uint64_t { of_experiments = 1, of_nulls = 2, of_confirmatio
 constexpr std::size_t max_needed = 100000;
 
 /// Calls `work(i)` for every i, on so many threads; what one of them throws is thrown here.
-void for_each(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr failure;
-  std::mutex failing;
-  const auto run = [&] {
-    try {
-      for (std::size_t i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      next = count;
-      const std::scoped_lock lock(failing);
-      failure = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min(threads, count); ++i) others.emplace_back(run);
-    run();
-  }
-  if (failure) std::rethrow_exception(failure);
-}
-
 std::size_t curve_experiments_of(const Protocol& protocol, const SimulationOptions& options) {
   if (options.curve_experiments > 0) return options.curve_experiments;
   return has_levels(protocol.design) ? std::max<std::size_t>(2, options.experiments / 5)
@@ -88,7 +64,7 @@ class Simulator {
     AnalysisOptions analysis = options_.analysis;
     analysis.curves = kind != of_nulls && kind != of_confirmation;
     std::vector<MainResult> results(experiments);
-    for_each(experiments, options_.jobs, [&](std::size_t i) {
+    for_each_index(experiments, options_.jobs, [&](std::size_t i) {
       const Study study =
           simulated_study(protocol, sensation_, participants, experiment_seed(options_.seed, kind, i));
       results[i] = main_result(study, analysis);
