@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "files/disk_room.h"
 #include "files/whole_file.h"
 #include "prepare/prepare_file.h"
 #include "prepare/prepared_text.h"
@@ -63,6 +64,8 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
         fmt::format("{}: -o names the recording itself; give another name", arguments.recording));
   }
   require_output(arguments.output, arguments.force);
+  const auto bytes = std::filesystem::file_size(arguments.recording, absent);
+  if (!absent) require_disk(arguments.output, bytes, "as many rows as there are");
   if (!arguments.filter_chart.empty()) require_output(arguments.filter_chart, arguments.force);
   const Prepared prepared = prepare_file(arguments.recording, options);
   if (!arguments.filter_chart.empty())

@@ -12,6 +12,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "files/in_gibibytes.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -57,11 +59,6 @@ std::string own_group() {
     if (line.starts_with("0::")) return line.substr(3);
   }
   return "/";
-}
-
-std::string in_gibibytes(std::uintmax_t bytes) {
-  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
-  return fmt::format("{:.2f} GiB", static_cast<double>(bytes) / gibibyte);
 }
 
 }  // namespace

@@ -79,16 +79,21 @@ void write_whole_file(const std::filesystem::path& file, std::string_view conten
   }
 }
 
+std::filesystem::path existing_folder_of(const std::filesystem::path& file) {
+  std::filesystem::path folder = file.parent_path();
+  std::error_code ignored;
+  while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
+    folder = folder.parent_path();
+  return folder.empty() ? "." : folder;
+}
+
 void require_output(const std::filesystem::path& file, bool replace) {
   if (file.empty()) throw std::invalid_argument("'' is no name for an output");
   if (!replace && std::filesystem::exists(file)) {
     throw std::invalid_argument(fmt::format("{} exists; --force replaces it", file.string()));
   }
-  std::filesystem::path folder = file.parent_path();
+  const std::filesystem::path folder = existing_folder_of(file);
   std::error_code ignored;
-  while (folder.has_relative_path() && !std::filesystem::exists(folder, ignored))
-    folder = folder.parent_path();
-  if (folder.empty()) folder = ".";
   const int reason = !std::filesystem::is_directory(folder, ignored) ? ENOTDIR
                      : access(folder.c_str(), W_OK | X_OK) != 0      ? errno
                                                                      : 0;

@@ -18,6 +18,9 @@ namespace kerf::bench {
 void write_whole_file(const std::filesystem::path& file, std::string_view content,
                       schema::Existing existing = schema::Existing::replace);
 
+/// Where `file` is to stand, or the nearest folder above it that is there already.
+[[nodiscard]] std::filesystem::path existing_folder_of(const std::filesystem::path& file);
+
 /// Asked before the work that ends in `file`, whose folder may yet have to be made.
 /// Removes what killed runs have left unfinished there.
 /// @throws std::invalid_argument if it has no name, or exists and `replace` is false, naming --force as the

@@ -21,6 +21,14 @@ std::vector<schema::Channel> channels_of(const drivers::DeviceInfo& device) {
 
 }  // namespace
 
+std::size_t recorded_row_bytes(const drivers::DeviceInfo& device) {
+  constexpr std::size_t time_and_tick = 2 * sizeof(double);
+  constexpr std::size_t stages_and_flags = 4 * sizeof(float) + sizeof(std::uint32_t);
+  const std::size_t of_each_axis = device.measures_force ? 4 : 3;  // position, velocity, forces
+  return time_and_tick + stages_and_flags +
+         sizeof(double) * (of_each_axis * device.axes.size() + device.channels.size());
+}
+
 schema::RecordingWriter begin_device_recording(const std::filesystem::path& file,
                                                const drivers::DeviceInfo& device,
                                                const std::optional<Scene>& scene, bool replace) {

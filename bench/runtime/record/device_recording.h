@@ -14,6 +14,9 @@
 
 namespace kerf::bench {
 
+/// Bytes that a row of such a device takes in a recording.
+[[nodiscard]] std::size_t recorded_row_bytes(const drivers::DeviceInfo& device);
+
 /// Begins the file of what a device does: a header that names device, configuration and scene, its axes and
 /// channels.
 /// @throws std::invalid_argument, std::system_error as schema::RecordingWriter does.

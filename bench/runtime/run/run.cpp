@@ -12,6 +12,7 @@
 
 #include <kerf/drivers/sensed_device.h>
 
+#include "files/disk_room.h"
 #include "files/whole_file.h"
 #include "laws/placement.h"
 #include "loop/clock.h"
@@ -191,6 +192,10 @@ class Run {
 
   std::unique_ptr<Recorder> open_recorder() {
     if (!options_.record) return nullptr;
+    const double rows = std::ceil(options_.seconds * options_.rate_hz);
+    require_disk(*options_.record,
+                 static_cast<std::uintmax_t>(rows * static_cast<double>(recorded_row_bytes(result_.device))),
+                 fmt::format("{:.0f} rows", rows));
     schema::RecordingWriter writer =
         begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
     return std::make_unique<Recorder>(

@@ -102,6 +102,12 @@ TEST_F(LoopProgram, RefusesWhatItCannotRun) {
   expect_refusal(run_kerf({"record", "--virtual", "-o", at("no/folder/r.h5")}), 4, "no/folder");
 }
 
+TEST_F(LoopProgram, RefusesARecordingThatNoDiskHoldsBeforeItBegins) {
+  const auto outcome = run_kerf({"record", "--device", "sim:pose6?truth=on", "--seconds", "1e6", "--rate",
+                                 "10000", "--virtual", "-o", at("r.h5")});
+  expect_refusal(outcome, 4, "GiB of the disk for 10000000000 rows");
+}
+
 TEST_F(LoopProgram, RefusesALawOfOtherUnitsThanTheAxis) {
   test::write_text(at("k.law.toml"), R"(model = "exponential"
 axis = "theta"
