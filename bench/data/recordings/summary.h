@@ -7,6 +7,8 @@
 #include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
+#include "recordings/row_figures.h"
+
 namespace kerf::bench {
 
 /// What is in a recording, as `kerf info --json` and `kerf import --json` give it: samples, duration_s,
@@ -16,6 +18,9 @@ namespace kerf::bench {
 /// Looks at some rows at a time: in the same memory for a day as for a second.
 [[nodiscard]] nlohmann::ordered_json recording_summary(const schema::RecordedRows& rows);
 [[nodiscard]] nlohmann::ordered_json recording_summary(const schema::Recording& recording);
+/// The same where the figures of the rows are known: `about` says all but them, and none is read.
+[[nodiscard]] nlohmann::ordered_json recording_summary(const schema::Recording& about,
+                                                       const RowFigures& figures);
 
 /// The same as lines for people.
 [[nodiscard]] std::string summary_table(const nlohmann::ordered_json& summary);

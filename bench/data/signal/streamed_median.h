@@ -1,11 +1,12 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "signal/ordered_bits.h"
 
 namespace kerf::bench {
 
@@ -28,7 +29,7 @@ class StreamedMedian {
     for (const unsigned bits : {22U, 21U, 21U}) {
       for (Searched& one : middle) one.counts.assign(std::size_t{1} << bits, 0);
       for_each([&](double value) {
-        const std::uint64_t ordered = in_order(value);
+        const std::uint64_t ordered = ordered_bits(value);
         for (Searched& one : middle) {
           if (known_bits > 0 && ordered >> (64U - known_bits) != one.prefix) continue;
           ++one.counts[(ordered << known_bits) >> (64U - bits)];
@@ -37,7 +38,7 @@ class StreamedMedian {
       for (Searched& one : middle) one.narrow(bits);
       known_bits += bits;
     }
-    return 0.5 * (value_of(middle[0].prefix) + value_of(middle[1].prefix));
+    return 0.5 * (value_of_ordered(middle[0].prefix) + value_of_ordered(middle[1].prefix));
   }
 
  private:
@@ -52,16 +53,6 @@ class StreamedMedian {
       prefix = (prefix << bits) | bin;
     }
   };
-
-  static constexpr std::uint64_t sign = std::uint64_t{1} << 63U;
-
-  [[nodiscard]] static std::uint64_t in_order(double value) noexcept {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    return (bits & sign) != 0 ? ~bits : bits | sign;
-  }
-  [[nodiscard]] static double value_of(std::uint64_t ordered) noexcept {
-    return std::bit_cast<double>((ordered & sign) != 0 ? ordered & ~sign : ~ordered);
-  }
 };
 
 }  // namespace kerf::bench

@@ -45,6 +45,7 @@ Recorder::Recorder(schema::RecordingWriter writer, const Options& options)
       tap_(options.ring_rows),
       lossless_(options.lossless),
       on_failure_(options.on_failure),
+      on_written_(options.on_written),
       chunk_(RowRing::max_popped) {
   thread_ = std::jthread([this](const std::stop_token& stop) { write_until_stopped(stop); });
 }
@@ -88,6 +89,7 @@ std::size_t Recorder::write_chunk() {
   });
   guarded([&] {
     writer_.append(rows);
+    if (on_written_) on_written_(rows);
     for (const schema::Event& event : found) writer_.append_event(event);
   });
   return rows.size();

@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -37,6 +38,9 @@ class Recorder {
     std::size_t ring_rows = 8192;
     bool lossless = false;
     std::function<void(std::string_view)> on_failure;  ///< called once, from the writer's thread
+    /// Gets all rows that are written, from the writer's thread: figures gathered from them need no look into
+    /// the file, however long it grew.
+    std::function<void(std::span<const schema::Row>)> on_written;
   };
 
   /// Rows of a ring that holds two seconds of a loop: eight times as long as from one flush to the next, for
@@ -87,6 +91,7 @@ class Recorder {
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::function<void(std::string_view)> on_failure_;
+  std::function<void(std::span<const schema::Row>)> on_written_;
   std::vector<schema::Row> chunk_;
   EventFinder finder_;
   double last_time_s_ = 0.0;  ///< of the last row that was written

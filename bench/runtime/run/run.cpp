@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <thread>
 
@@ -198,15 +199,19 @@ class Run {
                  fmt::format("{:.0f} rows", rows));
     schema::RecordingWriter writer =
         begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
+    const drivers::DeviceInfo& device = result_.device;
+    tally_.emplace(device.axes.size(), device.channels.size(), device.measures_force);
     return std::make_unique<Recorder>(
         std::move(writer),
         Recorder::Options{.ring_rows = Recorder::ring_rows_at(options_.rate_hz),
                           .lossless = options_.virtual_time,
-                          .on_failure = [this](std::string_view why) {
-                            if (!options_.warn) return;
-                            options_.warn(
-                                fmt::format("{}; the loop goes on, and nothing more is recorded", why));
-                          }});
+                          .on_failure =
+                              [this](std::string_view why) {
+                                if (!options_.warn) return;
+                                options_.warn(
+                                    fmt::format("{}; the loop goes on, and nothing more is recorded", why));
+                              },
+                          .on_written = [this](std::span<const schema::Row> rows) { tally_->add(rows); }});
   }
 
   /// The loop with one law, with several, without or with another rendering, recorded or not: instances of
@@ -280,6 +285,7 @@ class Run {
       status = "aborted: the device was lost";
     }
     result_.recording_failure = close_device_recording(recorder, *options_.record, status, figures);
+    result_.recorded = tally_->figures();
   }
 
   const RunOptions& options_;
@@ -291,6 +297,7 @@ class Run {
   RunResult result_;
   LoopOptions loop_;
   OtherRendering other_;
+  std::optional<RowTally> tally_;  ///< of the recorder's thread until it is closed
 };
 
 }  // namespace

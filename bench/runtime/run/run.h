@@ -16,6 +16,7 @@
 #include "host/realtime.h"
 #include "laws/law_file.h"
 #include "loop/loop.h"
+#include "recordings/row_figures.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {
@@ -76,6 +77,7 @@ struct RunResult {
   std::vector<drivers::Figure> figures;   ///< what the device counted
   std::vector<Stall> stalls;              ///< the first Heartbeat::max_stalls of them
   std::uint64_t rows_lost = 0;
+  std::optional<RowFigures> recorded;  ///< of the rows in the recording, if there is one
   std::string recording_failure;  ///< why the recording could not be written to its end; empty if it could
 };
 

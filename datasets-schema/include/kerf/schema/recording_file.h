@@ -21,7 +21,7 @@ class RecordingFile final : public RecordedRows {
  public:
   /// Whether the file's texts are looked through for damage on which HDF5 would fall over, which takes as
   /// long as reading the file once. Known to be sound are those of a file that was opened before and has not
-  /// changed since.
+  /// changed since, or that this program has just written.
   enum class Texts : std::uint8_t { looked_through, known_to_be_sound };
 
   /// @throws FormatError, std::invalid_argument, std::system_error, all as read_recording().
