@@ -8,6 +8,7 @@
 #include "files/named_file.h"
 #include "files/whole_folder.h"
 #include "fits/fit_files.h"
+#include "recordings/whole_recording.h"
 #include "threads/for_each_index.h"
 
 namespace kerf::bench {
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch) {
-  const schema::Recording recording = schema::read_recording(file);
+  const schema::Recording recording = read_whole_recording(file);
   const FitSource source = batch.source(recording);
   const FitRecordingOptions options = batch.options(source);
   const fs::path folder = batch.output / fs::path(entry.recording).replace_extension();

@@ -1,49 +1,79 @@
 #include "report/charts.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <cstdint>
+#include <iterator>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "recordings/axis_values.h"
+
 namespace kerf::bench {
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-std::vector<double> column(const std::vector<double>& values, const schema::Recording& recording,
-                           std::size_t axis, double factor) {
-  std::vector<double> one;
-  for (std::size_t i = axis; i < values.size(); i += recording.dimensions())
-    one.push_back(factor * values[i]);
-  return one;
-}
+using schema::Column;
 
 std::string name_of(const schema::Axis& axis) { return axis.position_unit == "rad" ? "angle" : "position"; }
 
-const std::vector<double>& force_of(const schema::Recording& recording) {
-  return recording.force_measured.empty() ? recording.force_commanded : recording.force_measured;
-}
-
-/// The rows of one kind of phase, with a break between cycles.
-Curve phase_curve(const schema::Recording& recording, std::size_t axis, schema::Phase phase) {
-  const std::size_t dimensions = recording.dimensions();
-  const double factor = drawn_position(recording.axes[axis]).factor;
+/// A few thousand points of so many, no spike lost.
+Curve drawn(std::size_t points, const ValueOfRow& x, const ValueOfRow& y, std::size_t most = 4000) {
   Curve curve;
-  for (const schema::PhaseSpan& span : recording.cycles->phases) {
-    if (span.phase != phase) continue;
-    for (std::size_t row = span.begin; row < span.end; ++row) {
-      curve.x.push_back(factor * recording.position[row * dimensions + axis]);
-      curve.y.push_back(force_of(recording)[row * dimensions + axis]);
-    }
-    curve.x.push_back(nothing);
-    curve.y.push_back(nothing);
+  for (const std::size_t i : decimated_rows(points, std::span(&y, 1), most)) {
+    curve.x.push_back(x(i));
+    curve.y.push_back(y(i));
   }
   return curve;
 }
+
+ValueOfRow times(double factor, const BlockedValues& values) {
+  return [factor, &values](std::size_t row) { return factor * values[row]; };
+}
+
+Curve drawn(const BlockedValues& x, double x_factor, const BlockedValues& y, double y_factor) {
+  return drawn(y.size(), times(x_factor, x), times(y_factor, y));
+}
+
+/// The phases, but for those of a file that does not hold together.
+std::vector<schema::PhaseSpan> phases_within(const schema::Cycles& cycles, std::uint64_t rows) {
+  std::vector<schema::PhaseSpan> phases;
+  std::ranges::copy_if(cycles.phases, std::back_inserter(phases), [rows](const schema::PhaseSpan& span) {
+    return span.begin < span.end && span.end <= rows;
+  });
+  return phases;
+}
+
+/// The rows of one kind of phase one after the other, with a break after each phase.
+class PhaseRows {
+ public:
+  PhaseRows(const std::vector<schema::PhaseSpan>& phases, schema::Phase phase) {
+    for (const schema::PhaseSpan& span : phases) {
+      if (span.phase != phase) continue;
+      spans_.push_back(span);
+      begins_.push_back(points_);
+      points_ += span.end - span.begin + 1;
+    }
+  }
+
+  [[nodiscard]] std::size_t points() const noexcept { return points_; }
+  /// The values of those rows, which stay where they are.
+  [[nodiscard]] ValueOfRow of(double factor, const BlockedValues& values) const {
+    return [this, factor, &values](std::size_t point) {
+      const auto next = std::upper_bound(begins_.begin(), begins_.end(), point);
+      const auto& span = spans_[static_cast<std::size_t>(next - begins_.begin()) - 1];
+      const std::uint64_t row = span.begin + (point - *std::prev(next));
+      return row < span.end ? factor * values[row] : line_break;
+    };
+  }
+
+ private:
+  std::vector<schema::PhaseSpan> spans_;
+  std::vector<std::size_t> begins_;  ///< the point with which each begins
+  std::size_t points_ = 0;
+};
 
 Colour colour_of(schema::Phase phase) {
   switch (phase) {
@@ -59,6 +89,17 @@ Colour colour_of(schema::Phase phase) {
   return Colour::grey;
 }
 
+std::vector<Band> phase_bands(const std::vector<schema::PhaseSpan>& phases, const BlockedValues& time_s) {
+  std::vector<Band> bands;
+  for (const schema::PhaseSpan& span : phases) {
+    if (span.phase == schema::Phase::open_to_close) continue;
+    bands.push_back({.begin = time_s[span.begin],
+                     .end = time_s[std::min(span.end, time_s.size() - 1)],
+                     .colour = colour_of(span.phase)});
+  }
+  return bands;
+}
+
 }  // namespace
 
 DrawnUnit drawn_position(const schema::Axis& axis) {
@@ -66,67 +107,71 @@ DrawnUnit drawn_position(const schema::Axis& axis) {
   return {.factor = 1e3, .unit = "mm"};
 }
 
-Chart position_chart(const schema::Recording& recording, std::size_t axis) {
-  const DrawnUnit unit = drawn_position(recording.axes[axis]);
+Chart position_chart(const schema::Recording& about, const schema::RecordedRows& rows, std::size_t axis) {
+  const DrawnUnit unit = drawn_position(about.axes[axis]);
   Chart chart{.title = "Position over time", .x_label = "time [s]"};
-  chart.y_label = fmt::format("{} [{}]", name_of(recording.axes[axis]), unit.unit);
-  if (recording.cycles && recording.cycles->axis == axis) {
+  chart.y_label = fmt::format("{} [{}]", name_of(about.axes[axis]), unit.unit);
+  const BlockedValues time_s = axis_values(rows, Column::time);
+  const BlockedValues position = axis_values(rows, Column::position, axis);
+  if (about.cycles && about.cycles->axis == axis) {
     chart.title = "Position over time: closing (red), turning to open (yellow), opening (blue)";
-    for (const schema::PhaseSpan& span : recording.cycles->phases) {
-      if (span.phase == schema::Phase::open_to_close) continue;
-      chart.bands.push_back({.begin = recording.time[span.begin],
-                             .end = recording.time[std::min<std::size_t>(span.end, recording.rows() - 1)],
-                             .colour = colour_of(span.phase)});
+    chart.bands = phase_bands(phases_within(*about.cycles, rows.rows()), time_s);
+    if (chart.bands.size() > static_cast<std::size_t>(chart.width_px)) {
+      chart.title =
+          fmt::format("Position over time: {} cycles, too many to tell apart", about.cycles->closing.size());
+      chart.bands.clear();
     }
   }
-  chart.curves.push_back(decimated({.x = recording.time,
-                                    .y = column(recording.position, recording, axis, unit.factor),
-                                    .colour = Colour::black,
-                                    .width = 1.2}));
+  Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, position, unit.factor));
+  curve.colour = Colour::black;
+  curve.width = 1.2;
   return chart;
 }
 
-Chart force_chart(const schema::Recording& recording, std::size_t axis) {
+Chart force_chart(const schema::Recording& about, const schema::RecordedRows& rows, std::size_t axis) {
   Chart chart{.title = "Force over time", .x_label = "time [s]"};
-  chart.y_label = fmt::format("force [{}]", recording.axes[axis].force_unit);
-  const auto add = [&](const std::vector<double>& force, const char* label, Colour colour) {
-    if (force.empty()) return;
-    chart.curves.push_back(decimated({.label = label,
-                                      .x = recording.time,
-                                      .y = column(force, recording, axis, 1.0),
-                                      .colour = colour,
-                                      .width = 1.0}));
+  chart.y_label = fmt::format("force [{}]", about.axes[axis].force_unit);
+  const BlockedValues time_s = axis_values(rows, Column::time);
+  const auto add = [&](Column column, const char* label, Colour colour) {
+    if (rows.width(column) == 0) return;
+    Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, axis_values(rows, column, axis), 1.0));
+    curve.label = label;
+    curve.colour = colour;
+    curve.width = 1.0;
   };
-  add(recording.force_measured, "measured", Colour::blue);
-  add(recording.force_commanded, "commanded", Colour::orange);
+  add(Column::force_measured, "measured", Colour::blue);
+  add(Column::force_commanded, "commanded", Colour::orange);
   return chart;
 }
 
-Chart loop_chart(const schema::Recording& recording, std::size_t axis) {
-  const DrawnUnit unit = drawn_position(recording.axes[axis]);
+Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& rows, std::size_t axis) {
+  const DrawnUnit unit = drawn_position(about.axes[axis]);
   Chart chart{.title = "Force against position", .height_px = 420};
-  chart.x_label = fmt::format("{} [{}]", name_of(recording.axes[axis]), unit.unit);
-  chart.y_label = fmt::format("force [{}]", recording.axes[axis].force_unit);
-  if (!recording.cycles || recording.cycles->axis != axis) {
-    chart.curves.push_back(decimated({.label = "recorded",
-                                      .x = column(recording.position, recording, axis, unit.factor),
-                                      .y = column(force_of(recording), recording, axis, 1.0),
-                                      .colour = Colour::blue,
-                                      .width = 1.0}));
+  chart.x_label = fmt::format("{} [{}]", name_of(about.axes[axis]), unit.unit);
+  chart.y_label = fmt::format("force [{}]", about.axes[axis].force_unit);
+  const BlockedValues position = axis_values(rows, Column::position, axis);
+  const BlockedValues force = axis_values(rows, force_column(rows), axis);
+  if (!about.cycles || about.cycles->axis != axis) {
+    Curve& curve = chart.curves.emplace_back(drawn(position, unit.factor, force, 1.0));
+    curve.label = "recorded";
+    curve.colour = Colour::blue;
+    curve.width = 1.0;
     return chart;
   }
-  const schema::Cycles& cycles = *recording.cycles;
+  const schema::Cycles& cycles = *about.cycles;
+  const auto phases = phases_within(cycles, rows.rows());
   const auto add_phase = [&](schema::Phase phase, const char* label, Colour colour) {
-    Curve curve = phase_curve(recording, axis, phase);
+    const PhaseRows of_phase(phases, phase);
+    Curve& curve = chart.curves.emplace_back(
+        drawn(of_phase.points(), of_phase.of(unit.factor, position), of_phase.of(1.0, force), 8000));
     curve.label = label;
     curve.colour = colour;
     curve.width = 0.8;
-    chart.curves.push_back(decimated(curve, 8000));
   };
   add_phase(schema::Phase::opening, "opening", Colour::sky);
   add_phase(schema::Phase::closing, "closing", Colour::orange);
   std::vector<double> grid;
-  for (const double position : cycles.grid) grid.push_back(unit.factor * position);
+  for (const double at : cycles.grid) grid.push_back(unit.factor * at);
   chart.curves.push_back(
       {.label = "opening, mean", .x = grid, .y = cycles.opening_mean, .colour = Colour::blue, .width = 3.0});
   chart.curves.push_back({.label = "closing, mean",

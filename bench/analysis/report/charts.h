@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
 #include "plot/plot.h"
@@ -16,13 +17,19 @@ struct DrawnUnit {
 };
 [[nodiscard]] DrawnUnit drawn_position(const schema::Axis& axis);
 
+// `about` says all but the rows; of these some are looked at at a time, and of the points that are too many
+// for a chart each stretch keeps its smallest and its largest.
+
 /// Position of an axis over time, with the phases of its cycles as bands if it was segmented.
-[[nodiscard]] Chart position_chart(const schema::Recording& recording, std::size_t axis);
+[[nodiscard]] Chart position_chart(const schema::Recording& about, const schema::RecordedRows& rows,
+                                   std::size_t axis);
 
 /// Force of an axis over time: measured and commanded, as far as there are.
-[[nodiscard]] Chart force_chart(const schema::Recording& recording, std::size_t axis);
+[[nodiscard]] Chart force_chart(const schema::Recording& about, const schema::RecordedRows& rows,
+                                std::size_t axis);
 
 /// Force against position: every closing and opening, and their averages over them if it was segmented.
-[[nodiscard]] Chart loop_chart(const schema::Recording& recording, std::size_t axis);
+[[nodiscard]] Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& rows,
+                               std::size_t axis);
 
 }  // namespace kerf::bench

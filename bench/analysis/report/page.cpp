@@ -6,12 +6,14 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include <kerf/schema/recording.h>
+#include <kerf/schema/recording_file.h>
 
 #include "files/named_file.h"
 #include "html/html.h"
 #include "recordings/axes.h"
+#include "recordings/axis_values.h"
 #include "recordings/summary.h"
+#include "recordings/whole_recording.h"
 #include "report/charts.h"
 #include "report/fit_section.h"
 #include "report/loop_section.h"
@@ -42,9 +44,10 @@ std::string channel_table(const json& summary) {
   return html_table(rows);
 }
 
-std::string recording_section(const schema::Recording& recording, const std::filesystem::path& file,
+std::string recording_section(const schema::RecordedRows& rows, const std::filesystem::path& file,
                               std::size_t axis) {
-  const json summary = recording_summary(recording);
+  const json summary = recording_summary(rows);
+  const schema::Recording& recording = rows.about();
   std::vector<std::vector<std::string>> facts{{"recording", file.filename().string()}};
   facts.push_back({"identifier", recording.header.uuid});
   facts.push_back({"written", recording.header.created + " by " + recording.header.software});
@@ -52,7 +55,7 @@ std::string recording_section(const schema::Recording& recording, const std::fil
   if (!recording.header.device_uri.empty()) facts.push_back({"device", recording.header.device_uri});
   facts.push_back({"status", recording.header.status});
   facts.push_back(
-      {"samples", fmt::format("{} over {:.3f} s, {:.5g} Hz, {} gaps", recording.rows(),
+      {"samples", fmt::format("{} over {:.3f} s, {:.5g} Hz, {} gaps", rows.rows(),
                               summary.at("duration_s").get<double>(), summary.at("rate_hz").get<double>(),
                               summary.at("gaps").get<std::uint64_t>())});
   facts.push_back({"velocity", recording.header.velocity_derived.empty()
@@ -67,9 +70,10 @@ std::string recording_section(const schema::Recording& recording, const std::fil
     html += "<details><summary>The scene, with its known parameters</summary><pre>" +
             escaped(recording.header.scene_toml) + "</pre></details>\n";
   }
-  html += html_figure(draw(position_chart(recording, axis)));
-  if (!recording.force_measured.empty() || !recording.force_commanded.empty()) {
-    html += html_figure(draw(force_chart(recording, axis))) + html_figure(draw(loop_chart(recording, axis)));
+  html += html_figure(draw(position_chart(recording, rows, axis)));
+  if (rows.width(force_column(rows)) > 0) {
+    html += html_figure(draw(force_chart(recording, rows, axis))) +
+            html_figure(draw(loop_chart(recording, rows, axis)));
   }
   return html;
 }
@@ -77,11 +81,12 @@ std::string recording_section(const schema::Recording& recording, const std::fil
 }  // namespace
 
 std::string report_page(const ReportInput& input) {
-  const schema::Recording recording = schema::read_recording(input.recording);
-  if (recording.rows() < 2) {
+  const schema::RecordingFile rows(input.recording);
+  if (rows.rows() < 2) {
     throw std::invalid_argument(
-        fmt::format("{}: {} samples are too few for a report", input.recording.string(), recording.rows()));
+        fmt::format("{}: {} samples are too few for a report", input.recording.string(), rows.rows()));
   }
+  const schema::Recording& recording = rows.about();
   const std::size_t axis =
       input.axis.empty() && recording.cycles ? recording.cycles->axis : find_axis(recording, input.axis);
   const std::string name = input.recording.stem().string();
@@ -97,9 +102,9 @@ std::string report_page(const ReportInput& input) {
     check = read_json(*input.check);
     body += verdict_paragraph(check);
   }
-  body += recording_section(recording, input.recording, axis);
+  body += recording_section(rows, input.recording, axis);
   body += input.fits
-              ? fit_section(recording, axis, fits, *input.fits)
+              ? fit_section(read_whole_recording(input.recording), axis, fits, *input.fits)
               : "<h2>Fits</h2>\n<p class=\"soft\">No fit was given: <code>kerf fit</code> makes one.</p>\n";
   body +=
       input.check

@@ -9,6 +9,7 @@
 #include "fits/blade_recording.h"
 #include "program/verbs.h"
 #include "recordings/provenance.h"
+#include "recordings/whole_recording.h"
 
 namespace kerf::bench {
 namespace {
@@ -48,7 +49,7 @@ void run_blade(const BladeVerbArguments& arguments, Context& context) {
   fitting::BladeFitOptions options = arguments.options;
   options.law_options = blade_shape_of(read_law_file(arguments.shape), arguments.shape);
   if (!arguments.fidelity.empty()) set_blade_fidelity(options.law_options, arguments.fidelity);
-  BladeRecordingFit all = fit_blade_recording(schema::read_recording(arguments.recording), options);
+  BladeRecordingFit all = fit_blade_recording(read_whole_recording(arguments.recording), options);
   for (const std::string& warning : all.warnings) warn(warning);
   context.result = blade_fit_as_json(all);
   const fitting::BladeFit& fit = all.fit;

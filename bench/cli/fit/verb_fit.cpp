@@ -14,6 +14,7 @@
 #include "fits/fit_files.h"
 #include "program/progress.h"
 #include "program/verbs.h"
+#include "recordings/whole_recording.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -40,7 +41,7 @@ void run_together(const FitArguments& arguments, Context& context) {
   const auto names = names_of(arguments.recordings);
   std::vector<schema::Recording> recordings;
   std::vector<FitSource> sources;
-  for (const std::string& file : arguments.recordings) recordings.push_back(schema::read_recording(file));
+  for (const std::string& file : arguments.recordings) recordings.push_back(read_whole_recording(file));
   for (std::size_t i = 0; i < recordings.size(); ++i)
     sources.push_back(source_of(arguments, recordings[i], names[i], i));
   RecordingFit fit = fit_recordings(sources, options_of(arguments, sources.front()));

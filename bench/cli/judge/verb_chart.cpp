@@ -17,6 +17,7 @@
 #include "files/whole_folder.h"
 #include "program/progress.h"
 #include "program/verbs.h"
+#include "recordings/whole_recording.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -55,7 +56,7 @@ void check(const ChartVerbArguments& arguments) {
 }
 
 SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, const ChartOptions& options) {
-  const schema::Recording recording = schema::read_recording(arguments.recording);
+  const schema::Recording recording = read_whole_recording(arguments.recording);
   const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
   try {
     return chart_recording(source, options);

@@ -19,6 +19,7 @@
 #include "program/contact_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
+#include "recordings/whole_recording.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -151,7 +152,7 @@ void run_choose(const ChooseVerbArguments& arguments, Context& context) {
   const StopOnSignal signals;
   const std::string& name = arguments.scene.empty() ? arguments.recording : arguments.scene;
   if (!arguments.scene.empty()) return choose_for_scene(arguments, context, output, signals.requested());
-  const schema::Recording recording = schema::read_recording(name);
+  const schema::Recording recording = read_whole_recording(name);
   try {
     choose_for_recording(arguments, context, recording, {.at = name, .name = name}, output,
                          signals.requested());

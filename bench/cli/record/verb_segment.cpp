@@ -5,10 +5,13 @@
 
 #include <fmt/core.h>
 
+#include <kerf/schema/recording_file.h>
+
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
+#include "recordings/axis_values.h"
 #include "report/charts.h"
 #include "segment/segment.h"
 
@@ -23,7 +26,8 @@ struct SegmentVerbArguments {
   SegmentOptions options;
 };
 
-nlohmann::ordered_json to_json(const schema::Recording& recording) {
+nlohmann::ordered_json to_json(const schema::Recording& recording, const schema::RecordedRows& rows) {
+  const BlockedValues time_s = axis_values(rows, schema::Column::time);
   const schema::Cycles& cycles = *recording.cycles;
   const schema::Axis& axis = recording.axes[cycles.axis];
   std::map<schema::Phase, std::size_t> counts;
@@ -32,8 +36,8 @@ nlohmann::ordered_json to_json(const schema::Recording& recording) {
     ++counts[span.phase];
     phases.push_back({{"cycle", span.cycle},
                       {"phase", name_of(span.phase)},
-                      {"begin_s", recording.time[span.begin]},
-                      {"end_s", recording.time[span.end - 1]}});
+                      {"begin_s", time_s[span.begin]},
+                      {"end_s", time_s[span.end - 1]}});
   }
   return {{"recording", recording.header.uuid},
           {"axis", axis.name},
@@ -48,19 +52,20 @@ nlohmann::ordered_json to_json(const schema::Recording& recording) {
 void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   const std::filesystem::path charts = arguments.charts;
   if (!arguments.charts.empty()) require_output(charts / "cycles.svg", true);
-  schema::Recording recording = schema::read_recording(arguments.recording);
+  const schema::RecordingFile rows(arguments.recording);
+  schema::Recording recording = rows.about();
   SegmentOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);
   if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
-  segment_recording(recording, options, arguments.recording);
-  schema::write_recording(arguments.recording, recording, schema::Existing::replace);
+  segment_recording(recording, rows, options, arguments.recording);
+  schema::write_recording(arguments.recording, recording, rows, schema::Existing::replace);
   if (!arguments.charts.empty()) {
     WholeFolder whole(charts, schema::Existing::replace);
-    write_whole_file(whole.path() / "cycles.svg", draw(position_chart(recording, options.axis)));
-    write_whole_file(whole.path() / "loops.svg", draw(loop_chart(recording, options.axis)));
+    write_whole_file(whole.path() / "cycles.svg", draw(position_chart(recording, rows, options.axis)));
+    write_whole_file(whole.path() / "loops.svg", draw(loop_chart(recording, rows, options.axis)));
     whole.commit();
   }
-  context.result = to_json(recording);
+  context.result = to_json(recording, rows);
   context.say(fmt::format(
       "{}: {} closings and {} openings; closing {}", arguments.recording,
       context.result["closings"].get<int>(), context.result["openings"].get<int>(),

@@ -15,6 +15,7 @@
 #include "program/loop_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
+#include "recordings/whole_recording.h"
 #include "replay/replay.h"
 #include "replay/replay_files.h"
 #include "replay/source.h"
@@ -74,7 +75,7 @@ void check_mode(const ReplayVerbArguments& arguments) {
 Source source_of(const ReplayVerbArguments& arguments) {
   SelectOptions select{.from_s = arguments.from_s, .to_s = arguments.to_s, .cycles = {}};
   if (!arguments.cycles.empty()) select.cycles = parse_cycles(arguments.cycles);
-  return select_rows(schema::read_recording(arguments.recording), select, arguments.recording);
+  return select_rows(read_whole_recording(arguments.recording), select, arguments.recording);
 }
 
 fs::path json_in(const std::string& folder) { return fs::path(folder) / "replay.json"; }

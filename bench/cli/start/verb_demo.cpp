@@ -150,7 +150,7 @@ void text_file(const DemoVerbArguments& arguments, const DemoFolder& folder, Con
   for (const std::string& line : imported_lines(imported)) context.say("   " + line);
   for (const std::string& warning : imported.warnings) context.say("   what is wrong with it: " + warning);
   schema::Recording& recording = imported.recording;
-  segment_recording(recording, {}, arguments.text);
+  segment_recording(recording, schema::RowsInMemory(recording), {}, arguments.text);
   schema::write_recording(recording_at, recording);
   context.say(fmt::format("   {}: {} samples in SI, {} closings", file.string(), recording.rows(),
                           recording.cycles->closing.size()));

@@ -56,11 +56,17 @@ std::string read_whole_file(const std::filesystem::path& file) {
 
 void write_whole_file(const std::filesystem::path& file, std::string_view content,
                       schema::Existing existing) {
+  write_whole_file(file, std::span(&content, 1), existing);
+}
+
+void write_whole_file(const std::filesystem::path& file, std::span<const std::string_view> parts,
+                      schema::Existing existing) {
   const std::filesystem::path temporary = schema::unfinished_name(file);
   errno = 0;
   std::ofstream stream(temporary, std::ios::binary);
   const schema::WriteMark mark(temporary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  for (const std::string_view part : parts)
+    stream.write(part.data(), static_cast<std::streamsize>(part.size()));
   stream.close();
   if (!stream) {
     const int reason = errno != 0 ? errno : EIO;

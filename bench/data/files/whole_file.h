@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,9 @@ namespace kerf::bench {
 /// under the final name. @throws std::system_error that names the file, and nothing is left behind; as
 /// schema::take_name() does.
 void write_whole_file(const std::filesystem::path& file, std::string_view content,
+                      schema::Existing existing = schema::Existing::replace);
+/// The same of a content in parts, one after the other, which are not put together in memory.
+void write_whole_file(const std::filesystem::path& file, std::span<const std::string_view> parts,
                       schema::Existing existing = schema::Existing::replace);
 
 /// Where `file` is to stand, or the nearest folder above it that is there already.

@@ -6,11 +6,12 @@
 #include <fmt/core.h>
 
 #include "recordings/provenance.h"
+#include "recordings/whole_recording.h"
 
 namespace kerf::bench {
 
 Prepared prepare_file(const std::filesystem::path& file, const PrepareOptions& options) {
-  schema::Recording recording = schema::read_recording(file);
+  schema::Recording recording = read_whole_recording(file);
   recording.header.source =
       fmt::format("{} {} sha256:{}", file.filename().string(), recording.header.uuid, sha256_of(file));
   Prepared prepared;

@@ -67,19 +67,6 @@ ValueRange range_of_channel(const schema::RecordedRows& rows, std::size_t channe
   return range;
 }
 
-double median_step(const schema::RecordedRows& rows) {
-  if (rows.rows() < 2) return 0.0;
-  return StreamedMedian::of([&](const auto& look) {
-    double before = 0.0;
-    in_blocks(rows, Column::time, [&](std::uint64_t first, std::span<const double> time) {
-      for (std::size_t i = 0; i < time.size(); ++i) {
-        if (first + i > 0) look(time[i] - before);
-        before = time[i];
-      }
-    });
-  });
-}
-
 bool jumps(std::uint64_t tick, std::uint64_t tick_before) { return tick > tick_before + 1; }
 
 void add_time_facts(const schema::RecordedRows& rows, RowFigures& figures) {
@@ -110,6 +97,19 @@ double time_at(const schema::RecordedRows& rows, std::uint64_t row) {
 }
 
 }  // namespace
+
+double median_step(const schema::RecordedRows& rows) {
+  if (rows.rows() < 2) return 0.0;
+  return StreamedMedian::of([&](const auto& look) {
+    double before = 0.0;
+    in_blocks(rows, Column::time, [&](std::uint64_t first, std::span<const double> time) {
+      for (std::size_t i = 0; i < time.size(); ++i) {
+        if (first + i > 0) look(time[i] - before);
+        before = time[i];
+      }
+    });
+  });
+}
 
 RowFigures figures_of(const schema::RecordedRows& rows) {
   RowFigures figures{.rows = rows.rows(), .period_s = median_step(rows), .columns = {}, .channels = {}};

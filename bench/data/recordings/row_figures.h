@@ -48,6 +48,9 @@ struct RowFigures {
   friend bool operator==(const RowFigures&, const RowFigures&) = default;
 };
 
+/// Median step of the time; 0 for less than two rows. Goes through the times four times.
+[[nodiscard]] double median_step(const schema::RecordedRows& rows);
+
 /// Goes through all rows, some at a time, a few times.
 [[nodiscard]] RowFigures figures_of(const schema::RecordedRows& rows);
 

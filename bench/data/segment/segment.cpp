@@ -2,17 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
-#include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "recordings/axis_values.h"
 #include "recordings/provenance.h"
+#include "recordings/row_figures.h"
 #include "signal/quantiles.h"
-#include "signal/signal.h"
-#include "signal/uniform_samples.h"
+#include "signal/smoothed_values.h"
 
 namespace kerf::bench {
 namespace {
@@ -20,58 +23,74 @@ namespace {
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// One axis, low-passed, with the position counted positive in the direction of closing.
-struct Motion {
-  std::vector<double> position;
-  std::vector<double> force;
+class Motion {
+ public:
+  Motion(const SmoothedValues& position, const SmoothedValues& force) : position_(position), force_(force) {}
+
+  void close_along(double direction) { direction_ = direction; }
+  [[nodiscard]] std::uint64_t rows() const noexcept { return position_.size(); }
+  [[nodiscard]] double position(std::uint64_t row) const { return direction_ * position_[row]; }
+  [[nodiscard]] double force(std::uint64_t row) const { return force_[row]; }
+
+ private:
+  const SmoothedValues& position_;
+  const SmoothedValues& force_;
+  double direction_ = 1.0;
 };
 
 /// A turning point of the motion.
 struct Turn {
-  std::size_t row = 0;
+  std::uint64_t row = 0;
+  double position = 0.0;
   bool closed = false;  ///< the most closed point between two openings, else the most open one
 };
 
-std::vector<double> axis_of(const std::vector<double>& values, const schema::Recording& recording,
-                            std::size_t axis) {
-  std::vector<double> one;
-  for (std::size_t i = axis; i < values.size(); i += recording.dimensions()) one.push_back(values[i]);
-  return one;
+/// Least and most position.
+std::pair<double, double> range_of(const Motion& motion) {
+  double least = motion.position(0);
+  double most = least;
+  for (std::uint64_t row = 1; row < motion.rows(); ++row) {
+    least = std::min(least, motion.position(row));
+    most = std::max(most, motion.position(row));
+  }
+  return {least, most};
 }
 
 /// Turning points whose prominence is at least `height`, alternately closed and open.
-std::vector<Turn> find_turns(const std::vector<double>& position, double height) {
+std::vector<Turn> find_turns(const Motion& motion, double height) {
   std::vector<Turn> turns;
-  std::size_t highest = 0;
-  std::size_t lowest = 0;
+  Turn highest{.row = 0, .position = motion.position(0), .closed = true};
+  Turn lowest{.row = 0, .position = motion.position(0), .closed = false};
   int direction = 0;  // of the stroke under way, unknown at first
-  for (std::size_t row = 0; row < position.size(); ++row) {
-    if (position[row] > position[highest]) highest = row;
-    if (position[row] < position[lowest]) lowest = row;
-    if (direction >= 0 && position[highest] - position[row] >= height) {
-      turns.push_back({.row = highest, .closed = true});
+  for (std::uint64_t row = 0; row < motion.rows(); ++row) {
+    const double position = motion.position(row);
+    if (position > highest.position) highest = {.row = row, .position = position, .closed = true};
+    if (position < lowest.position) lowest = {.row = row, .position = position, .closed = false};
+    if (direction >= 0 && highest.position - position >= height) {
+      turns.push_back(highest);
       direction = -1;
-      lowest = row;
-    } else if (direction <= 0 && position[row] - position[lowest] >= height) {
-      turns.push_back({.row = lowest, .closed = false});
+      lowest = {.row = row, .position = position, .closed = false};
+    } else if (direction <= 0 && position - lowest.position >= height) {
+      turns.push_back(lowest);
       direction = 1;
-      highest = row;
+      highest = {.row = row, .position = position, .closed = true};
     }
   }
-  if (direction != 0) turns.push_back({.row = direction > 0 ? highest : lowest, .closed = direction > 0});
+  if (direction != 0) turns.push_back(direction > 0 ? highest : lowest);
   return turns;
 }
 
 /// Where a stroke between two turns leaves the first and comes to the second, by `dwell` of its height.
 struct Stroke {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
 };
 
-Stroke stroke_between(const std::vector<double>& position, std::size_t from, std::size_t to, double dwell) {
-  const double height = position[to] - position[from];
-  const auto share = [&](std::size_t row) { return (position[row] - position[from]) / height; };
-  Stroke stroke{.begin = from, .end = to};
-  for (std::size_t row = from; row < to; ++row) {
+Stroke stroke_between(const Motion& motion, const Turn& from, const Turn& to, double dwell) {
+  const double height = to.position - from.position;
+  const auto share = [&](std::uint64_t row) { return (motion.position(row) - from.position) / height; };
+  Stroke stroke{.begin = from.row, .end = to.row};
+  for (std::uint64_t row = from.row; row < to.row; ++row) {
     if (share(row) < dwell) stroke.begin = row;
     if (share(row) >= 1.0 - dwell) {
       stroke.end = row;
@@ -87,8 +106,8 @@ double work_of_rising(const Motion& motion, const std::vector<Turn>& turns) {
   double falling = 0.0;
   for (std::size_t i = 1; i < turns.size(); ++i) {
     double work = 0.0;
-    for (std::size_t row = turns[i - 1].row + 1; row <= turns[i].row; ++row) {
-      work += motion.force[row] * std::abs(motion.position[row] - motion.position[row - 1]);
+    for (std::uint64_t row = turns[i - 1].row + 1; row <= turns[i].row; ++row) {
+      work += motion.force(row) * std::abs(motion.position(row) - motion.position(row - 1));
     }
     (turns[i].closed ? rising : falling) += work;
   }
@@ -101,11 +120,11 @@ std::vector<double> on_grid(const Motion& motion, const Stroke& stroke, const st
   std::vector<double> sum(grid.size(), 0.0);
   std::vector<double> count(grid.size(), 0.0);
   const double step = (grid.back() - grid.front()) / static_cast<double>(grid.size() - 1);
-  for (std::size_t row = stroke.begin; row < stroke.end; ++row) {
-    const double place = (motion.position[row] - grid.front()) / step;
+  for (std::uint64_t row = stroke.begin; row < stroke.end; ++row) {
+    const double place = (motion.position(row) - grid.front()) / step;
     if (!(place > -0.5 && place < static_cast<double>(grid.size()) - 0.5)) continue;
     const auto cell = static_cast<std::size_t>(std::lround(std::max(place, 0.0)));
-    sum[cell] += motion.force[row];
+    sum[cell] += motion.force(row);
     count[cell] += 1.0;
   }
   std::vector<double> force(grid.size(), nothing);
@@ -122,16 +141,19 @@ std::vector<double> on_grid(const Motion& motion, const Stroke& stroke, const st
   return force;
 }
 
-void check(const schema::Recording& recording, const SegmentOptions& options,
-           const std::vector<double>& position, const std::vector<double>& force) {
-  if (options.axis >= recording.dimensions()) {
+void check(const schema::RecordedRows& rows, const SegmentOptions& options) {
+  const std::size_t axes = rows.about().dimensions();
+  if (options.axis >= axes) {
     throw std::invalid_argument(
-        fmt::format("the recording has {} axes, there is no axis {}", recording.dimensions(), options.axis));
+        fmt::format("the recording has {} axes, there is no axis {}", axes, options.axis));
   }
-  if (force.empty())
+  if (rows.width(force_column(rows)) == 0)
     throw std::invalid_argument("the recording holds no force; cycles are found in angle and force");
-  if (position.size() < 10) throw std::invalid_argument("the recording is too short for a cycle");
-  for (std::size_t row = 0; row < position.size(); ++row) {
+  if (rows.rows() < 10) throw std::invalid_argument("the recording is too short for a cycle");
+}
+
+void require_finite(const BlockedValues& position, const BlockedValues& force) {
+  for (std::uint64_t row = 0; row < position.size(); ++row) {
     if (!std::isfinite(position[row]) || !std::isfinite(force[row])) {
       throw std::invalid_argument(
           fmt::format("row {} is not finite; 'kerf prepare --drop-gaps' leaves such rows out", row));
@@ -142,8 +164,8 @@ void check(const schema::Recording& recording, const SegmentOptions& options,
 /// Appends the four phases of every closing to `cycles.phases` and its branches to the grids.
 void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<Turn>& turns, double dwell) {
   std::uint32_t cycle = 0;
-  std::size_t free_from = 0;  // first row that no phase has yet
-  const auto add = [&](schema::Phase phase, std::size_t begin, std::size_t end) {
+  std::uint64_t free_from = 0;  // first row that no phase has yet
+  const auto add = [&](schema::Phase phase, std::uint64_t begin, std::uint64_t end) {
     if (end > begin) cycles.phases.push_back({.cycle = cycle, .phase = phase, .begin = begin, .end = end});
   };
   std::vector<double> grid = cycles.grid;
@@ -156,7 +178,7 @@ void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<
     return force;
   };
   const auto stroke = [&](std::size_t turn) {
-    return stroke_between(motion.position, turns[turn].row, turns[turn + 1].row, dwell);
+    return stroke_between(motion, turns[turn], turns[turn + 1], dwell);
   };
   const std::size_t first_open = turns.front().closed ? 1 : 0;
   if (first_open == 1) free_from = stroke(0).end;  // an opening before the first closing belongs to no cycle
@@ -167,8 +189,7 @@ void add_cycles(schema::Cycles& cycles, const Motion& motion, const std::vector<
     add(schema::Phase::closing, closing.begin, closing.end);
     cycles.closing.push_back(branch(closing));
     const bool opens_again = i + 2 < turns.size();
-    const Stroke opening =
-        opens_again ? stroke(i + 1) : Stroke{motion.position.size(), motion.position.size()};
+    const Stroke opening = opens_again ? stroke(i + 1) : Stroke{motion.rows(), motion.rows()};
     add(schema::Phase::close_to_open, closing.end, opening.begin);
     add(schema::Phase::opening, opening.begin, opening.end);
     cycles.opening.push_back(branch(opening));
@@ -193,32 +214,31 @@ std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches
   return mean;
 }
 
-schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options) {
-  const auto position = axis_of(recording.position, recording, options.axis);
-  const auto force =
-      axis_of(recording.force_measured.empty() ? recording.force_commanded : recording.force_measured,
-              recording, options.axis);
-  check(recording, options, position, force);
-  const UniformSamples samples(recording.time);
-  const double corner_hz = std::min(options.corner_hz, 0.2 * samples.rate_hz());
-  const auto smooth = [&](const std::vector<double>& uniform) {
-    return low_pass_zero_phase(uniform, samples.rate_hz(), corner_hz);
-  };
-  Motion motion{.position = samples.filtered(position, smooth), .force = samples.filtered(force, smooth)};
-  const auto [least, most] = std::minmax_element(motion.position.begin(), motion.position.end());
-  const double height = options.prominence * (*most - *least);
+schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOptions& options) {
+  check(rows, options);
+  const BlockedValues time_s = axis_values(rows, schema::Column::time);
+  const BlockedValues position = axis_values(rows, schema::Column::position, options.axis);
+  const BlockedValues force = axis_values(rows, force_column(rows), options.axis);
+  require_finite(position, force);
+  const UniformTimes grid(time_s, median_step(rows));
+  const double corner_hz = std::min(options.corner_hz, 0.2 * grid.rate_hz());
+  const SmoothedValues smooth_position(position, grid, corner_hz);
+  const SmoothedValues smooth_force(force, grid, corner_hz);
+  Motion motion(smooth_position, smooth_force);
+  const auto [least, most] = range_of(motion);
+  const double height = options.prominence * (most - least);
   // A filter leaves rounding on a constant, which turns often.
-  const bool moves = *most - *least > 1e-9 * std::max(std::abs(*most), std::abs(*least));
-  std::vector<Turn> turns = moves ? find_turns(motion.position, height) : std::vector<Turn>{};
+  const bool moves = most - least > 1e-9 * std::max(std::abs(most), std::abs(least));
+  std::vector<Turn> turns = moves ? find_turns(motion, height) : std::vector<Turn>{};
 
   schema::Cycles cycles;
   cycles.axis = options.axis;
   cycles.filter_corner_hz = corner_hz;
-  cycles.closing_direction =
-      options.closing_direction.value_or(work_of_rising(motion, turns) >= 0.0 ? 1.0 : -1.0);
-  for (double& p : motion.position) p *= cycles.closing_direction;
+  cycles.closing_direction = options.closing_direction ? *options.closing_direction
+                                                       : (work_of_rising(motion, turns) >= 0.0 ? 1.0 : -1.0);
+  motion.close_along(cycles.closing_direction);
   if (cycles.closing_direction < 0.0) {
-    for (Turn& turn : turns) turn.closed = !turn.closed;
+    for (Turn& turn : turns) turn = {.row = turn.row, .position = -turn.position, .closed = !turn.closed};
   }
   // A single stroke is a pull or a press, not a cycle: something has to come back.
   if (turns.size() < 3) {
@@ -229,7 +249,7 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
   }
   std::vector<double> open;
   std::vector<double> closed;
-  for (const Turn& turn : turns) (turn.closed ? closed : open).push_back(motion.position[turn.row]);
+  for (const Turn& turn : turns) (turn.closed ? closed : open).push_back(turn.position);
   cycles.contact_position = cycles.closing_direction * median(open);
   const double end = *std::max_element(closed.begin(), closed.end());
   for (std::size_t point = 0; point < options.points; ++point) {
@@ -244,9 +264,14 @@ schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOpti
   return cycles;
 }
 
-void segment_recording(schema::Recording& recording, const SegmentOptions& options, const std::string& name) {
+schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options) {
+  return find_cycles(schema::RowsInMemory(recording), options);
+}
+
+void segment_recording(schema::Recording& recording, const schema::RecordedRows& rows,
+                       const SegmentOptions& options, const std::string& name) {
   try {
-    recording.cycles = find_cycles(recording, options);
+    recording.cycles = find_cycles(rows, options);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
   }

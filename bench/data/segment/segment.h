@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/schema/recorded_rows.h>
 #include <kerf/schema/recording.h>
 
 namespace kerf::bench {
@@ -29,21 +30,26 @@ struct SegmentOptions {
 /// were recorded. Turning round is what happens within a share of the stroke from its ends. Closing is the
 /// direction that costs more work, unless it is given. Forces are low-passed and averaged over the cycles on
 /// a uniform grid of positions, NaN where a cycle did not reach.
-/// @throws std::invalid_argument if there is no such axis, no force, a value that is not finite, or no
-/// closing,
-///         saying which.
+///
+/// Needs no more memory for a day than for a second, but for the cycles themselves: position and force are
+/// low-passed block by block, and gone through again for their range, the turns, the work of the strokes and
+/// the branches, each of which needs what was found before.
+/// @throws std::invalid_argument if there is no such axis, no force, a value that is not finite, a time that
+///         goes back, or no closing, saying which.
+[[nodiscard]] schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOptions& options);
 [[nodiscard]] schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options);
 
-/// Finds the cycles of a recording, keeps them in it and adds a line to its history; `name` stands for it in
-/// messages. @throws as find_cycles() does.
-void segment_recording(schema::Recording& recording, const SegmentOptions& options, const std::string& name);
+/// Finds the cycles in the rows of a recording, keeps them in what it says of itself and adds a line to its
+/// history; `name` stands for it in messages. @throws as find_cycles() does.
+void segment_recording(schema::Recording& recording, const schema::RecordedRows& rows,
+                       const SegmentOptions& options, const std::string& name);
 
-/// "open_to_close", as the schema has it.
 /// The mean of branches that were resampled to as many points, where at least half of them reached; NaN
 /// elsewhere.
 [[nodiscard]] std::vector<double> mean_branch(const std::vector<std::vector<double>>& branches,
                                               std::size_t points);
 
+/// "open_to_close", as the schema has it.
 [[nodiscard]] constexpr std::string_view name_of(schema::Phase phase) noexcept {
   constexpr std::array<std::string_view, 5> names{"", "opening", "open_to_close", "closing", "close_to_open"};
   const auto at = static_cast<std::size_t>(phase);

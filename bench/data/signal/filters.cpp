@@ -136,18 +136,41 @@ SampledFilter::SampledFilter(const FilterSpec& spec, double rate_hz) : spec_(spe
   }
 }
 
-/// Each section in transposed direct form II, settled at its first input.
-void SampledFilter::run_sections(std::vector<double>& values) const {
-  for (const Section& s : sections_) {
-    double second = (s.b2 - s.a2) * values.front();
-    double first = (s.b1 - s.a1) * values.front() + second;
-    for (double& value : values) {
-      const double in = value;
-      value = s.b0 * in + first;
-      first = s.b1 * in - s.a1 * value + second;
-      second = s.b2 * in - s.a2 * value;
-    }
+SampledFilter::Recursion::Recursion(std::span<const Section> sections, double first) : sections_(sections) {
+  double in = first;
+  for (std::size_t i = 0; i < sections_.size(); ++i) {
+    const Section& s = sections_[i];
+    const double second = (s.b2 - s.a2) * in;
+    states_[i] = {.first = (s.b1 - s.a1) * in + second, .second = second};
+    in = s.b0 * in + states_[i].first;
   }
+}
+
+/// Each section in transposed direct form II.
+double SampledFilter::Recursion::step(double in) noexcept {
+  for (std::size_t i = 0; i < sections_.size(); ++i) {
+    const Section& s = sections_[i];
+    State& state = states_[i];
+    const double out = s.b0 * in + state.first;
+    state.first = s.b1 * in - s.a1 * out + state.second;
+    state.second = s.b2 * in - s.a2 * out;
+    in = out;
+  }
+  return in;
+}
+
+void SampledFilter::run_sections(std::vector<double>& values) const {
+  Recursion run = settled_at(values.front());
+  for (double& value : values) value = run.step(value);
+}
+
+std::size_t SampledFilter::mirrored(std::uint64_t samples) const {
+  if (samples < 2) throw std::invalid_argument("a filter needs at least two samples");
+  if (sections_.empty() || spec_.causal) {
+    throw std::invalid_argument("only a recursive zero-phase filter sees mirrored samples");
+  }
+  return static_cast<std::size_t>(
+      std::min<std::uint64_t>(samples - 1, static_cast<std::uint64_t>(5.0 * rate_hz_ / spec_.corner_hz) + 1));
 }
 
 std::vector<double> SampledFilter::run_window(std::span<const double> values) const {
@@ -182,7 +205,7 @@ std::vector<double> SampledFilter::run(std::span<const double> values) const {
     return result;
   }
   const std::size_t count = values.size();
-  const auto reach = std::min(count - 1, static_cast<std::size_t>(5.0 * rate_hz_ / spec_.corner_hz) + 1);
+  const std::size_t reach = mirrored(count);
   std::vector<double> extended;
   extended.reserve(count + 2 * reach);
   for (std::size_t i = reach; i > 0; --i) extended.push_back(2.0 * values.front() - values[i]);
@@ -200,7 +223,8 @@ std::vector<Response> SampledFilter::response(std::span<const double> frequencie
   const auto at = [&](double frequency_hz) {
     const std::complex<double> z = unit_delay(frequency_hz, rate_hz_);
     std::complex<double> h(1.0, 0.0);
-    for (const Section& s : sections_) h *= (s.b0 + z * (s.b1 + z * s.b2)) / (1.0 + z * (s.a1 + z * s.a2));
+    for (const Recursion::Section& s : sections_)
+      h *= (s.b0 + z * (s.b1 + z * s.b2)) / (1.0 + z * (s.a1 + z * s.a2));
     if (sections_.empty()) {
       h = 0.0;
       const double newest = static_cast<double>(spec_.causal ? weights_.size() - 1 : weights_.size() / 2);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -65,21 +68,42 @@ class SampledFilter {
   /// causal filter begins settled at the first sample. At least two samples.
   [[nodiscard]] std::vector<double> run(std::span<const double> values) const;
 
+  /// How many samples a recursive zero-phase filter sees mirrored before the first of so many, and after the
+  /// last. @throws std::invalid_argument for another kind of filter, or fewer than two samples.
+  [[nodiscard]] std::size_t mirrored(std::uint64_t samples) const;
+
+  /// The sections of a recursive filter on their way over samples: all that it remembers of those before.
+  class Recursion {
+   public:
+    struct Section {
+      double b0, b1, b2, a1, a2;
+    };
+    /// Settled at the first sample that comes.
+    Recursion(std::span<const Section> sections, double first);
+    [[nodiscard]] double step(double in) noexcept;
+
+   private:
+    struct State {
+      double first = 0.0;
+      double second = 0.0;
+    };
+    std::span<const Section> sections_;
+    std::array<State, 2> states_{};
+  };
+  /// Valid as long as the filter. Of a recursive filter only.
+  [[nodiscard]] Recursion settled_at(double first) const { return {sections_, first}; }
+
   /// Frequencies increase, each above 0 and at most half the rate.
   [[nodiscard]] std::vector<Response> response(std::span<const double> frequencies_hz) const;
 
  private:
-  struct Section {
-    double b0, b1, b2, a1, a2;
-  };
-
   void run_sections(std::vector<double>& values) const;
   [[nodiscard]] std::vector<double> run_window(std::span<const double> values) const;
 
   FilterSpec spec_;
   double rate_hz_;
-  std::vector<Section> sections_;  ///< of a recursive filter
-  std::vector<double> weights_;    ///< of one with a window, the oldest sample first
+  std::vector<Recursion::Section> sections_;  ///< of a recursive filter
+  std::vector<double> weights_;               ///< of one with a window, the oldest sample first
 };
 
 }  // namespace kerf::bench

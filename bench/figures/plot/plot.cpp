@@ -190,6 +190,27 @@ std::string named(std::string svg, const std::string& title) {
                      fmt::format("<title>{}</title>\n<desc>{}, by gnuplot", escaped(title), software()));
 }
 
+/// Where a column is smallest and largest within a stretch; where it is NaN only if it is nothing else.
+class Spread {
+ public:
+  void add(std::size_t row, double value) {
+    if (is_first_ || value < smallest_.value || std::isnan(smallest_.value)) smallest_ = {row, value};
+    if (is_first_ || value > largest_.value || std::isnan(largest_.value)) largest_ = {row, value};
+    is_first_ = false;
+  }
+  [[nodiscard]] std::size_t smallest() const noexcept { return smallest_.row; }
+  [[nodiscard]] std::size_t largest() const noexcept { return largest_.row; }
+
+ private:
+  struct Found {
+    std::size_t row = 0;
+    double value = 0.0;
+  };
+  Found smallest_;
+  Found largest_;
+  bool is_first_ = true;
+};
+
 /// A file in memory that another program can write by its name; whoever is killed leaves nothing behind.
 class NamedMemory {
  public:
@@ -240,28 +261,32 @@ std::string draw(const Chart& chart) { return draw_all(std::span(&chart, 1)).fro
 
 std::vector<std::size_t> decimated_rows(std::initializer_list<std::span<const double>> columns,
                                         std::size_t most) {
-  const std::size_t count = columns.begin()->size();
+  std::vector<ValueOfRow> values;
+  for (const std::span<const double> column : columns)
+    values.emplace_back([column](std::size_t row) { return column[row]; });
+  return decimated_rows(columns.begin()->size(), values, most);
+}
+
+std::vector<std::size_t> decimated_rows(std::size_t rows, std::span<const ValueOfRow> columns,
+                                        std::size_t most) {
   const std::size_t kept_of_each = 2 + 2 * columns.size();
-  const std::size_t stretches = count <= most ? count : std::max<std::size_t>(1, most / kept_of_each);
-  std::vector<std::size_t> rows;
+  const std::size_t stretches = rows <= most ? rows : std::max<std::size_t>(1, most / kept_of_each);
+  std::vector<std::size_t> all_kept;
   std::vector<std::size_t> kept;
+  std::vector<Spread> spreads(columns.size());
   for (std::size_t stretch = 0; stretch < stretches; ++stretch) {
-    const std::size_t begin = stretch * count / stretches;
-    const std::size_t end = (stretch + 1) * count / stretches;
-    kept.assign({begin, end - 1});
-    for (const std::span<const double> values : columns) {
-      std::size_t smallest = begin;
-      std::size_t largest = begin;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (values[i] < values[smallest] || std::isnan(values[smallest])) smallest = i;
-        if (values[i] > values[largest] || std::isnan(values[largest])) largest = i;
-      }
-      kept.insert(kept.end(), {smallest, largest});
+    const std::size_t begin = stretch * rows / stretches;
+    const std::size_t end = (stretch + 1) * rows / stretches;
+    spreads.assign(columns.size(), {});
+    for (std::size_t row = begin; row < end; ++row) {
+      for (std::size_t i = 0; i < spreads.size(); ++i) spreads[i].add(row, columns[i](row));
     }
+    kept.assign({begin, end - 1});
+    for (const Spread& spread : spreads) kept.insert(kept.end(), {spread.smallest(), spread.largest()});
     std::sort(kept.begin(), kept.end());
-    rows.insert(rows.end(), kept.begin(), std::unique(kept.begin(), kept.end()));
+    all_kept.insert(all_kept.end(), kept.begin(), std::unique(kept.begin(), kept.end()));
   }
-  return rows;
+  return all_kept;
 }
 
 Curve decimated(const Curve& curve, std::size_t most) {

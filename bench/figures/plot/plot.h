@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <span>
@@ -115,6 +116,10 @@ struct Figure {
 /// Rows to keep of many, in their order, so that at most `most` are left and no spike is lost: of every
 /// stretch the first, the last, and the smallest and largest of each column. All of them if they are so few.
 [[nodiscard]] std::vector<std::size_t> decimated_rows(std::initializer_list<std::span<const double>> columns,
+                                                      std::size_t most);
+/// The same of columns that are too long to be kept: each gives its value of a row, once, in their order.
+using ValueOfRow = std::function<double(std::size_t row)>;
+[[nodiscard]] std::vector<std::size_t> decimated_rows(std::size_t rows, std::span<const ValueOfRow> columns,
                                                       std::size_t most);
 /// The same of a long curve, by its y.
 [[nodiscard]] Curve decimated(const Curve& curve, std::size_t most = 4000);

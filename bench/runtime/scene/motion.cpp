@@ -14,6 +14,7 @@
 
 #include "laws/placement.h"
 #include "recordings/axes.h"
+#include "recordings/whole_recording.h"
 #include "scene/scene.h"
 
 namespace kerf::bench {
@@ -104,7 +105,7 @@ std::size_t column_for(const models::LawAxis& axis, const LawFile& law, const sc
 }
 
 SampledMotion recorded(const MotionSource& source, const LawFile& law) {
-  const schema::Recording recording = schema::read_recording(source.recording);
+  const schema::Recording recording = read_whole_recording(source.recording);
   const std::vector<models::LawAxis> axes = axes_of(law);
   std::vector<std::size_t> columns;
   for (const models::LawAxis& axis : axes) columns.push_back(column_for(axis, law, recording));

@@ -1,6 +1,7 @@
 #include "views/hysteresis_loops.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "laws/render.h"
 #include "plot/plot.h"
+#include "recordings/axis_values.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -22,28 +24,7 @@ constexpr std::size_t max_points = 600;
 
 bool is_measured(const schema::RecordingFile& file) { return file.width(Column::force_measured) > 0; }
 
-Column force_of(const schema::RecordingFile& file) {
-  return is_measured(file) ? Column::force_measured : Column::force_commanded;
-}
-
-bool has_force(const schema::RecordingFile& file) { return file.width(force_of(file)) > 0; }
-
-/// One axis of a column; the others are passed over block by block.
-std::vector<double> axis_of(const schema::RecordingFile& file, Column column, std::size_t axis,
-                            std::uint64_t first, std::uint64_t end) {
-  constexpr std::uint64_t rows_at_once = 8192;
-  const std::size_t width = file.width(column);
-  std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(end - first));
-  std::vector<double> block;
-  for (; first < end; first += rows_at_once) {
-    const auto rows = std::min(rows_at_once, end - first);
-    block.resize(static_cast<std::size_t>(rows) * width);
-    file.read(column, first, rows, block);
-    for (std::size_t at = axis; at < block.size(); at += width) values.push_back(block[at]);
-  }
-  return values;
-}
+bool has_force(const schema::RecordingFile& file) { return file.width(force_column(file)) > 0; }
 
 /// On which side the tissue lies; a scene that cannot be read does not say.
 models::Contact contact_along(const schema::RecordingFile& file, std::size_t axis,
@@ -81,17 +62,6 @@ void add_averages(const schema::Cycles& found, bool is_measured, AxisCycles& cyc
   }
 }
 
-schema::Cycles cycles_found(const schema::RecordingFile& file, std::size_t axis) {
-  schema::Recording alone;
-  alone.axes = {file.about().axes[axis]};
-  alone.time = axis_of(file, Column::time, 0, 0, file.rows());
-  alone.position = axis_of(file, Column::position, axis, 0, file.rows());
-  alone.force_measured = axis_of(file, force_of(file), axis, 0, file.rows());
-  schema::Cycles found = find_cycles(alone, {});
-  found.axis = axis;
-  return found;
-}
-
 }  // namespace
 
 AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
@@ -113,7 +83,7 @@ AxisCycles axis_cycles(const schema::RecordingFile& file, std::size_t axis) {
   }
   if (!found) {
     try {
-      found = cycles_found(file, axis);
+      found = find_cycles(file, {.axis = axis});
       cycles.segmented_here = true;
     } catch (const std::invalid_argument& error) {
       cycles.why_none = error.what();
@@ -131,14 +101,16 @@ std::vector<ForceLoop> force_loops(const schema::RecordingFile& file, std::size_
                                    const AxisCycles& cycles, std::size_t first, std::size_t count) {
   std::vector<ForceLoop> loops;
   if (first == 0 || first > cycles.cycles.size()) return loops;
+  const BlockedValues position = axis_values(file, Column::position, axis);
+  const BlockedValues force = axis_values(file, force_column(file), axis);
   const auto shown = std::span(cycles.cycles).subspan(first - 1);
-  for (std::size_t i = 0; i < std::min(count, shown.size()); ++i) {
-    const auto position = axis_of(file, Column::position, axis, shown[i].begin, shown[i].end);
-    const auto force = axis_of(file, force_of(file), axis, shown[i].begin, shown[i].end);
-    ForceLoop loop{.cycle = shown[i].cycle, .position = {}, .force = {}};
-    for (const std::size_t at : decimated_rows({position, force}, max_points)) {
-      loop.position.push_back(position[at]);
-      loop.force.push_back(resisting(force[at], is_measured(file), cycles.contact));
+  for (const AxisCycles::Rows& rows : shown.first(std::min(count, shown.size()))) {
+    const std::array<ValueOfRow, 2> columns{[&](std::size_t at) { return position[rows.begin + at]; },
+                                            [&](std::size_t at) { return force[rows.begin + at]; }};
+    ForceLoop loop{.cycle = rows.cycle, .position = {}, .force = {}};
+    for (const std::size_t at : decimated_rows(rows.end - rows.begin, columns, max_points)) {
+      loop.position.push_back(columns[0](at));
+      loop.force.push_back(resisting(columns[1](at), is_measured(file), cycles.contact));
     }
     loops.push_back(std::move(loop));
   }

@@ -194,11 +194,10 @@ TraceView::Extremes MinMaxPyramid::view(std::uint64_t first_row, std::uint64_t e
   return view(column_boundaries(first_row, end_row, columns), read);
 }
 
-PyramidBuilder::PyramidBuilder(std::uint64_t rows, std::size_t width) : rows_(rows), width_(width) {
-  for (std::size_t column = 0; column < width; ++column) {
-    numbers_.push_back(std::make_shared<std::vector<float>>(MinMaxPyramid::size_of(rows)));
-  }
-}
+PyramidBuilder::PyramidBuilder(std::uint64_t rows, std::size_t width)
+    : rows_(rows),
+      width_(width),
+      numbers_(std::make_shared<std::vector<float>>(width * MinMaxPyramid::size_of(rows))) {}
 
 void PyramidBuilder::add(std::span<const double> values) {
   const std::size_t rows = values.size() / width_;
@@ -207,7 +206,10 @@ void PyramidBuilder::add(std::span<const double> values) {
   }
   Finest finest;
   const std::size_t buckets = level_sizes(rows_).front();
-  for (const auto& numbers : numbers_) finest.emplace_back(numbers->data(), numbers->data() + buckets);
+  for (std::size_t column = 0; column < width_; ++column) {
+    float* const smallest = numbers_->data() + column * MinMaxPyramid::size_of(rows_);
+    finest.emplace_back(smallest, smallest + buckets);
+  }
   const auto to = static_cast<std::size_t>(added_ / bucket);
   const std::size_t whole = rows / bucket;
   const auto in_buckets = values.first(whole * bucket * width_);
@@ -237,15 +239,26 @@ void PyramidBuilder::add(std::span<const double> values) {
   added_ += rows;
 }
 
-std::vector<MinMaxPyramid> PyramidBuilder::finish() && {
+Pyramids PyramidBuilder::finish() && {
   if (added_ != rows_) throw std::logic_error("a pyramid that has not seen all its rows");
-  std::vector<MinMaxPyramid> pyramids;
-  for (auto& numbers : numbers_) {
-    build_coarser_levels(rows_, numbers->data());
-    const std::span<const float> view(*numbers);
-    pyramids.emplace_back(rows_, view, std::move(numbers));
+  const std::size_t each = MinMaxPyramid::size_of(rows_);
+  for (std::size_t column = 0; column < width_; ++column) {
+    build_coarser_levels(rows_, numbers_->data() + column * each);
   }
-  return pyramids;
+  return {rows_, width_, *numbers_, numbers_};
+}
+
+Pyramids::Pyramids(std::uint64_t rows, std::size_t width, std::span<const float> numbers,
+                   const std::shared_ptr<const void>& owner)
+    : numbers_(numbers) {
+  const std::size_t each = MinMaxPyramid::size_of(rows);
+  if (numbers.size() != width * each) {
+    throw std::invalid_argument(fmt::format("{} pyramids over {} rows have {} numbers, not {}", width, rows,
+                                            width * each, numbers.size()));
+  }
+  for (std::size_t column = 0; column < width; ++column) {
+    columns_.emplace_back(rows, numbers.subspan(column * each, each), owner);
+  }
 }
 
 std::vector<std::uint64_t> column_boundaries(std::uint64_t first_row, std::uint64_t end_row,

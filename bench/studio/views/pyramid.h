@@ -54,6 +54,21 @@ class MinMaxPyramid {
   std::vector<Level> levels_;
 };
 
+/// The pyramids of columns that lie side by side, their numbers one after the other.
+class Pyramids {
+ public:
+  /// Of numbers() as built; `owner` keeps them. @throws std::invalid_argument if they do not fit.
+  Pyramids(std::uint64_t rows, std::size_t width, std::span<const float> numbers,
+           const std::shared_ptr<const void>& owner);
+
+  [[nodiscard]] const MinMaxPyramid& operator[](std::size_t column) const { return columns_[column]; }
+  [[nodiscard]] std::span<const float> numbers() const noexcept { return numbers_; }
+
+ private:
+  std::span<const float> numbers_;
+  std::vector<MinMaxPyramid> columns_;
+};
+
 /// Builds the pyramids of several columns that lie side by side, as the axes of a dataset do, in one pass.
 class PyramidBuilder {
  public:
@@ -65,13 +80,13 @@ class PyramidBuilder {
   /// within a bucket and are not the last.
   void add(std::span<const double> values);
   /// @throws std::logic_error if rows are missing.
-  [[nodiscard]] std::vector<MinMaxPyramid> finish() &&;
+  [[nodiscard]] Pyramids finish() &&;
 
  private:
   std::uint64_t rows_;
   std::size_t width_;
   std::uint64_t added_ = 0;
-  std::vector<std::shared_ptr<std::vector<float>>> numbers_;
+  std::shared_ptr<std::vector<float>> numbers_;
 };
 
 /// Where columns of equal width begin, and where the last one ends; at most one column a row.

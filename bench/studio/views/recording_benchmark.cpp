@@ -64,9 +64,10 @@ void make(const std::filesystem::path& file) {
 
 /// Position, velocity and force of the first axis.
 std::vector<std::size_t> first_shown(const bench::RecordingView& recording) {
+  const std::string along = " " + recording.file().about().axes.front().name;
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < recording.traces().size() && shown.size() < 3; ++i) {
-    if (recording.traces()[i].name.ends_with(" x")) shown.push_back(i);
+    if (recording.traces()[i].name.ends_with(along)) shown.push_back(i);
   }
   return shown;
 }

@@ -109,45 +109,44 @@ void RecordingView::index_rows() {
               {.uuid = uuid, .rows = file_.rows(), .bytes = std::as_bytes(rows_->numbers()), .owner = {}});
 }
 
-std::optional<std::vector<MinMaxPyramid>> RecordingView::kept_pyramids(const RowSource& source) const {
+std::optional<Pyramids> RecordingView::kept_pyramids(const RowSource& source) const {
   const auto kept = cache_.find(facts_, source.name);
   if (!kept || kept->uuid != file_.about().header.uuid || kept->rows != file_.rows()) return std::nullopt;
-  const auto numbers = numbers_in<float>(*kept);
-  const std::size_t each = MinMaxPyramid::size_of(file_.rows());
-  if (numbers.size() != each * source.width) return std::nullopt;
-  std::vector<MinMaxPyramid> pyramids;
-  for (std::size_t column = 0; column < source.width; ++column) {
-    pyramids.emplace_back(file_.rows(), numbers.subspan(column * each, each), kept->owner);
+  try {
+    return Pyramids(file_.rows(), source.width, numbers_in<float>(*kept), kept->owner);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
   }
-  return pyramids;
 }
 
-const std::vector<MinMaxPyramid>& RecordingView::pyramids_of(std::size_t at) {
+Pyramids RecordingView::built_pyramids(const RowSource& source) const {
+  PyramidBuilder builder(file_.rows(), source.width);
+  std::vector<double> block;
+  for (std::uint64_t first = 0; first < file_.rows(); first += PyramidBuilder::rows_at_once) {
+    const auto rows = std::min<std::uint64_t>(PyramidBuilder::rows_at_once, file_.rows() - first);
+    block.resize(static_cast<std::size_t>(rows) * source.width);
+    source.read(first, block);
+    builder.add(block);
+  }
+  return std::move(builder).finish();
+}
+
+const Pyramids& RecordingView::pyramids_of(std::size_t at) {
   auto& pyramids = pyramids_[at];
   if (pyramids) return *pyramids;
   const RowSource& source = sources_[at];
   pyramids = kept_pyramids(source);
   if (!pyramids) {
-    PyramidBuilder builder(file_.rows(), source.width);
-    std::vector<double> block;
-    for (std::uint64_t first = 0; first < file_.rows(); first += PyramidBuilder::rows_at_once) {
-      const auto rows = std::min<std::uint64_t>(PyramidBuilder::rows_at_once, file_.rows() - first);
-      block.resize(static_cast<std::size_t>(rows) * source.width);
-      source.read(first, block);
-      builder.add(block);
-    }
-    pyramids = std::move(builder).finish();
-    std::vector<float> numbers;
-    for (const MinMaxPyramid& it : *pyramids) {
-      numbers.insert(numbers.end(), it.numbers().begin(), it.numbers().end());
-    }
+    pyramids = built_pyramids(source);
     cache_.keep(facts_, source.name,
                 {.uuid = file_.about().header.uuid,
                  .rows = file_.rows(),
-                 .bytes = std::as_bytes(std::span<const float>(numbers)),
+                 .bytes = std::as_bytes(pyramids->numbers()),
                  .owner = {}});
+    // Of a kept one only what is looked at has to be in memory.
+    if (auto kept = kept_pyramids(source)) pyramids = std::move(kept);
   }
-  bytes_ += source.width * MinMaxPyramid::size_of(file_.rows()) * sizeof(float);
+  bytes_ += pyramids->numbers().size_bytes();
   return *pyramids;
 }
 

@@ -75,8 +75,9 @@ class RecordingView {
   void list_traces();
   void add_axis_traces(std::size_t axis);
   void index_rows();
-  [[nodiscard]] std::optional<std::vector<MinMaxPyramid>> kept_pyramids(const RowSource& source) const;
-  const std::vector<MinMaxPyramid>& pyramids_of(std::size_t source);
+  [[nodiscard]] std::optional<Pyramids> kept_pyramids(const RowSource& source) const;
+  [[nodiscard]] Pyramids built_pyramids(const RowSource& source) const;
+  const Pyramids& pyramids_of(std::size_t source);
   TraceView view_from_afar(std::span<const std::size_t> traces, std::uint64_t first, std::uint64_t end,
                            std::size_t columns);
   [[nodiscard]] TraceView view_from_near(std::span<const std::size_t> traces, std::uint64_t first,
@@ -92,7 +93,7 @@ class RecordingView {
   std::optional<RowIndex> rows_;
   std::mutex mutex_;  ///< of all below
   std::map<std::size_t, AxisCycles> cycles_;
-  std::vector<std::optional<std::vector<MinMaxPyramid>>> pyramids_;  ///< of each source
+  std::vector<std::optional<Pyramids>> pyramids_;  ///< of each source
   std::atomic<std::size_t> bytes_ = 0;
 };
 

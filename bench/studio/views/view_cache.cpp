@@ -112,9 +112,11 @@ void ViewCache::keep(const FileFacts& recording, std::string_view name, const Pa
   head.checksum = checksum_of(head);
   try {
     std::filesystem::create_directories(folder_);
-    std::string content(reinterpret_cast<const char*>(&head), sizeof head);
-    content.append(reinterpret_cast<const char*>(part.bytes.data()), part.bytes.size());
-    write_whole_file(file_of(recording, name), content);
+    const auto text = [](const void* bytes, std::size_t count) {
+      return std::string_view(static_cast<const char*>(bytes), count);
+    };
+    write_whole_file(file_of(recording, name),
+                     std::array{text(&head, sizeof head), text(part.bytes.data(), part.bytes.size())});
     remove_oldest();
   } catch (const std::exception&) {
     // A view is made anew the next time.

@@ -110,6 +110,12 @@ TEST(Segment, StartsInTheMiddleOfAnOpening) {
   EXPECT_EQ(cycles.phases.front().phase, schema::Phase::open_to_close) << "that opening belongs to no cycle";
 }
 
+TEST(Segment, RefusesTimesThatGoBack) {
+  schema::Recording recording = Cutting{}.recording();
+  recording.time[100] = recording.time[98];
+  EXPECT_THROW((void)find_cycles(recording, {}), std::invalid_argument);
+}
+
 TEST(Segment, RefusesWhatHasNoCycles) {
   const auto refusal = [](const schema::Recording& recording) -> std::string {
     try {

@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <kerf/schema/recording_file.h>
+
 #include "loop/clock.h"
 #include "loop/law_switch.h"
 #include "record/recorder.h"
@@ -49,6 +51,19 @@ TEST(Run, IsTheSameBitForBitInVirtualTime) {
   EXPECT_EQ(first.flags, second.flags);
   EXPECT_THAT(first.wake_latency, testing::Each(0.0F));
   EXPECT_THAT(first.compute_time, testing::Each(0.0F));
+}
+
+TEST(Run, KnowsTheFiguresOfItsRecordingWithoutReadingIt) {
+  const test::TemporaryFolder folder;
+  RunOptions options = virtual_seconds(3.0);
+  options.device_uri = "sim:pose6?truth=on&fault=stall@0.5:20ms&seed=3";
+  options.record = folder / "r.h5";
+  const RunResult result = run(options);
+  const RowFigures of_file = figures_of(schema::RecordingFile(*options.record));
+  ASSERT_TRUE(result.recorded);
+  EXPECT_TRUE(*result.recorded == of_file);
+  EXPECT_GT(of_file.gaps, 0U);
+  EXPECT_FALSE(of_file.channels.empty());
 }
 
 TEST(Run, RecordsTheForcesOfASensorBesideTheDevice) {

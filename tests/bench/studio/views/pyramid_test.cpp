@@ -36,7 +36,7 @@ MinMaxPyramid pyramid_of(const std::vector<double>& values) {
   for (std::size_t at = 0; at < values.size(); at += PyramidBuilder::rows_at_once) {
     builder.add(std::span(values).subspan(at, std::min(PyramidBuilder::rows_at_once, values.size() - at)));
   }
-  return std::move(builder).finish().front();
+  return std::move(builder).finish()[0];
 }
 
 MinMaxPyramid::ReadRows reader_of(const std::vector<double>& values) {
@@ -131,7 +131,7 @@ TEST(MinMaxPyramid, OfAxesSideBySideIsThatOfEachAlone) {
     builder.add(std::span(values).first(first));
     builder.add(std::span(values).subspan(first));
     const auto pyramids = std::move(builder).finish();
-    ASSERT_EQ(pyramids.size(), width);
+    ASSERT_EQ(pyramids.numbers().size(), width * MinMaxPyramid::size_of(rows));
     for (std::size_t column = 0; column < width; ++column) {
       std::vector<double> alone;
       for (std::size_t i = column; i < values.size(); i += width) alone.push_back(values[i]);
