@@ -191,12 +191,15 @@ class Run {
     if (known) result_.spin_ns = known->spin_ns;
   }
 
+  void require_room_for_rows() const {
+    const double rows = std::ceil(options_.seconds * options_.rate_hz);
+    const double bytes = rows * static_cast<double>(recorded_row_bytes(result_.device));
+    require_disk(*options_.record, static_cast<std::uintmax_t>(bytes), fmt::format("{:.0f} rows", rows));
+  }
+
   std::unique_ptr<Recorder> open_recorder() {
     if (!options_.record) return nullptr;
-    const double rows = std::ceil(options_.seconds * options_.rate_hz);
-    require_disk(*options_.record,
-                 static_cast<std::uintmax_t>(rows * static_cast<double>(recorded_row_bytes(result_.device))),
-                 fmt::format("{:.0f} rows", rows));
+    require_room_for_rows();
     schema::RecordingWriter writer =
         begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
     const drivers::DeviceInfo& device = result_.device;
