@@ -2,14 +2,18 @@
 # targets: kerf kerf_faulty_calls kerf_faulty_allocations
 """Fails every call that writes, and some thousands of allocations, of every verb that writes; one at a time.
 
-scripts/benchmark injection [--verbs NAME...] [--seed S] [--calls] [--allocations]
+scripts/benchmark injection [--verbs NAME...] [--seed S] [--calls] [--allocations] [--seconds S]
+
+With --seconds it goes on to the next verb after so many of calls and so many of allocations: what is tried is drawn by the seed.
 """
 
 import argparse
+import itertools
 import pathlib
 import random
 import sys
 import tempfile
+import time
 
 from sections import replace_section
 
@@ -17,18 +21,29 @@ MOST_CALLS = 400  # of a verb; of one that makes more, as many at even distances
 FIRST = 1000  # allocations, and so many more on a logarithmic scale
 
 
+def in_time(tries):
+    """All of them in their order; or, in a drawn order, those for which there is time."""
+    if arguments.seconds is None:
+        yield from tries
+        return
+    begin = time.monotonic()
+    for one in random.Random(arguments.seed).sample(tries, len(tries)):
+        if time.monotonic() - begin > arguments.seconds:
+            return
+        yield one
+
+
 def fail_calls(injector, verb, tally):
     count = injector.count_calls(verb)
-    for kind in injection.KINDS:
-        for at in range(1, count + 1, 1 + count // MOST_CALLS):
-            for older in {False, verb.can_force}:
-                injector.try_call(verb, kind, at, older, tally)
+    places = range(1, count + 1, 1 + count // MOST_CALLS)
+    for call in in_time(list(itertools.product(injection.KINDS, places, sorted({False, verb.can_force})))):
+        injector.try_call(verb, *call, tally)
     return count
 
 
 def fail_allocations(injector, verb, tally):
     count = injector.count_allocations(verb)
-    for at in injection.places_of_allocations(count, FIRST, FIRST, random.Random(arguments.seed)):
+    for at in in_time(injection.places_of_allocations(count, FIRST, FIRST, random.Random(arguments.seed))):
         injector.try_allocation(verb, at, tally)
     return count
 
@@ -59,9 +74,10 @@ def main():
                 print("%s: %d tried, %d did not hold" % (verb.name, tally.tried, len(tally.faults)), flush=True)
                 print("".join("  %s\n" % fault for fault in tally.faults), end="", flush=True)
     parts = [table(what, rows) for what, rows in (("calls", calls), ("allocations", allocations)) if rows]
+    share = "" if arguments.seconds is None else "Of these, as many as fit into %g s, in a drawn order. " % arguments.seconds
     body = ("Each call that writes fails in one run of its own (%s; + is: and all after it), and of allocations the first %s and "
-            "as many more drawn on a logarithmic scale, seed %d. `tests/faults/injection.py` says what has to hold.\n\n" % (
-                ", ".join(injection.KINDS), f"{FIRST:,}", arguments.seed)) + "\n\n".join(parts)
+            "as many more drawn on a logarithmic scale, seed %d. %s`tests/faults/injection.py` says what has to hold.\n\n" % (
+                ", ".join(injection.KINDS), f"{FIRST:,}", arguments.seed, share)) + "\n\n".join(parts)
     if not arguments.verbs:
         replace_section(arguments.house / "docs/benchmarks.md", "injection", "Faults below files, and no memory", body)
     print(body)
@@ -74,6 +90,7 @@ parser.add_argument("--verbs", nargs="*", default=[])
 parser.add_argument("--seed", type=int, default=1)
 parser.add_argument("--calls", action="store_true")
 parser.add_argument("--allocations", action="store_true")
+parser.add_argument("--seconds", type=float)
 arguments = parser.parse_args()
 sys.path.insert(0, str(arguments.house / "tests/faults"))
 import injection  # noqa: E402

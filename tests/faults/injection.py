@@ -81,7 +81,7 @@ class Injector:
         well = verb.ends_well(ended.status, undisturbed)
         if harmless and not well:
             return f"what was no failure ends with {ended.status}: {said}"
-        if not well and ended.status not in (2, 4):
+        if not well and ended.status not in verb.failures:
             return f"it ends with {ended.status}: {said}"
         if not well and not any(line.startswith(("kerf: ", "warning: ")) for line in ended.errors.splitlines()):
             return f"it ends with {ended.status} and says nothing: {said}"

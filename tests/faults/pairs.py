@@ -44,7 +44,8 @@ class Party:
 def kind_of(verb: Verb) -> str:
     """What its output is: verbs of one kind can want one name. In place: the file itself is the output."""
     output = verb.outputs[0]
-    return verb.name if output in verb.brings or verb.name in ("repair", "regress update") else Path(output).suffix or "folder"
+    has_own_name = output in verb.brings or "/" in output or verb.name in ("repair", "regress update")
+    return verb.name if has_own_name else Path(output).suffix or "folder"
 
 
 def pairs(most_seconds: float) -> list[Pair]:

@@ -32,6 +32,7 @@ class Verb:
     seconds: float = 0.1  # about how long it takes
     replaces: bool = False  # an earlier output unasked: what is made again at will
     can_force: bool = True  # replaces an earlier output with --force
+    failures: tuple[int, ...] = (2, 4)  # exit statuses where a call or memory fails; 1: it lists what failed, and goes on
     judges_time: bool = False  # by the clock: ends with 0 or 1 as the machine will
 
     def ends_well(self, status: int, undisturbed: int) -> bool:
@@ -49,6 +50,8 @@ VERBS = [
     Verb("prepare", "prepare {in}/cut.h5 --bias --filter butterworth2:20 --filter-chart f.svg -o p.h5", ("p.h5", "f.svg")),
     Verb("segment", "segment cut.h5 -o charts", ("cut.h5", "charts"), ("cut.h5",), 0.4, can_force=False),
     Verb("fit", "fit {in}/cut.h5 --models kelvin --no-folds -o fits", ("fits",)),
+    Verb("fit --batch", "fit --batch {in}/batch --jobs 1 --models kelvin --no-folds -o fits", ("fits/cut",),
+         failures=(1, 2, 4)),
     Verb("chart", "chart {in}/cut.h5 --laws kelvin,exponential --no-folds --no-cold -o chart", ("chart",), (), 0.4),
     Verb("report", "report {in}/cut.h5 -o r.html", ("r.html",), (), 0.2),
     Verb("replay", "replay {in}/cut.h5 --through {in}/kelvin.law.toml -o replay", ("replay",), (), 0.3),
@@ -64,6 +67,8 @@ VERBS = [
     Verb("session key", "session key new.key", ("new.key",), can_force=False),
     Verb("session new", "session new {examples}/sessions/abx.protocol.toml --subject S02 --key-file {in}/keeper.key -o S02.h5",
          ("S02.h5",), (), 0.2),
+    Verb("session new --subjects",
+         "session new {examples}/sessions/abx.protocol.toml --subjects 3 --key-file {in}/keeper.key --no-check -o study", ("study",)),
     Verb("session run", "session run S01.h5 --key-file {in}/keeper.key --rehearse --no-check", ("S01.h5",), ("S01.h5",), 1.0,
          can_force=False),
     Verb("session analyze", "session analyze {in}/done.h5 --key-file {in}/keeper.key -o analysis", ("analysis",), (), 0.5),
@@ -71,7 +76,10 @@ VERBS = [
     Verb("session simulate", "session simulate {examples}/sessions/abx.protocol.toml --subjects 2 -o power", ("power",), (), 1.0),
     Verb("check", "check {in}/kelvin.law.toml --device sim:scissors --seconds 0.1 -o c.json", ("c.json",), (), 0.5,
          judges_time=True),
-    Verb("choose", "choose {in}/short.h5 --no-loop --folds 2 --most-segments 1 -o choice", ("choice",), (), 9.0),
+    Verb("check --record", "check {in}/kelvin.law.toml --device sim:scissors --virtual --seconds 0.5 --record c.h5", ("c.h5",), (),
+         0.2),
+    Verb("stability", "stability --cells 2 --seconds 0.1 --threads 1 -o wall", ("wall",)),
+    Verb("choose", "choose {in}/short.h5 --no-loop --folds 2 --most-segments 1 -o choice", ("choice",), (), 0.4),
     Verb("reproduce", "reproduce Okamura2003 -o okamura", ("okamura",), (), 3.0),
     Verb("demo", "demo --seconds 0.1 -o demo", ("demo",), (), 6.0),
 ]  # fmt: skip
@@ -104,6 +112,8 @@ class Bench:
                                   check=False)
             if made.returncode != 0:
                 raise RuntimeError(f"kerf {command}: {made.stderr}")
+        (self.inputs / "batch").mkdir()
+        shutil.copy(self.inputs / "cut.h5", self.inputs / "batch")
         self.leave_a_partial_file()
 
     def leave_a_partial_file(self) -> None:

@@ -1,6 +1,7 @@
 #include "fits/batch.h"
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -62,6 +63,8 @@ std::vector<BatchEntry> run_batch(const std::vector<fs::path>& recordings, const
     try {
       if (stop) throw std::runtime_error("not begun: the batch was stopped");
       fit_one(entries[i], recordings[i], options);
+    } catch (const std::bad_alloc&) {
+      entries[i].failure = "there was not enough memory";
     } catch (const std::exception& error) {
       entries[i].failure = error.what();
     }

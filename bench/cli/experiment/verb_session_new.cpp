@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -12,6 +13,7 @@
 #include "protocol/samples.h"
 #include "run/run.h"
 #include "sealed/session_store.h"
+#include "sealed/study_folder.h"
 #include "session/device_check.h"
 
 namespace kerf::bench {
@@ -54,6 +56,43 @@ std::string code_of(std::size_t number, std::size_t subjects) {
   return fmt::format("S{:0{}}", number, digits);
 }
 
+/// Of the subjects; one that is named alone keeps the code.
+std::vector<std::string> codes_of(const SessionNewVerbArguments& arguments) {
+  if (arguments.subjects == 0) return {arguments.subject};
+  std::vector<std::string> codes;
+  for (std::size_t number = 1; number <= arguments.subjects; ++number)
+    codes.push_back(code_of(number, arguments.subjects));
+  return codes;
+}
+
+/// The sessions with these codes, one a subject, each under its own key.
+void write_sessions(SessionNewVerbArguments& arguments, const Protocol& protocol,
+                    const std::vector<Plan>& plans, const std::vector<std::string>& codes,
+                    const std::vector<fs::path>& files) {
+  for (std::size_t subject = 0; subject < codes.size(); ++subject) {
+    const schema::KeyDerivation derivation = new_derivation(arguments.key.key_file.empty());
+    SessionStore::create(files[subject],
+                         {.protocol = protocol,
+                          .subject = codes[subject],
+                          .number = subject + 1,
+                          .subjects = codes.size(),
+                          .plan = plans[subject]},
+                         new_key_for(arguments.key, derivation), derivation, arguments.replace);
+  }
+}
+
+std::vector<std::string> file_names_of(const std::vector<std::string>& codes) {
+  std::vector<std::string> names;
+  for (const std::string& code : codes) names.push_back(code + ".h5");
+  return names;
+}
+
+std::vector<fs::path> in_folder(const fs::path& folder, const std::vector<std::string>& names) {
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(folder / name);
+  return files;
+}
+
 void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
   check_arguments(arguments);
   Protocol protocol = read_protocol(arguments.protocol);
@@ -66,32 +105,27 @@ void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
   if (context.seed_given)
     warn("whoever knows the seed knows the order: keep --seed from subject and experimenter");
   const std::uint64_t seed = context.seed_given ? context.seed : random_seed();
-  const bool is_study = arguments.subjects > 0;
-  const std::size_t subjects = is_study ? arguments.subjects : 1;
-  const auto plans = make_plans(protocol, subjects, seed);
+  const std::vector<std::string> codes = codes_of(arguments);
+  const auto plans = make_plans(protocol, codes.size(), seed);
 
-  const auto file_of = [&](std::size_t subject) -> fs::path {
-    return is_study ? fs::path(arguments.output) / (code_of(subject + 1, subjects) + ".h5")
-                    : fs::path(arguments.output);
-  };
-  for (std::size_t subject = 0; subject < subjects; ++subject)
-    require_output(file_of(subject), arguments.replace);
-  if (is_study) fs::create_directories(arguments.output);
+  const bool is_study = arguments.subjects > 0;
+  const std::vector<std::string> names = file_names_of(codes);
+  const std::vector<fs::path> files =
+      is_study ? in_folder(arguments.output, names) : std::vector<fs::path>{arguments.output};
+  for (const fs::path& file : files) require_output(file, arguments.replace);
+  if (is_study) {
+    StudyFolder study(arguments.output, names, arguments.replace);
+    write_sessions(arguments, protocol, plans, codes, in_folder(study.path(), names));
+    study.commit();
+  } else {
+    write_sessions(arguments, protocol, plans, codes, files);
+  }
   context.result = {{"protocol", arguments.protocol}, {"sessions", nlohmann::ordered_json::array()}};
-  for (std::size_t subject = 0; subject < subjects; ++subject) {
-    const schema::KeyDerivation derivation = new_derivation(arguments.key.key_file.empty());
-    const SealKey key = new_key_for(arguments.key, derivation);
-    const std::string code = is_study ? code_of(subject + 1, subjects) : arguments.subject;
-    SessionStore::create(file_of(subject),
-                         {.protocol = protocol,
-                          .subject = code,
-                          .number = subject + 1,
-                          .subjects = subjects,
-                          .plan = plans[subject]},
-                         key, derivation, arguments.replace);
+  for (std::size_t subject = 0; subject < codes.size(); ++subject) {
+    const std::string file = files[subject].string();
     context.result["sessions"].push_back(
-        {{"file", file_of(subject).string()}, {"subject", code}, {"trials", plans[subject].size()}});
-    context.say(fmt::format("{}: subject {}, {}{} trials, sealed", file_of(subject).string(), code,
+        {{"file", file}, {"subject", codes[subject]}, {"trials", plans[subject].size()}});
+    context.say(fmt::format("{}: subject {}, {}{} trials, sealed", file, codes[subject],
                             is_adaptive(protocol.design) ? "at most " : "", plans[subject].size()));
   }
 }

@@ -63,27 +63,29 @@ Digest digest_of_header(const schema::Session& session) {
   return blake2b({header.written()});
 }
 
-void SealedEntries::create(const std::filesystem::path& file, schema::Session session, Bytes plan,
-                           const SealKey& key, bool replace) {
-  const std::filesystem::path target = resolved(file);
-  // Under the lock nobody runs, begins or ends a session of this name.
-  Journal journal = Journal::lock(target);
-  if (!replace && std::filesystem::exists(target)) {
+NewSessionName::NewSessionName(const std::filesystem::path& file, bool replace)
+    : file_(resolved(file)), journal_(Journal::lock(file_)) {
+  if (!replace && std::filesystem::exists(file_)) {
     throw std::invalid_argument(fmt::format("{} exists; --force replaces it", file.string()));
   }
-  if (!replace && journal.has_records()) {
+  if (!replace && journal_.has_records()) {
     throw std::invalid_argument(fmt::format(
         "{} holds the answers of an earlier session, whose file is gone; move it away, or --force "
         "replaces it",
         journal_of(file).string()));
   }
+}
+
+void SealedEntries::create(const std::filesystem::path& file, schema::Session session, Bytes plan,
+                           const SealKey& key, bool replace) {
+  NewSessionName name(file, replace);
   schema::SessionEntry entry{.kind = "plan", .time = session.created, .text = "", .sealed = {}};
   entry.sealed = sealed(key, plan, as_text(bound_of(digest_of_header(session), 0, entry).written()));
   session.entries = {std::move(entry)};
-  schema::write_session(target, session, schema::existing_if(replace));
-  bring_to_disk(target);
-  bring_to_disk(target.parent_path());
-  journal.remove();
+  schema::write_session(name.file(), session, schema::existing_if(replace));
+  bring_to_disk(name.file());
+  bring_to_disk(name.file().parent_path());
+  name.taken();
 }
 
 SealedEntries::SealedEntries(const std::filesystem::path& file, const SealKey& key, For purpose,

@@ -18,6 +18,22 @@
 
 namespace kerf::bench {
 
+/// The name of a session that is to be made, held: meanwhile nobody runs, begins or ends a session of it.
+class NewSessionName {
+ public:
+  /// @throws std::invalid_argument: `file` exists, or left a journal, and not `replace`; it is run;
+  ///         std::system_error.
+  NewSessionName(const std::filesystem::path& file, bool replace);
+  /// Where to write it: the file itself, where the name is another one's.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return file_; }
+  /// The new session has it: the answers of an earlier one go. @throws std::system_error.
+  void taken() { journal_.remove(); }
+
+ private:
+  std::filesystem::path file_;
+  Journal journal_;
+};
+
 /// The entries of a session file and of its journal, each sealed and bound to all before it.
 ///
 /// The seal of entry i (XChaCha20-Poly1305) is bound to the chain up to it and to its number, kind, time and
@@ -35,8 +51,7 @@ class SealedEntries {
   enum class For { run, read };
 
   /// Writes a session with its first entry, "plan". `session` has no entries yet.
-  /// @throws std::invalid_argument: `file` exists, or is run, or left a journal, and not `replace`;
-  ///         std::system_error.
+  /// @throws as NewSessionName does.
   static void create(const std::filesystem::path& file, schema::Session session,
                      std::span<const std::uint8_t> plan, const SealKey& key, bool replace);
 

@@ -9,7 +9,8 @@
 
 namespace kerf::bench {
 
-/// A subject that feels nothing: goes on wherever it may, feels each slot in turn, and answers by chance. In
+/// A subject that feels nothing: goes on wherever it may, feels each slot in turn, and answers by chance.
+/// Where that is refused time and again, as on a full disk, it leaves: nobody is there to be called. In
 /// virtual time it walks through a whole session in seconds, to try a protocol out, or to look for anything
 /// that gives the samples away.
 class RehearsalSubject : public Subject {
@@ -21,11 +22,15 @@ class RehearsalSubject : public Subject {
 
  private:
   static constexpr int ticks_a_slot = 800;  ///< of polls, before it goes on to the next
+  static constexpr int most_tries = 5;      ///< of leaving a stage or a trial
+
+  [[nodiscard]] SubjectAction tried(const SubjectAction& action);
 
   psychophysics::Random random_;
   SubjectView view_;
   std::size_t slot_ = 0;
   int polls_ = 0;
+  int tries_ = 0;
 };
 
 }  // namespace kerf::bench

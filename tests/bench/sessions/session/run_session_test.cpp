@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -131,22 +132,39 @@ TEST(RunSession, NeverStepsPastTheSlewLimitWhereverItIsSwitched) {
   }
 }
 
-/// A disk that is full while the second answer is given, three times over.
-class FullWhileItAnswers : public RehearsalSubject {
+/// A disk that is full when the second answer is given.
+class FullAsItAnswers : public RehearsalSubject {
  public:
-  FullWhileItAnswers(SessionStore& store, std::filesystem::path journal)
+  FullAsItAnswers(SessionStore& store, std::filesystem::path journal)
       : RehearsalSubject(7), store_(store), journal_(std::move(journal)) {}
+  std::optional<SubjectAction> next() override {
+    const auto action = RehearsalSubject::next();
+    if (action && action->kind == Kind::answer && store_.trials().size() == 1 && !disk_)
+      disk_.emplace(std::filesystem::file_size(journal_) + 100);
+    return action;
+  }
+
+ protected:
+  [[nodiscard]] std::size_t answered() const { return store_.trials().size(); }
+  void make_room() { disk_.reset(); }
+
+ private:
+  SessionStore& store_;
+  std::filesystem::path journal_;
+  std::optional<kerf::test::FullDisk> disk_;
+};
+
+/// And is full for two more.
+class FullWhileItAnswers : public FullAsItAnswers {
+ public:
+  using FullAsItAnswers::FullAsItAnswers;
   void show(const SubjectView& view) override {
     notice_ = view.notice;
     may_answer_ = view.may_answer;
     RehearsalSubject::show(view);
   }
   std::optional<SubjectAction> next() override {
-    if (!notice_.empty()) return answer_again();
-    const auto action = RehearsalSubject::next();
-    if (action && action->kind == Kind::answer && store_.trials().size() == 1 && refusals_ == 0)
-      disk_.emplace(std::filesystem::file_size(journal_) + 100);
-    return action;
+    return notice_.empty() ? FullAsItAnswers::next() : answer_again();
   }
   [[nodiscard]] int refusals() const { return refusals_; }
 
@@ -154,14 +172,11 @@ class FullWhileItAnswers : public RehearsalSubject {
   std::optional<SubjectAction> answer_again() {
     EXPECT_THAT(notice_, HasSubstr("could not be stored (File too large). Please call the experimenter"));
     EXPECT_TRUE(may_answer_);
-    EXPECT_EQ(store_.trials().size(), 1U);
-    if (++refusals_ == 3) disk_.reset();
+    EXPECT_EQ(answered(), 1U);
+    if (++refusals_ == 3) make_room();
     return SubjectAction{.kind = Kind::answer, .slot = 1};
   }
 
-  SessionStore& store_;
-  std::filesystem::path journal_;
-  std::optional<kerf::test::FullDisk> disk_;
   std::string notice_;
   bool may_answer_ = false;
   int refusals_ = 0;
@@ -183,6 +198,14 @@ TEST(RunSession, KeepsTheQuestionOpenWhileItsAnswerCannotBeStored) {
   EXPECT_EQ(again.answer, 1U) << "the one that was given at last";
   EXPECT_GT(again.trace.size(), 2000U) << "with all that was felt";
   EXPECT_NEAR(again.response_s, store.trial(0).response_s, 0.1) << "the first answer's, not the last one's";
+}
+
+TEST(RunSession, IsLeftByARehearsalWhoseDiskStaysFull) {
+  test::BlindRun session(abx());
+  SessionStore running = session.store(SessionStore::Purpose::run);
+  FullAsItAnswers subject(running, journal_of(session.file()));
+  EXPECT_THROW((void)test::BlindRun::run(running, subject), std::system_error);
+  EXPECT_EQ(running.trials().size(), 1U);
 }
 
 TEST(RunSession, LosesAtMostTheTrialAtWorkAndGoesOn) {
