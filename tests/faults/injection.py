@@ -83,8 +83,9 @@ class Injector:
             return f"what was no failure ends with {ended.status}: {said}"
         if not well and ended.status not in verb.failures:
             return f"it ends with {ended.status}: {said}"
-        if not well and not any(line.startswith(("kerf: ", "warning: ")) for line in ended.errors.splitlines()):
-            return f"it ends with {ended.status} and says nothing: {said}"
+        if not well and not any(line.startswith("kerf: " if ended.status > 1 else "warning: ")
+                                for line in ended.errors.splitlines()):  # fmt: skip
+            return f"it ends with {ended.status} and does not say why: {said}"
         for name in verb.outputs:
             output = folder / name
             if well and not output.exists():

@@ -93,7 +93,7 @@ def wrong_with_party(party: Party) -> str:
         return ""
     if not 0 <= party.status <= 4:
         return f"kerf {' '.join(party.command)} crashes ({party.status}): {party.errors.strip()[-300:]}"
-    if party.status > 1 and not any(line.startswith(("kerf: ", "warning: ")) for line in party.errors.splitlines()):
+    if party.status > 1 and not any(line.startswith("kerf: ") for line in party.errors.splitlines()):
         return f"kerf {' '.join(party.command)} ends with {party.status} and says nothing"
     return ""
 

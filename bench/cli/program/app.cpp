@@ -145,38 +145,72 @@ int finish(const Context& context) {
   if (output_error != 0)
     return fail(Exit::file_error,
                 fmt::format("standard output: cannot write: {}", std::strerror(output_error)));
+  if (!context.not_written.empty()) return fail(Exit::file_error, context.not_written);
   return static_cast<int>(context.exit);
 }
 
-int run_words(std::vector<std::string> words) {
-  if (!words.empty() && words.front() == "help") {
-    words.erase(words.begin());
-    words.emplace_back("--help");
+/// The program as command lines know it.
+class Program {
+ public:
+  Program() {
+    app_.set_version_flag("--version", software());
+    app_.require_subcommand(1);
+    add_verbs(app_, context_);
   }
-  CLI::App app{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
-  app.set_version_flag("--version", software());
-  app.require_subcommand(1);
-  Context context;
-  add_verbs(app, context);
-  const Typed typed = typed_verb(app, words);
-  try {
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    app.parse(words);
-    if (context.json) print(json_text(context.result));
-  } catch (const CLI::Success& help) {
-    std::ostringstream text;
-    app.exit(help, text, text);
-    print(text.str());
-  } catch (const CLI::ParseError& error) {
-    return fail(Exit::bad_input, wrong_options(typed, error));
+
+  /// Runs the verb, or says what --help and --version give.
+  /// @throws std::invalid_argument for words that are no command line; as the verb does.
+  [[nodiscard]] std::string take(std::vector<std::string> words) {
+    if (!words.empty() && words.front() == "help") {
+      words.erase(words.begin());
+      words.emplace_back("--help");
+    }
+    const Typed typed = typed_verb(app_, words);
+    try {
+      std::reverse(words.begin(), words.end());  // as CLI11 takes them
+      app_.parse(words);
+      return "";
+    } catch (const CLI::Success& help) {
+      std::ostringstream text;
+      app_.exit(help, text, text);
+      return text.str();
+    } catch (const CLI::ParseError& error) {
+      throw std::invalid_argument(wrong_options(typed, error));
+    }
+  }
+
+  /// From now on a command line is read and its verb does nothing.
+  void run_nothing() { run_nothing(app_); }
+  [[nodiscard]] const Context& context() const noexcept { return context_; }
+
+ private:
+  static void run_nothing(CLI::App& app) {
+    for (CLI::App* const verb : app.get_subcommands([](CLI::App*) { return true; })) {
+      verb->callback({});
+      run_nothing(*verb);
+    }
+  }
+
+  Context context_;
+  CLI::App app_{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
+};
+
+int run_words(const std::vector<std::string>& words) {
+  Program program;
+  const std::string help = program.take(words);
+  const Context& context = program.context();
+  if (!help.empty()) {
+    print(help);
+  } else if (context.json) {
+    print(json_text(context.result));
   }
   return finish(context);
 }
 
-int run_caught(std::vector<std::string> words) {
+int run_caught(const std::vector<std::string>& words) {
   const std::string no_memory = without_memory(words);
   try {
-    return run_words(std::move(words));
+    return run_words(words);
   } catch (const drivers::DeviceError& error) {
     return fail(Exit::device_error, error.what());
   } catch (const std::system_error& error) {
@@ -204,6 +238,12 @@ void print(std::string_view text) { write_output_text(text); }
 void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_terminal(line))); }
 
 void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
+
+std::string read_command_line(const std::vector<std::string>& words) {
+  Program program;
+  program.run_nothing();
+  return program.take(words);
+}
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,8 @@ struct Context {
   bool seed_given = false;        ///< by --seed
   Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
   nlohmann::ordered_json result;  ///< printed at the end with --json
+  /// What could not be written though the result stands: said after it, and the exit status is file_error.
+  std::string not_written;
 
   /// A line of the result for people, to standard output; nothing with --json.
   void say(std::string_view line);
@@ -31,6 +35,10 @@ void print(std::string_view text);
 void note(std::string_view line);
 /// A warning, likewise.
 void warn(std::string_view line);
+
+/// Reads the words of a command line as run_program() does, and runs no verb. What it would print before any:
+/// of --help and --version. @throws std::invalid_argument in one line for what is no command line.
+[[nodiscard]] std::string read_command_line(const std::vector<std::string>& words);
 
 /// Runs `kerf VERB ...` and returns the exit status. If whoever read standard output is gone, the process
 /// ends as any other at a closed pipe does: by SIGPIPE, but not before the verb is done.

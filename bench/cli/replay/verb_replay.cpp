@@ -9,6 +9,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "prepare/rows.h"
 #include "program/confirm_on_enter.h"
 #include "program/contact_arguments.h"
@@ -78,7 +79,8 @@ Source source_of(const ReplayVerbArguments& arguments) {
   return select_rows(read_whole_recording(arguments.recording), select, arguments.recording);
 }
 
-fs::path json_in(const std::string& folder) { return fs::path(folder) / "replay.json"; }
+fs::path json_in(const fs::path& folder) { return folder / "replay.json"; }
+fs::path table_in(const fs::path& folder) { return folder / "table.law.toml"; }
 
 void say_lines(const std::vector<std::string>& lines, Context& context) {
   for (const std::string& line : lines) context.say(line);
@@ -112,6 +114,15 @@ void play_through(const ReplayVerbArguments& arguments, Context& context, Source
         fmt::format("replay.html, replay.json and a recording of each law are in {}", arguments.output));
 }
 
+/// What was found, and the law file of a table. All of it appears at once.
+void write_found(const ReplayVerbArguments& arguments, const Context& context, const LawFile* table) {
+  if (arguments.output.empty()) return;
+  WholeFolder whole(arguments.output, schema::existing_if(arguments.loop.options.replace));
+  write_json_file(json_in(whole.path()), context.result);
+  if (table != nullptr) write_law_file(table_in(whole.path()), *table);
+  whole.commit();
+}
+
 /// What both closed loops tell of the run.
 void finish_run(const ReplayVerbArguments& arguments, Context& context, const RunResult& result) {
   const Verdict verdict = judge(result);
@@ -120,15 +131,7 @@ void finish_run(const ReplayVerbArguments& arguments, Context& context, const Ru
   if (!arguments.record.empty()) context.result["record"] = arguments.record;
   for (const std::string& reason : verdict.reasons) context.say("  " + reason);
   if (!verdict.passed) context.exit = Exit::check_failed;
-  if (!result.recording_failure.empty()) {
-    context.exit = Exit::file_error;
-    warn(result.recording_failure);
-  }
-  if (!arguments.output.empty()) {
-    fs::create_directories(arguments.output);
-    write_json_file(json_in(arguments.output), context.result,
-                    schema::existing_if(arguments.loop.options.replace));
-  }
+  context.not_written = result.recording_failure;
   context.say(fmt::format("{}: {} ticks on {}, {} deadlines missed", verdict.passed ? "pass" : "FAIL",
                           result.report.ticks(), result.device.uri, result.report.missed()));
 }
@@ -142,6 +145,7 @@ RunOptions run_options_of(const ReplayVerbArguments& arguments) {
 
 void play_table(const ReplayVerbArguments& arguments, Context& context, const Source& source) {
   RunOptions options = run_options_of(arguments);
+  if (!arguments.output.empty()) require_output(table_in(arguments.output), options.replace);
   options.scene.reset();  // the table is felt in place of its tissue
   const schema::Recording& recording = source.recording;
   const models::Contact contact =
@@ -161,9 +165,7 @@ void play_table(const ReplayVerbArguments& arguments, Context& context, const So
   const RunResult result = run_on_device(options, signals.requested());
   context.result = table_as_json(table, recording.rows());
   finish_run(arguments, context, result);
-  if (!arguments.output.empty())
-    write_law_file(fs::path(arguments.output) / "table.law.toml", table.file,
-                   schema::existing_if(arguments.loop.options.replace));
+  write_found(arguments, context, &table.file);
 }
 
 void play_path(const ReplayVerbArguments& arguments, Context& context, Source source) {
@@ -192,6 +194,7 @@ void play_path(const ReplayVerbArguments& arguments, Context& context, Source so
   if (!replay.report.finished && replay.run.report.end == LoopEnd::completed && !replay.path.loop)
     warn("the time was over before the path was played to its end");
   finish_run(arguments, context, replay.run);
+  write_found(arguments, context, nullptr);
 }
 
 void run_replay(const ReplayVerbArguments& arguments, Context& context) {

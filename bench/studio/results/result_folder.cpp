@@ -1,12 +1,10 @@
 #include "results/result_folder.h"
 
-#include <atomic>
 #include <cctype>
-#include <system_error>
 
 #include <fmt/core.h>
-#include <unistd.h>
 
+#include "files/whole_file.h"
 #include "http/routes.h"
 
 namespace kerf::bench {
@@ -17,12 +15,15 @@ namespace fs = std::filesystem;
 constexpr int max_names = 1000;
 constexpr std::size_t longest_stem = 60;
 
-/// The first of the names that is free. @throws RequestError.
+/// The first of the names that is free; what a killed process left unfinished beside it goes.
+/// @throws RequestError.
 fs::path free_name(const Workspace& workspace, const std::string& stem, std::string_view ending) {
   for (int i = 1; i < max_names; ++i) {
     const std::string name = i == 1 ? stem : fmt::format("{}-{}", stem, i);
     try {
-      return workspace.new_file(name, ending);
+      fs::path file = workspace.new_file(name, ending);
+      require_output(file, false);
+      return file;
     } catch (const RequestError& taken) {
       if (taken.status != 409) throw;
     }
@@ -51,25 +52,17 @@ std::string result_stem(std::string_view name) {
   return stem.empty() ? "result" : stem;
 }
 
-ResultFolder::ResultFolder(const Workspace& workspace) {
-  static std::atomic<int> last{0};
-  path_ = workspace.folder() / fmt::format(".result-{}-{}", getpid(), ++last);
-  fs::remove_all(path_);  // of a process that had this number and died
-  fs::create_directory(path_);
-}
+ResultFolder::ResultFolder(const Workspace& workspace, const std::string& stem, std::string_view ending)
+    : name_(free_name(workspace, stem, ending)), whole_(name_, schema::Existing::keep) {}
 
-ResultFolder::~ResultFolder() {
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
-}
-
-std::string ResultFolder::publish(Workspace& workspace, const std::string& stem, std::string_view ending,
-                                  std::string_view file) {
-  const fs::path to = free_name(workspace, stem, ending);
-  fs::rename(path_, to);
-  path_.clear();
+std::string ResultFolder::publish(Workspace& workspace, std::string_view file) {
+  try {
+    whole_.commit();
+  } catch (const schema::NameTaken& taken) {  // by a verb, meanwhile
+    name_ = taken.kept();
+  }
   (void)workspace.scan();
-  return workspace.id_of(to / file);
+  return workspace.id_of(name_ / file);
 }
 
 }  // namespace kerf::bench

@@ -37,9 +37,9 @@ std::string run_fit(Workspace& workspace, const FitRequest& request, JobProgress
     const std::string reason = fit.refusal();
     throw std::invalid_argument(reason.empty() ? "no law could be fitted" : reason);
   }
-  ResultFolder folder(workspace);
+  ResultFolder folder(workspace, result_stem(request.recording.name), ".fit");
   write_fits(fit, request.recording.path, folder.path());
-  return folder.publish(workspace, result_stem(request.recording.name), ".fit", "fit.json");
+  return folder.publish(workspace, "fit.json");
 }
 
 std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProgress& progress) {
@@ -55,9 +55,9 @@ std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProg
       "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they "
       "are "
       "in a loop of their own; 'kerf chart' measures them in peace");
-  ResultFolder folder(workspace);
+  ResultFolder folder(workspace, result_stem(request.recording.name), ".chart");
   write_chart(chart, folder.path());
-  return folder.publish(workspace, result_stem(request.recording.name), ".chart", "chart.json");
+  return folder.publish(workspace, "chart.json");
 }
 
 std::string run_choice(Workspace& workspace, const ChoiceRequest& request, JobProgress& progress) {
@@ -71,9 +71,9 @@ std::string run_choice(Workspace& workspace, const ChoiceRequest& request, JobPr
   options.choose.of = &progress.steps;
   DeviceChoice made = choose_on_device(recording, request.recording.path, std::move(options), progress.stop);
   made.json["recording"] = request.recording.name;  // as the workspace knows it
-  ResultFolder folder(workspace);
+  ResultFolder folder(workspace, result_stem(request.recording.name), ".choice");
   write_choice(made.choice, made.json, request.recording.path, folder.path());
-  return folder.publish(workspace, result_stem(request.recording.name), ".choice", "choose.json");
+  return folder.publish(workspace, "choose.json");
 }
 
 std::string run_stability(Workspace& workspace, StabilityRequest request, JobProgress& progress) {
@@ -89,10 +89,10 @@ std::string run_stability(Workspace& workspace, StabilityRequest request, JobPro
   } else {
     findings = study_walls(study);
   }
-  ResultFolder folder(workspace);
-  write_findings(findings, folder.path());
   const std::string stem = result_stem(request.law ? request.law->name : study.on.device_uri);
-  return folder.publish(workspace, stem, ".stability", "stability.json");
+  ResultFolder folder(workspace, stem, ".stability");
+  write_findings(findings, folder.path());
+  return folder.publish(workspace, "stability.json");
 }
 
 }  // namespace

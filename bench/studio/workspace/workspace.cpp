@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <kerf/schema/session.h>
+#include <kerf/schema/unfinished.h>
 #include <kerf/schema/validate.h>
 
 #include "http/routes.h"
@@ -98,7 +99,8 @@ std::vector<WorkspaceEntry> Workspace::scan() {
   fs::recursive_directory_iterator at(folder_, fs::directory_options::skip_permission_denied, error);
   const auto known = known_files();
   for (; !error && at != fs::recursive_directory_iterator() && all.size() < max_files; at.increment(error)) {
-    const bool is_hidden = at->path().filename().string().starts_with('.');
+    const bool is_hidden =
+        at->path().filename().string().starts_with('.') || schema::is_unfinished(at->path());
     if (at->is_symlink(error) || is_hidden || at.depth() >= max_depth) at.disable_recursion_pending();
     if (is_hidden || at->is_symlink(error) || !at->is_regular_file(error)) continue;
     const auto kind = kind_of(at->path().filename().string());

@@ -46,6 +46,10 @@ std::filesystem::path unfinished_name(std::filesystem::path name) {
   return name;
 }
 
+bool is_unfinished(const std::filesystem::path& place) {
+  return writer_of(place.filename().string()).has_value();
+}
+
 WriteMark::WriteMark(const std::filesystem::path& place) {
   if (is_folder(place)) {
     descriptor_ = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

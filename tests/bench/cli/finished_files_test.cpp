@@ -104,20 +104,31 @@ struct Killed {
   const char* name;
   const char* words;
   const char* last_file;
+  const char* before = "";  ///< a line that makes what it reads
 };
+
+#define KERF_ABX KERF_SOURCE_DIR "/examples/sessions/abx.protocol.toml"
+constexpr auto make_a_cut =
+    "\"$kerf\" record --device sim:scissors --virtual --seconds 2 -o cut.h5 >/dev/null; ";
+constexpr auto make_a_session =
+    "\"$kerf\" session key k.key >/dev/null; "
+    "\"$kerf\" session new " KERF_ABX
+    " --subject S01 --key-file k.key --no-check -o s.h5 >/dev/null; "
+    "\"$kerf\" session run s.h5 --key-file k.key --rehearse --no-check >/dev/null 2>&1; ";
 
 class KilledWhileItWrites : public FinishedFiles, public testing::WithParamInterface<Killed> {};
 
 TEST_P(KilledWhileItWrites, LeavesAllOrNothingAndTheNextOneClearsUp) {
   schema::write_recording(folder_ / "r.h5", test::punch());
   const std::string line =
-      std::string("\"$kerf\" ") + GetParam().words +
+      GetParam().before + std::string("\"$kerf\" ") + GetParam().words +
       " >/dev/null & child=$!; while kill -0 $child 2>/dev/null && ! ls -d out* >/dev/null 2>&1; do :; done; "
       "kill -9 $child 2>/dev/null; wait $child; true";
   (void)in_shell(line);
   const bool is_whole = fs::exists(folder_ / "out" / GetParam().last_file);
   EXPECT_EQ(fs::exists(folder_ / "out"), is_whole);
   const std::vector<std::string> left = unfinished();
+  EXPECT_TRUE(is_whole || !left.empty()) << "it began to write";
   const Outcome next = in_shell("\"$kerf\" train --example -o t.csv");
   EXPECT_EQ(next.exit_status, 0);
   for (const std::string& name : left) EXPECT_THAT(next.errors, HasSubstr(name + ": removed"));
@@ -126,18 +137,28 @@ TEST_P(KilledWhileItWrites, LeavesAllOrNothingAndTheNextOneClearsUp) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, KilledWhileItWrites,
-    testing::Values(Killed{"Demo", "demo -o out", "report.html"},
-                    Killed{"Fit", "fit r.h5 --models kelvin -o out", "fit.json"},
-                    Killed{"Stability", "stability --no-cells -o out", "stability.json"},
-                    Killed{"Choose", "choose r.h5 --no-loop -o out", "choose.json"},
-                    Killed{"Analyze",
-                           "session analyze " KERF_SOURCE_DIR
-                           "/examples/sessions/okamura2003-table-1.csv --bootstrap 0 -o out",
-                           "analysis.html"},
-                    Killed{"Regress",
-                           "regress run " KERF_SOURCE_DIR
-                           "/examples/regress/kerf.toml --only kelvin --no-cost -o out",
-                           "regress.html"}),
+    testing::Values(
+        Killed{"Demo", "demo -o out", "report.html"},
+        Killed{"Chart", "chart cut.h5 --laws kelvin,exponential --no-folds --no-cold -o out", "chart.html",
+               make_a_cut},
+        Killed{"Reproduce", "reproduce Okamura2003 -o out", "claims.json"},
+        Killed{"Replay", "replay cut.h5 --through " KERF_SOURCE_DIR "/examples/kelvin.law.toml -o out",
+               "replay.html", make_a_cut},
+        Killed{"Simulate", "session simulate " KERF_ABX " --experiments 20 --no-curve -o out",
+               "simulate.html"},
+        Killed{"Open", "session open s.h5 --key-file k.key -o out", "trials.csv", make_a_session},
+        Killed{"Study", "session new " KERF_ABX " --subjects 8 --key-file k.key --no-check -o out", "S08.h5",
+               "\"$kerf\" session key k.key >/dev/null; "},
+        Killed{"Fit", "fit r.h5 --models kelvin -o out", "fit.json"},
+        Killed{"Stability", "stability --cells 10 -o out", "stability.json"},
+        Killed{"Choose", "choose r.h5 --no-loop -o out", "choose.json"},
+        Killed{"Analyze",
+               "session analyze " KERF_SOURCE_DIR
+               "/examples/sessions/okamura2003-table-1.csv --bootstrap 0 -o out",
+               "analysis.html"},
+        Killed{"Regress",
+               "regress run " KERF_SOURCE_DIR "/examples/regress/kerf.toml --only kelvin --no-cost -o out",
+               "regress.html"}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST_F(FinishedFiles, AnOutputNeedsAName) {

@@ -9,6 +9,9 @@ namespace kerf::schema {
 /// The name of what this process writes until it has its final name: NAME.writing-PID, beside it.
 [[nodiscard]] std::filesystem::path unfinished_name(std::filesystem::path name);
 
+/// Whether a file or a folder has such a name, of whichever process.
+[[nodiscard]] bool is_unfinished(const std::filesystem::path& place);
+
 /// Says to other processes that this one is writing a file or filling a folder, for as long as it lives; the
 /// system takes it back when the process dies. On file systems without locks it says nothing.
 class WriteMark {

@@ -145,6 +145,14 @@ TEST_F(StudioResults, EarlierOnesStayUnderTheirNames) {
               testing::ElementsAre("punch-2.fit", "punch-3.fit", "punch.fit", "punch.h5"));
 }
 
+TEST_F(StudioResults, WhatAKilledStudioLeftUnfinishedGoes) {
+  constexpr auto nobody = "2147483647";  // is no process
+  std::filesystem::create_directory(folder_ / (std::string("punch.chart.writing-") + nobody));
+  EXPECT_EQ(run(fit_job(workspace_, {.recording = entry(), .models = {"kelvin"}, .folds = 0}))["state"],
+            "done");
+  EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("punch.fit", "punch.h5"));
+}
+
 TEST_F(StudioResults, NothingIsLeftOfOneThatFailedOrWasStopped) {
   const json failed = run(fit_job(workspace_, {.recording = entry(), .axis = "theta"}));
   EXPECT_EQ(failed["state"], "failed");

@@ -59,11 +59,12 @@ TEST_F(WorkspaceOfALab, KnowsFilesByTheirNamesAndWhatIsInThem) {
                                    "recording cut.h5.partial"));
 }
 
-TEST_F(WorkspaceOfALab, LeavesOutWhatIsHiddenDeepOrLeadsOutside) {
+TEST_F(WorkspaceOfALab, LeavesOutWhatIsHiddenUnfinishedDeepOrLeadsOutside) {
   const test::TemporaryFolder outside;
   put(outside.path() / "secret.law.toml");
   put(folder_.path() / ".hidden.law.toml");
   put(folder_.path() / ".git" / "x.law.toml");
+  put(folder_.path() / "cut.fit.writing-77" / "x.law.toml");
   put(folder_.path() / "1/2/3/4/deep.law.toml");
   put(folder_.path() / "1/2/3/4/5/deeper.law.toml");
   fs::create_symlink(outside.path() / "secret.law.toml", folder_.path() / "link.law.toml");
