@@ -13,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/sessions/session/blind_run.h"
+#include "bench/sessions/session/full_disk_subjects.h"
 #include "protocol/samples.h"
 #include "sealed/journal.h"
-#include "support/full_disk.h"
 
 namespace kerf::bench {
 namespace {
@@ -132,61 +132,11 @@ TEST(RunSession, NeverStepsPastTheSlewLimitWhereverItIsSwitched) {
   }
 }
 
-/// A disk that is full when the second answer is given.
-class FullAsItAnswers : public RehearsalSubject {
- public:
-  FullAsItAnswers(SessionStore& store, std::filesystem::path journal)
-      : RehearsalSubject(7), store_(store), journal_(std::move(journal)) {}
-  std::optional<SubjectAction> next() override {
-    const auto action = RehearsalSubject::next();
-    if (action && action->kind == Kind::answer && store_.trials().size() == 1 && !disk_)
-      disk_.emplace(std::filesystem::file_size(journal_) + 100);
-    return action;
-  }
-
- protected:
-  [[nodiscard]] std::size_t answered() const { return store_.trials().size(); }
-  void make_room() { disk_.reset(); }
-
- private:
-  SessionStore& store_;
-  std::filesystem::path journal_;
-  std::optional<kerf::test::FullDisk> disk_;
-};
-
-/// And is full for two more.
-class FullWhileItAnswers : public FullAsItAnswers {
- public:
-  using FullAsItAnswers::FullAsItAnswers;
-  void show(const SubjectView& view) override {
-    notice_ = view.notice;
-    may_answer_ = view.may_answer;
-    RehearsalSubject::show(view);
-  }
-  std::optional<SubjectAction> next() override {
-    return notice_.empty() ? FullAsItAnswers::next() : answer_again();
-  }
-  [[nodiscard]] int refusals() const { return refusals_; }
-
- private:
-  std::optional<SubjectAction> answer_again() {
-    EXPECT_THAT(notice_, HasSubstr("could not be stored (File too large). Please call the experimenter"));
-    EXPECT_TRUE(may_answer_);
-    EXPECT_EQ(answered(), 1U);
-    if (++refusals_ == 3) make_room();
-    return SubjectAction{.kind = Kind::answer, .slot = 1};
-  }
-
-  std::string notice_;
-  bool may_answer_ = false;
-  int refusals_ = 0;
-};
-
 TEST(RunSession, KeepsTheQuestionOpenWhileItsAnswerCannotBeStored) {
   test::BlindRun session(abx());
   {
     SessionStore running = session.store(SessionStore::Purpose::run);
-    FullWhileItAnswers subject(running, journal_of(session.file()));
+    test::FullWhileItAnswers subject(running, journal_of(session.file()));
     EXPECT_EQ(test::BlindRun::run(running, subject).end, SessionEnd::finished);
     EXPECT_EQ(subject.refusals(), 3);
     running.close();
@@ -200,10 +150,25 @@ TEST(RunSession, KeepsTheQuestionOpenWhileItsAnswerCannotBeStored) {
   EXPECT_NEAR(again.response_s, store.trial(0).response_s, 0.1) << "the first answer's, not the last one's";
 }
 
+TEST(RunSession, TakesTheAnswerAgainAtATerminal) {
+  test::BlindRun session(abx());
+  {
+    SessionStore running = session.store(SessionStore::Purpose::run);
+    test::TypedAtATerminal subject(running, journal_of(session.file()));
+    EXPECT_EQ(test::BlindRun::run(running, subject).end, SessionEnd::finished);
+    EXPECT_EQ(subject.refusals(), 3);
+    EXPECT_THAT(subject.screen(), HasSubstr("could not be stored"));
+    running.close();
+  }
+  const SessionStore store = session.read();
+  ASSERT_EQ(store.trials().size(), 4U);
+  EXPECT_EQ(store.trials()[1].answer, 1U);
+}
+
 TEST(RunSession, IsLeftByARehearsalWhoseDiskStaysFull) {
   test::BlindRun session(abx());
   SessionStore running = session.store(SessionStore::Purpose::run);
-  FullAsItAnswers subject(running, journal_of(session.file()));
+  test::FullAsItAnswers subject(running, journal_of(session.file()));
   EXPECT_THROW((void)test::BlindRun::run(running, subject), std::system_error);
   EXPECT_EQ(running.trials().size(), 1U);
 }
