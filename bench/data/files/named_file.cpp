@@ -18,7 +18,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr int longest_silence_s = 10;                              ///< of a pipe
 constexpr std::uintmax_t worth_asking = std::uintmax_t{1} << 20U;  ///< for memory [bytes]
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string_view why) {
@@ -51,8 +50,10 @@ std::string in_words(std::uintmax_t bytes) {
 }  // namespace
 
 // Without O_NONBLOCK a FIFO is waited for until somebody writes to it; O_NOCTTY lets no terminal become ours.
-NamedFile::NamedFile(const std::filesystem::path& file)
-    : file_(file), descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
+NamedFile::NamedFile(const std::filesystem::path& file, std::chrono::milliseconds silence)
+    : file_(file),
+      longest_silence_(silence),
+      descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
   if (descriptor_ < 0 && errno == ENOENT) refuse(file, "no such file");
   if (descriptor_ < 0) refuse_unreadable(file);
   struct stat facts {};
@@ -72,11 +73,11 @@ void NamedFile::wait_for_a_writer() const {
   pollfd pipe{.fd = descriptor_, .events = POLLIN, .revents = 0};
   int ready = 0;
   do {
-    ready = poll(&pipe, 1, longest_silence_s * 1000);
+    ready = poll(&pipe, 1, static_cast<int>(longest_silence_.count()));
   } while (ready < 0 && errno == EINTR);
   if (ready == 0)
-    refuse(file_,
-           fmt::format("nothing came through the pipe for {} s; is its writer at work?", longest_silence_s));
+    refuse(file_, fmt::format("nothing came through the pipe for {:g} s; is its writer at work?",
+                              std::chrono::duration<double>(longest_silence_).count()));
 }
 
 std::size_t NamedFile::read(void* bytes, std::size_t room) const {

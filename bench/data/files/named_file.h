@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -21,8 +22,11 @@ struct LargestInput {
 /// would hang or have no end.
 class NamedFile {
  public:
+  /// A pipe that stays silent for longer is given up.
+  static constexpr std::chrono::milliseconds longest_silence{10'000};
+
   /// @throws std::invalid_argument with its name: missing, a folder, a device, not to be read.
-  explicit NamedFile(const std::filesystem::path& file);
+  explicit NamedFile(const std::filesystem::path& file, std::chrono::milliseconds silence = longest_silence);
   NamedFile(const NamedFile&) = delete;
   NamedFile& operator=(const NamedFile&) = delete;
   ~NamedFile();
@@ -31,8 +35,8 @@ class NamedFile {
   [[nodiscard]] bool is_pipe() const noexcept { return is_pipe_; }
   /// Of a regular file, when it was opened [bytes]; 0 of a pipe.
   [[nodiscard]] std::uintmax_t size() const noexcept { return size_; }
-  /// Up to `room` bytes; 0 at the end. A pipe that stays silent for 10 s is given up.
-  /// @throws std::invalid_argument for such a pipe; std::system_error.
+  /// Up to `room` bytes; 0 at the end.
+  /// @throws std::invalid_argument for a pipe that stays silent; std::system_error.
   [[nodiscard]] std::size_t read(void* bytes, std::size_t room) const;
   /// All that can be read. @throws as read(); std::invalid_argument if that is more than `at_most` bytes;
   ///         std::system_error if there is no memory for it.
@@ -44,6 +48,7 @@ class NamedFile {
   void wait_for_a_writer() const;
 
   std::filesystem::path file_;
+  std::chrono::milliseconds longest_silence_;
   int descriptor_;
   bool is_pipe_ = false;
   std::uintmax_t size_ = 0;

@@ -1,6 +1,7 @@
 #include "files/named_file.h"
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -80,6 +81,14 @@ TEST(NamedFile, MayBeAPipeThatIsHandedOver) {
   HandedOver ended;
   ended.close_writer();
   EXPECT_EQ(read_named_file(ended.name()), "");
+}
+
+TEST(NamedFile, IsGivenUpWhereItsPipeStaysSilent) {
+  HandedOver pipe;
+  pipe.write_text("the beginning");
+  const NamedFile file(pipe.name(), std::chrono::milliseconds(20));
+  EXPECT_THAT(refusal([&] { (void)file.read_all(LargestInput::text); }),
+              EndsWith(": nothing came through the pipe for 0.02 s; is its writer at work?"));
 }
 
 TEST(NamedFile, IsNoFifoOrDeviceThatIsMerelyNamed) {
