@@ -1,25 +1,16 @@
-#include <cstring>
-
 #include "fuzz/hdf5/checks.h"
 #include "fuzz/hdf5/seeds.h"
+#include "fuzz/overwritten.h"
 #include "fuzz/target.h"
 
 namespace kerf::fuzz {
 namespace {
 
-/// A sound file with bytes overwritten: the first byte says which file, then come pieces, each where, how
-/// long and what.
+/// A sound file with bytes overwritten: the first byte says which file.
 void fuzz_hdf5_bytes(Bytes bytes) {
   if (bytes.empty()) return;
-  std::string whole = seed_files().bytes(bytes.front() % SeedFiles::count);
-  for (bytes = bytes.subspan(1); bytes.size() > 3;) {
-    const std::size_t at = (bytes[0] * 256U + bytes[1]) % whole.size();
-    const std::size_t length =
-        std::min({1 + bytes[2] % std::size_t{16}, bytes.size() - 3, whole.size() - at});
-    std::memcpy(whole.data() + at, bytes.data() + 3, length);
-    bytes = bytes.subspan(3 + length);
-  }
-  check_readers(seed_files().folder().write("fuzz.h5", whole));
+  const std::string& sound = seed_files().bytes(bytes.front() % SeedFiles::count);
+  check_readers(seed_files().folder().write("fuzz.h5", overwritten(sound, bytes.subspan(1))));
 }
 
 const Registered registered("hdf5_bytes", fuzz_hdf5_bytes);
