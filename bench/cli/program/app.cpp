@@ -152,13 +152,13 @@ int finish(const Context& context) {
 /// The program as command lines know it.
 class Program {
  public:
-  Program() {
+  explicit Program(bool runs) : context_{.runs = runs} {
     app_.set_version_flag("--version", software());
     app_.require_subcommand(1);
     add_verbs(app_, context_);
   }
 
-  /// Runs the verb, or says what --help and --version give.
+  /// Runs the verb, if any is to be run, or says what --help and --version give.
   /// @throws std::invalid_argument for words that are no command line; as the verb does.
   [[nodiscard]] std::string take(std::vector<std::string> words) {
     if (!words.empty() && words.front() == "help") {
@@ -179,24 +179,15 @@ class Program {
     }
   }
 
-  /// From now on a command line is read and its verb does nothing.
-  void run_nothing() { run_nothing(app_); }
   [[nodiscard]] const Context& context() const noexcept { return context_; }
 
  private:
-  static void run_nothing(CLI::App& app) {
-    for (CLI::App* const verb : app.get_subcommands([](CLI::App*) { return true; })) {
-      verb->callback({});
-      run_nothing(*verb);
-    }
-  }
-
   Context context_;
   CLI::App app_{"Kerf: a hardware-in-the-loop test bench for haptic rendering of cutting", "kerf"};
 };
 
 int run_words(const std::vector<std::string>& words) {
-  Program program;
+  Program program(true);
   const std::string help = program.take(words);
   const Context& context = program.context();
   if (!help.empty()) {
@@ -239,11 +230,7 @@ void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_term
 
 void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
 
-std::string read_command_line(const std::vector<std::string>& words) {
-  Program program;
-  program.run_nothing();
-  return program.take(words);
-}
+std::string read_command_line(const std::vector<std::string>& words) { return Program(false).take(words); }
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();

@@ -15,6 +15,7 @@ enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error 
 /// What every verb is given beside its own options.
 // NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw
 struct Context {
+  bool runs = true;               ///< false: command lines are read, and no verb does anything
   bool json = false;              ///< print one JSON object on standard output and nothing else there
   std::uint64_t seed = 1;         ///< of every random choice
   bool seed_given = false;        ///< by --seed

@@ -105,7 +105,7 @@ Verb add_verb(CLI::App& app, Context& context, const std::string& name, const st
       subcommand->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
   subcommand->callback([&context, seed, run = std::move(action)] {
     context.seed_given = seed->count() > 0;
-    run();
+    if (context.runs) run();
   });
   return verb;
 }
