@@ -5,7 +5,8 @@ has none. What no test could tell (comments, the text of messages, includes, sta
 """
 
 import re
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 
@@ -16,14 +17,29 @@ class Mutant:
     begin: int  # in the line, from 0
     end: int
     new: str
+    source: str = field(compare=False)  # the line
+    nth: int = field(default=0, compare=False)  # of those in this file that make the same of the same text, from 0
+
+    @property
+    def text(self) -> str:
+        return self.source.strip()
+
+    @property
+    def becomes(self) -> str:
+        return self.changed().strip()
+
+    @property
+    def identity(self) -> tuple[str, str, str, int]:
+        """What stays while other lines of the file change."""
+        return self.file, self.text, self.becomes, self.nth
+
+    def changed(self) -> str:
+        return self.source[: self.begin] + self.new + self.source[self.end :]
 
     def applied_to(self, text: str) -> str:
         lines = text.split("\n")
-        lines[self.line - 1] = self.changed(lines[self.line - 1])
+        lines[self.line - 1] = self.changed()
         return "\n".join(lines)
-
-    def changed(self, line: str) -> str:
-        return line[: self.begin] + self.new + line[self.end :]
 
 
 # A pattern whose group 1 is replaced, and by what.
@@ -90,11 +106,18 @@ def changes_of(line: str):
 
 def mutants_of(root: Path, file: str) -> list[Mutant]:
     shown = (root / file).read_text().split("\n")
-    found = []
+    found = set()
     for number, line in enumerate(masked("\n".join(shown)).split("\n"), 1):
+        source = shown[number - 1]
         for begin, end, new in changes_of(line):
             if new == "(!(":
                 behind = behind_bracket(line, begin)
-                new, end = f"(!{shown[number - 1][begin:behind]})", behind
-            found.append(Mutant(file, number, begin, end, new))
-    return sorted(set(found))
+                new, end = f"(!{source[begin:behind]})", behind
+            found.add(Mutant(file, number, begin, end, new, source))
+    alike = Counter()
+    numbered = []
+    for mutant in sorted(found):
+        key = (mutant.text, mutant.becomes)
+        numbered.append(replace(mutant, nth=alike[key]))
+        alike[key] += 1
+    return numbered

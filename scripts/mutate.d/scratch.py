@@ -1,15 +1,31 @@
 """The copy of the tree in which mutants are built and tried, so that the tree itself is never touched."""
 
 import fcntl
+import json
 import os
 import signal
 import subprocess
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
+from results import ENDLESS, KILLED, LIVES
 from rooms import Room
 
 MOST_SECONDS = 20.0  # of a test that counts; who waits for the program does so for ever
+
+
+def batches(seconds: dict[str, float]) -> Iterator[tuple[list[str], float]]:
+    """Tests that are run together, the quick ones first, each batch about as long as all before it: most mutants die early."""
+    batch, before, within = [], 0.0, 0.0
+    for case in sorted(seconds, key=seconds.__getitem__):
+        batch.append(case)
+        within += seconds[case]
+        if within >= max(1.0, before):
+            yield batch, within
+            batch, before, within = [], before + within, 0.0
+    if batch:
+        yield batch, within
 
 
 class Scratch:
@@ -20,7 +36,7 @@ class Scratch:
         self.source = root / "build/mutate/source"
         self.build = root / "build/mutate/build"
         self.jobs = jobs
-        self.bases: dict[str, tuple[list[str], float]] = {}  # of a program: tests that hold, seconds
+        self.bases: dict[str, dict[str, float]] = {}  # of a program: seconds of each test that holds
 
     def files(self) -> list[str]:
         listed = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=self.root,
@@ -63,16 +79,27 @@ class Scratch:
                               check=False).returncode == 0
 
     def take_bases(self, room: Room) -> None:
-        """Learns which tests hold without a mutant, and how long they take, each by itself: some wait for the program for ever."""
+        """Learns which tests hold without a mutant, and how long they take, each by itself: some wait for the program for ever.
+
+        What was learned is kept beside the program; of another version of it only the new tests are learned, unless one that held
+        does not any more.
+        """
         for program in room.programs:
-            if program not in self.bases:
-                holding, seconds = [], 0.0
-                for case in self.cases(program):
-                    start = time.monotonic()
-                    if self.run(program, [f"--gtest_filter={case}"], MOST_SECONDS) == 0:
-                        holding.append(case)
-                        seconds += time.monotonic() - start
-                self.bases[program] = (holding, seconds)
+            kept = self.build / f"{program}.tests.json"
+            known = json.loads(kept.read_text()) if kept.exists() else {}
+            cases = self.cases(program)
+            seconds = {case: known[case] if case in known else self.seconds_of(program, case) for case in cases}
+            self.bases[program] = {case: taken for case, taken in seconds.items() if taken is not None}
+            if self.verdict_by(program) != LIVES:
+                seconds = {case: self.seconds_of(program, case) for case in cases}
+                self.bases[program] = {case: taken for case, taken in seconds.items() if taken is not None}
+            kept.write_text(json.dumps(seconds))
+
+    def seconds_of(self, program: str, case: str) -> float | None:
+        """None if it does not hold."""
+        start = time.monotonic()
+        holds = self.run(program, [f"--gtest_filter={case}"], MOST_SECONDS) == 0
+        return time.monotonic() - start if holds else None
 
     def cases(self, program: str) -> list[str]:
         listed = subprocess.run([self.build / "bin" / program, "--gtest_list_tests"], check=True, capture_output=True, text=True)
@@ -86,18 +113,18 @@ class Scratch:
                 suite = name.strip()
         return found
 
-    def kills(self, room: Room) -> str:
-        """ "failed" or "endless"; empty if every test holds."""
-        for program in room.programs:
-            holding, seconds = self.bases[program]
+    def verdict(self, room: Room) -> str:
+        verdicts = (self.verdict_by(program) for program in room.programs)
+        return next((verdict for verdict in verdicts if verdict != LIVES), LIVES)
+
+    def verdict_by(self, program: str) -> str:
+        for cases, seconds in batches(self.bases[program]):
             flags = self.build / f"{program}.flags"
-            flags.write_text("--gtest_fail_fast\n--gtest_filter=" + ":".join(holding) + "\n")
+            flags.write_text("--gtest_fail_fast\n--gtest_filter=" + ":".join(cases) + "\n")
             status = self.run(program, [f"--gtest_flagfile={flags}"], 10.0 + 4.0 * seconds)
-            if status is None:
-                return "endless"
             if status != 0:
-                return "failed"
-        return ""
+                return ENDLESS if status is None else KILLED
+        return LIVES
 
     def run(self, program: str, arguments: list[str], seconds: float) -> int | None:
         """The exit status; none if it did not end in time."""

@@ -72,6 +72,16 @@ TEST_F(Regression, ComesBackBitForBit) {
   EXPECT_FALSE(all[1].tick_cost);
 }
 
+TEST_F(Regression, ComesBackHoweverManyPiecesItIsReadIn) {
+  StoredForces hour = sample_forces();
+  hour.name = "an hour";
+  for (int i = 0; i < 600'000; ++i) hour.force.push_back(0.5 * i);
+  write_regression(file_, {sample_forces(), hour});
+  const auto all = read_regression(file_);
+  ASSERT_THAT(all, SizeIs(2));
+  EXPECT_TRUE(all[1].force == hour.force);
+}
+
 TEST_F(Regression, IsCompressed) {
   StoredForces quiet{.name = "quiet", .channels = {{"theta", "N"}}};
   quiet.force.assign(100000, 0.0);

@@ -102,6 +102,11 @@ TEST(Validate, NamesMissingUnitsAndScale) {
                   violation("/samples/write_time", "no dimension scale", "/samples/time")));
 }
 
+TEST(Validate, NamesTimesThatAreNoScale) {
+  EXPECT_THAT(violations_after([](hid_t file) { test::remove_attribute(file, "/samples/time", "CLASS"); }),
+              Contains(violation("/samples/time", "no dimension scale", "a dimension scale")));
+}
+
 TEST(Validate, NamesUnitsThatDoNotFitTheAxes) {
   EXPECT_THAT(violations_after([](hid_t file) { test::set_text(file, "/samples/time", "units", "ms"); }),
               ElementsAre(violation("/samples/time attribute 'units'", "'ms'", "'s'")));
@@ -115,6 +120,12 @@ TEST(Validate, NamesAMissingAttribute) {
 TEST(Validate, NamesAnAttributeOfAnotherType) {
   EXPECT_THAT(violations_after([](hid_t file) { test::set_number(file, "/", "created", 3.0); }),
               ElementsAre(violation("/ attribute 'created'", "float64", "text")));
+}
+
+TEST(Validate, NamesAUnitOfAChannelThatIsNoText) {
+  EXPECT_THAT(
+      violations_after([](hid_t file) { test::set_number(file, "/samples/channels/a", "units", 3.0); }),
+      ElementsAre(violation("/samples/channels/a attribute 'units'", "float64", "one text")));
 }
 
 TEST(Validate, NamesWhatItDoesNotKnow) {

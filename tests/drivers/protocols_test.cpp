@@ -297,6 +297,10 @@ TEST(LabJackProtocol, SealsACommandAsItsVendorDoes) {
   EXPECT_FALSE(labjack_u6::stream_config(channels, 20.0)) << "its interval has 16 bits";
   EXPECT_FALSE(labjack_u6::stream_config(channels, 10000.0)) << "60 kS/s";
   EXPECT_FALSE(labjack_u6::stream_config({}, 1000.0));
+  channels.resize(labjack_u6::max_scan_channels);
+  EXPECT_TRUE(labjack_u6::stream_config(channels, 1000.0));
+  channels.emplace_back();
+  EXPECT_FALSE(labjack_u6::stream_config(channels, 1000.0));
 }
 
 labjack_u6::StreamPacket packet_of(std::uint8_t counter, std::uint64_t first, std::size_t samples) {

@@ -206,6 +206,7 @@ TEST(BladeThresholds, AreFoundFromThePeaksOfTheForce) {
     EXPECT_NEAR(estimate.value / cut_truth[k], 1.0, k == 3 ? 0.1 : 0.03) << estimate.info.name;
     EXPECT_NEAR(estimate.value, cut_truth[k], 5.0 * estimate.std_error) << estimate.info.name;
   }
+  EXPECT_GE(fit.phases.iterations, 1U);
   EXPECT_GT(fit.phases.ruptures.force_n.size(), 30U);
   EXPECT_GT(fit.phases.releases.force_n.size(), 20U);
   EXPECT_TRUE(fit.phases.settled);

@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -82,6 +83,54 @@ TEST(TestShare, IsSeenByNoFit) {
   EXPECT_NEAR(result.test_rmse, 1.0, 1e-5);
   EXPECT_NEAR(result.cv_rmse, 0.0, 1e-5);
   EXPECT_TRUE(std::isnan(fit("kelvin", strokes.series(true), {.folds = 0}).cv_rmse));
+}
+
+TEST(TestShare, IsSeenByNoErrorEither) {
+  constexpr std::size_t kept = 2250;
+  const Strokes one(3000, 0.02, kelvin, 1);
+  const Strokes two(3000, 0.02, kelvin, 2);
+  const auto begin_of = [](const Strokes& strokes) {
+    return Series{.time_s = std::span(strokes.time_s).first(kept),
+                  .penetration = std::span(strokes.penetration).first(kept),
+                  .velocity = std::span(strokes.velocity).first(kept),
+                  .force = std::span(strokes.force).first(kept),
+                  .cycle = {}};
+  };
+  const auto held_back =
+      fit("kelvin", std::array{one.series(), two.series()}, {.folds = 0, .test_share = 0.25});
+  const auto cut = fit("kelvin", std::array{begin_of(one), begin_of(two)}, {.folds = 0});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(held_back.parameters[i].value / cut.parameters[i].value, 1.0, 1e-6);
+    EXPECT_NEAR(held_back.parameters[i].std_error / cut.parameters[i].std_error, 1.0, 1e-3);
+  }
+}
+
+TEST(Table, IsAsUncertainAsItsNoiseMakesIt) {
+  const Law spring = Law::make("exponential", std::vector{1.0, 2.0, 1e-6});
+  const auto truth = fit("recording", Strokes(6000, 0.0, spring).series(), {.folds = 0});
+  const auto noisy = fit("recording", Strokes(6000, 0.02, spring).series(), {.folds = 0});
+  int known = 0;
+  for (std::size_t i = 0; i < noisy.parameters.size(); ++i) {
+    const Estimate& found = noisy.parameters[i];
+    if (!std::isfinite(found.std_error)) continue;
+    ++known;
+    EXPECT_LT(found.std_error, 0.1) << i;
+    EXPECT_LT(std::abs(found.value - truth.parameters[i].value), 6.0 * found.std_error) << i;
+  }
+  EXPECT_GT(known, static_cast<int>(noisy.parameters.size()) / 2);
+}
+
+TEST(Table, SettlesUnderALossThatForgives) {
+  const auto found =
+      fit("recording", Strokes(3000, 0.02, kelvin).series(), {.folds = 0, .loss = Loss::huber});
+  EXPECT_TRUE(found.converged);
+  EXPECT_GT(found.iterations, 1);
+  EXPECT_LT(found.iterations, 50) << "as many as it may take";
+}
+
+TEST(CrossValidation, ByTwoFoldsOfCyclesSeesTheNoiseAlone) {
+  const Strokes strokes(6000, 0.02, kelvin);
+  EXPECT_NEAR(fit("kelvin", strokes.series(true), {.folds = 2}).cv_rmse, 0.02, 1e-3);
 }
 
 TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {

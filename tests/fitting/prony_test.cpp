@@ -9,6 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "starts/scan.h"
+
 namespace kerf::fitting {
 namespace {
 
@@ -62,6 +64,18 @@ TEST(PronyStarts, BeginWithTheTimesThatMadeTheForce) {
   ASSERT_FALSE(times.empty());
   EXPECT_NEAR(times[0][0] / time_of_grid(2), 1.0, 1e-9);
   EXPECT_NEAR(times[0][1] / time_of_grid(7), 1.0, 1e-9);
+}
+
+TEST(PronyStarts, LeaveNothingOfAForceThatOneOfTheirFamilyMade) {
+  const std::vector<double> law{5.0, 8.0, time_of_grid(4)};
+  const Samples samples = Held(models::Law::make("maxwell", law, {{"arms", 1.0}})).samples();
+  const Problem problem = maxwell(1.0);
+  const auto families = prony_families(problem, samples, all_of(samples));
+  ASSERT_FALSE(families.empty());
+  const Start start = best_of_family(problem, samples, all_of(samples), families[0]);
+  EXPECT_NEAR(start.values[0], 5.0, 1e-6);
+  EXPECT_NEAR(start.values[1], 8.0, 1e-6);
+  EXPECT_NEAR(start.sum_of_squares, 0.0, 1e-6);
 }
 
 TEST(PronyStarts, BeginBesideATimeThatLiesBetweenTwo) {

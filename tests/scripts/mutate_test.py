@@ -10,7 +10,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts/mutate.d"))
 
+from drawn import in_order  # noqa: E402
 from mutants import mutants_of  # noqa: E402
+from results import EQUIVALENT, KILLED, LIVES, Results  # noqa: E402
 from rooms import ROOMS, room_of  # noqa: E402
 
 
@@ -18,8 +20,7 @@ def changed(text: str) -> set[str]:
     """What becomes of the lines of a source, each mutant for itself."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "x.cpp").write_text(text)
-        lines = text.split("\n")
-        return {mutant.changed(lines[mutant.line - 1]).strip() for mutant in mutants_of(Path(folder), "x.cpp")}
+        return {mutant.becomes for mutant in mutants_of(Path(folder), "x.cpp")}
 
 
 class Mutants(unittest.TestCase):
@@ -51,12 +52,52 @@ class Mutants(unittest.TestCase):
         self.assertIsNone(room_of("bench/studio/server/studio.cpp"))
 
 
+def mutants_in(text: str, file: str) -> list:
+    """Of a source that has this text, as if it stood there."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / file).parent.mkdir(parents=True)
+        (Path(folder) / file).write_text(text)
+        return mutants_of(Path(folder), file)
+
+
+class Draws(unittest.TestCase):
+    def test_give_each_room_its_share_however_many_are_drawn(self):
+        drivers = mutants_in("  x = a + b;\n" * 10, "drivers/src/x.cpp")
+        models = mutants_in("  x = a + b;\n" * 30, "models/src/x.cpp")
+        ordered = in_order(drivers + models, seed=1)
+        self.assertEqual(set(ordered), set(drivers + models))
+        for count in (4, 8, 20, 40):
+            self.assertEqual(sum(mutant.file.startswith("drivers/") for mutant in ordered[:count]), count // 4)
+
+    def test_hold_while_other_lines_change(self):
+        lines = [f"  x = a + {name};" for name in "bcdefg"]
+        before = in_order(mutants_in("\n".join(lines), "models/src/x.cpp"), seed=1)
+        after = in_order(mutants_in("\n".join(["int x = 0;", *lines]), "models/src/x.cpp"), seed=1)
+        old = {mutant.identity for mutant in before}
+        self.assertEqual([mutant.identity for mutant in before],
+                         [mutant.identity for mutant in after if mutant.identity in old])
+        self.assertNotEqual(before, in_order(before, seed=2))
+
+
+class Kept(unittest.TestCase):
+    def test_results_outlive_the_run_and_those_that_lived_can_be_forgotten(self):
+        first, second, third = mutants_in("  x = a + b;\n  y = a + b;", "models/src/x.cpp")[:3]
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "results.jsonl"
+            results = Results(path, set())
+            results.add(first, LIVES)
+            results.add(second, LIVES)
+            results.add(second, KILLED)
+            known = Results(path, {(third.file, third.text, third.becomes)})
+            self.assertEqual([known.of(mutant) for mutant in (first, second, third)], [LIVES, KILLED, EQUIVALENT])
+            known.forget(LIVES)
+            self.assertIsNone(known.of(first))
+
+
 class Equivalents(unittest.TestCase):
     def test_are_mutants_of_today_and_say_why(self):
         for entry in tomllib.loads((ROOT / "scripts/mutate.d/equivalent.toml").read_text()).get("mutant", []):
-            lines = (ROOT / entry["file"]).read_text().split("\n")
-            drawn = {(lines[mutant.line - 1].strip(), mutant.changed(lines[mutant.line - 1]).strip())
-                     for mutant in mutants_of(ROOT, entry["file"])}
+            drawn = {(mutant.text, mutant.becomes) for mutant in mutants_of(ROOT, entry["file"])}
             self.assertIn((entry["line"], entry["becomes"]), drawn, "no such mutant any more: take the entry away")
             self.assertTrue(entry["why"])
 

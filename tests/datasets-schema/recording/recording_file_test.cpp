@@ -60,6 +60,11 @@ TEST(RecordingFile, KnowsWhenItBeganAndEndedAndItsPeriod) {
   EXPECT_EQ(file.first_time_s(), recording.time.front());
   EXPECT_EQ(file.last_time_s(), recording.time.back());
   EXPECT_NEAR(file.period_s(), 1e-3, 1e-12);
+  for (std::size_t i = 0; i < 20'000; ++i)
+    recording.time[i] = 1e-3 * std::floor(0.25 * static_cast<double>(i));
+  write_recording(folder / "repeated.h5", recording);
+  EXPECT_NEAR(RecordingFile(folder / "repeated.h5").period_s(), 1e-3, 1e-12)
+      << "nor is a time that is told again";
   write_recording(folder / "empty.h5", test::sample_recording(0));
   const RecordingFile empty(folder / "empty.h5");
   EXPECT_TRUE(std::isnan(empty.first_time_s()));

@@ -171,6 +171,12 @@ TEST(SensedDevice, MeasuresByAnotherSimulatedDeviceToo) {
   EXPECT_TRUE(std::isfinite(sample.force_measured[5]));
 }
 
+TEST(SensedDevice, IsTheDeviceItselfWhereNoSensorIsNamed) {
+  const auto device = open_device("sim:pose6", "", {});
+  ASSERT_TRUE(device);
+  EXPECT_EQ(device->info().uri, "sim:pose6");
+}
+
 TEST(SensedDevice, AllocatesNothingInATick) {
   Pair pair({axis("x", "N"), axis("y", "N")});
   const test::NoAllocation guard;

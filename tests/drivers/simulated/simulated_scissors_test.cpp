@@ -38,6 +38,7 @@ TEST(Scissors, AreTheHapticScissorsOfThePapers) {
   const auto device = open_device("sim:scissors");
   const auto& axes = device->info().axes;
   ASSERT_EQ(axes.size(), 2U);
+  EXPECT_TRUE(device->info().measures_force);
   EXPECT_EQ(axes[0].name, "theta");
   EXPECT_NEAR(axes[0].resolution, 0.056 * std::acos(-1.0) / 180.0, 1e-15);
   EXPECT_NEAR(axes[0].force_limit * axes[0].lever, 0.280, 1e-12) << "280 mN·m";
@@ -104,6 +105,28 @@ TEST(Scissors, YieldToTheHandByTheForceOverItsStiffness) {
   const double pushed = samples(*pushed_device, 4000, {2.0}).back().position[0];
   // Coulomb friction of 0.1 N holds it within 0.1 / K of there.
   EXPECT_NEAR((pushed - rest) * SimulatedScissors::lever_m, 2.0 / 400.0, 0.1 / 400.0);
+}
+
+TEST(Scissors, SwingInAHandAsMassAndDampingOfItSay) {
+  // A push that begins: the heavier hand gives way later, the damped one swings back less.
+  const auto swing = [](const std::string& hand) {
+    const auto device = open_device("sim:scissors?encoder=off&grip=400N/m&pause=100s&" + hand);
+    const double rest = samples(*device, 1).back().position[0];
+    double first_m = 0.0;
+    double most_m = 0.0;
+    const auto pushed = samples(*device, 2000, {4.0});
+    for (std::size_t tick = 0; tick < pushed.size(); ++tick) {
+      most_m = std::max(most_m, (pushed[tick].position[0] - rest) * SimulatedScissors::lever_m);
+      if (tick == 10) first_m = most_m;
+    }
+    return std::pair{first_m, most_m};
+  };
+  const auto [light_first, light_most] = swing("mass=0kg&damping=0Ns/m");
+  const auto [heavy_first, heavy_most] = swing("mass=2kg&damping=0Ns/m");
+  const auto [damped_first, damped_most] = swing("mass=2kg&damping=200Ns/m");
+  EXPECT_LT(heavy_first, 0.5 * light_first);
+  EXPECT_GT(heavy_most, 1.3 * 4.0 / 400.0) << "it swings past where it will rest";
+  EXPECT_NEAR(damped_most, 4.0 / 400.0, 0.1 * 4.0 / 400.0);
 }
 
 TEST(Scissors, TellTheirSpeedAsAFilteredDifference) {

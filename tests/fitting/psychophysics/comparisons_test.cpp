@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -54,6 +55,11 @@ TEST(Ranking, FindsTheWorthThatMadeExactCounts) {
   EXPECT_NEAR(found.worth[2] - found.worth[1], std::log(2.0), 1e-9);
   EXPECT_NEAR(found.worth[0] + found.worth[1] + found.worth[2], 0.0, 1e-12);
   EXPECT_NEAR(found.deviance, 0.0, 1e-8);
+}
+
+TEST(Ranking, IsCertainOfTheSumOfItsWorths) {
+  const Ranking found = rank(baseball());
+  for (const auto& row : found.covariance) EXPECT_NEAR(std::reduce(row.begin(), row.end()), 0.0, 1e-9);
 }
 
 TEST(Ranking, OfEqualItemsIsNoAlarm) {

@@ -151,6 +151,8 @@ TEST(SameDifferent, HasTheErrorThatCountsGive) {
   const double by_hits = same_different({60155, 100000}, {20000, 100000}).d_prime - found.d_prime;
   const double by_alarms = same_different({60000, 100000}, {20126, 100000}).d_prime - found.d_prime;
   EXPECT_NEAR(found.standard_error, std::hypot(by_hits, by_alarms), 0.01 * found.standard_error);
+  EXPECT_NEAR(found.interval.lower, found.d_prime - 1.959964 * found.standard_error, 1e-6);
+  EXPECT_NEAR(found.interval.upper, found.d_prime + 1.959964 * found.standard_error, 1e-6);
 }
 
 TEST(DPrime, RefusesWhatCannotBe) {

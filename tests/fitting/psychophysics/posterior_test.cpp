@@ -82,6 +82,7 @@ TEST(Posterior, RefusesWhatItDoesNotKnow) {
   EXPECT_THROW((void)posterior_threshold(levels, {.axis = Axis::linear}), std::invalid_argument);
   EXPECT_THROW((void)posterior_threshold(levels, {.overdispersed = true}), std::invalid_argument);
   EXPECT_THROW((void)posterior_threshold(levels, {.criterion = 0.4}), std::invalid_argument);
+  EXPECT_THROW((void)posterior_threshold(levels, {.guess = -0.1}), std::invalid_argument);
   const std::vector<Level> zero{{0.0, {8, 15}}};
   EXPECT_THROW((void)posterior_threshold(zero, {}), std::invalid_argument);
 }

@@ -64,6 +64,12 @@ TEST(ColumnMap, SuggestsOneByTheUnitsThatAreKnownAndElseByPlace) {
   EXPECT_EQ(suggest_map(layout), "--map 'position=3[mm],force=2[N]' --rate 100");
 }
 
+TEST(ColumnMap, IsMadeFromColumnsThatAreShownByTheirNumbers) {
+  const TextLayout layout{.separator = ',', .columns = {{"t [s]", "t", "s"}, {}}};
+  EXPECT_EQ(describe_columns(layout, "0,1\n1,2\n2,3\n3,4\n"),
+            "  1  t [s]: 0 1 2 ...\n  2  (no name): 1 2 3 ...");
+}
+
 TEST(ColumnMap, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal("time"), HasSubstr("'time' has no '='; expected CHANNEL=COLUMN[unit]"));
   EXPECT_THAT(refusal("=1[s]"), HasSubstr("no channel name"));

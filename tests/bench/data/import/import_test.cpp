@@ -63,10 +63,20 @@ TEST(Import, ReportsLinesThatAreNotDataByTheirNumbers) {
   EXPECT_THROW((void)imported("0,1,2\nx\n1,1,2\n", {.strict = true}), std::invalid_argument);
 }
 
+TEST(Import, TakesNoNumberThatGoesOnAsAWord) {
+  const Imported result = imported("0 1 2\n1 2x 3\n2 3 4\n");
+  EXPECT_THAT(result.recording.time, ElementsAre(0.0, 2.0));
+  EXPECT_THAT(result.bad_lines, ElementsAre(2U));
+}
+
 TEST(Import, IgnoresWhatStandsInColumnsThatAreNotMapped) {
   const Imported result = imported("0\t1\t2\t\\\n1\t1\t2\t\n2\t1\t2\tx\t9\n3\t1\t2\n");
   EXPECT_EQ(result.recording.rows(), 4U);
   EXPECT_TRUE(result.bad_lines.empty());
+  const Imported between =
+      imported("0,ham,1,2\n1,\"egg, spam\",3,4\n", {}, "time=1[s],position=3[mm],force=4[N]");
+  EXPECT_TRUE(between.bad_lines.empty());
+  EXPECT_THAT(between.recording.force_measured, ElementsAre(2.0, 4.0));
 }
 
 TEST(Import, ReadsAColumnAsOftenAsItIsMapped) {

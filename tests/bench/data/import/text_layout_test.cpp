@@ -46,6 +46,19 @@ TEST(TextLayout, FindsPreambleHeaderAndUnits) {
   EXPECT_EQ(layout.columns[3].name, "Strain (Ext)");
 }
 
+TEST(TextLayout, TakesUnitsInEitherKindOfBracketsAlsoWithoutAHeader) {
+  const TextLayout named = layout_of("t,x,F\n[s],[mm],[N]\n0,1,2\n1,2,3\n");
+  EXPECT_EQ(named.header_line, 1U);
+  EXPECT_EQ(named.units_line, 2U);
+  EXPECT_EQ(named.columns[2].unit, "N");
+  const TextLayout nameless = layout_of("(s),(mm)\n0,1,2\n1,2,3\n");
+  EXPECT_EQ(nameless.header_line, 0U);
+  EXPECT_EQ(nameless.units_line, 1U);
+  ASSERT_EQ(nameless.columns.size(), 3U);
+  EXPECT_EQ(nameless.columns[1].unit, "mm");
+  EXPECT_EQ(nameless.columns[2].unit, "") << "units of fewer columns than there are";
+}
+
 TEST(TextLayout, FindsUnitsInTheHeader) {
   const TextLayout layout = layout_of("% comment\n%t_s, Angle [deg], Load (N), count\n0,1,2,3\n1,2,3,4\n");
   EXPECT_EQ(layout.columns[0].name, "t_s");
@@ -63,6 +76,7 @@ TEST(TextLayout, ReadsHeadersInOtherEncodings) {
   EXPECT_EQ(layout_of("temps,d\xE9placement [\xB5m]\n1,2\n3,4\n").columns[1].name, "déplacement")
       << "Latin-1";
   EXPECT_EQ(layout_of("temps,d\xE9placement [\xB5m]\n1,2\n3,4\n").columns[1].unit, "µm");
+  EXPECT_EQ(layout_of("temps,𝜃\n1,2\n3,4\n").columns[1].name, "𝜃") << "UTF-8 of four bytes";
   EXPECT_EQ(layout_of("\xEF\xBB\xBFtime,x\n1,2\n3,4\n").columns[0].name, "time")
       << "the byte order mark is not part of it";
 }

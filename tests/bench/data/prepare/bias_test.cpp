@@ -80,6 +80,13 @@ TEST(Bias, DriftNeedsFreeRowsAtBothEnds) {
   EXPECT_NO_THROW((void)remove_bias(made.recording, made.free, false));
 }
 
+TEST(Bias, DriftOfWhatBeganInContactIsRefusedToo) {
+  Drifting made;
+  for (std::size_t i = 0; i < 400; ++i) made.free[i] = false;
+  EXPECT_THAT([&] { (void)remove_bias(made.recording, made.free, true); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("0 free rows in the first quarter")));
+}
+
 TEST(Bias, NeedsFreeRowsAndAMeasuredForce) {
   Drifting made;
   EXPECT_THAT([&] { (void)remove_bias(made.recording, std::vector<bool>(1001, false), false); },

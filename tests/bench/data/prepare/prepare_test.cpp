@@ -41,6 +41,7 @@ TEST(Prepare, StoresTheContactWhereTheFitLooksForIt) {
   const Prepared prepared = prepare(presses(), {.bias = true, .drift = true, .onset = true});
   const schema::Recording& recording = prepared.recording;
   ASSERT_EQ(prepared.contacts->contacts.size(), 2U);
+  EXPECT_EQ(prepared.contact_signal, "depth");
   const models::Contact contact = contact_of(recording, 0);
   EXPECT_NEAR(contact.position, 0.005, 2e-5);
   EXPECT_EQ(contact.direction, -1.0);

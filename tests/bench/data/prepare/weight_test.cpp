@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "prepare/prepare.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -87,6 +89,17 @@ TEST(Weight, ThatIsKnownIsTakenOffWithoutTheBias) {
     ASSERT_NEAR(recording.force_measured[6 * row + 1], force_bias.y(), 1e-12);
     ASSERT_NEAR(recording.force_measured[6 * row + 5], torque_bias.z(), 1e-12);
   }
+}
+
+TEST(Weight, IsToldWithItsErrorWhereItWasEstimated) {
+  PrepareOptions options{.weight = true};
+  options.contact.free = {{.begin_s = 0.0, .end_s = 20.0}};
+  const std::string estimated = prepare(tilted(0.5, 0.4), options).steps.at(0);
+  EXPECT_THAT(estimated, HasSubstr("weight of 0.2 kg"));
+  EXPECT_THAT(estimated, HasSubstr("estimated with"));
+  options.weight_options = {.mass_kg = 0.2, .centre_m = {0.01, -0.02, 0.05}};
+  EXPECT_EQ(prepare(tilted(0.5, 0.4), options).steps.at(0),
+            "weight of 0.2 kg at 0.01, -0.02, 0.05 m taken off");
 }
 
 TEST(Weight, NeedsOrientationsThatDiffer) {

@@ -142,6 +142,15 @@ TEST(Probe, FindsExchangedMotorsAndSaysWhichAxisMoves) {
   EXPECT_EQ(probed.axes[2].judgement.instead, 0U);
 }
 
+TEST(Probe, PassesOverAnAxisWithoutAMotor) {
+  drivers::DeviceInfo info = drivers::open_device("sim:pose6")->info();
+  info.axes[1].force_limit = 0.0;
+  std::vector<std::size_t> axes;
+  const ProbeRendering rendering(info);
+  for (const ProbedAxis& probed : rendering.probed()) axes.push_back(probed.axis);
+  EXPECT_THAT(axes, testing::ElementsAre(0U, 2U, 3U, 4U, 5U));
+}
+
 TEST(Probe, PushesNoFartherAndNoHarderThanItSays) {
   struct Case {
     const char* uri;

@@ -84,6 +84,7 @@ TEST(PushJudgement, AnotherAxisThatMovesInsteadIsWrong) {
 TEST(PushJudgement, TakesThreePairsAtLeast) {
   EXPECT_EQ(judged({.along_x_m = 2e-3}, 2).verdict, PushVerdict::unknown);
   EXPECT_EQ(judged({.along_x_m = 2e-3}, 3).verdict, PushVerdict::right);
+  EXPECT_EQ(judged({.along_x_m = 2e-3}, 1).moved, 0.0) << "nor has it moved that anybody knows";
 }
 
 // By Student's table: t(5) at 99.9 % on both sides is 6.869.

@@ -158,6 +158,16 @@ TEST(Run, RefusesARateOutOfRangeAndALawOfOtherUnits) {
   EXPECT_THROW((void)run(options), std::invalid_argument);
 }
 
+TEST(Run, TellsAStopByAPersonFromASilence) {
+  const Stall stopped{.silent_ns = 2'500'000'000, .released_after_ns = 40'000'000, .suspended = true};
+  EXPECT_EQ(in_words(stopped), "the process was stopped for 2.5 s, after zero force");
+  const Stall released{.silent_ns = 2'500'000'000, .released_after_ns = 40'000'000};
+  EXPECT_EQ(in_words(released),
+            "the loop was silent for 2.5 s; the watchdog released the device after 0.04 s");
+  EXPECT_EQ(in_words({.silent_ns = 15'000'000}),
+            "the loop was silent for 0.015 s, and nobody released the device meanwhile");
+}
+
 TEST(Run, HasEveryTickOfItsRate) {
   for (const double rate_hz : {100.0, 333.0, 10'000.0}) {
     RunOptions options = virtual_seconds(2.0);

@@ -1,7 +1,9 @@
 #include "scene/scene.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -232,6 +234,15 @@ TEST(Scene, RefusesDeviceHandAndTrajectoryByLine) {
        {"kind = ", "seconds = { value = 0, unit = \"s\" }\nkind = ", "23", "'seconds' is 0 s"}});
 }
 
+TEST(Scene, MayReachTheLimitsOfWhatItAsksFor) {
+  const auto accepted = [](const std::string& line) {
+    return device_of(parse_scene(everything + line, "liver.toml"));
+  };
+  EXPECT_THAT(accepted("variation = 0\n"), HasSubstr("variation=0"));
+  EXPECT_THAT(accepted("stroke = { value = 100, unit = \"s\" }\n"), HasSubstr("stroke=100s"));
+  EXPECT_THAT(accepted("stroke = { value = 50, unit = \"ms\" }\n"), HasSubstr("stroke=0.05s"));
+}
+
 const std::string pose = R"([tissue]
 model = "kelvin"
 axis = "z"
@@ -241,6 +252,21 @@ series_stiffness = { value = 10.0, unit = "N/m" }
 damping = { value = 10.0, unit = "N·s/m" }
 [trajectory]
 )";
+
+TEST(Scene, IndentsOnceUnlessToldHowOften) {
+  const std::string indentation = pose + R"(kind = "indent"
+from = { value = 3, unit = "mm" }
+to = { value = -12, unit = "mm" }
+)";
+  const auto indentations = [](const std::string& text) {
+    const Scene scene = parse_scene(text, "liver.toml");
+    const auto& keyframes = std::get<drivers::PosePath::Options>(scene.trajectory.script).keyframes;
+    const auto is_deep = [](const drivers::PoseKeyframe& keyframe) { return keyframe.position[2] == -0.012; };
+    return std::ranges::count_if(keyframes, is_deep) / 2;  // it comes, and stays
+  };
+  EXPECT_EQ(indentations(indentation), 1);
+  EXPECT_EQ(indentations(indentation + "cycles = 3\n"), 3);
+}
 
 TEST(Scene, RefusesAnIndentationByLine) {
   expect_refusals(pose + R"(kind = "indent"
