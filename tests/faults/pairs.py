@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verbs import VERBS, Bench, Verb
-from whole_files import wrong_with
+from whole_files import names_in, wrong_with
 
 TIME_OUT_S = 60.0
 KILLED = -signal.SIGKILL
@@ -98,6 +98,11 @@ def wrong_with_party(party: Party) -> str:
     return ""
 
 
+def are_apart(references: list[Path]) -> bool:
+    """Folders that have no name in common."""
+    return all(one.is_dir() for one in references) and not set.intersection(*(names_in(one) for one in references))
+
+
 def try_pair(bench: Bench, pair: Pair, seed: int) -> str:
     """What does not hold when both want the name; nothing if all does."""
     drawn = random.Random(f"{pair} {seed}")
@@ -109,17 +114,23 @@ def try_pair(bench: Bench, pair: Pair, seed: int) -> str:
     for party in parties:
         if wrong := wrong_with_party(party):
             return wrong
+    deterministic = not any(verb.is_drawn for verb in verbs)
     done = [at for at, party in enumerate(parties) if party.status == 0]
     output = folder / pair.name
     is_changed_in_place = pair.name in pair.first.brings
     is_replaced = is_changed_in_place or any(verb.replaces for verb in verbs)
+    if are_apart(references):  # a folder keeps what both write
+        if wrong := wrong_with(bench.kerf, output, references, deterministic):
+            return f"{[party.status for party in parties]}: {wrong}"
+        lost = [verbs[at].name for at in done if not names_in(references[at]) <= names_in(output)]
+        return f"{lost[0]} ends with 0, and its results are not there" if lost else ""
     if len(done) == 2 and not is_replaced:
         return f"both end with 0, and there is one {pair.name}"
     if done and not output.exists():
         return f"{verbs[done[0]].name} ends with 0, and there is no {pair.name}"
     befores = [bench.inputs / pair.name] if is_changed_in_place else []
     whose = [references[at] for at in done] if len(done) == 1 and not is_replaced else references + befores
-    complaints = [wrong_with(bench.kerf, output, [one], not pair.first.is_drawn) for one in whose]
+    complaints = [wrong_with(bench.kerf, output, [one], deterministic) for one in whose]
     return "" if "" in complaints else f"{[party.status for party in parties]}: {complaints[0]}"
 
 

@@ -75,22 +75,30 @@ def wrong_with_file(kerf: Path, file: Path, references: list[Path], deterministi
     return "" if "" in complaints else complaints[0]
 
 
+def names_in(folder: Path) -> set[str]:
+    """Of all files in it, from there."""
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
 def wrong_with(kerf: Path, output: Path, references: list[Path], deterministic: bool = True) -> str:
-    """The first thing that is wrong with a file or a folder under a final name; nothing if it is not there or whole."""
+    """The first thing that is wrong with a file or a folder under a final name; nothing if it is not there or whole.
+
+    A folder may hold all files of one reference, or of all: results of other verbs stay.
+    """
     if not output.exists():
         return ""
     references = [one for one in references if one.exists()]
     if output.is_file():
         wrong = wrong_with_file(kerf, output, references, deterministic)
         return f"{output.name} {wrong}" if wrong else ""
-    names = {str(path.relative_to(output)) for path in output.rglob("*") if path.is_file()}
+    names = names_in(output)
     for name in sorted(names):
         alike = [one / name for one in references if (one / name).is_file()]
         if not alike:
             return f"{output.name}/{name} is a leftover"
         if wrong := wrong_with_file(kerf, output / name, alike, deterministic):
             return f"{output.name}/{name} {wrong}"
-    whole = [{str(path.relative_to(one)) for path in one.rglob("*") if path.is_file()} for one in references]
-    if names not in whole:
+    whole = [names_in(one) for one in references]
+    if names not in (*whole, set().union(*whole)):
         return f"{output.name} is filled in part: {sorted(min(whole, key=len) - names)} is missing"
     return ""

@@ -13,8 +13,8 @@
 #include "protocol/samples.h"
 #include "run/run.h"
 #include "sealed/session_store.h"
-#include "sealed/study_folder.h"
 #include "session/device_check.h"
+#include "session/study_folder.h"
 
 namespace kerf::bench {
 namespace {

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 namespace kerf::bench {
@@ -72,6 +75,28 @@ void move_into(const fs::path& from, const fs::path& to, schema::Existing existi
   }
 }
 
+/// Held by one program at a time that gives a folder in there its name. Another one waits, but not for ever:
+/// who holds it may be stopped, and a file system may know of no locks.
+class NamingTurn {
+ public:
+  explicit NamingTurn(const fs::path& parent)
+      : parent_(::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    constexpr int most_attempts = 200;
+    constexpr auto pause = std::chrono::milliseconds(20);
+    for (int i = 0; i < most_attempts && ::flock(parent_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+         ++i)
+      std::this_thread::sleep_for(pause);
+  }
+  NamingTurn(const NamingTurn&) = delete;
+  NamingTurn& operator=(const NamingTurn&) = delete;
+  ~NamingTurn() {
+    if (parent_ >= 0) ::close(parent_);
+  }
+
+ private:
+  int parent_;
+};
+
 }  // namespace
 
 WholeFolder::WholeFolder(fs::path folder, schema::Existing existing)
@@ -94,11 +119,16 @@ bool WholeFolder::has_name_of_ours() const {
 }
 
 void WholeFolder::commit() {
+  // Two that take each other's results over at once would each miss the other's.
+  const NamingTurn turn(folder_.parent_path());
   const bool joins = is_there(folder_) && (existing_ == schema::Existing::replace || !has_name_of_ours());
   if (!joins) return schema::take_name(std::exchange(path_, {}), folder_, schema::Existing::keep);
   if (path_.parent_path() == folder_.parent_path()) {
     take_over(folder_, path_);
-    if (exchange(path_, folder_)) return;  // what is left behind is removed
+    if (exchange(path_, folder_)) {
+      take_over(path_, folder_);  // what came meanwhile; the rest is removed
+      return;
+    }
   }
   const fs::path finished = std::exchange(path_, {});  // kept where it cannot be moved
   move_into(finished, folder_, existing_);

@@ -1,9 +1,12 @@
 #include "files/whole_folder.h"
 
 #include <filesystem>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "support/program.h"
 
@@ -58,6 +61,28 @@ TEST_F(WholeFolderTest, JoinsTheResultsOfOthers) {
   EXPECT_EQ(read_text(folder_ / "fits/points/theirs"), "theirs");
   EXPECT_EQ(read_text(folder_ / "fits/points/ours"), "ours");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "fits"), {}), 1);
+}
+
+TEST_F(WholeFolderTest, LosesNothingOfTwoThatJoinAtOnce) {
+  constexpr int rounds = 100;
+  const auto join = [this](const std::string& whose) {
+    for (int i = 0; i < rounds; ++i) {
+      WholeFolder fits(folder_ / "fits", Existing::keep);
+      write_text(fits.path() / (whose + std::to_string(i)), whose);
+      fits.commit();
+    }
+  };
+  const pid_t other = ::fork();
+  if (other == 0) {
+    join("theirs");
+    ::_exit(0);
+  }
+  join("ours");
+  int status = 1;
+  ASSERT_EQ(::waitpid(other, &status, 0), other);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "fits"), {}), 2 * rounds);
+  EXPECT_EQ(entries(), 1U);
 }
 
 TEST_F(WholeFolderTest, ReplacesTheSameNamesIfAsked) {

@@ -1,4 +1,4 @@
-#include "sealed/study_folder.h"
+#include "session/study_folder.h"
 
 #include <utility>
 
