@@ -15,7 +15,7 @@ UNCOMPILED = "does not compile"
 class Results:
     """A line of JSON a mutant, the last one counts; those that are known to be equivalent are not in the file."""
 
-    def __init__(self, path: Path, equivalents: set[tuple[str, str, str]]) -> None:
+    def __init__(self, path: Path, equivalents: set[tuple[str, str, str, int | None]]) -> None:
         self.path = path
         self.equivalents = equivalents
         self.verdicts: dict[tuple, str] = {}
@@ -25,7 +25,8 @@ class Results:
                 self.verdicts[tuple(identity)] = verdict
 
     def of(self, mutant: Mutant) -> str | None:
-        if (mutant.file, mutant.text, mutant.becomes) in self.equivalents:
+        *same, nth = mutant.identity
+        if (*same, None) in self.equivalents or (*same, nth) in self.equivalents:
             return EQUIVALENT
         return self.verdicts.get(mutant.identity)
 

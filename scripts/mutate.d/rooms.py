@@ -18,7 +18,7 @@ ROOMS = [
     Room("bench/data", ("kerf_data_test",)),
     Room("bench/runtime", ("kerf_runtime_test",),
          ("bench/runtime/record/push_benchmark.cpp", "bench/runtime/loop/blame_benchmark.cpp")),
-    Room("datasets-schema", ("schema_test",)),
+    Room("datasets-schema", ("schema_test", "power_cut_test")),
     # What speaks to hardware is held by tests/usb, in a guest.
     Room("drivers", ("kerf_drivers_test",),
          ("drivers/emulators", "drivers/guard", "drivers/src/usb", "drivers/src/falcon", "drivers/src/woodenhaptics",

@@ -242,6 +242,7 @@ TEST(WoodenHapticsProtocol, FollowsCountersBeyondSixteenBitsAndBelievesNoLeap) {
   EXPECT_FALSE(counters.take({raw, -5, 151, 0, 0, 0}, 150));
   EXPECT_TRUE(counters.take({raw, -4, 150, 9999, 0, 0}, 150)) << "the gimbal's are not followed";
   EXPECT_THAT(counters.count(), ElementsAre(true_count, -4, 150));
+  EXPECT_TRUE(counters.take({raw, -4, 0, 0, 0, 0}, 150)) << "as far one way as the other";
 }
 
 TEST(HidReportSizes, AreThoseOfTheLongestReportInEachDirection) {

@@ -9,6 +9,7 @@
 
 #include <kerf/fitting/blade.h>
 
+#include "blade/blade_peaks.h"
 #include "fitting/blade_strokes.h"
 
 namespace kerf::fitting {
@@ -195,6 +196,23 @@ const std::vector cut_truth{5.0, 2e4, 4e3, 500.0, 1e6, 6e5, 0.1, 0.3};
 
 models::Law cutting(const std::vector<double>& values = cut_truth) {
   return models::Law::make("blade", values, scalpel);
+}
+
+TEST(BladeJumps, AreWhereTheForceJumpsAndNotBesideIt) {
+  constexpr std::size_t count = 400;
+  constexpr std::size_t jump = 170;
+  BladeRows rows{
+      .pose = std::vector<models::Pose>(count), .in_tissue = std::vector(count, true), .period_s = 1e-3};
+  for (std::size_t row = 0; row < count; ++row) {
+    rows.time_s.push_back(1e-3 * static_cast<double>(row));
+    rows.force.emplace_back(Vector6d::Unit(0) * (row < jump ? 3.0 : 1.0));
+  }
+  // So low a prominence that the rows beside it count as well.
+  const std::vector<Jump> jumps = find_jumps(rows, Vector6d::Constant(0.1), {.peaks = {.prominence = 2.0}});
+  ASSERT_EQ(jumps.size(), 1U);
+  EXPECT_EQ(jumps[0].row, jump);
+  EXPECT_NEAR(jumps[0].before[0], 3.0, 1e-9);
+  EXPECT_NEAR(jumps[0].after[0], 1.0, 1e-9);
 }
 
 TEST(BladeThresholds, AreFoundFromThePeaksOfTheForce) {

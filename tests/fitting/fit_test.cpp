@@ -82,6 +82,16 @@ TEST(Fit, IsTheSameAtAnySamplingRate) {
   }
 }
 
+TEST(Fit, TakesTheSameStepsInAnyUnitOfForce) {
+  Strokes strokes(3000, 0.02, kelvin);
+  const auto in_newtons = fit("kelvin", strokes.series(), {.folds = 0});
+  for (double& force : strokes.force) force *= 1024.0;
+  const auto in_others = fit("kelvin", strokes.series(), {.folds = 0});
+  EXPECT_EQ(in_others.iterations, in_newtons.iterations);
+  EXPECT_EQ(in_others.message, in_newtons.message);
+  EXPECT_NEAR(in_others.parameters[2].value / in_newtons.parameters[2].value, 1024.0, 1e-6);
+}
+
 TEST(Fit, ReportsTheNoiseItWasGiven) {
   const auto result = fit("kelvin", Strokes(8000, 0.02, kelvin).series(true));
   EXPECT_NEAR(result.rmse, 0.02, 1e-3);
@@ -115,10 +125,23 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
     Law::State state = exponential.initial_state();
     strokes.force[i] = exponential.step(state, models::Motion{strokes.penetration[i], 0.0}, 1e-3).force;
   }
-  const auto result = fit("exponential", strokes.series());
+  const auto result = fit("exponential", strokes.series(), {.profile = true});
   EXPECT_THAT(result.warnings, testing::Contains("the data say nothing about 'viscosity'"));
   EXPECT_TRUE(std::isinf(result.parameters[2].std_error));
+  ASSERT_EQ(result.profiles.size(), 3U);
+  EXPECT_TRUE(std::isinf(result.profiles[2].lower) && std::isinf(result.profiles[2].upper));
+  EXPECT_EQ(result.profiles[2].value.size(), 41U) << "twenty steps to either side are enough to see that";
   EXPECT_NEAR(result.parameters[0].value, 0.2, 1e-6);
+}
+
+TEST(Fit, SaysWhichProductTheDataTell) {
+  // Tissue so thick that it stiffens by less than the noise shows: F = alpha beta x / L0.
+  const models::Options thick{{"thickness", 1000.0}, {"viscous", false}, {"zero_at_contact", true}};
+  const Law line = Law::make("exponential", std::vector{4000.0, 2.5}, thick);
+  const auto result = fit("exponential", Strokes(3000, 0.1, line).series(), {.law_options = thick});
+  EXPECT_THAT(
+      result.warnings,
+      testing::Contains("the data determine the product of 'amplitude' and 'exponent', but neither of them"));
 }
 
 TEST(Choice, TakesTheSimplestLawWithinTheJnd) {

@@ -11,6 +11,7 @@
 #include <kerf/fitting/segmented.h>
 
 #include "fitting/segmented_curves.h"
+#include "segmented/segmented_polish.h"
 
 namespace kerf::fitting {
 namespace {
@@ -236,6 +237,16 @@ TEST(Segmented, LeavesOutNumbersThatThePointsDoNotCarry) {
   EXPECT_GE(fit_segments(points.curve(), {.max_segments = 12}).size(), 4U);
 }
 
+TEST(Segmented, KnotsSettleInTheCornersNearThem) {
+  const segmented::Points points(sampled(401, 0.0, 1, false, ramp).curve());
+  const auto start = segmented::Polished{.knots = {0.0, 0.28, 0.66, 1.0}, .error = HUGE_VAL};
+  const auto settled = segmented::settle(points, start, 4, 0.05, HUGE_VAL);
+  ASSERT_EQ(settled.knots.size(), 4U);
+  EXPECT_NEAR(settled.knots[1], 0.31, 1e-6);
+  EXPECT_NEAR(settled.knots[2], 0.64, 1e-6);
+  EXPECT_LT(settled.error, 1e-12);
+}
+
 TEST(Segmented, TakesBreakpointsByHand) {
   const auto points = sampled(300, 0.1, 9, true, wave);
   const auto curves = fit_segments(points.curve(), {.breakpoints = {0.25, 0.6}});
@@ -251,6 +262,7 @@ TEST(Segmented, ChoosesTheFewestWithinALimit) {
   ASSERT_TRUE(chosen.has_value());
   EXPECT_LE(curves[*chosen].rmse, 0.1);
   EXPECT_GT(curves[*chosen - 1].rmse, 0.1);
+  EXPECT_EQ(fewest_within(curves, curves[*chosen].rmse), chosen) << "the limit itself is within it";
   EXPECT_FALSE(fewest_within(curves, 0.001).has_value());
 }
 

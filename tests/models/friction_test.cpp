@@ -118,6 +118,17 @@ TEST(Friction, GivesBackNoMoreThanItSays) {
   }
 }
 
+TEST(Friction, StoresTheEnergyOfItsSpringHoweverSoftThatIs) {
+  for (const double stiffness : {0.25, 400.0}) {
+    const Friction<double> law{.stiffness = stiffness, .coulomb = coulomb, .presliding = presliding};
+    Friction<double>::State state;
+    (void)at(law, state, 0.0);
+    (void)at(law, state, 0.1);
+    const double spring = 0.5 * stiffness * 0.1 * 0.1;
+    EXPECT_NEAR(law.stored_energy(state), law.recoverable_energy(state) + spring, 1e-12 * spring);
+  }
+}
+
 TEST(Friction, GivesBackAllOfThatWhenItIsUnbent) {
   // From z > 0 straight back to z = 0, where the force vanishes.
   Friction<double>::State state;

@@ -109,6 +109,10 @@ TEST(ScissorsMesh, PushingForwardWithoutClosingMeetsASpringAndNoCut) {
   const double moved = state.slab.displacement(state.slab.node(state.slab.cell(0, 9), 0))[0];
   EXPECT_NEAR(force, -50.0 * (1e-3 - moved), 1e-4);
   EXPECT_GT(moved, 1e-4);
+  for (const auto& [cell, corner] : {std::pair{state.slab.cell(0, 0), 0}, {state.slab.cell(0, 18), 3}}) {
+    EXPECT_EQ(state.slab.displacement(state.slab.node(cell, corner)), (std::array{0.0, 0.0}))
+        << "the sides far from the blades are held";
+  }
   // Withdrawn, the slab comes back and nothing pulls.
   for (int tick = 0; tick < 2000; ++tick) {
     EXPECT_GE(0.0, law.step(state, {{theta, touching - 1e-3}, {}}, period_s)[1]);

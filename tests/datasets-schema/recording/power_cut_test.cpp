@@ -158,12 +158,14 @@ TEST(PowerCut, AtTheEndFindsTheBytesBeforeTheNameAndTheNameItself) {
 }
 
 TEST(PowerCut, AtTheBeginningFindsTheNameOnceRowsAreSynchronised) {
-  const RecordedWrites writes(1000);
+  const RecordedWrites writes(5000);
   const auto first = std::ranges::find(writes.calls(), Kind::synchronise, &DiskCall::kind);
   EXPECT_NE(std::find_if(first, writes.calls().end(),
                          [](const DiskCall& call) { return call.kind == Kind::synchronise_names; }),
             writes.calls().end());
   EXPECT_EQ(std::next(first)->kind, Kind::synchronise_names);
+  EXPECT_EQ(std::ranges::count(writes.calls(), Kind::synchronise_names, &DiskCall::kind), 2)
+      << "once for this name and once for the last, however often rows are synchronised";
 }
 
 }  // namespace

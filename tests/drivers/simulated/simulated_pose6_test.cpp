@@ -1,5 +1,6 @@
 #include "kerf/drivers/simulated_pose6.h"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -73,6 +74,20 @@ TEST(Pose6, HoldsMoreFirmlyByAFirmerGrip) {
   (void)device->read(3.0, sample);
   EXPECT_NEAR(sample.position[0], 2.0 / 1000.0, 0.05 / 1000.0);
   EXPECT_NEAR(sample.position[4], 0.2 / 2.0, 1e-3 / 2.0) << "rotations in proportion";
+}
+
+TEST(Pose6, SwaysAboutEachAxisAtAPaceOfItsOwnAndARadianAhead) {
+  const auto device = open_device("sim:pose6?noise=off&encoder=off&reach=0.02m&swing=10deg");
+  constexpr std::array frequencies_hz{0.23, 0.31, 0.47, 0.29, 0.41, 0.59};
+  Sample sample;
+  for (const double time_s : {2.0, 3.0}) {
+    (void)device->read(time_s, sample);
+    for (std::size_t at = 0; at < 6; ++at) {
+      const double amplitude = at < 3 ? 0.02 : 10.0 * std::numbers::pi / 180.0;
+      const double angle = 2.0 * std::numbers::pi * frequencies_hz[at] * time_s + static_cast<double>(at);
+      EXPECT_NEAR(sample.position[at], amplitude * std::sin(angle), 0.05 * amplitude) << at;
+    }
+  }
 }
 
 TEST(Pose6, FollowsKeyframesOfAllItsAxes) {

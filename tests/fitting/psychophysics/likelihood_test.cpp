@@ -60,6 +60,15 @@ TEST(Likelihood, KnowsItsCurvatureAlongTheDispersion) {
   EXPECT_NEAR(here.information[dispersion_index][dispersion_index], -bend, 1e-6 * -bend);
 }
 
+TEST(Likelihood, IsMaximisedWithinTheBoundsAlsoFromBeyondThem) {
+  Problem problem = answers(Shape::logistic, 0.0);
+  problem.cells = {{0.1, {50, 100}}, {0.4, {75, 100}}, {0.8, {100, 100}}, {1.0, {100, 100}}};  // steep
+  problem.upper[slope_index] = 0.1;
+  const Maximum found = maximise(problem, somewhere, {});
+  EXPECT_EQ(found.at[slope_index], 0.1);
+  EXPECT_EQ(found.at[dispersion_index], 0.0);
+}
+
 // n / (p (1 - p)) times how p changes by each parameter; with a dispersion rho, 1 + (n - 1) rho times less.
 TEST(Likelihood, InformationOfOneLevelIsFishers) {
   const auto log_p = [](const Point& point) {

@@ -22,7 +22,7 @@ namespace kerf::drivers {
 /// proportion.
 ///
 /// The hand follows `path`. Without one, each axis of its equilibrium is a sine of its own frequency, between
-/// 0.2 and 0.6 Hz, that is faded in over the first second.
+/// 0.2 and 0.6 Hz, that begins a radian after the axis' before it and is faded in over the first second.
 class SimulatedPose6 final : public Device {
  public:
   struct Options {

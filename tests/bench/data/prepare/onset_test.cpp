@@ -153,6 +153,20 @@ TEST(Onset, OfEachContactIsFoundOverADriftOfThirtySigmas) {
   }
 }
 
+TEST(Onset, OfAContactThatStandsFromTheFirstRowOnIsThatRow) {
+  ContactSignal signal{.components = {{}}, .name = "f"};
+  for (int i = 0; i < 2000; ++i) {
+    signal.time_s.push_back(1e-3 * i);
+    signal.components[0].push_back(i < 500 ? 2.0 : 0.0);
+  }
+  const auto found = find_contacts(signal, {.free = {{.begin_s = 1.0, .end_s = 2.0}}});
+  ASSERT_EQ(found.contacts.size(), 1U);
+  EXPECT_FALSE(found.contacts[0].refined) << "nothing rises";
+  EXPECT_EQ(found.contacts[0].onset_s, 0.0);
+  EXPECT_EQ(found.contacts[0].rows.begin, 0U);
+  EXPECT_EQ(found.contacts[0].rows.end, 500U);
+}
+
 TEST(Onset, IsNotFoundInNoiseAlone) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal(0.0, 1.0);

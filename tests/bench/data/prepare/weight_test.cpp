@@ -85,6 +85,7 @@ TEST(Weight, ThatIsKnownIsTakenOffWithoutTheBias) {
   const Weight weight = remove_weight(recording, std::vector<bool>(2000, false),
                                       {.mass_kg = 0.2, .centre_m = {0.01, -0.02, 0.05}});
   EXPECT_FALSE(weight.estimated);
+  EXPECT_EQ(weight.condition, 0.0) << "no equations were solved";
   for (std::size_t row = 0; row < 2000; ++row) {
     ASSERT_NEAR(recording.force_measured[6 * row + 1], force_bias.y(), 1e-12);
     ASSERT_NEAR(recording.force_measured[6 * row + 5], torque_bias.z(), 1e-12);

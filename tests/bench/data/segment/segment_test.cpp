@@ -99,6 +99,13 @@ TEST(Segment, AveragesTheBranchesOnTheGrid) {
   }
 }
 
+TEST(Segment, GivesTheFirstPlaceOfACoarseGridTheRowsNearestToIt) {
+  const auto cycles = find_cycles(Cutting{}.recording(), {.dwell = 0.02, .points = 11});
+  // Rows from 2 %, where the stroke begins, to 5 %, halfway to the next place.
+  EXPECT_NEAR(cycles.closing_mean.front(), 1.035, 0.015);
+  EXPECT_NEAR(cycles.opening_mean.front(), 0.035, 0.015);
+}
+
 TEST(Segment, StartsInTheMiddleOfAnOpening) {
   schema::Recording recording = Cutting{}.recording();
   const std::ptrdiff_t cut = 1150;  // within the first opening

@@ -322,5 +322,13 @@ TEST(Loop, MeasuresTheProcessorTimeOfEverySecondTickInStepWithNoTurn) {
       << "a law that works in every second tick is seen as it is";
 }
 
+TEST(Loop, MeasuresTheProcessorTimeOfTheFirstTickWhichFindsNothingInTheCaches) {
+  Bench bench;
+  bench.script.delay(Stage::compute, 0, 0.25);
+  const LoopReport report = bench.run(1);
+  EXPECT_EQ(report.compute_cpu.count(), 1U);
+  EXPECT_EQ(report.compute_cpu.max_ns(), 0.25e6);
+}
+
 }  // namespace
 }  // namespace kerf::bench

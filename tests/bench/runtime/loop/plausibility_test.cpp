@@ -65,5 +65,32 @@ TEST(Plausibility, TakesNoMotionOfAMeasuredHandForAJumpAndSeesOneThatIsPutIntoIt
   }
 }
 
+/// After five reports at 0, a millisecond apart.
+Plausibility at_rest() {
+  Plausibility rest(punch);
+  for (int report = 0; report < 5; ++report) EXPECT_EQ(rest.judge({}, 1e-3), Trust::believed);
+  return rest;
+}
+
+TEST(Plausibility, TakesAWayForAJumpThatSpeedWouldAllowAndAccelerationDoesNot) {
+  // In the next millisecond 10 rad/s, which it may have had unseen, and 20,000 rad/s^2 make 20 mrad, and two
+  // encoder steps 9 mrad; 50 rad/s alone would make 50.
+  for (const double way : {0.025, 0.035}) {
+    Plausibility tool = at_rest();
+    EXPECT_EQ(tool.judge({.position = {way}}, 1e-3), way < 0.03 ? Trust::believed : Trust::jumped) << way;
+  }
+}
+
+TEST(Plausibility, BelievesNoReportMoreForHearingItAgain) {
+  Plausibility tool = at_rest();
+  ASSERT_EQ(tool.judge({.position = {0.4}}, 1e-3), Trust::jumped);
+  for (const double age_s : {1e-3, 2e-3}) {
+    EXPECT_EQ(tool.judge({.position = {0.4}, .age_s = age_s}, 1e-3), Trust::doubted) << age_s;
+  }
+  ASSERT_EQ(tool.judge({.position = {0.4}}, 1e-3), Trust::doubted);
+  ASSERT_EQ(tool.judge({.position = {0.4}}, 1e-3), Trust::slipped);
+  EXPECT_EQ(tool.judge({.position = {0.4}, .age_s = 1e-3}, 1e-3), Trust::slipped);
+}
+
 }  // namespace
 }  // namespace kerf::bench

@@ -48,6 +48,13 @@ TEST(Safety, ChangesAForceNoFasterThanItsSlewLimit) {
   }
 }
 
+TEST(Safety, CommandsNoForceOnceItIsReleased) {
+  Safety safety(scissors, {.soft_start_s = 0.0});
+  Command command{.force = {1.0, 3.0}};
+  safety.release(command);
+  EXPECT_EQ(command.force, drivers::Axes{});
+}
+
 TEST(Safety, GivesZeroAtOnceWhereTheForceIsReleasedAndComesBackSoftly) {
   Safety safety(scissors, {.soft_start_s = 0.1});
   (void)applied(safety, {.force = {1.0, 3.0}}, 200);
