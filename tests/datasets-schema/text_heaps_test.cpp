@@ -1,5 +1,7 @@
 #include "hdf5/text_heaps.h"
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -29,6 +31,19 @@ TEST(TextHeaps, AreLookedThroughWhereverTheyBegin) {
     EXPECT_TRUE(is_sound(8)) << begin;
     EXPECT_FALSE(is_sound(100)) << begin << ": an object that is longer than its heap";
   }
+}
+
+TEST(TextHeaps, AreFoundBehindHoles) {
+  const test::TemporaryFolder folder;
+  constexpr std::size_t page = 4096;
+  constexpr std::size_t behind = std::size_t{40} << 20U;
+  test::write_text(folder / "heap", std::string(page, 'x') + heap_with_an_object_of(8));
+  std::filesystem::resize_file(folder / "heap", behind);
+  EXPECT_TRUE(are_text_heaps_sound(folder / "heap", page));
+  std::ofstream(folder / "heap", std::ios::binary | std::ios::app) << heap_with_an_object_of(100);
+  EXPECT_FALSE(are_text_heaps_sound(folder / "heap", page));
+  std::filesystem::resize_file(folder / "heap", 2 * behind);
+  EXPECT_FALSE(are_text_heaps_sound(folder / "heap", page));
 }
 
 }  // namespace

@@ -34,14 +34,19 @@ class Pieces {
   [[nodiscard]] std::size_t size() const { return size_; }
 
   /// Where a text stands at a multiple of `alignment` from `at` on; the file's size if nowhere. A stretch at
-  /// a time is mapped, of which but one line a page is touched.
+  /// a time is mapped, of which but one line a page is touched. Holes are left out: to look into one that is
+  /// mapped takes a page of a file system in memory, and where that is full, the process dies of it.
   [[nodiscard]] std::size_t find_at_multiples(std::string_view text, std::size_t at,
                                               std::size_t alignment) const {
     constexpr std::size_t stretch = std::size_t{16} << 20U;
-    at = (at + alignment - 1) / alignment * alignment;
     while (at < size_) {
-      const std::size_t begin = at / stretch * stretch;
-      const std::size_t length = std::min(stretch, size_ - begin);
+      at = (at + alignment - 1) / alignment * alignment;
+      if (const std::size_t data = data_from(at); data != at) {
+        at = data;
+        continue;
+      }
+      const std::size_t begin = at / page * page;
+      const std::size_t length = std::min(stretch, hole_from(at) - begin);
       void* const start = ::mmap(nullptr, length, PROT_READ, MAP_PRIVATE | MAP_POPULATE, descriptor_,
                                  static_cast<off_t>(begin));
       if (start == MAP_FAILED) fail();
@@ -71,6 +76,18 @@ class Pieces {
   }
 
  private:
+  static constexpr std::size_t page = 4096;
+
+  /// Where the next byte is that the file holds, from `at` on; its size if there is none.
+  [[nodiscard]] std::size_t data_from(std::size_t at) const { return seek(at, SEEK_DATA); }
+  [[nodiscard]] std::size_t hole_from(std::size_t at) const { return seek(at, SEEK_HOLE); }
+  [[nodiscard]] std::size_t seek(std::size_t at, int what) const {
+    if (at >= size_) return size_;
+    const auto found = ::lseek(descriptor_, static_cast<off_t>(at), what);
+    if (found < 0 && errno != ENXIO) fail();
+    return found < 0 ? size_ : std::min(static_cast<std::size_t>(found), size_);
+  }
+
   [[noreturn]] void fail() const {
     throw std::system_error(errno, std::generic_category(), name_ + ": cannot read");
   }
