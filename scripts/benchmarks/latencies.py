@@ -40,6 +40,9 @@ class Latencies:
                 return min(edge, self.worst)
         return self.worst
 
+    def later_than(self, edge_us):
+        return sum(count for edge, count in self.counts.items() if edge > edge_us)
+
     def distribution(self):
         row = [0] * (len(EDGES_US) + 1)
         for edge, count in self.counts.items():

@@ -66,6 +66,7 @@ def main():
         "`kerf check --record` of a Kelvin law on `sim:pose6?truth=on`, 43 channels, %s s without a pause; beside it cyclictest "
         "(`-m -p 80`), which does nothing, on the first processor. Both at SCHED_FIFO 80." % format(seconds, ","), "", HEADS,
         kerf.figures("Kerf"), peer.figures("cyclictest"), "",
+        "- Later than a millisecond woke Kerf {} times, cyclictest {}.".format(kerf.later_than(1000), peer.later_than(1000)),
         "- Resident memory of Kerf, once a second from the second minute on: %.2f to %.2f MiB, by a straight line %+.2f MiB an hour; "
         "%.1f MiB at most with the end, where the recording (%.0f MiB) is closed and summed up." % (
             min(kib) / 1024, max(kib) / 1024, slope * 3600 / 1024, max(point[1] for point in seen) / 1024, file_mib)])
