@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""Runs ctest, and says in the last lines what was not tested: skips by reason, and which command brings what was missing.
+"""Runs ctest, and says in the last lines what failed and what was not tested: skips by reason, and which command brings what
+was missing.
 
     scripts/test.d/run_tests.py [--totals FILE] CTEST_ARGUMENT...
 
 The very last line is "N passed, N failed, N skipped". A GoogleTest case that is skipped within a test which ran (a suite over
 USB is one test) counts as a skip of its own. Where the environment says CI=true a skip is a failure, unless
-tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file.
+tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file, and a line for every
+test that failed: "failed NAME".
 
 Exit status: ctest's own; 1 if ctest passed and a skip was a failure.
 """
@@ -22,6 +24,10 @@ from pathlib import Path
 
 ALLOWED = Path(__file__).resolve().parents[2] / "tests" / "skips-allowed.txt"
 
+# Of what a failed test said, at the end: this many lines, and of each this many characters.
+SHOWN = 12
+LONGEST_LINE = 300
+
 # What brings what is missing, for reasons that do not say so themselves.
 REMEDIES = [
     (r"measured data", "scripts/fetch-data"),
@@ -35,10 +41,16 @@ class Skip:
     reason: str
 
 
+@dataclass(frozen=True)
+class Failure:
+    name: str
+    said: tuple[str, ...]  # the lines of its output that tell most
+
+
 @dataclass
 class Outcome:
     passed: int
-    failed: int
+    failures: list[Failure]
     skips: list[Skip]
 
 
@@ -65,9 +77,16 @@ def skipped_cases(output: str) -> list[Skip]:
     return skips
 
 
+def telling_lines(output: str) -> tuple[str, ...]:
+    """What of a failed test's output stands again at the end: GoogleTest's first failure, else its last lines."""
+    lines = [line.rstrip() for line in output.splitlines() if line.strip()]
+    first = next((i for i, line in enumerate(lines) if re.search(r": (Failure|error:)", line)), max(0, len(lines) - SHOWN))
+    return tuple(line[:LONGEST_LINE] for line in lines[first:first + SHOWN])
+
+
 def outcome_of(junit: str) -> Outcome:
     """Reads what `ctest --output-junit` writes. There, "notrun" is both a skip and a program that is missing."""
-    outcome = Outcome(0, 0, [])
+    outcome = Outcome(0, [], [])
     for case in ElementTree.fromstring(junit).iter("testcase"):
         name = case.get("name", "")
         status = case.get("status")
@@ -82,7 +101,7 @@ def outcome_of(junit: str) -> Outcome:
             if status == "run":
                 outcome.passed += 1
             else:
-                outcome.failed += 1
+                outcome.failures.append(Failure(name, telling_lines(output)))
             outcome.skips += [Skip(f"{name}: {skip.name}", skip.reason) for skip in cases]
     return outcome
 
@@ -129,6 +148,8 @@ def names_of(skips: list[Skip]) -> str:
 def closing_lines(outcome: Outcome, allowances: list[Allowance], skip_is_failure: bool) -> tuple[list[str], bool]:
     """What stands at the end of the output, and whether the skips let the run pass."""
     lines = []
+    for failure in outcome.failures:
+        lines += [f"Failed: {failure.name}", *(f"    {line}" for line in failure.said)]
     by_reason: dict[str, list[Skip]] = {}
     for skip in outcome.skips:
         by_reason.setdefault(skip.reason, []).append(skip)
@@ -144,7 +165,7 @@ def closing_lines(outcome: Outcome, allowances: list[Allowance], skip_is_failure
                          f"not: {names_of(refused)}")
         unused = [one for one in allowances if not any(one.covers(skip) for skip in outcome.skips)]
         lines += [f"Allowed to be skipped, and was not: {one.pattern} | {one.reason}" for one in unused]
-    lines.append(f"{outcome.passed} passed, {outcome.failed} failed, {len(outcome.skips)} skipped")
+    lines.append(f"{outcome.passed} passed, {len(outcome.failures)} failed, {len(outcome.skips)} skipped")
     return lines, not refused
 
 
@@ -167,12 +188,13 @@ def main(arguments: list[str]) -> int:
         if not junit.exists():  # `ctest --show-only` and the like
             return status
         outcome = outcome_of(junit.read_text())
-    if outcome.passed + outcome.failed + len(outcome.skips) == 0:
+    if outcome.passed + len(outcome.failures) + len(outcome.skips) == 0:
         return status
     lines, passes = closing_lines(outcome, allowances, skip_is_failure)
     if totals:
         with open(totals, "a", encoding="utf-8") as file:
-            file.write(f"{outcome.passed} {outcome.failed} {len(outcome.skips)}\n")
+            file.write(f"{outcome.passed} {len(outcome.failures)} {len(outcome.skips)}\n")
+            file.writelines(f"failed {failure.name}\n" for failure in outcome.failures)
     print("\n" + "\n".join(lines), flush=True)
     return status if status or passes else 1
 

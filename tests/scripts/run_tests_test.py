@@ -11,7 +11,7 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts" / "test.d"
 sys.path.insert(0, str(SCRIPTS))
 
 import run_tests  # noqa: E402
-from run_tests import Allowance, Outcome, Skip  # noqa: E402
+from run_tests import Allowance, Failure, Outcome, Skip  # noqa: E402
 
 
 def junit(*cases):
@@ -39,7 +39,7 @@ class Outcomes(unittest.TestCase):
     def test_counts_what_passed_failed_and_was_skipped(self):
         outcome = run_tests.outcome_of(junit(case("A", "run"), case("B", "run"), case("C", "fail"),
                                              case("D", "notrun", "skipped: no Chromium\n", "SKIP_RETURN_CODE=77")))
-        self.assertEqual(outcome, Outcome(2, 1, [Skip("D", "no Chromium")]))
+        self.assertEqual(outcome, Outcome(2, [Failure("C", ())], [Skip("D", "no Chromium")]))
 
     def test_takes_the_reason_of_an_exit_status_from_the_last_line(self):
         output = "building\nno virtual time here\n\n"
@@ -49,12 +49,12 @@ class Outcomes(unittest.TestCase):
     def test_takes_the_reason_of_a_googletest_skip_from_its_first_line(self):
         outcome = run_tests.outcome_of(
             junit(case("Grasper.IsRead", "notrun", SKIPPED_CASE, "SKIP_REGULAR_EXPRESSION_MATCHED")))
-        self.assertEqual(outcome, Outcome(0, 0, [Skip("Grasper.IsRead", "no measured data at /house/data")]))
+        self.assertEqual(outcome, Outcome(0, [], [Skip("Grasper.IsRead", "no measured data at /house/data")]))
 
     def test_finds_the_skip_inside_a_suite_that_passed_or_failed(self):
         for status in ("run", "fail"):
             outcome = run_tests.outcome_of(junit(case("usb.Grasper", status, SKIPPED_CASE)))
-            self.assertEqual(outcome.passed + outcome.failed, 1)
+            self.assertEqual(outcome.passed + len(outcome.failures), 1)
             self.assertEqual(outcome.skips, [Skip("usb.Grasper: Grasper.IsRead", "no measured data at /house/data")])
 
     def test_a_skip_without_a_message_borrows_none(self):
@@ -63,10 +63,16 @@ class Outcomes(unittest.TestCase):
 
     def test_a_program_that_is_missing_has_failed(self):
         outcome = run_tests.outcome_of(junit(case("A", "notrun", "", "Unable to find executable")))
-        self.assertEqual(outcome, Outcome(0, 1, []))
+        self.assertEqual(outcome, Outcome(0, [Failure("A", ())], []))
 
     def test_a_disabled_test_is_skipped(self):
         self.assertEqual(run_tests.outcome_of(junit(case("A", "disabled", "Disabled"))).skips, [Skip("A", "it is disabled")])
+
+
+    def test_keeps_the_first_failure_of_googletest_and_else_the_last_lines(self):
+        output = "noise\n/house/a_test.cpp:7: Failure\nExpected: 1\n" + "more\n" * 30
+        self.assertEqual(run_tests.telling_lines(output)[:2], ("/house/a_test.cpp:7: Failure", "Expected: 1"))
+        self.assertEqual(run_tests.telling_lines("\n".join(map(str, range(100))))[-1], "99")
 
 
 class ClosingLines(unittest.TestCase):
@@ -74,7 +80,7 @@ class ClosingLines(unittest.TestCase):
              Skip("usb.Falcon", "it does not start")]
 
     def test_count_by_reason_and_end_with_the_sums(self):
-        lines, passes = run_tests.closing_lines(Outcome(7, 0, self.skips), [], skip_is_failure=False)
+        lines, passes = run_tests.closing_lines(Outcome(7, [], self.skips), [], skip_is_failure=False)
         self.assertTrue(passes)
         self.assertEqual(lines, [
             "Skipped, by reason:",
@@ -83,26 +89,30 @@ class ClosingLines(unittest.TestCase):
             "7 passed, 0 failed, 3 skipped"])
 
     def test_are_one_line_where_nothing_was_skipped(self):
-        self.assertEqual(run_tests.closing_lines(Outcome(7, 0, []), [], True), (["7 passed, 0 failed, 0 skipped"], True))
+        self.assertEqual(run_tests.closing_lines(Outcome(7, [], []), [], True), (["7 passed, 0 failed, 0 skipped"], True))
+
+    def test_name_what_failed_and_what_it_said(self):
+        lines, _ = run_tests.closing_lines(Outcome(7, [Failure("A.B", ("it broke",))], []), [], True)
+        self.assertEqual(lines, ["Failed: A.B", "    it broke", "7 passed, 1 failed, 0 skipped"])
 
     def test_refuse_a_skip_that_the_list_does_not_name(self):
-        lines, passes = run_tests.closing_lines(Outcome(7, 0, self.skips), [Allowance("usb.*", "does not start")], True)
+        lines, passes = run_tests.closing_lines(Outcome(7, [], self.skips), [Allowance("usb.*", "does not start")], True)
         self.assertFalse(passes)
         self.assertIn("On CI a skip is a failure unless tests/skips-allowed.txt names it, and 1 it does not: Grasper.IsRead", lines)
 
     def test_refuse_a_named_test_that_gives_another_reason(self):
         allowances = [Allowance("usb.*", "qemu"), Allowance("*", "measured data")]
-        self.assertFalse(run_tests.closing_lines(Outcome(7, 0, self.skips), allowances, True)[1])
+        self.assertFalse(run_tests.closing_lines(Outcome(7, [], self.skips), allowances, True)[1])
 
     def test_let_pass_what_the_list_names_and_tell_what_was_not_needed(self):
         allowances = [Allowance("usb.*", "does not start"), Allowance("*", "measured data"), Allowance("*", "no disk")]
-        lines, passes = run_tests.closing_lines(Outcome(7, 0, self.skips), allowances, True)
+        lines, passes = run_tests.closing_lines(Outcome(7, [], self.skips), allowances, True)
         self.assertTrue(passes)
         self.assertEqual(lines[-2:], ["Allowed to be skipped, and was not: * | no disk", "7 passed, 0 failed, 3 skipped"])
 
     def test_name_three_of_many(self):
         many = [Skip(f"T{number}", "so") for number in range(5)]
-        self.assertIn("     5  so: T0, T1, T2 and 2 more", run_tests.closing_lines(Outcome(0, 0, many), [], False)[0])
+        self.assertIn("     5  so: T0, T1, T2 and 2 more", run_tests.closing_lines(Outcome(0, [], many), [], False)[0])
 
 
 class Allowances(unittest.TestCase):
@@ -170,7 +180,7 @@ set_tests_properties(skips PROPERTIES SKIP_RETURN_CODE 77)
         totals = Path(self.folder.name, "totals")
         self.run_program("--totals", str(totals))
         self.run_program("--totals", str(totals), "-R", "passes")
-        self.assertEqual(totals.read_text(), "1 1 1\n1 0 0\n")
+        self.assertEqual(totals.read_text(), "1 1 1\nfailed fails\n1 0 0\n")
 
 
 if __name__ == "__main__":
