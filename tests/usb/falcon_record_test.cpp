@@ -169,6 +169,8 @@ TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
   ASSERT_TRUE(becomes_attached("falcon:0"));
   const auto device = drivers::open_device("falcon:0");
   double best_hz = 0.0;
+  const double first = figure(*device, "reports");
+  const auto begin = std::chrono::steady_clock::now();
   for (int part = 0; part < 12 && best_hz < 900.0; ++part) {
     const double before = figure(*device, "reports");
     const auto start = std::chrono::steady_clock::now();
@@ -178,14 +180,16 @@ TEST(FalconRate, AnswersNearlyAThousandTimesASecond) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     best_hz = std::max(best_hz, (figure(*device, "reports") - before) / elapsed.count());
   }
-  std::printf("at best %.0f answers a second\n", best_hz);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begin;
+  const double average_hz = (figure(*device, "reports") - first) / whole.count();
+  std::printf("at best %.0f answers a second, %.0f on average\n", best_hz, average_hz);
   const double disturbed = taken_away();
   if (best_hz < 900.0 && disturbed > 0.1) {
     GTEST_SKIP() << "others took " << 100.0 * disturbed << " % of this processor, at best " << best_hz
                  << " answers a second";
   }
   EXPECT_GE(best_hz, 900.0);
-  EXPECT_LE(best_hz, 1050.0);
+  EXPECT_LE(average_hz, 1050.0) << "a part alone may catch up on what the machine held back before";
 }
 
 }  // namespace

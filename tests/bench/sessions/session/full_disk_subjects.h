@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -10,15 +11,19 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <pty.h>
 #include <unistd.h>
 
 #include "sealed/session_store.h"
 #include "session/rehearsal.h"
+#include "subject/subject_page.h"
 #include "subject/subject_terminal.h"
 #include "support/full_disk.h"
+#include "support/plain_client.h"
 
 namespace kerf::test {
 
@@ -135,6 +140,64 @@ class TypedAtATerminal : public bench::Subject {
   bench::TerminalSubject terminal_;
   bench::SubjectView view_;
   std::string screen_;
+};
+
+/// The same on a page: what is decided is sent as the page sends it, of the view that the page has.
+class ClickedOnAPage : public bench::Subject {
+ public:
+  ClickedOnAPage(bench::SessionStore& store, std::filesystem::path journal)
+      : decided_(store, std::move(journal)) {}
+
+  void show(const bench::SubjectView& view) override {
+    decided_.show(view);
+    page_.show(view);
+  }
+  std::optional<bench::SubjectAction> next() override {
+    const auto decided = decided_.next();
+    if (!decided) return page_.next();
+    const auto seen = nlohmann::json::parse(body_of(ask("GET /view?after=0", "")));
+    notices_ += seen["notice"].get<std::string>();
+    const nlohmann::json action = {{"kind", name_of(decided->kind)},
+                                   {"slot", decided->slot},
+                                   {"stage", seen["stage"]},
+                                   {"trial", seen["trial"]}};
+    EXPECT_EQ(status_of(ask("POST /action", action.dump())), "200");
+    return page_.next();
+  }
+  [[nodiscard]] int refusals() const { return decided_.refusals(); }
+  [[nodiscard]] const std::string& notices() const { return notices_; }
+
+ private:
+  static const char* name_of(bench::SubjectAction::Kind kind) {
+    using Kind = bench::SubjectAction::Kind;
+    switch (kind) {
+      case Kind::go_on:
+        return "go_on";
+      case Kind::decline:
+        return "decline";
+      case Kind::play:
+        return "play";
+      case Kind::answer:
+        return "answer";
+      case Kind::quit:
+        return "quit";
+    }
+    return "?";
+  }
+  [[nodiscard]] std::string ask(const std::string& line, const std::string& body) const {
+    const std::string url = page_.url();
+    const std::string host = url.substr(7, url.find('/', 7) - 7);
+    const std::string port = host.substr(host.find(':') + 1);
+    const std::string token = url.substr(url.find('=') + 1);
+    return answer_to(static_cast<std::uint16_t>(std::stoi(port)),
+                     fmt::format("{} HTTP/1.1\r\nHost: {}\r\nX-Kerf-Token: {}\r\nContent-Type: "
+                                 "application/json\r\nContent-Length: {}\r\n\r\n{}",
+                                 line, host, token, body.size(), body));
+  }
+
+  FullWhileItAnswers decided_;
+  bench::ServedSubject page_;
+  std::string notices_;
 };
 
 }  // namespace kerf::test

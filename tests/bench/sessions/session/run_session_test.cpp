@@ -165,6 +165,21 @@ TEST(RunSession, TakesTheAnswerAgainAtATerminal) {
   EXPECT_EQ(store.trials()[1].answer, 1U);
 }
 
+TEST(RunSession, TakesTheAnswerAgainOnAPage) {
+  test::BlindRun session(abx());
+  {
+    SessionStore running = session.store(SessionStore::Purpose::run);
+    test::ClickedOnAPage subject(running, journal_of(session.file()));
+    EXPECT_EQ(test::BlindRun::run(running, subject).end, SessionEnd::finished);
+    EXPECT_EQ(subject.refusals(), 3);
+    EXPECT_THAT(subject.notices(), HasSubstr("could not be stored"));
+    running.close();
+  }
+  const SessionStore store = session.read();
+  ASSERT_EQ(store.trials().size(), 4U);
+  EXPECT_EQ(store.trials()[1].answer, 1U);
+}
+
 TEST(RunSession, IsLeftByARehearsalWhoseDiskStaysFull) {
   test::BlindRun session(abx());
   SessionStore running = session.store(SessionStore::Purpose::run);
