@@ -45,3 +45,19 @@ def looks(name: str) -> dict[str, list[str]]:
 
 def record_command(kerf: Path, name: str, rows: int) -> list[str | Path]:
     return [kerf, "record", "--device", "sim:scissors", "--virtual", "--seconds", f"{rows / 1000}", "-o", name]
+
+
+BYTES_A_ROW = 100  # at least
+
+
+def repair(kerf: Path, rows: int, folder: Path) -> Cost:
+    """What it takes to close a recording that was killed after at least so many rows; nothing is left of it."""
+    partial = folder / "killed.h5.partial"
+    with subprocess.Popen(record_command(kerf, "killed.h5", rows + rows // 10), cwd=folder, stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL) as child:
+        while child.poll() is None and not (partial.exists() and partial.stat().st_size >= BYTES_A_ROW * rows):
+            time.sleep(0.005)
+        child.kill()
+    cost = run([kerf, "repair", "killed.h5"], folder)
+    (folder / "killed.h5").unlink()
+    return cost

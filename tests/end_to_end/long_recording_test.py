@@ -10,7 +10,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from long_recording import looks, record_command, run
+from long_recording import looks, record_command, repair, run
 
 SHORT_ROWS = 100_000
 LONG_ROWS = 1_700_000
@@ -23,6 +23,7 @@ def costs(kerf: Path, folder: Path, rows: int) -> dict[str, float]:
     found = {"record": run(record_command(kerf, "r.h5", rows), folder).mebibytes}
     for verb, arguments in looks("r.h5").items():
         found[verb] = run([kerf, *arguments], folder).mebibytes
+    found["repair"] = repair(kerf, rows, folder).mebibytes
     return found
 
 
