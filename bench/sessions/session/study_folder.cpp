@@ -7,11 +7,16 @@
 namespace kerf::bench {
 namespace {
 
+// A name that is free is not held: that would put a journal beside the results of others, and leave it there
+// if this process died.
 std::vector<NewSessionName> hold(const std::filesystem::path& folder, const std::vector<std::string>& names,
                                  bool replace) {
   std::vector<NewSessionName> held;
-  if (!std::filesystem::is_directory(folder)) return held;
-  for (const std::string& name : names) held.emplace_back(folder / name, replace);
+  for (const std::string& name : names) {
+    const std::filesystem::path file = folder / name;
+    if (std::filesystem::exists(file) || std::filesystem::exists(journal_of(file)))
+      held.emplace_back(file, replace);
+  }
   return held;
 }
 

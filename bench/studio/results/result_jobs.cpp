@@ -53,8 +53,7 @@ std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProg
   if (chart.stopped) throw std::runtime_error("stopped");
   chart.notes.emplace_back(
       "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they "
-      "are "
-      "in a loop of their own; 'kerf chart' measures them in peace");
+      "are in a loop of their own; 'kerf chart' measures them in peace");
   ResultFolder folder(workspace, result_stem(request.recording.name), ".chart");
   write_chart(chart, folder.path());
   return folder.publish(workspace, "chart.json");

@@ -84,6 +84,10 @@ TEST_F(StudyFolderTest, KeepsTheAnswersOfALostSession) {
 TEST_F(StudyFolderTest, JoinsWhatStandsThere) {
   fs::create_directory(study_);
   kerf::test::write_text(study_ / "notes.txt", "theirs");
+  {
+    const StudyFolder begun(study_, names, false);
+    EXPECT_EQ(std::distance(fs::directory_iterator(study_), {}), 1) << "what a killed process would leave";
+  }
   make_study("ours", false);
   EXPECT_EQ(kerf::test::read_text(study_ / "notes.txt"), "theirs");
   EXPECT_EQ(std::distance(fs::directory_iterator(study_), {}), 3);
