@@ -20,7 +20,7 @@ from sections import replace_section
 # What is slow, because it builds much of each input, reads files from the disk or starts a process, gets so much of what the
 # others get: all take minutes then.
 SHARES = {"calibration": 0.3, "http": 0.1, "journal": 0.1, "law": 0.1, "scene": 0.1, "suite": 0.1, "import": 0.05, "protocol": 0.03,
-          "command_line": 0.01, "hdf5": 0.005, "hdf5_bytes": 0.005, "session": 0.002}
+          "command_line": 0.01, "hdf5": 0.005, "hdf5_bytes": 0.001, "session": 0.002}
 
 
 def fuzzers():

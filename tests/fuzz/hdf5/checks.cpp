@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/schema/live_recording.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/repair.h>
@@ -168,6 +169,18 @@ void check_readers(const std::filesystem::path& file) {
     promise(!refusal([&] { (void)in_process::read_regression(file); }).empty(),
             "a recording is no stored forces");
   }
+}
+
+void check_readers_apart(const std::filesystem::path& file) {
+  bool is_valid = false;
+  (void)refusal([&] { is_valid = schema::validate(file).empty(); });
+  const auto reads = [](const auto& read) { return refusal(read).empty() ? 1 : 0; };
+  const int taken = reads([&] { (void)schema::read_recording(file); }) +
+                    reads([&] { (void)schema::read_regression(file); }) +
+                    reads([&] { (void)schema::read_session(file); });
+  promise(taken <= 1, "a file is of one schema");
+  promise(taken == 1 || !is_valid, "a valid file is read");
+  (void)refusal([&] { (void)schema::read_tail(file); });
 }
 
 }  // namespace kerf::fuzz
