@@ -1,14 +1,17 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <kerf/schema/recording.h>
@@ -41,6 +44,18 @@ std::vector<pid_t> readers() {
 
 std::ptrdiff_t descriptors() {
   return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+}
+
+/// Descriptors of this process that are sockets.
+std::vector<int> sockets() {
+  std::vector<int> found;
+  for (const auto& descriptor : fs::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;  // the one that lists them is among them
+    if (fs::read_symlink(descriptor, gone).string().starts_with("socket:")) {
+      found.push_back(std::stoi(descriptor.path().filename()));
+    }
+  }
+  return found;
 }
 
 template <typename Action>
@@ -79,6 +94,21 @@ TEST(Reader, ThatDiesIsDamageAndTheProgramGoesOn) {
   EXPECT_THAT(refusal(read), HasSubstr("r.h5: damaged HDF5 file (HDF5 fell over: Killed)"));
   EXPECT_THAT(refusal(read), HasSubstr("its reader has fallen over before"));
   EXPECT_EQ(read_recording(folder / "r.h5").rows(), recording.rows());
+}
+
+TEST(Reader, ThatEndsOfItselfIsDamageAndSaysHow) {
+  const test::TemporaryFolder folder;
+  const Recording recording = test::sample_recording();
+  write_recording(folder / "r.h5", recording);
+  const auto before = sockets();
+  const RecordingFile file(folder / "r.h5");
+  std::vector<int> ours = sockets();
+  std::erase_if(ours, [&](int socket) { return std::ranges::find(before, socket) != before.end(); });
+  ASSERT_EQ(ours.size(), 1U);
+  ASSERT_EQ(::shutdown(ours.front(), SHUT_WR), 0) << "nobody asks it any more";
+  std::vector<std::uint64_t> ticks(recording.rows());
+  EXPECT_THAT(refusal([&] { file.read_ticks(0, ticks); }),
+              HasSubstr("r.h5: damaged HDF5 file (its reader ended with "));
 }
 
 TEST(Reader, ReadsForSeveralThreads) {

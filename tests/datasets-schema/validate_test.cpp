@@ -38,6 +38,12 @@ std::vector<Violation> violations_of(const Recording& recording) {
   return validate(folder / "r.h5");
 }
 
+TEST(Validate, FindsNothingInAPhaseThatHoldsNoRow) {
+  auto recording = test::sample_recording();
+  recording.cycles->phases = {{.cycle = 1, .phase = Phase::closing}};
+  EXPECT_THAT(violations_of(recording), IsEmpty());
+}
+
 TEST(Validate, FindsNothingInWhatTheWriterWrites) {
   EXPECT_THAT(violations_of(test::sample_recording()), IsEmpty());
   EXPECT_THAT(violations_of(test::sample_recording(100'000)), IsEmpty());

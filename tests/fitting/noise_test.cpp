@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <gtest/gtest.h>
+
+#include "uncertainty/uncertainty.h"
 
 namespace kerf::fitting {
 namespace {
@@ -67,6 +70,37 @@ TEST(Deviance, IsThatOfTheWholeCovarianceMatrix) {
         deviance(rows, runs, noise),
         log_determinant(whole) + log_determinant(normal_equations) + left + 2.0 * p * n / (n - p - 2.0), 1e-8)
         << "order " << noise.order();
+  }
+}
+
+// (J^T J)^-1 (J^T Sigma J) (J^T J)^-1 with the covariance Sigma of the noise that was found, as a dense
+// matrix. In these draws the wave on which the noise's memory fades passes through zero long before it has
+// faded.
+TEST(Uncertainty, IsThatOfTheWholeCovarianceMatrix) {
+  constexpr Eigen::Index count = 60;
+  constexpr double turn = 1.3;  // [rad] a row, of the resonance and of what is fitted
+  constexpr double pole = 0.95;
+  for (const unsigned seed : {36U, 55U, 137U}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> noise{0.0, 0.0};
+    while (noise.size() < 1002 + count) {
+      const double resonance =
+          2.0 * pole * std::cos(turn) * noise.back() - pole * pole * noise[noise.size() - 2];
+      noise.push_back(normal(random) + resonance);
+    }
+    Linearisation wave{.jacobian = Eigen::MatrixXd(count, 1),
+                       .residuals = Eigen::Map<Eigen::VectorXd>(noise.data() + 1002, count)};
+    for (Eigen::Index i = 0; i < count; ++i) wave.jacobian(i, 0) = std::sin(turn * static_cast<double>(i));
+    const Eigen::VectorXd column = wave.jacobian.col(0);
+    wave.residuals -= column * (column.dot(wave.residuals) / column.squaredNorm());
+
+    const Eigen::MatrixXd normal_equations = gram(wave.jacobian);
+    const Noise found = noise_of(coarsen(wave, normal_equations, basis_of(normal_equations).determined));
+    ASSERT_EQ(found.stages.size(), 1U) << seed;
+    const Eigen::MatrixXd sigma = covariance_of(found.stages[0].model, count);
+    const double truth = column.dot(sigma * column) / std::pow(column.squaredNorm(), 2);
+    EXPECT_NEAR(uncertainty_of(wave, 0.95).covariance(0, 0), truth, 1e-6 * truth) << seed;
   }
 }
 

@@ -162,6 +162,15 @@ TEST(Segmented, IsNeverWorseThanDifferentialEvolution) {
   }
 }
 
+TEST(Segmented, IsNeverWorseThanKnotsThatAreKnownToBeGoodHoweverCoarseTheGrid) {
+  // The first point alone stands out, so that a knot lies nearer to the beginning than the grid has any.
+  const auto points = sampled(50, 0.2, 12, false, [](double x) { return x < 0.01 ? 2.0 : x; });
+  const auto curves = fit_segments(points.curve(), {.max_segments = 6, .cells = 12, .fewest_points = 2});
+  ASSERT_EQ(curves.size(), 6U);
+  const double known = test::dense_error(points, {0.0, 1.0 / 49.0, 39.0 / 49.0, 0.818, 46.0 / 49.0, 1.0}, 2);
+  EXPECT_LE(curves[4].sum_of_squares, known);
+}
+
 TEST(Segmented, DoesNotDependOnTheOrderOrTheUnits) {
   const auto points = sampled(400, 0.1, 8, false, step);
   CurvePoints other;

@@ -365,6 +365,41 @@ TEST(StoredEnergy, OfAContactThatWasLeftFastIsNotThatOfItsStretchedArm) {
   EXPECT_GT(law.stored_energy(state), 0.1 * pressed);
 }
 
+TEST(StoredEnergy, OfASpringpotThatIsDrawnOutFastOnlyFalls) {
+  constexpr double step_m = 1e-4;
+  for (const double order : {0.5, 0.9, 0.99}) {
+    for (const double period_s : {1e-3, 1e-5, 1e-7}) {
+      const Law law = Law::make("springpot", std::vector{40.0, 30.0, order});
+      auto state = law.initial_state();
+      (void)law.step(state, Motion{}, period_s);
+      (void)law.step(state, Motion{0.02, 0.0}, 1e6);
+      double before = law.stored_energy(state);
+      for (double x = 0.02 - step_m; x > 0.0; x -= step_m) {
+        (void)law.step(state, Motion{x, 0.0}, period_s);
+        const double stored = law.stored_energy(state);
+        ASSERT_LE(stored, before) << "of what the hand does not feel, order " << order << ", " << period_s
+                                  << " s";
+        before = stored;
+      }
+    }
+  }
+}
+
+TEST(StoredEnergy, ShowsWhatForwardEulerMakesOfNothingAtRest) {
+  // In 2.5 relaxation times a tick the arm's force goes to -1.5 times itself.
+  const Law law = Law::make("kelvin", std::vector{40.0, 320.0, 32.0}, {{"integrator", std::string("euler")}});
+  auto state = law.initial_state();
+  (void)law.step(state, Motion{}, 0.25);
+  (void)law.step(state, Motion{0.02, 0.0}, 0.25);
+  double arm_n = 320.0 * 0.02;
+  for (int tick = 1; tick <= 6; ++tick) {
+    (void)law.step(state, Motion{0.02, 0.0}, 0.25);
+    arm_n *= -1.5;
+    const double springs = 0.5 * 40.0 * 0.02 * 0.02 + 0.5 * arm_n * arm_n / 320.0;
+    EXPECT_NEAR(law.stored_energy(state), springs, 1e-9 * springs) << tick;
+  }
+}
+
 class EveryLawsEnergy : public testing::TestWithParam<std::string> {};
 std::vector<std::string> names() {
   std::vector<std::string> all;

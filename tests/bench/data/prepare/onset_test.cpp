@@ -96,6 +96,16 @@ TEST(Onset, IsAsUncertainInTimeAsInPlaceAtTheSpeedOfTheTool) {
   }
 }
 
+TEST(Onset, OfAForceThatStandsInTenRowsIsWithinASampleByTimeToo) {
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    ContactSignal signal = pressed(0.02, seed, 10);
+    signal.position.clear();
+    const auto found = find_contacts(signal, {});
+    ASSERT_EQ(found.contacts.size(), 1U) << seed;
+    EXPECT_NEAR(found.contacts[0].onset_s, 1.00037, 1e-3) << seed;
+  }
+}
+
 TEST(Onset, DoesNotDependOnWhereTheSensorHasItsZero) {
   ContactSignal signal = pressed(0.02, 3, 60);
   signal.position.clear();
