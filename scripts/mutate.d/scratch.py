@@ -80,6 +80,7 @@ class Scratch:
 
     def take_bases(self, room: Room) -> None:
         """Learns which tests hold without a mutant, and how long they take, each by itself: some wait for the program for ever.
+        Names those that do not.
 
         What was learned is kept beside the program; of another version of it only the new tests are learned, unless one that held
         does not any more.
@@ -94,6 +95,8 @@ class Scratch:
                 seconds = {case: self.seconds_of(program, case) for case in cases}
                 self.bases[program] = {case: taken for case, taken in seconds.items() if taken is not None}
             kept.write_text(json.dumps(seconds))
+            if failing := [case for case in cases if seconds[case] is None]:
+                print(f"{program}: left out, since they fail without any mutant: {', '.join(failing)}", flush=True)
 
     def seconds_of(self, program: str, case: str) -> float | None:
         """None if it does not hold."""

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """What scripts/mutate draws, and what it leaves alone."""
 
+import contextlib
+import io
 import sys
 import tempfile
 import tomllib
@@ -13,7 +15,8 @@ sys.path.insert(0, str(ROOT / "scripts/mutate.d"))
 from drawn import in_order  # noqa: E402
 from mutants import mutants_of  # noqa: E402
 from results import EQUIVALENT, KILLED, LIVES, Results  # noqa: E402
-from rooms import ROOMS, room_of  # noqa: E402
+from rooms import ROOMS, Room, room_of  # noqa: E402
+from scratch import Scratch  # noqa: E402
 
 
 def changed(text: str) -> set[str]:
@@ -99,6 +102,25 @@ class Kept(unittest.TestCase):
             both = [mutant for mutant in mutants_of(Path(folder), "a.cpp") if mutant.new == "-"]
             known = Results(Path(folder) / "results.jsonl", {("a.cpp", "return a + b;", "return a - b;", 1)})
             self.assertEqual([known.of(mutant) for mutant in both], [None, EQUIVALENT])
+
+
+class Bases(unittest.TestCase):
+    def test_name_the_tests_that_fail_without_a_mutant(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scratch = Scratch(Path(folder), jobs=1)
+            program = scratch.build / "bin/some_test"
+            program.parent.mkdir(parents=True)
+            program.write_text("#!/bin/sh\n"
+                               "case $1 in\n"
+                               "  --gtest_list_tests) printf 'main() from x\\nA.\\n  Holds\\n  Fails\\nB.\\n  Fails\\n' ;;\n"
+                               "  *Fails) exit 1 ;;\n"
+                               "esac\n")
+            program.chmod(0o755)
+            for _ in ("learned", "known"):
+                with contextlib.redirect_stdout(io.StringIO()) as said:
+                    scratch.take_bases(Room("models", ("some_test",)))
+                self.assertEqual(said.getvalue(), "some_test: left out, since they fail without any mutant: A.Fails, B.Fails\n")
+                self.assertEqual(list(scratch.bases["some_test"]), ["A.Holds"])
 
 
 class Equivalents(unittest.TestCase):
