@@ -13,6 +13,9 @@
 #include <sodium.h>
 #include <unistd.h>
 
+#include <kerf/schema/final_name.h>
+#include <kerf/schema/unfinished.h>
+
 #include "files/named_file.h"
 #include "sealed/journal.h"
 
@@ -178,19 +181,31 @@ schema::KeyDerivation new_derivation(bool passphrase) {
 }
 
 void write_new_key_file(const std::filesystem::path& file) {
-  const SecretBytes content = secret(least_key_file);
-  randombytes_buf(content.get(), least_key_file);
-  const NewKeyFile opened(file);
-  if (!opened.is_open() && errno == EEXIST) {
+  if (std::filesystem::exists(file)) {
     throw std::invalid_argument(fmt::format(
         "{} exists; a key is never replaced, as all that it sealed would be lost: name another file",
         file.string()));
   }
+  const SecretBytes content = secret(least_key_file);
+  randombytes_buf(content.get(), least_key_file);
+  const std::filesystem::path unfinished = schema::unfinished_name(file);
+  const NewKeyFile opened(unfinished);
   if (!opened.is_open()) throw_cannot(file, "write");
-  if (opened.store(std::span(content.get(), least_key_file))) return bring_to_disk(file.parent_path());
-  const int reason = errno;
-  ::unlink(file.c_str());
-  throw std::system_error(reason, std::generic_category(), fmt::format("cannot write {}", file.string()));
+  const schema::WriteMark mark(unfinished);
+  if (!opened.store(std::span(content.get(), least_key_file))) {
+    const int reason = errno;
+    ::unlink(unfinished.c_str());
+    throw std::system_error(reason, std::generic_category(), fmt::format("cannot write {}", file.string()));
+  }
+  try {
+    schema::take_name(unfinished, file, schema::Existing::keep);
+  } catch (const schema::NameTaken&) {
+    throw;  // it is kept under another name
+  } catch (...) {
+    ::unlink(unfinished.c_str());
+    throw;
+  }
+  bring_to_disk(file.parent_path());
 }
 
 std::uint64_t random_seed() {

@@ -42,8 +42,8 @@ void require_long_enough(std::string_view new_passphrase);
 /// A fresh salt and the costs of today, for a key file or for a passphrase.
 [[nodiscard]] schema::KeyDerivation new_derivation(bool passphrase);
 
-/// Writes 32 random bytes, readable by their owner alone. @throws std::invalid_argument if the file exists,
-/// std::system_error.
+/// Writes 32 random bytes, readable by their owner alone; under their name they stand whole.
+/// @throws std::invalid_argument if the file exists, std::system_error; as schema::take_name() does.
 void write_new_key_file(const std::filesystem::path& file);
 
 /// 64 random bits.

@@ -119,6 +119,19 @@ TEST(NewKeyFile, LeavesNothingOnAFullDisk) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(NewKeyFile, HasItsNameOnlyWhenItIsWhole) {
+  const kerf::test::TemporaryFolder folder;
+  const auto dies_after_8_bytes = [&] {
+    const kerf::test::FullDisk disk(8);
+    std::signal(SIGXFSZ, SIG_DFL);
+    write_new_key_file(folder / "key");
+  };
+  EXPECT_EXIT(dies_after_8_bytes(), testing::KilledBySignal(SIGXFSZ), "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "key"));
+  write_new_key_file(folder / "key");
+  EXPECT_EQ(std::filesystem::file_size(folder / "key"), 32U);
+}
+
 TEST(NewDerivation, HasAFreshSaltAndTheCostsOfToday) {
   const auto passphrase = new_derivation(true);
   EXPECT_EQ(passphrase.kind, "passphrase");
