@@ -41,9 +41,9 @@ TEST(Routes, AnswerByPathAndMethod) {
 }
 
 TEST(Routes, AnswerSlowlyFromAnotherThreadAndAtOnceMeanwhile) {
-  Routes routes;
   std::atomic<bool> go{false};
   std::atomic<int> wakes{0};
+  Routes routes;  // ends before what its threads look at
   routes.on_ready([&] { ++wakes; });
   routes.get("/slow", Routes::Pace::slow, [&](const HttpRequest&) {
     while (!go) std::this_thread::yield();
@@ -61,8 +61,8 @@ TEST(Routes, AnswerSlowlyFromAnotherThreadAndAtOnceMeanwhile) {
 }
 
 TEST(Routes, ActWhileSomethingSlowIsBeingAnswered) {
-  Routes routes;
   std::atomic<bool> go{false};
+  Routes routes;  // ends before what its threads look at
   routes.get("/slow", Routes::Pace::slow, [&](const HttpRequest&) {
     while (!go) std::this_thread::yield();
     return HttpResponse{.body = "done"};
@@ -76,9 +76,9 @@ TEST(Routes, ActWhileSomethingSlowIsBeingAnswered) {
 }
 
 TEST(Routes, DoNotDoLaterWhatWasRefusedAsOverdue) {
-  Routes routes;
   std::atomic<bool> go{false};
   std::atomic<int> done{0};
+  Routes routes;  // ends before what its threads look at
   routes.post("/act", Routes::Pace::action, [&](const HttpRequest&) {
     while (!go) std::this_thread::yield();
     ++done;
@@ -95,9 +95,9 @@ TEST(Routes, DoNotDoLaterWhatWasRefusedAsOverdue) {
 }
 
 TEST(Routes, DoNotBeginWhatNobodyWaitsFor) {
-  Routes routes;
   std::atomic<bool> go{false};
   std::atomic<int> answered{0};
+  Routes routes;  // ends before what its threads look at
   routes.get("/slow", Routes::Pace::slow, [&](const HttpRequest&) {
     while (!go) std::this_thread::yield();
     ++answered;
@@ -117,8 +117,8 @@ TEST(Routes, DoNotBeginWhatNobodyWaitsFor) {
 }
 
 TEST(Routes, RefuseMoreThanTheyCanDo) {
-  Routes routes;
   std::atomic<bool> go{false};
+  Routes routes;  // ends before what its threads look at
   routes.get("/slow", Routes::Pace::slow, [&](const HttpRequest&) {
     while (!go) std::this_thread::yield();
     return HttpResponse{};
