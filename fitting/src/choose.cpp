@@ -15,7 +15,7 @@ const Choice no_choice{.model = "", .why = "no law could be fitted"};
 Choice least_bic(std::span<const FitResult> results) {
   const FitResult* best = nullptr;
   for (const FitResult& result : results) {
-    if (result.converged && (best == nullptr || result.bic < best->bic)) best = &result;
+    if (result.can_be_chosen() && (best == nullptr || result.bic < best->bic)) best = &result;
   }
   if (best == nullptr) return no_choice;
   std::ostringstream why;
@@ -31,7 +31,7 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   const auto error = options.folds > 0 ? &FitResult::cv_rmse : &FitResult::test_rmse;
   std::vector<const FitResult*> candidates;
   for (const FitResult& result : results) {
-    if (result.converged && std::isfinite(result.*error)) candidates.push_back(&result);
+    if (result.can_be_chosen() && std::isfinite(result.*error)) candidates.push_back(&result);
   }
   if (candidates.empty()) return no_choice;
   const double force_rms = rms_of(series.force);

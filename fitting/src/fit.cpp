@@ -148,6 +148,30 @@ void warn_of_the_sensor(FitResult& result, const Samples& samples) {
   }
 }
 
+void warn_of_a_misfit(FitResult& result) {
+  if (!(result.r2 < 0.0)) return;
+  std::ostringstream warning;
+  warning << "it fits worse than the mean of the force does (R2 " << result.r2 << "), and is not chosen";
+  result.warnings.push_back(warning.str());
+}
+
+/// What a law that only pushes leaves of a force that pulls is no noise.
+void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
+  constexpr double noteworthy = 0.01;  // of the samples, and of the largest force
+  double largest = 0.0;
+  for (const double force : samples.force) largest = std::max(largest, std::abs(force));
+  std::size_t pulling = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (residuals[i] + samples.force[i] < -1e-9 * largest) return;
+    pulling += samples.force[i] < -noteworthy * largest ? 1 : 0;
+  }
+  const double share = static_cast<double>(pulling) / static_cast<double>(samples.size());
+  if (share < noteworthy) return;
+  std::ostringstream warning;
+  warning << std::lround(100.0 * share) << " % of the samples pull, and this law only pushes";
+  result.warnings.push_back(warning.str());
+}
+
 FitResult fit_problem(const Problem& problem, const Samples& samples, const FitOptions& options) {
   FitResult result{.model = std::string(problem.model), .law_options = problem.law_options};
   result.free_parameters = static_cast<std::size_t>(problem.coordinates());
@@ -185,7 +209,10 @@ FitResult fit_problem(const Problem& problem, const Samples& samples, const FitO
   }
   result.converged = solution.converged;
   result.iterations = solution.iterations;
-  measure_errors(result, residuals_of(problem, solution.values, samples), samples, options.jnd);
+  const std::vector<double> residuals = residuals_of(problem, solution.values, samples);
+  measure_errors(result, residuals, samples, options.jnd);
+  warn_of_a_misfit(result);
+  warn_of_pulling(result, residuals, samples);
   estimate_parameters(result, problem, samples, weights, solution, options, loss);
   result.cv_rmse = cross_validate(problem, samples, weights, solution.values, loss, options.threads);
   return result;

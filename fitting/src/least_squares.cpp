@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -64,6 +65,12 @@ Eigen::VectorXd shortest_least_squares(const Eigen::MatrixXd& a, const Eigen::Ve
 
 Eigen::VectorXd solve_normal(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right) {
   return normal.completeOrthogonalDecomposition().solve(right);
+}
+
+std::optional<Eigen::VectorXd> solve_positive(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
+  const Eigen::LLT<Eigen::MatrixXd> factors(a);
+  if (factors.info() != Eigen::Success) return std::nullopt;
+  return factors.solve(b);
 }
 
 Eigen::VectorXd solve_bounded(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -92,7 +93,12 @@ struct Minimum {
 /// The same from the normal equations A'A x = A'b; the shortest x where they leave a choice.
 [[nodiscard]] Eigen::VectorXd solve_normal(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right);
 
-/// The same with lower <= x <= upper, by going round the parameters one at a time until nothing moves.
+/// The x of A x = b for a symmetric A; none where A is not positive.
+[[nodiscard]] std::optional<Eigen::VectorXd> solve_positive(const Eigen::MatrixXd& a,
+                                                            const Eigen::VectorXd& b);
+
+/// The bounded one of the normal equations, lower <= x <= upper, by going round the parameters one at a time
+/// until nothing moves.
 [[nodiscard]] Eigen::VectorXd solve_bounded(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
                                             const Bounds& bounds);
 

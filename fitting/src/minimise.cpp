@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <ceres/ceres.h>
@@ -92,42 +93,91 @@ void search(Minimum& minimum, const Objective& objective, const Bounds& bounds,
   minimum.message = summary.message;
 }
 
-/// A step of Gauss and Newton that leaves alone what a bound holds.
-Eigen::VectorXd step_within(const Bounds& bounds, const Eigen::VectorXd& at, const Sums& sums,
-                            const Triangle& triangle) {
+/// The coordinates that no bound holds against the way down.
+std::vector<Eigen::Index> moving_within(const Bounds& bounds, const Eigen::VectorXd& at, const Sums& sums) {
   std::vector<Eigen::Index> moving;
   for (Eigen::Index k = 0; k < at.size(); ++k) {
     const bool below = at[k] <= bounds.lower[k] && sums.score[k] > 0.0;
     const bool above = at[k] >= bounds.upper[k] && sums.score[k] < 0.0;
     if (!below && !above) moving.push_back(k);
   }
+  return moving;
+}
+
+/// A step of Gauss and Newton that leaves alone what a bound holds.
+Eigen::VectorXd step_within(const Bounds& bounds, const Eigen::VectorXd& at, const Sums& sums,
+                            const Triangle& triangle) {
+  const auto moving = moving_within(bounds, at, sums);
   Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
   if (!moving.empty()) step(moving) = shortest_least_squares(triangle.r(Eigen::all, moving), -triangle.z);
   return step;
 }
 
-/// Such steps from near the minimum, as long as they lead down; the last, which promises less than the root
-/// of the tolerance, is taken unseen, since what it leaves is of the order of the square of that. False, and
-/// nothing changed, where they do not go that way.
+/// What J'J lacks of half the second derivative of a sum of squares, sum_i r_i d2r_i/dx2, as the scores along
+/// the way show it (symmetric rank-one updates [DennisGayWelsch1981]). Where a law misfits it is large, and
+/// steps of Gauss and Newton alone come nearer by no more than a share of the way each.
+class Curvature {
+ public:
+  explicit Curvature(Eigen::Index size) : missing_(Eigen::MatrixXd::Zero(size, size)) {}
+
+  void learn(const Eigen::VectorXd& step, const Sums& before, const Sums& after) {
+    const Eigen::VectorXd unknown = after.score - before.score - after.normal * step - missing_ * step;
+    const double along = unknown.dot(step);
+    if (std::abs(along) <= 1e-8 * unknown.norm() * step.norm()) return;
+    missing_ += unknown * unknown.transpose() / along;
+    known_ = true;
+  }
+
+  /// A step of Newton; none where the whole second derivative is not positive, or nothing was learned.
+  [[nodiscard]] std::optional<Eigen::VectorXd> step_within(const Bounds& bounds, const Eigen::VectorXd& at,
+                                                           const Sums& sums) const {
+    const auto moving = moving_within(bounds, at, sums);
+    if (!known_ || moving.empty()) return std::nullopt;
+    const Eigen::VectorXd scale = sums.normal.diagonal()(moving).cwiseSqrt().cwiseInverse();
+    if (!scale.allFinite()) return std::nullopt;
+    const Eigen::MatrixXd whole = sums.normal(moving, moving) + missing_(moving, moving);
+    const auto step = solve_positive(scale.asDiagonal() * whole * scale.asDiagonal(),
+                                     -scale.cwiseProduct(sums.score(moving)));
+    if (!step) return std::nullopt;
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(at.size());
+    all(moving) = scale.cwiseProduct(*step);
+    return all;
+  }
+
+ private:
+  Eigen::MatrixXd missing_;
+  bool known_ = false;
+};
+
+/// Steps of Gauss and Newton, then of Newton, from near the minimum, as long as they lead down; the last,
+/// which promises next to nothing, is taken unseen. False, and nothing changed, where they do not go that
+/// way.
 bool finish(Minimum& minimum, const Objective& objective, const Bounds& bounds, double tolerance) {
+  constexpr int max_steps = 30;
+  constexpr double next_to_nothing = 1e-10;
   Minimum next(minimum);
-  for (int step = 0; step < 6; ++step) {
-    const Eigen::VectorXd change = step_within(bounds, next.at, next.sums, triangle_of(next.sums));
+  Curvature curvature(minimum.at.size());
+  for (int step = 0; step < max_steps; ++step) {
+    const auto newton = curvature.step_within(bounds, next.at, next.sums);
+    const Eigen::VectorXd whole =
+        newton ? *newton : step_within(bounds, next.at, next.sums, triangle_of(next.sums));
+    const Eigen::VectorXd at = (next.at + whole).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+    const Eigen::VectorXd change = at - next.at;
     const double promise = -change.dot(next.sums.score);
     if (!std::isfinite(promise) || promise > 0.1 * next.sums.squares) return false;
-    next.at += change;
-    if ((next.at.array() < bounds.lower.array()).any() || (next.at.array() > bounds.upper.array()).any())
-      return false;
+    const bool within = at == next.at + whole;
+    next.at = at;
     ++next.iterations;
-    if (promise <= std::sqrt(tolerance) * next.sums.squares) {
+    if (within && promise <= std::max(tolerance, next_to_nothing) * next.sums.squares) {
       next.sums.squares -= promise;
       next.converged = true;
       next.message = "the next step promises less than the tolerance";
       minimum = std::move(next);
       return true;
     }
-    const double before = next.sums.squares;
-    if (!objective.evaluate(next.at, next.sums) || !(next.sums.squares <= before)) return false;
+    const Sums before(next.sums);
+    if (!objective.evaluate(next.at, next.sums) || !(next.sums.squares <= before.squares)) return false;
+    curvature.learn(change, before, next.sums);
   }
   return false;
 }

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -13,6 +16,8 @@ namespace {
 
 using models::Law;
 using test::Strokes;
+using testing::Contains;
+using testing::HasSubstr;
 
 const Law kelvin = Law::make("kelvin", std::vector{5.0, 8.0, 1.6});
 const Law exponential = Law::make("exponential", std::vector{0.2, 0.5, 0.3});
@@ -126,7 +131,7 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
     strokes.force[i] = exponential.step(state, models::Motion{strokes.penetration[i], 0.0}, 1e-3).force;
   }
   const auto result = fit("exponential", strokes.series(), {.profile = true});
-  EXPECT_THAT(result.warnings, testing::Contains("the data say nothing about 'viscosity'"));
+  EXPECT_THAT(result.warnings, Contains("the data say nothing about 'viscosity'"));
   EXPECT_TRUE(std::isinf(result.parameters[2].std_error));
   ASSERT_EQ(result.profiles.size(), 3U);
   EXPECT_TRUE(std::isinf(result.profiles[2].lower) && std::isinf(result.profiles[2].upper));
@@ -134,14 +139,66 @@ TEST(Fit, SaysWhatTheDataDoNotTell) {
   EXPECT_NEAR(result.parameters[0].value, 0.2, 1e-6);
 }
 
+constexpr auto not_determined = "is not determined: the data do not tell this law from one without it";
+
+TEST(Fit, OfASpringNamesTheArmThatItDoesNotNeed) {
+  const Strokes strokes(4000, 0.02, Law::make("precontact", std::vector{300.0, 1e-6}));
+  const FitResult result = fit("kelvin", strokes.series(), {.folds = 0});
+  EXPECT_TRUE(result.converged);
+  EXPECT_THAT(result.warnings, Contains(HasSubstr("the arm of 'series_stiffness' and 'damping' " +
+                                                  std::string(not_determined))));
+}
+
+TEST(Fit, OfOneRelaxationTimeNamesASecondArm) {
+  // Pressed in within 0.2 s, and held for 10 s.
+  Strokes held(5000, 0.0, kelvin);
+  const Law truth = Law::make("maxwell", std::vector{5.0, 8.0, 1.0}, {{"arms", 1.0}});
+  Law::State state = truth.initial_state();
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  for (std::size_t i = 0; i < held.time_s.size(); ++i) {
+    held.time_s[i] = 2e-3 * static_cast<double>(i);
+    held.penetration[i] = std::min(1.0, held.time_s[i] / 0.2);
+    held.velocity[i] = held.time_s[i] < 0.2 ? 5.0 : 0.0;
+    held.force[i] =
+        truth.step(state, models::Motion{held.penetration[i], held.velocity[i]}, 2e-3).force + noise(random);
+  }
+  for (const double arms : {1.0, 2.0}) {
+    const FitResult result = fit("maxwell", held.series(), {.law_options = {{"arms", arms}}, .folds = 0});
+    EXPECT_TRUE(result.converged) << result.message;
+    EXPECT_THAT(result.warnings,
+                arms > 1.0 ? testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(not_determined)))
+                           : testing::Matcher<std::vector<std::string>>(testing::IsEmpty()));
+  }
+}
+
+TEST(Fit, WorseThanTheMeanOfTheForceIsSaidToBeAndNotChosen) {
+  // Slack throughout: a law of contact cannot follow a force that falls while the tool goes in.
+  Strokes strokes(2000, 0.0, models::Law::make("precontact", std::vector{300.0, 1e-6}));
+  const double most = *std::max_element(strokes.force.begin(), strokes.force.end());
+  for (double& force : strokes.force) force = most - force;
+  const std::vector results{fit("hunt_crossley", strokes.series(), {.folds = 2})};
+  ASSERT_LT(results[0].r2, 0.0);
+  EXPECT_THAT(results[0].warnings, Contains(HasSubstr("worse than the mean of the force")));
+  EXPECT_EQ(choose_simplest(results, strokes.series(), {.folds = 2}).model, "");
+}
+
+TEST(Fit, OfAForceThatPullsSaysThatTheLawCannot) {
+  Strokes strokes(2000, 0.0, models::Law::make("precontact", std::vector{300.0, 1e-6}));
+  for (std::size_t i = 0; i < strokes.force.size(); i += 10) strokes.force[i] = -5.0;
+  const FitResult pushes = fit("kelvin", strokes.series(), {.folds = 0});
+  EXPECT_THAT(pushes.warnings, Contains("10 % of the samples pull, and this law only pushes"));
+  const FitResult pulls = fit("friction", strokes.series(), {.folds = 0});
+  EXPECT_THAT(pulls.warnings, testing::Not(Contains(HasSubstr("only pushes"))));
+}
+
 TEST(Fit, SaysWhichProductTheDataTell) {
   // Tissue so thick that it stiffens by less than the noise shows: F = alpha beta x / L0.
   const models::Options thick{{"thickness", 1000.0}, {"viscous", false}, {"zero_at_contact", true}};
   const Law line = Law::make("exponential", std::vector{4000.0, 2.5}, thick);
   const auto result = fit("exponential", Strokes(3000, 0.1, line).series(), {.law_options = thick});
-  EXPECT_THAT(
-      result.warnings,
-      testing::Contains("the data determine the product of 'amplitude' and 'exponent', but neither of them"));
+  EXPECT_THAT(result.warnings,
+              Contains("the data determine the product of 'amplitude' and 'exponent', but neither of them"));
 }
 
 TEST(Choice, TakesTheSimplestLawWithinTheJnd) {

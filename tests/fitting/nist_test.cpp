@@ -46,6 +46,36 @@ fitting::Bounds bounds_of(const Eigen::VectorXd& lower, const Eigen::VectorXd& u
   return {.lower = lower, .upper = upper};
 }
 
+/// r = (x + 1, l x^2 + x - 1), whose minimum is 0: each step of Gauss and Newton leaves |l| of the way
+/// ([DennisSchnabel1996], example 10.2.4).
+class LargeResiduals final : public fitting::DenseObjective {
+ public:
+  explicit LargeResiduals(double bend) : bend_(bend) {}
+  [[nodiscard]] Eigen::Index size() const override { return 1; }
+  [[nodiscard]] bool rows(const Eigen::VectorXd& at, Eigen::VectorXd& residual,
+                          Eigen::MatrixXd& jacobian) const override {
+    const double x = at[0];
+    residual = Eigen::Vector2d(x + 1.0, bend_ * x * x + x - 1.0);
+    jacobian = Eigen::Vector2d(1.0, 2.0 * bend_ * x + 1.0);
+    return true;
+  }
+
+ private:
+  double bend_;
+};
+
+TEST(Minimise, ComesToTheEndOfAMisfitInFewSteps) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto anywhere =
+      bounds_of(Eigen::VectorXd::Constant(1, -infinite), Eigen::VectorXd::Constant(1, infinite));
+  for (const double bend : {0.0, 0.5, 0.9, -0.9}) {
+    const Minimum minimum = minimise(LargeResiduals(bend), Eigen::VectorXd::Constant(1, 0.2), anywhere);
+    EXPECT_TRUE(minimum.converged) << minimum.message;
+    EXPECT_LT(minimum.iterations, 15) << bend;
+    EXPECT_NEAR(minimum.at[0], 0.0, 1e-6) << bend;
+  }
+}
+
 TEST(Minimise, StaysInItsBoundsToTheLastDigit) {
   const NistProblem problem = problem_named("BoxBOD");
   const auto objective = nist_objective(problem);

@@ -11,7 +11,10 @@
 namespace kerf::bench {
 namespace {
 
-bool is_judged(const Candidate& one) { return one.file && one.converged && std::isfinite(one.error_n); }
+bool is_judged(const Candidate& one) {
+  return one.file && one.converged && std::isfinite(one.error_n) &&
+         (!one.fit || one.fit->result.can_be_chosen());
+}
 
 std::string why_not_instead(const Candidate& one, const Candidate& taken) {
   if (one.law.parameters > taken.law.parameters) {

@@ -140,7 +140,9 @@ class LawSelection {
     if (!result.converged) candidate.why = fmt::format("its fit did not converge: {}", result.message);
     if (std::isfinite(result.cv_rmse)) candidate.error_n = result.cv_rmse;
     candidate.error_jnd = candidate.error_n / choice_.jnd_n;
-    candidate.within_jnd = result.converged && candidate.error_n <= choice_.jnd_n;
+    if (result.converged && !result.can_be_chosen())
+      candidate.why = fmt::format("it fits worse than the mean of the force does (R2 {:.2g})", result.r2);
+    candidate.within_jnd = result.can_be_chosen() && candidate.error_n <= choice_.jnd_n;
   }
 
   /// The richest first: they take longest.

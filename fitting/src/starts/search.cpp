@@ -13,7 +13,12 @@
 namespace kerf::fitting {
 namespace {
 
+/// A law that follows the motion at once is as well known from few samples as from all; one with a memory is
+/// not, whose shortest times would fall between them.
 constexpr std::size_t thinned_samples = 2000;
+constexpr std::size_t thinned_with_memory = 50'000;
+
+constexpr int max_iterations = 2000;
 
 Values for_all_runs(const Problem& problem, const std::vector<double>& values) {
   return Values(problem.runs, values);
@@ -22,8 +27,9 @@ Values for_all_runs(const Problem& problem, const std::vector<double>& values) {
 Solution solve_from(const Problem& problem, const Samples& samples, const Weights& weights,
                     const Values& start, const SearchOptions& options) {
   const LawObjective objective(problem, samples, weights, start, options.loss);
-  const Minimum minimum = minimise(objective, coordinates_of(problem, start), problem.bounds(),
-                                   {.iterations = 50, .function_tolerance = options.function_tolerance});
+  const Minimum minimum =
+      minimise(objective, coordinates_of(problem, start), problem.bounds(),
+               {.iterations = max_iterations, .function_tolerance = options.function_tolerance});
   return {.values = objective.values_at(minimum.at),
           .converged = minimum.converged,
           .iterations = minimum.iterations,
@@ -44,7 +50,8 @@ double squares_at(const Problem& problem, const Samples& samples, const Weights&
 
 /// The best end of several starts on a thinned series, which is where a search of all samples begins.
 Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
-  const Samples few = thinned(samples, thinned_samples);
+  const bool has_memory = problem.facts().scan.over == models::Scan::prony;
+  const Samples few = thinned(samples, has_memory ? thinned_with_memory : thinned_samples);
   const Weights light = thinned_weights(samples, weights, few);
   Solution best;
   best.message = "the data offer no start for a search";

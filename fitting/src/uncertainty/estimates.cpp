@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "infinite.h"
 #include "tables.h"
@@ -38,6 +39,52 @@ bool at_bound(const models::ParameterInfo& info, double value) {
   const double margin = info.scale == models::Scale::logarithmic ? 1.001 : 1.0;
   return value <= info.lower * (info.lower > 0.0 ? margin : 1.0) ||
          value >= info.upper / (info.upper > 0.0 ? margin : 1.0);
+}
+
+/// What is not known of parameters, and what is said of it.
+struct Unknown {
+  std::vector<std::string> names;
+  std::string warning;
+};
+
+/// Parameters of an arm of a law, by their places; the first is its stiffness.
+using Arm = std::vector<std::size_t>;
+
+std::vector<Arm> arms_of(const Problem& problem) {
+  const auto& beginnings = problem.facts().arm;
+  std::vector<Arm> arms;
+  if (beginnings.empty()) return arms;
+  const std::string_view stiffness = *beginnings.begin();
+  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
+    if (!problem.parameters[i].name.starts_with(stiffness)) continue;
+    const std::string number = problem.parameters[i].name.substr(stiffness.size());
+    Arm arm;
+    for (const std::string_view beginning : beginnings) {
+      const auto found = std::ranges::find(problem.parameters, std::string(beginning) + number,
+                                           &models::ParameterInfo::name);
+      arm.push_back(static_cast<std::size_t>(found - problem.parameters.begin()));
+    }
+    arms.push_back(std::move(arm));
+  }
+  return arms;
+}
+
+/// Whether a law without this arm, the rest fitted anew, leaves no more than chance would have it: twice the
+/// logarithm of the ratio of the likelihoods, by as many samples as the residuals are worth, against
+/// chi-squared of the arm's two parameters. Where both misfit, their residuals are worth next to no samples:
+/// there it is the share that the arm explains that counts.
+constexpr double noticeable = 1.05;  // of the sum of squares
+bool does_without(const Arm& arm, const Problem& problem, const Samples& samples, const Weights& weights,
+                  const Solution& solution, const RobustLoss& loss, const FitResult& result,
+                  double confidence) {
+  Problem less(problem);
+  Values values(solution.values);
+  for (const std::size_t parameter : arm) less.free[parameter] = false;
+  for (auto& of_run : values) of_run[arm.front()] = problem.parameters[arm.front()].lower;
+  const Solution without = search(less, samples, weights, values, {.loss = loss});
+  const double rise = without.squares / std::max(solution.squares, std::numeric_limits<double>::min());
+  const double worth = static_cast<double>(result.samples) / std::max(1.0, result.correlation_time);
+  return rise <= noticeable && worth * std::log(rise) <= -2.0 * std::log(1.0 - confidence);
 }
 
 /// What counts as a change of a coordinate as large as itself.
@@ -166,12 +213,13 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
   };
   // What lies at the end of its range is held there: the others' intervals are those of the law without it.
   Problem inner(problem);
+  std::vector<Unknown> unknowns;
   for (const auto& coordinate : problem.all()) {
     const auto& info = problem.parameters[coordinate.parameter];
     if (!at_bound(info, value_of(coordinate))) continue;
+    if (inner.free[coordinate.parameter])
+      unknowns.push_back({{info.name}, "'" + info.name + "' lies at the bound of its range: no interval"});
     inner.free[coordinate.parameter] = false;
-    const std::string warning = "'" + info.name + "' lies at the bound of its range: no interval";
-    if (result.warnings.empty() || result.warnings.back() != warning) result.warnings.push_back(warning);
   }
   const LawObjective objective(inner, samples, weights, solution.values, loss);
   const auto coordinates = inner.all();
@@ -198,13 +246,31 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
     result.correlation.assign(uncertainty.correlation.data(),
                               uncertainty.correlation.data() + uncertainty.correlation.size());
     result.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples.size()));
-    for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable)
-      result.warnings.push_back(describe(unidentifiable, result.searched, logarithmic));
+    for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable) {
+      std::vector<std::string> names;
+      for (const auto& [place, share] : unidentifiable.parts) names.push_back(result.searched[place]);
+      unknowns.push_back({std::move(names), describe(unidentifiable, result.searched, logarithmic)});
+    }
     if (options.profile) {
       result.profiles =
           profiles_of(inner, samples, weights, solution.values, loss, uncertainty, result.searched);
     }
   }
+  for (const Arm& arm : arms_of(problem)) {
+    const auto is_of_the_arm = [&](const Unknown& unknown) {
+      return std::ranges::any_of(arm, [&](std::size_t parameter) {
+        return std::ranges::find(unknown.names, problem.parameters[parameter].name) != unknown.names.end();
+      });
+    };
+    if (std::ranges::none_of(unknowns, is_of_the_arm) ||
+        !does_without(arm, problem, samples, weights, solution, loss, result, options.confidence))
+      continue;
+    std::erase_if(unknowns, is_of_the_arm);
+    result.warnings.push_back("the arm of '" + problem.parameters[arm.front()].name + "' and '" +
+                              problem.parameters[arm.back()].name +
+                              "' is not determined: the data do not tell this law from one without it");
+  }
+  for (Unknown& unknown : unknowns) result.warnings.push_back(std::move(unknown.warning));
   const auto spread_of = [&](std::size_t parameter, std::size_t run) {
     for (std::size_t k = 0; k < coordinates.size(); ++k) {
       if (coordinates[k].parameter == parameter &&

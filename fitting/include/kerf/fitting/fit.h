@@ -117,6 +117,10 @@ struct FitResult {
   std::string message;  ///< why it ended
   std::vector<std::string> warnings;
 
+  /// It converged, and not to something that the mean of the force explains better: what does is no answer,
+  /// however it compares with others.
+  [[nodiscard]] bool can_be_chosen() const noexcept { return converged && r2 >= 0.0; }
+
   /// The law of the first recording, or of another one.
   [[nodiscard]] models::Law law(std::size_t recording = 0) const;
 };

@@ -40,6 +40,7 @@ struct Kelvin {
   static constexpr LawFacts facts{
       .search = Search::descent,
       .scan = {.over = Scan::relaxation, .parameter = "damping", .spring = "series_stiffness"},
+      .arm = {"series_stiffness", "damping"},
       .fineness = Fineness::integrators,
       .in_float = true,
       .usual = 1,

@@ -140,6 +140,7 @@ struct LawFacts {
   Few<std::string_view, 3> held = {};  ///< parameters that begin so are not searched: no recording tells them
   std::string_view held_note = {};     ///< what a fit says of that
   SizeFacts size = {};
+  Few<std::string_view, 2> arm = {};  ///< parameters that begin so, one of each to an arm: a law may lack it
   Fineness fineness = Fineness::nothing;
   bool in_float = false;          ///< has the option `precision`
   int usual = 0;                  ///< place among those that are fitted where none is named; 0: not there

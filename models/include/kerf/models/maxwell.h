@@ -49,6 +49,7 @@ struct Maxwell {
       .searched_at_once = 14,
       .scan = {.over = Scan::prony},
       .size = {.option = "arms", .unit = "arm", .first = 1, .last = 4, .grows = true},
+      .arm = {"stiffness[", "relaxation_time["},
       .fineness = Fineness::integrators,
       .in_float = true,
       .usual = 5,

@@ -90,6 +90,28 @@ TEST_F(RealFit, OfAPolymerRelaxesAsAPowerOfTime) {
   EXPECT_LT(power.rmse, 0.005);  // of 2.4 N at the beginning
 }
 
+// SciPy 1.10's least_squares from thirty random starts, on the same exact steps (least over all of them).
+TEST_F(RealFit, OfRelaxationsReachesTheSumsOfSquaresOfAnotherSolver) {
+  const std::map<std::string, std::vector<double>> least{
+      {"vhb/relaxation_4d0.csv", {301.711360923, 71.0297543617, 16.6116126422, 14.619852347}},
+      {"vhb/relaxation_5d0.csv", {395.677107826, 96.2909390071, 24.8087853333, 22.7411770035}}};
+  for (const auto& [file, squares] : least) {
+    KERF_NEEDS_DATA(file);
+    const auto polymer = imported(file, "time=时间,position=位移,force=3");
+    const AxisSeries series = axis_series(polymer, 0, {.position = 0.0, .direction = 1.0});
+    for (std::size_t arms = 1; arms <= squares.size(); ++arms) {
+      const fitting::FitOptions options{.law_options = {{"arms", static_cast<double>(arms)}}, .folds = 0};
+      const auto fit = fitting::fit("maxwell", fitted_view(series), options);
+      EXPECT_TRUE(fit.converged) << file << " " << arms << ": " << fit.message;
+      // However badly one or two arms do, none of them is idle.
+      for (const std::string& warning : fit.warnings)
+        EXPECT_EQ(warning.find("without it"), std::string::npos) << file << " " << arms << ": " << warning;
+      EXPECT_LT(fit.rmse * fit.rmse * static_cast<double>(fit.samples) / squares[arms - 1] - 1.0, 1e-9)
+          << file << " " << arms;
+    }
+  }
+}
+
 struct Site {
   std::vector<double> time_s, depth, still, force;
 };
