@@ -14,6 +14,22 @@ struct Sample {
   double size;
 };
 
+/// Standard deviation of white noise upon a smooth force, robustly from its second differences: they hold
+/// noise of six times its variance, and next to nothing of what a cut does between two samples. A rupture is
+/// a few differences among many.
+double noise_of(std::span<const double> force) {
+  constexpr double deviation_of_median = 1.4826;
+  std::vector<double> bends;
+  for (std::size_t i = 2; i < force.size(); ++i) {
+    const double bend = force[i] - 2.0 * force[i - 1] + force[i - 2];
+    if (std::isfinite(bend)) bends.push_back(std::abs(bend));
+  }
+  if (bends.empty()) return 0.0;
+  const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+  std::ranges::nth_element(bends, middle);
+  return deviation_of_median * *middle / std::sqrt(6.0);
+}
+
 /// Contact and release.
 class ContactFinder {
  public:
@@ -32,22 +48,23 @@ class ContactFinder {
   bool touching_ = false;
 };
 
-/// Drops, by the largest size within the window before each sample.
+/// Drops, by the largest size within the window before each sample, beyond what noise alone makes of a force.
 class DropFinder {
  public:
-  explicit DropFinder(const ForceEventOptions& options) : options_(options) {}
+  DropFinder(const ForceEventOptions& options, double noise)
+      : options_(options), by_noise_(widest_by_noise * noise) {}
   void process(const Sample& now, std::vector<ForceEvent>& events) {
     while (!peaks_.empty() && peaks_.front().time_s < now.time_s - options_.window_s * (1.0 + 1e-9))
       peaks_.pop_front();
     while (!peaks_.empty() && peaks_.back().size <= now.size) peaks_.pop_back();
     peaks_.push_back(now);
     const double peak = peaks_.front().size;
-    const double fall = peak - now.size;
+    const double fall = peak - now.size - by_noise_;
     if (!falling_ && fall > options_.jnd.at(peak)) {
       falling_ = true;
       top_ = peak;
       drop_ = events.size();
-      events.push_back({.kind = ForceEventKind::drop, .time_s = now.time_s, .size = fall});
+      events.push_back({.kind = ForceEventKind::drop, .time_s = now.time_s, .size = peak - now.size});
     } else if (falling_) {
       events[drop_].size = std::max(events[drop_].size, top_ - now.size);
       falling_ = fall >= 0.5 * options_.jnd.at(peak);
@@ -55,7 +72,11 @@ class DropFinder {
   }
 
  private:
+  // Peak to peak: in a million windows of some samples one of white noise is wider by a few percent.
+  static constexpr double widest_by_noise = 8.0;
+
   ForceEventOptions options_;
+  double by_noise_;
   std::deque<Sample> peaks_;  // sizes that decrease
   bool falling_ = false;
   double top_ = 0.0;
@@ -102,7 +123,7 @@ std::vector<ForceEvent> find_force_events(std::span<const double> time_s, std::s
                                           const ForceEventOptions& options) {
   if (time_s.size() != force.size()) throw std::invalid_argument("times and forces differ in number");
   ContactFinder contacts(options.contact > 0.0 ? options.contact : 2.0 * options.jnd.threshold);
-  DropFinder drops(options);
+  DropFinder drops(options, noise_of(force));
   std::vector<ForceEvent> events;
   for (std::size_t i = 0; i < force.size(); ++i) {
     if (!std::isfinite(force[i])) continue;

@@ -123,9 +123,9 @@ void write_found(const ReplayVerbArguments& arguments, const Context& context, c
   whole.commit();
 }
 
-/// What both closed loops tell of the run.
-void finish_run(const ReplayVerbArguments& arguments, Context& context, const RunResult& result) {
-  const Verdict verdict = judge(result);
+/// What both closed loops tell of the run, judged.
+void finish_run(const ReplayVerbArguments& arguments, Context& context, const RunResult& result,
+                const Verdict& verdict) {
   context.result["check"] = check_as_json(result, verdict);
   context.result["recording"] = arguments.recording;
   if (!arguments.record.empty()) context.result["record"] = arguments.record;
@@ -164,7 +164,7 @@ void play_table(const ReplayVerbArguments& arguments, Context& context, const So
   options.zero_hold = &confirm.hold();
   const RunResult result = run_on_device(options, signals.requested());
   context.result = table_as_json(table, recording.rows());
-  finish_run(arguments, context, result);
+  finish_run(arguments, context, result, judge(result));
   write_found(arguments, context, &table.file);
 }
 
@@ -193,7 +193,14 @@ void play_path(const ReplayVerbArguments& arguments, Context& context, Source so
   say_lines(path_lines(replay), context);
   if (!replay.report.finished && replay.run.report.end == LoopEnd::completed && !replay.path.loop)
     warn("the time was over before the path was played to its end");
-  finish_run(arguments, context, replay.run);
+  Verdict verdict = judge(replay.run);
+  if (replay.report.playing == 0) {
+    verdict.passed = false;
+    verdict.reasons.emplace_back(
+        "the path was not reached: no tick of it was played; a longer --seconds or a quicker --approach "
+        "does");
+  }
+  finish_run(arguments, context, replay.run, verdict);
   write_found(arguments, context, nullptr);
 }
 

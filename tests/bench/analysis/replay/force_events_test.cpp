@@ -1,7 +1,9 @@
 #include "replay/force_events.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -50,6 +52,22 @@ TEST(ForceEvents, AreNotMadeByAForceThatHoversAtTheThreshold) {
   std::vector<double> hovering;
   for (std::size_t i = 0; i < times().size(); ++i) hovering.push_back(i % 2 == 0 ? 0.11 : 0.08);
   EXPECT_EQ(find_force_events(times(), hovering, options).size(), 1U);
+}
+
+TEST(ForceEvents, AreNotDropsThatNoiseAloneMakes) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  std::vector<double> smooth;
+  for (const double time_s : times()) smooth.push_back(1.0 + std::sin(2.0 * time_s) + noise(random));
+  for (const ForceEvent& event : find_force_events(times(), smooth, options))
+    EXPECT_NE(event.kind, ForceEventKind::drop) << event.time_s;
+  std::vector<double> breaking = forces();
+  for (double& force : breaking) force += noise(random);
+  const auto events = find_force_events(times(), breaking, options);
+  const auto drop = std::ranges::find(events, ForceEventKind::drop, &ForceEvent::kind);
+  ASSERT_NE(drop, events.end());
+  EXPECT_NEAR(drop->time_s, 1.1, 2.1e-3);
+  EXPECT_NEAR(drop->size, 1.0, 0.15);
 }
 
 TEST(ForceEvents, PassOverWhatWasNotMeasured) {

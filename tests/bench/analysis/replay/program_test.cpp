@@ -121,6 +121,16 @@ TEST_F(ProgramReplay, GoesOnInALoopForAsLongAsItIsTold) {
   EXPECT_GT(result.at("playing_ticks"), 800);
 }
 
+TEST_F(ProgramReplay, OfAPathThatWasNotReachedIsNoPass) {
+  const Outcome outcome = replay({sine(), "--as", "path", "--device", "sim:scissors?hand=off", "--virtual",
+                                  "--seconds", "0.05", "--json"});
+  EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
+  const json result = json::parse(outcome.output);
+  EXPECT_EQ(result.at("playing_ticks"), 0);
+  EXPECT_NE(result.at("check").at("verdict"), "pass");
+  EXPECT_THAT(result.at("check").at("reasons").dump(), HasSubstr("no tick of it was played"));
+}
+
 TEST_F(ProgramReplay, TellsOfGaps) {
   schema::write_recording(path("gap.h5"), test::without_rows(test::sine_of_scissors(), 100, 200));
   const std::string law = examples + "kelvin.law.toml";
