@@ -129,6 +129,17 @@ void add_edge(Wrench& wrench, Vector3d from, Vector3d to, const BladeField& fiel
   wrench.moment -= field.edge * length * length * length / 12.0 * (twist.angular - t.dot(twist.angular) * t);
 }
 
+/// What an elastic field holds whose displacement has this wrench [J].
+double energy_of(const Wrench& wrench, const Twist& displacement) noexcept {
+  return std::max(0.0,
+                  -0.5 * (wrench.force.dot(displacement.linear) + wrench.moment.dot(displacement.angular)));
+}
+
+Twist displacement_between(const Pose& from, const Pose& to) noexcept {
+  return {.linear = to.hand - from.hand,
+          .angular = rotation_vector_of(to.rotation * from.rotation.transpose())};
+}
+
 }  // namespace
 
 Wrench blade_wrench(const BladeShape& shape, const BladeField& field, const BladeFidelity& fidelity,
@@ -170,6 +181,8 @@ std::vector<OptionInfo> Blade::options() {
       {"fidelity", std::string("exact"), "exact, strips or paper"},
       {"strips", 16.0, "strips a polygon, for strips and paper"},
       {"thresholds", true, "hold elastically up to F1 and again below F0; false: always cut"},
+      {"form", std::string("passive"),
+       "of the hold: passive, or paper (strains what was just submerged at no cost: creates energy)"},
       {"polygons", std::string("-0.005 0 -0.112, 0.005 0 -0.112, 0.005 0 -0.082, -0.005 0 -0.082"),
        "corners of the planar surfaces in the tool's frame, origin at the hand [m]"},
       {"edge", std::string("0.005 0 -0.112, 0.005 0 -0.082"), "ends of the cutting edge [m]; empty: none"}};
@@ -208,6 +221,7 @@ Blade Blade::make(std::span<const double> values, const Options& given) {
       throw std::invalid_argument("law 'blade': release_force must be smaller than rupture_force");
     }
   }
+  law.paper = reader.choice("form", {"passive", "paper"}) == "paper";
   const std::string fidelity = reader.choice("fidelity", {"exact", "strips", "paper"});
   law.fidelity.kind = fidelity == "exact"    ? BladeFidelity::Kind::exact
                       : fidelity == "strips" ? BladeFidelity::Kind::strips
@@ -217,35 +231,53 @@ Blade Blade::make(std::span<const double> values, const Options& given) {
   return law;
 }
 
+Twist Blade::carried_strain(const State& state, const Pose& pose) const noexcept {
+  Twist strain{.linear = pose.rotation * state.strain.linear,
+               .angular = pose.rotation * state.strain.angular};
+  const double carried_j = energy_of(blade_wrench(shape, elastic, fidelity, pose, strain), strain);
+  if (carried_j > state.stored_j) {
+    strain.linear *= state.stored_j / carried_j;
+    strain.angular *= state.stored_j / carried_j;
+  }
+  return strain;
+}
+
+Wrench Blade::hold(State& state, const Pose& pose) const noexcept {
+  Twist strain = displacement_between(state.anchor, pose);
+  if (!paper) {
+    const Twist carried = carried_strain(state, pose);
+    strain.linear += carried.linear;
+    strain.angular += carried.angular;
+    state.anchor = pose;
+    state.strain = {.linear = pose.rotation.transpose() * strain.linear,
+                    .angular = pose.rotation.transpose() * strain.angular};
+  }
+  const Wrench wrench = blade_wrench(shape, elastic, fidelity, pose, strain);
+  state.stored_j = energy_of(wrench, strain);
+  return wrench;
+}
+
+void Blade::begin_to_hold(State& state, const Pose& pose) noexcept {
+  state.anchor = pose;
+  state.strain = {};
+  state.stored_j = 0.0;
+}
+
 Wrench Blade::step(State& state, const Pose& pose, const Twist& twist) const noexcept {
   if (!has_thresholds) return blade_wrench(shape, viscous, fidelity, pose, twist);
-  if (!state.in_tissue) state.anchor = pose;
-  state.stored_j = 0.0;
-  double held_j = 0.0;
-  const auto elastic_wrench = [&] {
-    const Twist displacement{
-        .linear = pose.hand - state.anchor.hand,
-        .angular = rotation_vector_of(pose.rotation * state.anchor.rotation.transpose())};
-    const Wrench wrench = blade_wrench(shape, elastic, fidelity, pose, displacement);
-    held_j = std::max(
-        0.0, -0.5 * (wrench.force.dot(displacement.linear) + wrench.moment.dot(displacement.angular)));
-    return wrench;
-  };
-  Wrench wrench = state.mode.cutting ? blade_wrench(shape, viscous, fidelity, pose, twist) : elastic_wrench();
+  if (!state.in_tissue) begin_to_hold(state, pose);
+  const bool cut = state.mode.cutting;
+  const Wrench wrench = cut ? blade_wrench(shape, viscous, fidelity, pose, twist) : hold(state, pose);
   // The field is zero out of the tissue, and its anchor then follows the blade.
   state.in_tissue = touches(pose);
   if (!state.in_tissue) {
     state.mode.cutting = false;
+    state.stored_j = 0.0;
     return {};
   }
-  const bool cut = state.mode.cutting;
-  if (thresholds.step(state.mode, wrench.force.norm()) == cut) {
-    state.stored_j = held_j;
-    return wrench;
-  }
-  if (state.mode.cutting) return blade_wrench(shape, viscous, fidelity, pose, twist);
-  state.anchor = pose;
-  return {};
+  if (thresholds.step(state.mode, wrench.force.norm()) == cut) return wrench;
+  begin_to_hold(state, pose);
+  return state.mode.cutting ? blade_wrench(shape, viscous, fidelity, pose, twist) : Wrench{};
 }
 
 bool Blade::touches(const Pose& pose) const noexcept {

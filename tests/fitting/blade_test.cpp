@@ -197,7 +197,7 @@ TEST(BladeFit, SaysThatNoForceWasMeasured) {
 const std::vector cut_truth{5.0, 2e4, 4e3, 500.0, 1e6, 6e5, 0.1, 0.3};
 
 models::Law cutting(const std::vector<double>& values = cut_truth) {
-  return models::Law::make("blade", values, scalpel);
+  return models::Law::make("blade", values, with(scalpel, "form", std::string("paper")));
 }
 
 TEST(BladeJumps, AreWhereTheForceJumpsAndNotBesideIt) {
@@ -220,6 +220,7 @@ TEST(BladeJumps, AreWhereTheForceJumpsAndNotBesideIt) {
 TEST(BladeThresholds, AreFoundFromThePeaksOfTheForce) {
   const BladeStrokes strokes(cutting(), {.seconds = 20.0, .noise_n = 0.005, .noise_n_m = 5e-5});
   const BladeFit fit = fit_blade(strokes.series(), {.law_options = scalpel, .thresholds = true});
+  EXPECT_EQ(fit.law().options().at("form"), models::OptionValue(std::string("paper"))) << "as it was fitted";
   ASSERT_EQ(fit.parameters.size(), 8U);
   for (std::size_t k = 0; k < 8; ++k) {
     const Estimate& estimate = fit.parameters[k];

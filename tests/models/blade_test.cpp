@@ -262,8 +262,8 @@ TEST(Blade, NeverGivesPower) {
   }
 }
 
-Blade with_thresholds(double release, double rupture) {
-  return Blade::make(std::vector{5.0, 2e4, 4e3, 500.0, 1e6, 3e5, release, rupture}, {});
+Blade with_thresholds(double release, double rupture, const Options& options = {}) {
+  return Blade::make(std::vector{5.0, 2e4, 4e3, 500.0, 1e6, 3e5, release, rupture}, options);
 }
 
 TEST(Blade, HoldsElasticallyUntilF1AndCutsUntilF0) {
@@ -299,6 +299,35 @@ TEST(Blade, HoldsAgainFromWhereItCameToRest) {
   at(y, 0.0);
   ASSERT_FALSE(state.mode.cutting);
   EXPECT_NEAR(at(y + 1e-5, 1e-3), -(1e6 * 0.01 * 0.012 + 500.0 * 0.012) * 1e-5, 1e-12);
+}
+
+TEST(Blade, DilutesItsStrainByWhatComesToBeSubmerged) {
+  // 12 mm deep, 0.1 mm along y, then twice as deep and back: the wetted area doubles and halves.
+  const double held_n = (1e6 * 0.01 * 0.012 + 500.0 * 0.012) * 1e-4;
+  for (const std::string form : {"passive", "paper"}) {
+    const Blade blade = with_thresholds(1e3, 2e3, {{"form", form}});
+    const bool passive = form == "passive";
+    Blade::State state;
+    const auto lateral_at = [&](double y, double z) {
+      return blade.step(state, {.hand = {0.0, y, z}}, {}).force.y();
+    };
+    (void)lateral_at(0.0, 0.10);
+    EXPECT_NEAR(lateral_at(1e-4, 0.10), -held_n, 1e-15) << form;
+    EXPECT_NEAR(lateral_at(1e-4, 0.088), -held_n * (passive ? 1.0 : 2.0), 1e-12) << form;
+    EXPECT_NEAR(lateral_at(1e-4, 0.10), -held_n * (passive ? 0.5 : 1.0), 1e-12) << form;
+  }
+}
+
+TEST(Blade, HoldsWithTheStrainTurnedAlong) {
+  const Blade blade = with_thresholds(1e3, 2e3, {{"edge", std::string()}});  // even about its main axis
+  Blade::State state;
+  (void)blade.step(state, upright, {});
+  const Wrench before = blade.step(state, {.hand = {0.0, 1e-4, 0.10}}, {});
+  const double held_j = blade.stored_energy(state);
+  const Matrix3d turn = rotation_of({0.0, 0.0, 0.3});
+  const Wrench after = blade.step(state, {.hand = {0.0, 1e-4, 0.10}, .rotation = turn}, {});
+  EXPECT_NEAR((after.force - turn * before.force).norm(), 0.0, 1e-9 * before.force.norm());
+  EXPECT_GT(blade.stored_energy(state), held_j) << "by the turn itself";
 }
 
 TEST(TwoThresholds, NoiseBelowTheGapNeverMakesThemChatter) {

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -140,6 +142,53 @@ TEST(FuzzyKelvin3d, StiffensWithDepthAndPushesOutAtAnyPeriod) {
       const double elastic = 20.0 * 0.01 + 50.0 * 0.2 * (1.0 - std::exp(-0.05 / tau));
       EXPECT_NEAR(force / ((1.0 + stiffening * 0.01) * elastic), 1.0, 1e-9) << period_s;
     }
+  }
+}
+
+/// Work on a tissue that stiffens by 100 /m: 10 mm sideways at 2 mm of depth, down to 12 mm, back, and up
+/// [J].
+double work_of_a_box(const std::string& form) {
+  auto values = std::vector{8.0, 8.0, 8.0, 7.0, 7.0, 7.0, 130.0, 130.0, 130.0};
+  const auto threshold = plane(0.0, 0.0, 100.0);
+  values.insert(values.end(), threshold.begin(), threshold.end());
+  const auto law = FuzzyKelvin3d::make(values, {{"stiffening", 100.0}, {"form", form}});
+  FuzzyKelvin3d::State state;
+  SpatialMotion at{{0.0, 0.0, 0.0}, {}};
+  AxisValues before = law.step(state, at, 1e-3);
+  double work_j = 0.0;
+  for (const auto& [axis, to] : {std::pair{2, -0.002}, {1, 0.01}, {2, -0.012}, {1, 0.0}, {2, 0.0}}) {
+    constexpr int ticks = 100;
+    const double step = (to - at.position[axis]) / ticks;
+    for (int tick = 0; tick < ticks; ++tick) {
+      at.position[axis] += step;
+      const AxisValues force = law.step(state, at, 1e-3);
+      work_j -= 0.5 * (before[axis] + force[axis]) * step;
+      before = force;
+    }
+  }
+  return work_j;
+}
+
+TEST(FuzzyKelvin3d, IsPaidForDeepeningUnderALateralStrain) {
+  EXPECT_GT(work_of_a_box("passive"), 0.0);
+  EXPECT_LT(work_of_a_box("paper"), -0.4e-3) << "as printed: half a millijoule for the hand";
+}
+
+TEST(FuzzyKelvin3d, DiffersFromThePaperInTheDepthAlone) {
+  const auto threshold = plane(0.0, 0.0, 100.0);
+  auto values = std::vector{8.0, 9.0, 8.0, 7.0, 6.0, 7.0, 130.0, 100.0, 130.0};
+  values.insert(values.end(), threshold.begin(), threshold.end());
+  const auto passive = FuzzyKelvin3d::make(values, {{"stiffening", 30.0}});
+  const auto paper = FuzzyKelvin3d::make(values, {{"stiffening", 30.0}, {"form", std::string("paper")}});
+  FuzzyKelvin3d::State a;
+  FuzzyKelvin3d::State b;
+  for (const double x : {0.0, 0.01}) {  // at once, so that the arms relax by 1e-9 of it
+    const SpatialMotion at{{x, 0.5 * x, -0.004}, {}};
+    const AxisValues of_passive = passive.step(a, at, 1e-8);
+    const AxisValues of_paper = paper.step(b, at, 1e-8);
+    EXPECT_EQ(of_passive[0], of_paper[0]);
+    EXPECT_EQ(of_passive[1], of_paper[1]);
+    EXPECT_NEAR(of_passive[2] - of_paper[2], 30.0 * 0.5 * (15.0 * x * x + 15.0 * 0.25 * x * x), 1e-10);
   }
 }
 

@@ -240,6 +240,8 @@ BladeFit fit_blade(const BladeSeries& series, const BladeFitOptions& options) {
   if (options.thresholds) check_forces_for_thresholds(options);
   BladeFit fit{.law_options = options.law_options, .rows = rows.size()};
   fit.law_options["thresholds"] = options.thresholds;
+  // The columns of the hold are those of the paper's, which are linear in its stiffnesses.
+  if (options.thresholds) fit.law_options["form"] = std::string("paper");
   fit.rows_in_tissue =
       static_cast<std::size_t>(std::count(rows.in_tissue.begin(), rows.in_tissue.end(), true));
   const auto infos = models::Blade::parameters(fit.law_options);

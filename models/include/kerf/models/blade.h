@@ -98,15 +98,33 @@ struct BladeFidelity {
 ///     elastic:  the field of displacements since the tissue last held, until |F| > F1
 ///     cutting:  the viscous field, until |F| < F0 < F1
 ///
-/// Without the option `thresholds` the blade always cuts. Displacements are those of the rigid motion since
-/// then: R R_0^T as a rotation vector, and the path of the hand point. Axes: x, y, z [m] of the hand point,
-/// rx, ry, rz the rotation vector of the tool's frame [rad]; its rates become the angular velocity by the
-/// left Jacobian of the rotation, and the moment becomes the generalised torque of these axes by its
-/// transpose, so that force times velocity is the power.
+/// Without the option `thresholds` the blade always cuts. Axes: x, y, z [m] of the hand point, rx, ry, rz the
+/// rotation vector of the tool's frame [rad]; its rates become the angular velocity by the left Jacobian of
+/// the rotation, and the moment becomes the generalised torque of these axes by its transpose, so that force
+/// times velocity is the power.
 ///
-/// Source: [Henry2004], eqs. 3-9 and section 3.5; differs from the paper in the fidelities `strips` and
-/// `exact`, and in the split of K'v into Kn and Kt, which the paper gives as a function of direction without
-/// numbers.
+/// The hold. Let w = -S s be the wrench of the elastic field for a displacement s, and E = s.S s / 2 what the
+/// field holds; S is that of the part that is submerged, in the tool's frame a constant but for that. The
+/// strain s goes with the tool, ds = dp + the slip below, p the pose:
+///
+///     dE = s.S dp + s.dS s / 2 + s.S ds_slip
+///
+/// The first term is the work of the hand. The second nobody pays for where more of the blade comes to be
+/// submerged. What comes to be submerged is not strained yet, so that the mean strain falls: by as much as
+/// that part has of the whole,
+///
+///     ds_slip = -s (dE at constant s)+ / E
+///
+/// so that E falls where it would have risen, and never grows by more than the work. The force stays what it
+/// was when unstrained blade comes in, and falls by its share when strained blade comes out. The option `form
+/// = "paper"` takes s as the rigid motion since the tissue last held, R R_0^T as a rotation vector and the
+/// path of the hand point, over whatever is submerged now: a hand that draws the blade along when shallow and
+/// back when deep is given energy. The two agree where the wetted area stays, up to turns of the strain. Not
+/// passive in either form is `fidelity = "paper"`, whose wrench does not know how a turn moves the blade.
+///
+/// Source: [Henry2004], eqs. 3-9 and section 3.5; differs from the paper in the slip, in the fidelities
+/// `strips` and `exact`, and in the split of K'v into Kn and Kt, which the paper gives as a function of
+/// direction without numbers.
 struct Blade {
   static constexpr std::string_view name = "blade";
   static constexpr std::string_view equation = "dF = -Kv v dl - (Kn n n^T + Kt (I - n n^T)) v ds, z < 0";
@@ -116,14 +134,16 @@ struct Blade {
   BladeField elastic;
   TwoThresholds thresholds;
   bool has_thresholds = false;
+  bool paper = false;  ///< the hold does not slip
   BladeFidelity fidelity;
   BladeShape shape;
 
   struct State {
     TwoThresholds::State mode;
     bool in_tissue = false;
-    Pose anchor;            ///< where the tissue began to hold
-    double stored_j = 0.0;  ///< by the elastic field
+    Pose anchor;            ///< where the tissue began to hold; unless `paper`, where the last tick was
+    Twist strain;           ///< s in the tool's frame; unused by `paper`
+    double stored_j = 0.0;  ///< E
   };
 
   static std::vector<LawAxis> axes();
@@ -131,9 +151,7 @@ struct Blade {
   static std::vector<ParameterInfo> parameters(const Options& given);
   static Blade make(std::span<const double> values, const Options& given);
 
-  /// Energy of the elastic field while the tissue holds, -(F . d + M . r) / 2 of the displacements d and r
-  /// since then [J]; none while it is cut. What the field means to hold: it acts on what is submerged now, so
-  /// that a blade that is drawn along while its wetted area changes gets back more or less.
+  /// E while the tissue holds [J]; none while it is cut.
   [[nodiscard]] double stored_energy(const State& state) const noexcept { return state.stored_j; }
 
   /// One tick in the frame of the tissue; blade_wrench() with the state machine around it.
@@ -143,6 +161,13 @@ struct Blade {
 
   /// Whether any point of the blade is under the plane.
   [[nodiscard]] bool touches(const Pose& pose) const noexcept;
+
+ private:
+  /// The strain at a pose, in the tissue's frame, after what came to be submerged has diluted it.
+  [[nodiscard]] Twist carried_strain(const State& state, const Pose& pose) const noexcept;
+  /// Wrench of the hold, whose strain and energy go into the state.
+  Wrench hold(State& state, const Pose& pose) const noexcept;
+  static void begin_to_hold(State& state, const Pose& pose) noexcept;
 };
 
 }  // namespace kerf::models

@@ -95,7 +95,8 @@ TEST_F(KerfBlade, FindsTheFrictionOfASimulatedTissue) {
 }
 
 TEST_F(KerfBlade, FindsTheThresholdsOfATissueThatTears) {
-  record(replaced(friction, "4000", "8000") + hold, replaced(shape, "thresholds = false\n", ""), "30");
+  record(replaced(friction, "4000", "8000") + hold, replaced(shape, "thresholds = false", "form = \"paper\""),
+         "30");
   const Outcome outcome = blade({"--thresholds", "--json"});
   ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
   const json result = json::parse(outcome.output);
