@@ -156,7 +156,7 @@ double work_of_a_box(const std::string& form) {
   SpatialMotion at{{0.0, 0.0, 0.0}, {}};
   AxisValues before = law.step(state, at, 1e-3);
   double work_j = 0.0;
-  for (const auto& [axis, to] : {std::pair{2, -0.002}, {1, 0.01}, {2, -0.012}, {1, 0.0}, {2, 0.0}}) {
+  for (const auto& [axis, to] : {std::pair{2U, -0.002}, {1U, 0.01}, {2U, -0.012}, {1U, 0.0}, {2U, 0.0}}) {
     constexpr int ticks = 100;
     const double step = (to - at.position[axis]) / ticks;
     for (int tick = 0; tick < ticks; ++tick) {

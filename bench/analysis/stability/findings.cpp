@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "files/json_number.h"
 #include "html/html.h"
+#include "stability/conditions.h"
 #include "stability/map_pictures.h"
 
 namespace kerf::bench {
@@ -14,9 +16,16 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-std::string text_of(const std::optional<double>& value, double factor, const char* unit,
-                    const char* without) {
-  return value ? fmt::format("{:.4g} {}", factor * *value, unit) : std::string(without);
+std::string text_of(const Limit& limit, double factor, const char* unit) {
+  if (limit.at) return fmt::format("{:.4g} {}", factor * *limit.at, unit);
+  if (limit.holds_nowhere)
+    return fmt::format("none, it fails at {:.4g} {} already", factor * limit.first, unit);
+  return fmt::format("holds to {:.4g} {}, the end of the search", factor * limit.last, unit);
+}
+
+/// Of the key of a limit in JSON, which is null unless it was found.
+const char* how_it_ended(const Limit& limit) {
+  return limit.at ? "found" : limit.holds_nowhere ? "holds nowhere" : "holds throughout";
 }
 
 std::string device_table(const SampledDevice& device) {
@@ -34,6 +43,24 @@ std::string device_table(const SampledDevice& device) {
                      row("mass of the hand", device.hand.mass_kg, "kg"),
                      row("damping of the hand", device.hand.damping_n_s_per_m, "N·s/m"),
                      row("stiffness of the hand", device.hand.stiffness_n_per_m, "N/m")});
+}
+
+std::string stiffness_text(double stiffness, const std::vector<double>& tried) {
+  if (stiffness <= tried.front()) return fmt::format("at no stiffness from {:.4g} N/m on", tried.front());
+  if (stiffness >= tried.back()) return fmt::format("to {:.4g} N/m, all that was tried", tried.back());
+  return fmt::format("to {:.4g} N/m", stiffness);
+}
+
+std::string of_the_least_damping(const WallMap& map) {
+  const WallBoundary& at = map.boundaries.front();
+  const bool undamped = at.damping_n_s_per_m == 0.0;
+  return fmt::format(
+      "{}: stable {}, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}{}); passivity must hold in any "
+      "hand, "
+      "stability in the one that was given",
+      undamped ? "without damping" : fmt::format("at a damping of {:.4g} N·s/m", at.damping_n_s_per_m),
+      stiffness_text(at.eigenvalues, map.grid.first), at.passive, at.colgate_schenkel,
+      undamped ? fmt::format(", Abbott and Okamura {:.4g}", map.abbott_okamura) : "");
 }
 
 /// In words what the lines say of each other.
@@ -54,18 +81,16 @@ std::vector<std::string> comparison(const WallMap& map) {
     least = std::min(least, at.simulated / at.eigenvalues);
     most = std::max(most, at.simulated / at.eigenvalues);
   }
-  if (most > 0.0) {
+  const bool differs = !map.device.is_linear() || map.trial.push_n > 0.0;
+  if (differs && most > 0.0) {
     lines.push_back(
         fmt::format("as it was tried it comes to rest up to {:.2f} to {:.2f} times the stiffness of the "
                     "eigenvalues: Coulomb "
                     "friction adds, encoder steps and lifting off take away",
                     least, most));
   }
-  const WallBoundary& undamped = map.boundaries.front();
-  lines.push_back(fmt::format(
-      "without damping: stable to {:.4g} N/m, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}, Abbott and "
-      "Okamura {:.4g}); passivity must hold in any hand, stability in the one that was given",
-      undamped.eigenvalues, undamped.passive, undamped.colgate_schenkel, map.abbott_okamura));
+  lines.push_back(of_the_least_damping(map));
+  for (std::string& line : in_words(wall_conditions)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -159,6 +184,7 @@ Findings findings_of(const WallMap& map, const StudiedAxis& on) {
                 {"agreement", map.agreement()},
                 {"boundary_error", map.boundary_error()},
                 {"abbott_okamura", map.abbott_okamura},
+                {"conditions", to_json(wall_conditions)},
                 {"boundaries", std::move(boundaries)},
                 {"cells", std::move(cells)}};
   found.lines = comparison(map);
@@ -188,13 +214,19 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
                 {"device", as_json(study.device)},
                 {"range", {{"depth_m", study.range.depth_m}, {"speed_m_s", study.range.speed_m_s}}},
                 {"passive", study.passive},
-                {"deepest_m", json_number(limits.depth_m)},
-                {"deepest_by_local_stiffness_m", json_number(limits.local_depth_m)},
-                {"steepest_approach_m_s", json_number(limits.speed_m_s)},
-                {"lowest_rate_hz", json_number(limits.rate_hz)},
+                {"deepest_m", json_number(limits.depth_m.at)},
+                {"deepest_by_local_stiffness_m", json_number(limits.local_depth_m.at)},
+                {"steepest_approach_m_s", json_number(limits.speed_m_s.at)},
+                {"lowest_rate_hz", json_number(limits.rate_hz.at)},
                 {"local_stiffness_n_per_m", limits.local.stiffness_n_per_m},
                 {"local_damping_n_s_per_m", limits.local.damping_n_s_per_m},
-                {"passive_stiffness_n_per_m", limits.passive_stiffness_n_per_m}};
+                {"passive_stiffness_n_per_m", limits.passive_stiffness_n_per_m},
+                {"searches",
+                 {{"deepest_m", how_it_ended(limits.depth_m)},
+                  {"deepest_by_local_stiffness_m", how_it_ended(limits.local_depth_m)},
+                  {"steepest_approach_m_s", how_it_ended(limits.speed_m_s)},
+                  {"lowest_rate_hz", how_it_ended(limits.rate_hz)}}},
+                {"conditions", to_json(law_conditions)}};
   if (study.pressed) {
     found.json["press"] = {{"stable", study.pressed->stable},
                            {"ripple_n", study.pressed->ripple_n},
@@ -209,16 +241,15 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   found.json["agreement"] = study.map.agreement();
   found.json["cells"] = std::move(cells);
 
-  const char* const none = "no limit found";
   found.lines = {
       fmt::format("{}: {} to {:.4g} mm and {:.3g} m/s at {:.0f} Hz", study.model,
-                  study.passive ? "passive" : "NOT passive", 1e3 * study.range.depth_m, study.range.speed_m_s,
-                  1.0 / study.device.period_s),
+                  study.passive ? "passive by all strokes that were tried" : "NOT passive",
+                  1e3 * study.range.depth_m, study.range.speed_m_s, 1.0 / study.device.period_s),
       fmt::format("deepest passive penetration: {}; by its local stiffness, against {:.4g} N/m: {}",
-                  text_of(limits.depth_m, 1e3, "mm", none), limits.passive_stiffness_n_per_m,
-                  text_of(limits.local_depth_m, 1e3, "mm", none)),
-      fmt::format("steepest passive approach: {}", text_of(limits.speed_m_s, 1.0, "m/s", none)),
-      fmt::format("lowest passive rate: {}", text_of(limits.rate_hz, 1.0, "Hz", none)),
+                  text_of(limits.depth_m, 1e3, "mm"), limits.passive_stiffness_n_per_m,
+                  text_of(limits.local_depth_m, 1e3, "mm")),
+      fmt::format("steepest passive approach: {}", text_of(limits.speed_m_s, 1.0, "m/s")),
+      fmt::format("lowest passive rate: {}", text_of(limits.rate_hz, 1.0, "Hz")),
       fmt::format("strokes and local stiffness agree in {:.1f} % of {} cells", 100.0 * study.map.agreement(),
                   study.map.cells.size())};
   if (!limits.passive_at_all) {
@@ -237,6 +268,7 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
         "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
+  for (std::string& line : in_words(law_conditions)) found.lines.push_back(std::move(line));
   found.json["in_words"] = found.lines;
   found.figures.push_back({"law", picture_of(study.model, study.map)});
   found.html = device_table(study.device);

@@ -48,6 +48,22 @@ double held_force(const AxisLaw& law, double depth_m, double period_s) {
   return felt;
 }
 
+template <typename Holds>
+Limit limit_of(const Search& search, Holds holds) {
+  Limit limit{.first = search.lower, .last = search.upper, .at = first_change(search, holds)};
+  limit.holds_nowhere = *limit.at <= search.lower;
+  if (limit.holds_nowhere || *limit.at >= search.upper) limit.at.reset();
+  return limit;
+}
+
+/// Of periods, as rates.
+Limit inverse(Limit limit) {
+  limit.first = 1.0 / limit.first;
+  limit.last = 1.0 / limit.last;
+  if (limit.at) limit.at = 1.0 / *limit.at;
+  return limit;
+}
+
 SampledDevice at_rate(SampledDevice device, double rate_hz) {
   device.period_s = 1.0 / rate_hz;
   return device;
@@ -144,39 +160,27 @@ bool is_locally_passive(const SampledDevice& device, const AxisLaw& law, const T
 
 LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolRange& range,
                     double deepest_m) {
-  LawLimits limits;
-  const auto found = [](double at, const Search& search) -> std::optional<double> {
-    if (at <= search.lower || at >= search.upper) return std::nullopt;
-    return at;
-  };
   const Search depths{.lower = 1e-3 * deepest_m, .upper = deepest_m, .share = search_share, .scan = 24};
-  limits.depth_m = found(first_change(depths,
-                                      [&](double depth_m) {
-                                        return is_passive_at(device, law, {depth_m, range.speed_m_s});
-                                      }),
-                         depths);
   const Search speeds{.lower = 1e-4, .upper = fastest_m_s, .share = search_share, .scan = 16};
-  limits.speed_m_s = found(first_change(speeds,
-                                        [&](double speed_m_s) {
-                                          return is_passive(device, law, {range.depth_m, speed_m_s});
-                                        }),
-                           speeds);
   const Search periods{
       .lower = 1.0 / highest_hz, .upper = 1.0 / slowest_hz, .share = search_share, .scan = 16};
-  const double longest_s = first_change(
-      periods, [&](double period_s) { return is_passive(at_rate(device, 1.0 / period_s), law, range); });
-  if (const auto period_s = found(longest_s, periods)) limits.rate_hz = 1.0 / *period_s;
+  LawLimits limits;
+  limits.depth_m = limit_of(depths, [&](double depth_m) {
+    return is_passive_at(device, law, {depth_m, range.speed_m_s});
+  });
+  limits.speed_m_s = limit_of(speeds, [&](double speed_m_s) {
+    return is_passive(device, law, {range.depth_m, speed_m_s});
+  });
+  limits.rate_hz = inverse(limit_of(
+      periods, [&](double period_s) { return is_passive(at_rate(device, 1.0 / period_s), law, range); }));
   limits.passive_at_all = is_passive(at_rate(device, highest_hz), law, {1e-3 * deepest_m, 1e-4}) ||
-                          limits.depth_m || limits.speed_m_s;
-  limits.local = local_impedance(law, limits.depth_m.value_or(range.depth_m), device.period_s);
+                          limits.depth_m.at || limits.speed_m_s.at;
+  limits.local = local_impedance(law, limits.depth_m.at.value_or(range.depth_m), device.period_s);
   limits.passive_stiffness_n_per_m =
       passive_stiffness_up_to(device, range.speed_m_s, limits.local.damping_n_s_per_m);
-  limits.local_depth_m =
-      found(first_change(depths,
-                         [&](double depth_m) {
-                           return is_locally_passive(device, law, {depth_m, range.speed_m_s});
-                         }),
-            depths);
+  limits.local_depth_m = limit_of(depths, [&](double depth_m) {
+    return is_locally_passive(device, law, {depth_m, range.speed_m_s});
+  });
   return limits;
 }
 

@@ -55,16 +55,24 @@ struct Local {
 [[nodiscard]] bool is_locally_passive(const SampledDevice& device, const AxisLaw& law,
                                       const ToolRange& range);
 
-/// Where a law stops being passive on a device. A limit that was not found within the search is empty.
+/// Up to where something holds, of what was tried one after the other.
+struct Limit {
+  double first = 0.0;          ///< that was tried
+  double last = 0.0;           ///< likewise
+  std::optional<double> at;    ///< where it ends, between the two
+  bool holds_nowhere = false;  ///< it fails at the first; without that and `at` it holds to the last
+};
+
+/// Where a law stops being passive on a device.
 struct LawLimits {
-  std::optional<double> depth_m;    ///< deepest, at the range's speed
-  std::optional<double> speed_m_s;  ///< steepest approach, to the range's depth
-  std::optional<double> rate_hz;    ///< lowest, for the range's depth and speed
-  bool passive_at_all = true;       ///< false: it gains energy however shallow, slow and fast sampled
-  Local local;                      ///< at depth_m, or at the range's depth
+  Limit depth_m;               ///< deepest, at the range's speed
+  Limit speed_m_s;             ///< steepest approach, to the range's depth
+  Limit rate_hz;               ///< lowest, for the range's depth and speed; tried from the highest
+  bool passive_at_all = true;  ///< false: it gains energy however shallow, slow and fast sampled
+  Local local;                 ///< at depth_m, or at the range's depth
   double passive_stiffness_n_per_m =
-      0.0;                              ///< passive_stiffness_up_to() the range's speed beside that damping
-  std::optional<double> local_depth_m;  ///< where is_locally_passive() ends
+      0.0;              ///< passive_stiffness_up_to() the range's speed beside that damping
+  Limit local_depth_m;  ///< where is_locally_passive() ends
 };
 
 /// Finds them by bisection to 0.5 %: depth up to `deepest_m`, speed up to 10 m/s, rate from 20 Hz to 100 kHz.

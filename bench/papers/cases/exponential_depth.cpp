@@ -57,7 +57,7 @@ NamedCase run(std::uint64_t) {
   const double values[] = {intestine.amplitude, intestine.exponent};
   const AxisLaw law{models::Law::make("exponential", values, {{"viscous", false}})};
   const LawLimits limits = limits_of(weighted_handle(), law, tool, deepest_m);
-  const double passive_m = limits.depth_m.value_or(deepest_m);
+  const double passive_m = limits.depth_m.at.value_or(deepest_m);
   const CaseTrace failing = lean({});
   const double kept_m = intestine.depth_at_stiffness(margin * intestine.stiffness(passive_m));
   const CaseTrace holding = lean({.limit_m = kept_m});

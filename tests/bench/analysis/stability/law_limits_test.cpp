@@ -69,9 +69,9 @@ AxisLaw intestine() {
 TEST(LawLimits, TheExponentialFailsWhereItsLocalStiffnessIsTwiceTheFrictionOverThePeriod) {
   const models::Exponential<double> law{.amplitude = 4.3e-7, .exponent = 13.0, .thickness = 0.1};
   const LawLimits limits = limits_of(handle, intestine(), {.depth_m = 0.12, .speed_m_s = 0.5}, 0.2);
-  ASSERT_TRUE(limits.depth_m);
-  EXPECT_NEAR(*limits.depth_m, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m);
-  EXPECT_NEAR(*limits.local_depth_m, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m);
+  ASSERT_TRUE(limits.depth_m.at);
+  EXPECT_NEAR(*limits.depth_m.at, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m.at);
+  EXPECT_NEAR(*limits.local_depth_m.at, law.depth_at_stiffness(800.0), 0.006 * *limits.depth_m.at);
   EXPECT_NEAR(limits.local.stiffness_n_per_m, 800.0, 60.0);
 }
 
@@ -79,9 +79,9 @@ TEST(LawLimits, TheLowestRateOfASpringIsItsStiffnessOverTwiceTheFriction) {
   const double values[] = {1e-9 + 400.0, 1e-9, 1e-9};
   const AxisLaw spring{models::Law::make("kelvin", values)};
   const LawLimits limits = limits_of(handle, spring, {.depth_m = 0.01, .speed_m_s = 0.5}, 0.1);
-  ASSERT_TRUE(limits.rate_hz);
-  EXPECT_NEAR(*limits.rate_hz, 400.0 / (2.0 * 0.4), 0.01 * 500.0);
-  EXPECT_FALSE(limits.depth_m) << "at 1 kHz it holds however deep";
+  ASSERT_TRUE(limits.rate_hz.at);
+  EXPECT_NEAR(*limits.rate_hz.at, 400.0 / (2.0 * 0.4), 0.01 * 500.0);
+  EXPECT_FALSE(limits.depth_m.at) << "at 1 kHz it holds however deep";
 }
 
 TEST(LawLimits, CoulombFrictionHoldsAWallUpToASpeedInClosedForm) {
@@ -90,8 +90,8 @@ TEST(LawLimits, CoulombFrictionHoldsAWallUpToASpeedInClosedForm) {
   const double values[] = {1600.0, 1e-9, 1e-9};
   const AxisLaw stiff{models::Law::make("kelvin", values)};
   const LawLimits limits = limits_of(dry, stiff, {.depth_m = 0.01, .speed_m_s = 0.5}, 0.1);
-  ASSERT_TRUE(limits.speed_m_s);
-  EXPECT_NEAR(*limits.speed_m_s, 0.02 / (0.5 * 1600.0 * 1e-3 - 0.4), 0.01 * 0.05) << "f_c / (K T / 2 - b)";
+  ASSERT_TRUE(limits.speed_m_s.at);
+  EXPECT_NEAR(*limits.speed_m_s.at, 0.02 / (0.5 * 1600.0 * 1e-3 - 0.4), 0.01 * 0.05) << "f_c / (K T / 2 - b)";
 }
 
 TEST(LawLimits, ADamperIsPassiveUpToTheDevicesFriction) {
@@ -109,8 +109,23 @@ TEST(LawLimits, AKelvinTissueIsPassiveAtAnyRate) {
   const double values[] = {8.0, 7.0, 130.0};
   const LawLimits limits =
       limits_of(handle, {models::Law::make("kelvin", values)}, {.depth_m = 0.02, .speed_m_s = 0.3}, 0.1);
-  EXPECT_FALSE(limits.depth_m);
-  EXPECT_FALSE(limits.rate_hz && *limits.rate_hz > 30.0);
+  EXPECT_FALSE(limits.depth_m.at);
+  EXPECT_FALSE(limits.rate_hz.at && *limits.rate_hz.at > 30.0);
+}
+
+TEST(LawLimits, ToldApartAreALawThatNeverFailsAndOneThatAlwaysDoes) {
+  const double values[] = {1e-12, 1e-6, 0.5};  // a damper beyond the friction, at every depth
+  const LawLimits never =
+      limits_of(handle, {models::Law::make("exponential", values)}, {.depth_m = 0.01, .speed_m_s = 1.0}, 0.1);
+  EXPECT_TRUE(never.local_depth_m.holds_nowhere);
+  EXPECT_FALSE(never.local_depth_m.at);
+  EXPECT_DOUBLE_EQ(never.local_depth_m.first, 1e-4);
+  const double liver[] = {8.0, 7.0, 130.0};
+  const LawLimits always =
+      limits_of(handle, {models::Law::make("kelvin", liver)}, {.depth_m = 0.02, .speed_m_s = 0.3}, 0.1);
+  EXPECT_FALSE(always.local_depth_m.holds_nowhere);
+  EXPECT_FALSE(always.local_depth_m.at);
+  EXPECT_DOUBLE_EQ(always.local_depth_m.last, 0.1);
 }
 
 TEST(LawLimits, ARelaxingLawIsLocallyAsStiffAsItsSpringsTogether) {

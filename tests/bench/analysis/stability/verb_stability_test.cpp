@@ -10,7 +10,9 @@ namespace kerf::test {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string examples = std::string(KERF_SOURCE_DIR) + "/examples/";
 
@@ -41,6 +43,41 @@ TEST(KerfStability, SaysHowDeepAnExponentialLawMayGo) {
   const json found = json::parse(run.output);
   EXPECT_FALSE(found["passive"].get<bool>());
   EXPECT_GT(found["worst_stroke"]["energy_j"].get<double>(), 0.0);
+}
+
+TEST(KerfStability, SpeaksOfTheDampingThatTheMapBeginsWith) {
+  const auto told = [](const std::string& least) {
+    return run_kerf({"stability", "--mass", "0.05",        "--viscous", "0.2",    "--coulomb",   "0",
+                     "--encoder", "0",      "--filter",    "0",         "--push", "0",           "--damping",
+                     least,       "50",     "--stiffness", "1",         "100000", "--boundaries"})
+        .output;
+  };
+  EXPECT_THAT(told("0.5"),
+              AllOf(HasSubstr("at a damping of 0.5 N·s/m: stable to 1387 N/m, passive to 0 N/m"),
+                    Not(HasSubstr("without damping:")), Not(HasSubstr("Abbott and Okamura 400"))));
+  EXPECT_THAT(told("0"), HasSubstr("without damping: stable to 400.3 N/m, passive to 400 N/m"));
+}
+
+TEST(KerfStability, SaysOfALimitWhetherItHoldsNowhereOrThroughout) {
+  const auto told = [](const std::string& law) {
+    return run_kerf({"stability", examples + law, "--depth", "0.01", "--speed", "0.3", "--cells", "4"})
+        .output;
+  };
+  EXPECT_THAT(told("exponential.law.toml"), AllOf(HasSubstr("NOT passive"), HasSubstr("none, it fails at")));
+  EXPECT_THAT(told("kelvin.law.toml"),
+              AllOf(HasSubstr("passive by all strokes that were tried"), HasSubstr("the end of the search")));
+}
+
+TEST(KerfStability, SaysWhetherAVerdictIsNecessaryOrSufficient) {
+  const json law =
+      json::parse(run_kerf({"stability", examples + "kelvin.law.toml", "--cells", "2", "--json"}).output);
+  EXPECT_EQ(law["conditions"]["passive"]["is"], "necessary");
+  EXPECT_EQ(law["searches"]["deepest_m"], "holds throughout");
+  const json wall = json::parse(run_kerf({"stability", "--cells", "2", "--boundaries", "--json"}).output);
+  for (const auto& [verdict, condition] : wall["conditions"].items()) {
+    EXPECT_THAT(condition["is"].get<std::string>(), HasSubstr("necessary")) << verdict;
+  }
+  EXPECT_EQ(wall["conditions"].size(), 5U);
 }
 
 TEST(KerfStability, RunsTheNamedCases) {
