@@ -87,6 +87,7 @@ std::vector<Roamed> passive_laws() {
       {"scissors_analytic", test::example("scissors_analytic"), into_a_scissors_law},
       {"precontact", Law::make("precontact", std::vector{300.0, 0.002}), in_depth(-5e-3, 0.03)},
       {"fracture", test::example("fracture"), in_depth(-2e-3, 0.12)},
+      {"fracture_with_hysteresis", example_with("fracture", {{"hysteresis", 0.01}}), in_depth(-2e-3, 0.12)},
       {"fuzzy_kelvin", test::example("fuzzy_kelvin"), in_depth(-2e-3, 0.03)},
       {"fuzzy_kelvin_3d", liver_that_stiffens("passive"), over_liver},
       {"fuzzy_kelvin_3d_that_ruptures", test::example("fuzzy_kelvin_3d"), over_liver},

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -65,8 +66,8 @@ TEST(Fracture, ACrackThatRunsAheadLeavesTheToolFreeUntilItsTip) {
 }
 
 TEST(Fracture, TheBooksCloseOverRandomStrokes) {
-  const Fracture<double> tissue{4.3e-3, 4.0, 2e-3, 2000.0, 1e-3, 0.1};
   for (unsigned seed = 0; seed < 200; ++seed) {
+    const Fracture<double> tissue{4.3e-3, 4.0, 2e-3, 2000.0, 1e-3, 0.1, seed % 2 == 0 ? 0.0 : 2e-3};
     std::mt19937_64 random(seed);
     std::normal_distribution<double> push(0.0, 1.0);
     Fracture<double>::State state;
@@ -120,6 +121,46 @@ TEST(Fracture, BegunDeepInTheTissueItIsCutThereAndStaysFinite) {
   EXPECT_EQ(state.surface, 10.0);
   EXPECT_TRUE(std::isfinite(state.work));
   EXPECT_NEAR(intestine.step(state, {10.001, 0.1}, 1e-3), 2.0, 1e-12);
+}
+
+/// Crack after 10 s at 14 mm/s by a hand that trembles by 0.5 mm at 10 Hz, which turns it back every time
+/// [m].
+double crack_of_a_trembling_hand(double hysteresis_m) {
+  Fracture<double> tissue = intestine;
+  tissue.hysteresis = hysteresis_m;
+  Fracture<double>::State state;
+  constexpr double tremor_rad_s = 2.0 * std::numbers::pi * 10.0;
+  for (int tick = 0; tick <= 10000; ++tick) {
+    const double t = 1e-3 * tick;
+    (void)tissue.step(state,
+                      {0.014 * t + 5e-4 * std::sin(tremor_rad_s * t),
+                       0.014 + 5e-4 * tremor_rad_s * std::cos(tremor_rad_s * t)},
+                      1e-3);
+  }
+  return state.crack_length;
+}
+
+TEST(Fracture, TremorEndsTheCutUnlessThereIsHysteresis) {
+  const double way_m = 0.14 - intestine.yield_depth();
+  const double at_yield_m = intestine.yield_energy / intestine.cutting_force();
+  EXPECT_LT(crack_of_a_trembling_hand(0.0), at_yield_m + 2e-3) << "the paper's, which yields once";
+  EXPECT_NEAR(crack_of_a_trembling_hand(2e-3), at_yield_m + way_m, 1e-3) << "all the way";
+  EXPECT_LT(crack_of_a_trembling_hand(2e-4), at_yield_m + 2e-3) << "less than the tremor";
+}
+
+TEST(Fracture, WithHysteresisIsFreeOnTheWayBackAndCutsOnAtTheTip) {
+  Fracture<double> tissue = intestine;
+  tissue.hysteresis = 2e-3;
+  Fracture<double>::State state;
+  for (double x = 0.0; x < 0.14; x += 1e-4) (void)tissue.step(state, {x, 0.1}, 1e-3);
+  const double tip = state.surface;
+  EXPECT_EQ(tissue.step(state, {tip, 0.0}, 1e-3), 0.0);
+  EXPECT_EQ(tissue.step(state, {tip - 1.9e-3, -0.1}, 1e-3), 0.0);
+  EXPECT_EQ(tissue.step(state, {tip - 1e-3, 0.1}, 1e-3), 0.0);
+  EXPECT_DOUBLE_EQ(tissue.step(state, {tip + 1e-4, 0.1}, 1e-3), 2.0);
+  EXPECT_EQ(tissue.step(state, {tip - 2.1e-3, -0.1}, 1e-3), 0.0);
+  EXPECT_EQ(state.mode, Mode::free) << "drawn back by more";
+  EXPECT_LT(tissue.step(state, {tip + 2e-4, 0.1}, 1e-3), 1e-3) << "has to be deformed anew";
 }
 
 TEST(Fracture, OneSampleOfFractureAtAnyRate) {

@@ -31,7 +31,7 @@ inline constexpr std::array wall_conditions{
 
 inline constexpr std::array law_conditions{
     Condition{"passive", "necessary",
-              "for passivity: a stroke that gains energy proves that there is none, but not all were tried"},
+              "for passivity: one stroke that gains energy disproves it, and not all were tried"},
     Condition{"deepest_by_local_stiffness_m", "neither necessary nor sufficient",
               "for passivity: the balance of small motions about a depth"},
     Condition{"press", "necessary", "for stability: one press in the hand that was given"}};

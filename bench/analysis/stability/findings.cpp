@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -225,8 +226,7 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
                  {{"deepest_m", how_it_ended(limits.depth_m)},
                   {"deepest_by_local_stiffness_m", how_it_ended(limits.local_depth_m)},
                   {"steepest_approach_m_s", how_it_ended(limits.speed_m_s)},
-                  {"lowest_rate_hz", how_it_ended(limits.rate_hz)}}},
-                {"conditions", to_json(law_conditions)}};
+                  {"lowest_rate_hz", how_it_ended(limits.rate_hz)}}}};
   if (study.pressed) {
     found.json["press"] = {{"stable", study.pressed->stable},
                            {"ripple_n", study.pressed->ripple_n},
@@ -268,7 +268,9 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
         "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
-  for (std::string& line : in_words(law_conditions)) found.lines.push_back(std::move(line));
+  const std::span conditions = std::span(law_conditions).first(study.pressed ? 3 : 2);
+  found.json["conditions"] = to_json(conditions);
+  for (std::string& line : in_words(conditions)) found.lines.push_back(std::move(line));
   found.json["in_words"] = found.lines;
   found.figures.push_back({"law", picture_of(study.model, study.map)});
   found.html = device_table(study.device);

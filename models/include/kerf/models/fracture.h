@@ -28,10 +28,15 @@ namespace kerf::models {
 /// was left of the tick's travel is cut. While cutting, the tip moves with the tool; on v <= 0 the tip stays
 /// and is the surface that is met next.
 ///
+/// A hand trembles, and one tick at v <= 0 then ends the cut: to go on, the tissue has to be deformed to Uy
+/// again. With the option `hysteresis` (h > 0, a length) the cut ends only once the tool has drawn back from
+/// the tip by more than h. Until then there is no force behind the tip or on the way back, and Jc w again as
+/// soon as the tool goes on at the tip.
+///
 /// The books are kept from the path itself, so that external work = stored + spent on crack at any tick.
 ///
 /// Source: [Sepulveda2008], section 4.3 and fig. 7, after [MahvashHayward2001]; differs from the paper in
-/// where the tip stands after the fracture, which the paper does not say.
+/// where the tip stands after the fracture, which the paper does not say; it has no hysteresis.
 template <typename T>
 struct Fracture {
   static constexpr std::string_view name = "fracture";
@@ -47,12 +52,13 @@ struct Fracture {
           "'width' is held at 0.01 m: forces tell only its product with 'toughness', the force of cutting",
       .variants = {{.effects = {Effect::stiffening, Effect::cutting}}}};
 
-  T amplitude{};           ///< alpha [N], > 0
-  T exponent{};            ///< beta [1], > 0
-  T yield_energy{};        ///< Uy [J], > 0
-  T toughness{};           ///< Jc [J/m²], > 0
-  T width{};               ///< w [m], > 0
-  double thickness = 0.1;  ///< L0 [m], > 0
+  T amplitude{};            ///< alpha [N], > 0
+  T exponent{};             ///< beta [1], > 0
+  T yield_energy{};         ///< Uy [J], > 0
+  T toughness{};            ///< Jc [J/m²], > 0
+  T width{};                ///< w [m], > 0
+  double thickness = 0.1;   ///< L0 [m], > 0
+  double hysteresis = 0.0;  ///< h [m]
 
   enum class Mode : std::uint8_t { free, deformation, fracture, cutting };
 
@@ -73,10 +79,20 @@ struct Fracture {
             {"toughness", Quantity::toughness, 1e-6, 1e9, Scale::logarithmic, "Jc, energy per area of crack"},
             {"width", Quantity::length, 1e-9, 1e3, Scale::logarithmic, "w, of the blade"}};
   }
-  static std::vector<OptionInfo> options() { return {{"thickness", 0.1, "L0, thickness of the sample [m]"}}; }
+  static std::vector<OptionInfo> options() {
+    return {{"thickness", 0.1, "L0, thickness of the sample [m]"},
+            {"hysteresis", 0.0,
+             "by which the tool draws back from the tip before the cut ends [m]; 0: at any v <= 0"}};
+  }
   static Fracture make(std::span<const T> values, const Options& given) {
-    return {values[0], values[1], values[2],
-            values[3], values[4], OptionReader(name, options(), given).number("thickness", 1e-9, 1e9)};
+    const OptionReader reader(name, options(), given);
+    return {values[0],
+            values[1],
+            values[2],
+            values[3],
+            values[4],
+            reader.number("thickness", 1e-9, 1e9),
+            reader.number("hysteresis", 0.0, 1e9)};
   }
 
   /// Force while the crack grows, Jc w [N].
@@ -92,9 +108,11 @@ struct Fracture {
 
   T step(State& state, const Motion& motion, double) const noexcept {
     const double x = motion.penetration;
-    if (state.mode == Mode::fracture) state.mode = x < state.surface ? Mode::free : Mode::cutting;
-    if (state.mode == Mode::cutting && motion.velocity > 0.0) {
-      if (x < state.surface) return T(0.0);  // behind the tip
+    if (state.mode == Mode::fracture) {
+      state.mode = x < state.surface - hysteresis ? Mode::free : Mode::cutting;
+    }
+    if (state.mode == Mode::cutting && goes_on(state, motion)) {
+      if (x < state.surface || motion.velocity <= 0.0) return T(0.0);  // behind the tip, or on the way back
       grow(state, cutting_force() * (x - state.surface));
       state.surface = x;
       return cutting_force();
@@ -104,6 +122,10 @@ struct Fracture {
   }
 
  private:
+  /// Whether a crack that grew may go on growing.
+  [[nodiscard]] bool goes_on(const State& state, const Motion& motion) const noexcept {
+    return motion.velocity > 0.0 || (hysteresis > 0.0 && motion.penetration >= state.surface - hysteresis);
+  }
   T deform(State& state, double x) const noexcept {
     using std::expm1;
     const double depth = x - state.surface;
