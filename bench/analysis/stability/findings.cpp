@@ -95,15 +95,25 @@ std::vector<std::string> comparison(const WallMap& map) {
   return lines;
 }
 
+std::string way_text(const WayRequest& way) {
+  std::string text;
+  for (const std::string& share : way.along) text += (text.empty() ? " along " : ", ") + share;
+  for (std::size_t i = 0; i < way.from.size(); ++i) text += (i == 0 ? " from " : ", ") + way.from[i];
+  return text;
+}
+
 /// The axis that was studied, and what it can do by itself.
 json as_json(const StudiedAxis& on, const SampledDevice& device) {
-  return {{"device", on.device_uri},
-          {"axis", on.axis},
-          {"grip", on.grip},
-          {"rate_hz", 1.0 / device.period_s},
-          {"damping_n_s_per_m", device.viscous_n_s_per_m},
-          {"passive_stiffness_n_per_m", passive_stiffness(device, 0.0)},
-          {"colgate_schenkel_n_per_m", colgate_schenkel(device, 0.0)}};
+  json about = {{"device", on.device_uri},
+                {"axis", on.axis},
+                {"grip", on.grip},
+                {"rate_hz", 1.0 / device.period_s},
+                {"damping_n_s_per_m", device.viscous_n_s_per_m},
+                {"passive_stiffness_n_per_m", passive_stiffness(device, 0.0)},
+                {"colgate_schenkel_n_per_m", colgate_schenkel(device, 0.0)}};
+  if (!on.way.along.empty()) about["along"] = on.way.along;
+  if (!on.way.from.empty()) about["from"] = on.way.from;
+  return about;
 }
 
 }  // namespace
@@ -242,7 +252,7 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
   found.json["cells"] = std::move(cells);
 
   found.lines = {
-      fmt::format("{}: {} to {:.4g} mm and {:.3g} m/s at {:.0f} Hz", study.model,
+      fmt::format("{}{}: {} to {:.4g} mm and {:.3g} m/s at {:.0f} Hz", study.model, way_text(on.way),
                   study.passive ? "passive by all strokes that were tried" : "NOT passive",
                   1e3 * study.range.depth_m, study.range.speed_m_s, 1.0 / study.device.period_s),
       fmt::format("deepest passive penetration: {}; by its local stiffness, against {:.4g} N/m: {}",

@@ -9,6 +9,7 @@
 
 #include "plot/plot.h"
 #include "stability/maps.h"
+#include "stability/tool_way.h"
 
 namespace kerf::bench {
 
@@ -17,6 +18,7 @@ struct StudiedAxis {
   std::string device_uri;
   std::string axis;
   std::string grip;
+  WayRequest way;  ///< of a law on several axes
 };
 
 /// What a study leaves behind: the numbers, a table of them, pictures, a page, and lines for a terminal.

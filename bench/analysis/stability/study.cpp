@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -58,7 +59,26 @@ Range range_of(const std::vector<double>& given, const char* option, Range stand
 }
 
 StudiedAxis studied(const StudyOptions& options, const drivers::DeviceInfo& info, std::size_t axis) {
-  return {.device_uri = options.on.device_uri, .axis = info.axes[axis].name, .grip = options.on.grip};
+  return {.device_uri = options.on.device_uri,
+          .axis = info.axes[axis].name,
+          .grip = options.on.grip,
+          .way = options.on.way};
+}
+
+/// A law along its line, and the axis of the device whose mass and friction are taken.
+std::pair<AxisLaw, std::size_t> placed_law(const LawFile& file, const std::string& name,
+                                           const AxisRequest& on, const drivers::DeviceInfo& info) {
+  if (file.law.is_spatial()) {
+    const PlacedWay placed = place_way(on.way, file, info);
+    const std::size_t axis = on.axis.empty() ? placed.device_axis : axis_of(on, info);
+    return {{.law = file.law, .way = placed.way}, axis};
+  }
+  if (!on.way.along.empty() || !on.way.from.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "{}: law '{}' has one axis, and --along and --from are of several", name, file.law.model()));
+  }
+  const std::size_t axis = on.axis.empty() ? axis_for(file, info) : axis_of(on, info);
+  return {{.law = file.law, .lever = info.axes[axis].lever}, axis};
 }
 
 }  // namespace
@@ -79,15 +99,9 @@ Findings study_walls(const StudyOptions& options) {
 
 LawFindings study_law(const LawFile& file, const std::string& name, const StudyOptions& options) {
   constexpr double search = 10.0;  // times the depth that was given
-  if (file.law.is_spatial()) {
-    throw std::invalid_argument(
-        fmt::format("{}: law '{}' acts on several axes at once; limits are found for laws along one axis",
-                    name, file.law.model()));
-  }
   const drivers::DeviceInfo info = drivers::open_device(options.on.device_uri)->info();
-  const std::size_t axis = options.on.axis.empty() ? axis_for(file, info) : axis_of(options.on, info);
+  const auto [law, axis] = placed_law(file, name, options.on, info);
   const SampledDevice device = device_of(options.on, info, axis);
-  const AxisLaw law{.law = file.law, .lever = info.axes[axis].lever};
   const ToolRange& range = options.range;
   const std::size_t cells = std::min(options.cells, max_law_cells);
   const double rate_hz = options.on.rate_hz;

@@ -8,6 +8,7 @@
 
 #include "laws/law_file.h"
 #include "stability/findings.h"
+#include "stability/tool_way.h"
 
 namespace kerf::bench {
 
@@ -15,6 +16,7 @@ namespace kerf::bench {
 struct AxisRequest {
   std::string device_uri = "sim:scissors";
   std::string axis;           ///< empty: the law's, else the first
+  WayRequest way;             ///< through a law on several axes
   std::string grip = "none";  ///< grip_named()
   double rate_hz = 1000.0;
   double delay_s = 0.0;
@@ -47,7 +49,8 @@ struct LawFindings {
   Findings findings;
   bool holds = true;
 };
-/// `name` stands for the law in messages. @throws as study_walls(), and for a law on several axes.
+/// `name` stands for the law in messages. @throws as study_walls() and place_way(), and for a way through a
+/// law along one axis.
 [[nodiscard]] LawFindings study_law(const LawFile& law, const std::string& name, const StudyOptions& options);
 
 }  // namespace kerf::bench

@@ -88,6 +88,12 @@ void add_stability(CLI::App& app, Context& context) {
   verb.add_option("--device", on.device_uri, "Device whose axis it is, as far as its driver knows it")
       .with_default();
   verb.add_option("--axis", on.axis, "Axis (default: the law's, else the first)");
+  verb.add_option("--along", on.way.along,
+                  "AXIS=SHARE: direction of the tool through a law on several axes; may be repeated")
+      .one_value_each();
+  verb.add_option("--from", on.way.from,
+                  "AXIS=POSITION: where its way begins (default: 0) [m or rad]; may be repeated")
+      .one_value_each();
   verb.add_option("--rate", on.rate_hz, "Sampling rate [Hz]").within(1.0, 100000.0).with_default();
   verb.add_option("--mass", on.mass_kg, "Mass instead of the device's [kg]").positive();
   verb.add_option("--viscous", on.viscous_n_s_per_m, "Viscous friction instead of the device's [N·s/m]")

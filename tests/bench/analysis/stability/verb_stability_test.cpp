@@ -80,6 +80,33 @@ TEST(KerfStability, SaysWhetherAVerdictIsNecessaryOrSufficient) {
   EXPECT_EQ(wall["conditions"].size(), 5U);
 }
 
+TEST(KerfStability, TakesALawOnSeveralAxesAlongADirection) {
+  const auto told = [](const std::string& rate_hz) {
+    return run_kerf({"stability", examples + "blade.law.toml",
+                     "--device",  "sim:pose6",
+                     "--along",   "y=1",
+                     "--from",    "z=0.1",
+                     "--viscous", "0.05",
+                     "--coulomb", "0",
+                     "--encoder", "0",
+                     "--depth",   "1e-4",
+                     "--cells",   "4",
+                     "--rate",    rate_hz,
+                     "--json"});
+  };
+  // 12 mm of the polygon and no edge along y: 1e6 * 0.01 * 0.012 + 100 * 0.012 = 121.2 N/m against 2 b / T.
+  const json held = json::parse(told("1300").output);
+  EXPECT_TRUE(held["passive"].get<bool>());
+  EXPECT_NEAR(held["local_stiffness_n_per_m"].get<double>(), 121.2, 1e-6);
+  EXPECT_EQ(held["on"]["along"], json({"y=1"}));
+  EXPECT_EQ(held["on"]["axis"], "y");
+  EXPECT_THAT(held["in_words"][0].get<std::string>(),
+              HasSubstr("blade along y=1 from z=0.1: passive by all strokes"));
+  const Outcome slower = told("1100");
+  EXPECT_EQ(slower.exit_status, 1);
+  EXPECT_FALSE(json::parse(slower.output)["passive"].get<bool>());
+}
+
 TEST(KerfStability, RunsTheNamedCases) {
   const TemporaryFolder folder;
   const Outcome run = run_kerf(
@@ -107,7 +134,17 @@ TEST(KerfStability, RefusesWhatItCannotStudy) {
   EXPECT_THAT(refusal({"--stiffness", "10", "1"}), HasSubstr("a lower and a greater upper end"));
   EXPECT_THAT(refusal({"--delay", "1"}), HasSubstr("0 to 32 periods"));
   EXPECT_THAT(refusal({"--device", "sim:premium"}), HasSubstr("--mass, --viscous and --coulomb"));
-  EXPECT_THAT(refusal({examples + "blade.law.toml"}), HasSubstr("several axes at once"));
+  const auto blade = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {examples + "blade.law.toml", "--device", "sim:pose6"});
+    return refusal(std::move(more));
+  };
+  EXPECT_THAT(blade({}), HasSubstr("several axes at once; give a direction, --along AXIS=SHARE, of x, y, z"));
+  EXPECT_THAT(blade({"--along", "y"}), HasSubstr("--along 'y': expected AXIS=NUMBER"));
+  EXPECT_THAT(blade({"--along", "q=1"}), HasSubstr("no such axis; it has x, y, z, rx"));
+  EXPECT_THAT(blade({"--along", "y=1", "--along", "rz=1"}),
+              HasSubstr("'rz' in rad; a direction has one unit"));
+  EXPECT_THAT(blade({"--along", "y=1", "--from", "z=deep"}), HasSubstr("--from 'z=deep'"));
+  EXPECT_THAT(refusal({examples + "kelvin.law.toml", "--along", "x=1"}), HasSubstr("has one axis"));
   EXPECT_THAT(refusal({"--case", "warp"}), HasSubstr("velocity_sign"));
 }
 
