@@ -318,6 +318,26 @@ TEST(Blade, DilutesItsStrainByWhatComesToBeSubmerged) {
   }
 }
 
+TEST(Blade, HoldsTheSameAtAnyPeriod) {
+  const Blade blade = with_thresholds(1e3, 2e3);
+  const auto force_after = [&](int ticks) {  // along y and into the tissue at once, turning, then half out
+    Blade::State state;
+    Wrench wrench;
+    for (int tick = 0; tick <= ticks; ++tick) {
+      const double t = static_cast<double>(tick) / ticks;
+      wrench = blade.step(state,
+                          {.hand = {0.0, 1e-3 * t, 0.10 - 0.02 * std::sin(2.5 * t)},
+                           .rotation = rotation_of({0.1 * t, 0.0, 0.1 * t * t})},
+                          {});
+    }
+    return wrench.force;
+  };
+  const Vector3d fine = force_after(10000);
+  EXPECT_GT(fine.norm(), 0.1);
+  EXPECT_LT((force_after(1000) - fine).norm(), 2e-3 * fine.norm());
+  EXPECT_LT((force_after(100) - fine).norm(), 2e-2 * fine.norm());
+}
+
 TEST(Blade, HoldsWithTheStrainTurnedAlong) {
   const Blade blade = with_thresholds(1e3, 2e3, {{"edge", std::string()}});  // even about its main axis
   Blade::State state;

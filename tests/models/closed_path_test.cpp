@@ -27,7 +27,7 @@ struct Roamed {
   Law law;
   WanderRange range;
   double lever = 1.0;  ///< of the first axis, where its force acts at one [m]
-  unsigned paths = 100;
+  unsigned paths = 40;
 };
 
 void PrintTo(const Roamed& of, std::ostream* out) { *out << of.name; }
@@ -66,6 +66,8 @@ Law mesh_with_a_strip_of(double stiffness_n_per_m) {
 const WanderRange over_liver{{0.0, 0.0, 2e-3}, {-0.01, -0.01, 2e-3}, {0.01, 0.01, -0.02}};
 const WanderRange through_a_surface{
     {0.0, 0.0, 0.125}, {-4e-4, -4e-4, 0.115, -2e-3, -2e-3, -2e-3}, {4e-4, 4e-4, 0.095, 2e-3, 2e-3, 2e-3}};
+const WanderRange while_turning{
+    {0.0, 0.0, 0.15}, {-4e-3, -4e-3, 0.115, -0.3, -0.3, -0.3}, {4e-3, 4e-3, 0.095, 0.3, 0.3, 0.3}};
 const WanderRange of_scissors{{0.6, 0.0}, {0.6, -0.002}, {0.1, 0.02}};
 const WanderRange of_a_premium{{0.0, 0.3, 0.0}, {-0.1, 0.3, -0.1}, {0.1, 0.0, 0.1}};
 
@@ -92,6 +94,7 @@ std::vector<Roamed> passive_laws() {
       {"fuzzy_kelvin_3d", liver_that_stiffens("passive"), over_liver},
       {"fuzzy_kelvin_3d_that_ruptures", test::example("fuzzy_kelvin_3d"), over_liver},
       {"blade", holding_blade({}), through_a_surface},
+      {"blade_that_turns", holding_blade({}), while_turning},
       {"blade_of_strips", holding_blade({{"fidelity", std::string("strips")}}), through_a_surface},
       {"blade_that_tears", test::example("blade"), through_a_surface},
       {"scissors", test::example("scissors"), of_scissors, handle_m},
@@ -103,9 +106,12 @@ std::vector<Roamed> passive_laws() {
 /// Each for the reason that its docstring gives.
 std::vector<Roamed> laws_that_give() {
   return {
-      {"fuzzy_rupture", test::example("fuzzy_rupture"), {{-1e-3}, {-1e-3}, {0.014}}},
+      {"fuzzy_rupture",
+       Law::make("fuzzy_rupture", std::vector{0.0, 0.02, 0.0, 0.1, 0.0, 1.0, 0.0}, {{"memberships", 1.0}}),
+       {{-1e-3}, {-1e-3}, {0.014}}},
       {"fuzzy_kelvin_3d", liver_that_stiffens("paper"), over_liver},
       {"blade", holding_blade({{"form", std::string("paper")}}), through_a_surface},
+      {"blade_of_the_papers_strips", holding_blade({{"fidelity", std::string("paper")}}), while_turning},
       {"scissors_without_friction", Law::make("scissors", std::vector{0.0, 0.0, 0.0, 1000.0, 100.0}),
        of_scissors, handle_m},
       {"scissors_mesh_with_a_soft_strip", mesh_with_a_strip_of(1.0), of_scissors, handle_m, 10},
@@ -170,7 +176,7 @@ TEST_P(ClosedPath, GivesNoEnergyThatItDidNotTake) {
 }
 
 TEST(ClosedPaths, FindTheLawsThatGiveEnergy) {
-  for (const Roamed& law : laws_that_give()) EXPECT_GT(most_given(law), 5.0 * trapezoid) << law.name;
+  for (const Roamed& law : laws_that_give()) EXPECT_GT(most_given(law), 10.0 * trapezoid) << law.name;
 }
 
 TEST(ClosedPaths, GoThroughEveryLaw) {
