@@ -56,9 +56,8 @@ std::string of_the_least_damping(const WallMap& map) {
   const WallBoundary& at = map.boundaries.front();
   const bool undamped = at.damping_n_s_per_m == 0.0;
   return fmt::format(
-      "{}: stable {}, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}{}); passivity must hold in any "
-      "hand, "
-      "stability in the one that was given",
+      "{}: stable {}, passive to {:.4g} N/m (Colgate and Schenkel {:.4g}{}); passivity must hold in "
+      "any hand, stability in the one that was given",
       undamped ? "without damping" : fmt::format("at a damping of {:.4g} N·s/m", at.damping_n_s_per_m),
       stiffness_text(at.eigenvalues, map.grid.first), at.passive, at.colgate_schenkel,
       undamped ? fmt::format(", Abbott and Okamura {:.4g}", map.abbott_okamura) : "");
@@ -86,8 +85,7 @@ std::vector<std::string> comparison(const WallMap& map) {
   if (differs && most > 0.0) {
     lines.push_back(
         fmt::format("as it was tried it comes to rest up to {:.2f} to {:.2f} times the stiffness of the "
-                    "eigenvalues: Coulomb "
-                    "friction adds, encoder steps and lifting off take away",
+                    "eigenvalues: Coulomb friction adds, encoder steps and lifting off take away",
                     least, most));
   }
   lines.push_back(of_the_least_damping(map));
@@ -278,7 +276,8 @@ Findings findings_of(const LawStudy& study, const StudiedAxis& on) {
         "pressed by the hand and held: {}, ripple of the force {:.3g} N, peak {:.3g} N",
         study.pressed->stable ? "stable" : "UNSTABLE", study.pressed->ripple_n, study.pressed->peak_n));
   }
-  const std::span conditions = std::span(law_conditions).first(study.pressed ? 3 : 2);
+  const std::span all(law_conditions);
+  const auto conditions = study.pressed ? all : all.first(all.size() - 1);  // the last is that of the press
   found.json["conditions"] = to_json(conditions);
   for (std::string& line : in_words(conditions)) found.lines.push_back(std::move(line));
   found.json["in_words"] = found.lines;
