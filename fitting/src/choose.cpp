@@ -20,7 +20,7 @@ Choice least_bic(std::span<const FitResult> results) {
   if (best == nullptr) return no_choice;
   std::ostringstream why;
   why << best->model << " has the least BIC (" << std::fixed << std::setprecision(0) << best->bic
-      << "); no data were held out to judge the laws by, so this favours those with many parameters";
+      << "); no data were held out to judge the laws by";
   return {.model = best->model, .why = why.str()};
 }
 

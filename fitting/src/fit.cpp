@@ -61,17 +61,27 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
   result.rmse = std::sqrt(squares / n);
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
   result.jnd_fraction = felt / n;
-  const double likelihood = n * std::log(std::max(squares / n, std::numeric_limits<double>::min()));
-  const auto p = static_cast<double>(result.free_parameters + 1);  // the noise is one more
-  result.aic = likelihood + 2.0 * p;
-  result.bic = likelihood + p * std::log(n);
+  result.effective_samples = n;
   result.test_rmse = rms_of(residuals, [&](std::size_t i) { return samples.fold[i] == Samples::test; });
 }
 
-/// Error on samples that the fit has not seen; infinite if a fold could not be fitted.
-double cross_validate(const Problem& problem, const Samples& samples, const Weights& weights,
-                      const Values& near, const RobustLoss& loss, std::size_t threads) {
-  if (samples.folds < 2) return nothing;
+/// Standard error of the root of a mean square that folds share, each with its own.
+double spread_of(const std::vector<double>& held_out, const Samples& samples, double rmse) {
+  std::vector<double> mean_squares;
+  for (std::size_t fold = 0; fold < samples.folds; ++fold) {
+    const double rms = rms_of(held_out, [&](std::size_t i) { return samples.fold[i] == fold; });
+    if (std::isfinite(rms)) mean_squares.push_back(rms * rms);
+  }
+  if (mean_squares.size() < 2) return nothing;
+  const double variance = boost::math::statistics::sample_variance(mean_squares);
+  if (!(variance > 0.0)) return 0.0;
+  return std::sqrt(variance / static_cast<double>(mean_squares.size())) / (2.0 * rmse);
+}
+
+/// Takes the error on samples that the fit has not seen; infinite if a fold could not be fitted.
+void cross_validate(FitResult& result, const Problem& problem, const Samples& samples, const Weights& weights,
+                    const Values& near, const RobustLoss& loss, std::size_t threads) {
+  if (samples.folds < 2) return;
   std::vector<double> held_out(samples.size(), 0.0);
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
@@ -97,8 +107,12 @@ double cross_validate(const Problem& problem, const Samples& samples, const Weig
     work();
     for (auto& helper : helpers) helper.get();  // throws what it threw
   }
-  if (failed) return std::numeric_limits<double>::infinity();
-  return rms_of(held_out, [&](std::size_t i) { return samples.fold[i] < samples.folds; });
+  if (failed) {
+    result.cv_rmse = std::numeric_limits<double>::infinity();
+    return;
+  }
+  result.cv_rmse = rms_of(held_out, [&](std::size_t i) { return samples.fold[i] < samples.folds; });
+  result.cv_std_error = spread_of(held_out, samples, result.cv_rmse);
 }
 
 /// 1.345 robust standard deviations of what least squares leaves.
@@ -176,7 +190,7 @@ FitResult fit_problem(const Problem& problem, const Samples& samples, const FitO
   FitResult result{.model = std::string(problem.model), .law_options = problem.law_options};
   result.free_parameters = static_cast<std::size_t>(problem.coordinates());
   result.samples = samples.size();
-  result.cv_rmse = result.test_rmse = nothing;
+  result.cv_rmse = result.cv_std_error = result.test_rmse = nothing;
   if (samples.size() <= result.free_parameters) {
     std::ostringstream reason;
     reason << "cannot fit: law '" << problem.model << "' has " << result.free_parameters
@@ -214,7 +228,8 @@ FitResult fit_problem(const Problem& problem, const Samples& samples, const FitO
   warn_of_a_misfit(result);
   warn_of_pulling(result, residuals, samples);
   estimate_parameters(result, problem, samples, weights, solution, options, loss);
-  result.cv_rmse = cross_validate(problem, samples, weights, solution.values, loss, options.threads);
+  result.weigh_information(result.effective_samples / std::max(1.0, result.correlation_time));
+  cross_validate(result, problem, samples, weights, solution.values, loss, options.threads);
   return result;
 }
 
@@ -231,6 +246,11 @@ FitResult fit_growing(std::string_view model, const FitOptions& options, const S
     if (next.parameters.empty()) return best.parameters.empty() ? next : best;
     const bool white = next.correlation_time < white_below;
     const bool validated = std::isfinite(next.cv_rmse);
+    if (!best.parameters.empty()) {
+      const double independent = std::max(best.effective_samples, next.effective_samples);
+      best.weigh_information(independent);
+      next.weigh_information(independent);
+    }
     const bool better = best.parameters.empty() ||
                         (validated ? next.cv_rmse < worth_one_more * best.cv_rmse : next.bic < best.bic);
     failures = better ? 0 : failures + 1;
@@ -242,6 +262,17 @@ FitResult fit_growing(std::string_view model, const FitOptions& options, const S
 }
 
 }  // namespace
+
+void FitResult::weigh_information(double independent_samples) {
+  effective_samples = independent_samples;
+  const double variance = std::max(rmse * rmse, std::numeric_limits<double>::min());
+  const double likelihood = effective_samples * std::log(variance);
+  const auto p = static_cast<double>(free_parameters + 1);  // the noise is one more
+  const double left = effective_samples - p - 1.0;
+  aic = likelihood + 2.0 * p;
+  aicc = left > 0.0 ? aic + 2.0 * p * (p + 1.0) / left : std::numeric_limits<double>::infinity();
+  bic = likelihood + p * std::log(effective_samples);
+}
 
 models::Law FitResult::law(std::size_t recording) const {
   std::vector<double> values;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -119,7 +120,21 @@ TEST(Fit, AllowsForCorrelatedResiduals) {
     noise = 0.9 * noise + (white.force[i] - strokes.force[i]);
     strokes.force[i] += noise;
   }
-  EXPECT_NEAR(fit("kelvin", strokes.series()).correlation_time, 19.0, 4.0);
+  const auto result = fit("kelvin", strokes.series());
+  EXPECT_NEAR(result.correlation_time, 19.0, 4.0);
+  EXPECT_NEAR(result.effective_samples, 20000.0 / result.correlation_time, 1e-6);
+}
+
+TEST(Fit, WeighsInformationByIndependentSamples) {
+  FitResult result;
+  result.rmse = 0.1;
+  result.free_parameters = 2;
+  result.weigh_information(100.0);
+  EXPECT_NEAR(result.aic, 100.0 * std::log(0.01) + 6.0, 1e-9);
+  EXPECT_NEAR(result.aicc, 100.0 * std::log(0.01) + 6.0 + 0.25, 1e-9);  // 2 * 3 * 4 / (100 - 3 - 1)
+  EXPECT_NEAR(result.bic, 100.0 * std::log(0.01) + 3.0 * std::log(100.0), 1e-9);
+  result.weigh_information(4.0);
+  EXPECT_EQ(result.aicc, std::numeric_limits<double>::infinity()) << "nothing is left to judge by";
 }
 
 TEST(Fit, SaysWhatTheDataDoNotTell) {

@@ -133,6 +133,14 @@ TEST(CrossValidation, ByTwoFoldsOfCyclesSeesTheNoiseAlone) {
   EXPECT_NEAR(fit("kelvin", strokes.series(true), {.folds = 2}).cv_rmse, 0.02, 1e-3);
 }
 
+TEST(CrossValidation, SaysHowWellItsErrorIsKnown) {
+  // The root of the mean square of n independent samples of noise s varies by s / sqrt(2 n).
+  const auto result = fit("kelvin", Strokes(6000, 0.02, kelvin).series(), {.folds = 20});
+  const double known = 0.02 / std::sqrt(2.0 * 6000.0);
+  EXPECT_NEAR(result.cv_std_error, known, 0.5 * known);
+  EXPECT_TRUE(std::isnan(fit("kelvin", Strokes(6000, 0.02, kelvin).series(), {.folds = 0}).cv_std_error));
+}
+
 TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {
   const Strokes strokes(6000, 0.02, kelvin);
   const auto white = fit("kelvin", strokes.series(), {.folds = 0, .intervals = Intervals::white});

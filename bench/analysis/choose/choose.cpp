@@ -164,6 +164,7 @@ class LawSelection {
     RecordingFit fit = fit_of(taken.law, std::move(settings));
     if (fit.laws.empty()) return;
     fit.laws.front().result.cv_rmse = taken.fit->result.cv_rmse;
+    fit.laws.front().result.cv_std_error = taken.fit->result.cv_std_error;
     taken.file = fit.laws.front().file;
     taken.fit = std::move(fit.laws.front());
   }

@@ -160,6 +160,18 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
   return sources;
 }
 
+/// The fits of all laws, with information criteria by one number of independent samples.
+std::vector<fitting::FitResult> weighed_alike(std::vector<FittedLaw>& laws) {
+  double independent = 0.0;
+  for (const FittedLaw& law : laws) independent = std::max(independent, law.result.effective_samples);
+  std::vector<fitting::FitResult> results;
+  for (FittedLaw& law : laws) {
+    law.result.weigh_information(independent);
+    results.push_back(law.result);
+  }
+  return results;
+}
+
 }  // namespace
 
 models::Options with_rendering_aids(models::Options options, const AxisSeries& series) {
@@ -224,7 +236,6 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     return options.models.empty() ||
            std::find(options.models.begin(), options.models.end(), model) != options.models.end();
   };
-  std::vector<fitting::FitResult> results;
   for (const std::string& model : models) {
     if (options.stop != nullptr && *options.stop)
       throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
@@ -235,8 +246,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
       fitting::FitResult result =
           fitting::fit(model, sources.views(), options_for(model, options, all[0].contact));
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
-      fit.laws.push_back(finished(result, sources));
-      results.push_back(std::move(result));
+      fit.laws.push_back(finished(std::move(result), sources));
     } catch (const std::invalid_argument& error) {
       fit.refusals.push_back({.model = model, .why = error.what()});
     }
@@ -245,7 +255,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = options.fit.jnd.at(fitting::rms_of(sources.pool.force));
-  fit.choice = fitting::choose_simplest(results, pool, options.fit);
+  fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, options.fit);
   return fit;
 }
 

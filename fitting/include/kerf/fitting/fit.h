@@ -102,13 +102,16 @@ struct FitResult {
   double rmse = 0.0;     ///< [N]
   double max_abs = 0.0;  ///< [N]
   double r2 = 0.0;
-  double aic = 0.0;                   ///< n ln(RSS/n) + 2 (p + 1)
-  double bic = 0.0;                   ///< n ln(RSS/n) + (p + 1) ln n
-  double cv_rmse = 0.0;               ///< on held-out cycles [N]; NaN if not asked for
-  double test_rmse = 0.0;             ///< on the share that no fit saw [N]; NaN if none
-  double jnd_fraction = 0.0;          ///< share of samples whose error a person could feel
-  double correlation_time = 1.0;      ///< of the residuals, in samples; the intervals allow for it
-  std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
+  double effective_samples = 0.0;   ///< n_e, independent ones that the samples are worth: weigh_information()
+  double aic = 0.0;                 ///< n_e ln(RSS/n) + 2 (p + 1)
+  double aicc = 0.0;                ///< AIC + 2 (p + 1) (p + 2) / (n_e - p - 2); infinite for n_e <= p + 2
+  double bic = 0.0;                 ///< n_e ln(RSS/n) + (p + 1) ln n_e
+  double cv_rmse = 0.0;             ///< on held-out cycles [N]; NaN if not asked for
+  double cv_std_error = 0.0;        ///< of cv_rmse, by the spread from fold to fold [N]; NaN as that is
+  double test_rmse = 0.0;           ///< on the share that no fit saw [N]; NaN if none
+  double jnd_fraction = 0.0;        ///< share of samples whose error a person could feel
+  double correlation_time = 1.0;    ///< of the residuals, in samples; the intervals allow for it
+  std::vector<double> correlation;  ///< matrix of the searched parameters, row by row; empty for tables
   std::vector<std::string> searched;  ///< their names, in the order of that matrix
   std::vector<Profile> profiles;
   bool converged = false;
@@ -120,6 +123,13 @@ struct FitResult {
   /// It converged, and not to something that the mean of the force explains better: what does is no answer,
   /// however it compares with others.
   [[nodiscard]] bool can_be_chosen() const noexcept { return converged && r2 >= 0.0; }
+
+  /// Takes the information criteria by a number of independent samples, p the free parameters: neighbours at
+  /// 1 kHz say nearly the same, and by their number the richest law always wins. A fit sets them by its own
+  /// n / correlation_time. Laws compare only by one and the same number; take the largest that any of them
+  /// leaves, since residuals of a law that misfits have a memory that is the misfit's and not the noise's.
+  /// Source: [Schwarz1978] (BIC); [HurvichTsai1989] (AICc).
+  void weigh_information(double independent_samples);
 
   /// The law of the first recording, or of another one.
   [[nodiscard]] models::Law law(std::size_t recording = 0) const;

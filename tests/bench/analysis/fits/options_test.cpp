@@ -45,9 +45,9 @@ TEST_F(FitOptions, GiveTheWholeJson) {
     EXPECT_TRUE(all.contains(key)) << key;
   }
   const json& kelvin = all.at("fits").at(0);
-  for (const auto* key :
-       {"model", "parameters", "rmse", "max_abs", "r2", "aic", "bic", "cv_rmse", "test_rmse", "jnd_fraction",
-        "converged", "iterations", "seconds", "options", "law_files", "samples"}) {
+  for (const auto* key : {"model", "parameters", "rmse", "max_abs", "r2", "aic", "aicc", "effective_samples",
+                          "bic", "cv_rmse", "cv_std_error", "test_rmse", "jnd_fraction", "converged",
+                          "iterations", "seconds", "options", "law_files", "samples"}) {
     EXPECT_TRUE(kelvin.contains(key)) << key;
   }
   EXPECT_NEAR(kelvin.at("parameters").at("parallel_stiffness").at("value").get<double>(), 300.0, 15.0);
