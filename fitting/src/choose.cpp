@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "kerf/fitting/fit.h"
+#include "training/held_out.h"
 
 namespace kerf::fitting {
 namespace {
 
-constexpr double as_good_as_best = 1.05;
 const Choice no_choice{.model = "", .why = "no law could be fitted"};
 
 Choice least_bic(std::span<const FitResult> results) {
@@ -26,6 +26,16 @@ Choice least_bic(std::span<const FitResult> results) {
 
 }  // namespace
 
+double left_out(double error_n, double better_n) noexcept {
+  return error_n > better_n ? std::sqrt(error_n * error_n - better_n * better_n) : 0.0;
+}
+
+bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
+  if (left_out(law.cv_rmse, best.cv_rmse) <= jnd_n) return true;
+  const Paired worse = paired(law.cv_folds, best.cv_folds);
+  return worse.std_error > 0.0 && worse.mean <= worse.std_error;
+}
+
 Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& options) {
   if (options.folds == 0 && !(options.test_share > 0.0)) return least_bic(results);
   const auto error = options.folds > 0 ? &FitResult::cv_rmse : &FitResult::test_rmse;
@@ -39,19 +49,21 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   const auto best =
       *std::ranges::min_element(candidates, {}, [&](const FitResult* result) { return result->*error; });
   const bool felt = best->*error > limit;
-  const double allowed = felt ? as_good_as_best * best->*error : limit;
+  const auto serves = [&](const FitResult* result) {
+    if (!felt) return result->*error <= limit;
+    return options.folds > 0 ? as_good_as(*result, *best, limit)
+                             : left_out(result->*error, best->*error) <= limit;
+  };
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto* a, const auto* b) { return a->free_parameters < b->free_parameters; });
-  const auto chosen = *std::find_if(candidates.begin(), candidates.end(),
-                                    [&](const auto* result) { return result->*error <= allowed; });
+  const auto chosen = *std::ranges::find_if(candidates, serves);
   std::ostringstream why;
   why << std::setprecision(3);
   if (felt) {
     why << "no law stays within the JND of " << limit << " N (at the root mean square force of " << force_rms
         << " N) on held-out data; " << chosen->model << " with " << chosen->*error
-        << " N has the fewest parameters (" << chosen->free_parameters << ") of those within "
-        << std::lround(100.0 * (as_good_as_best - 1.0)) << " % of the best, " << best->model << " with "
-        << best->*error << " N";
+        << " N has the fewest parameters (" << chosen->free_parameters
+        << ") of those that do as well as the best, " << best->model << " with " << best->*error << " N";
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
         << ") of the laws whose error on held-out data (" << chosen->*error << " N) stays within the JND of "

@@ -1,36 +1,21 @@
 #include "kerf/fitting/fit.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <future>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
-#include <boost/math/statistics/univariate_statistics.hpp>
-
 #include "least_squares.h"
 #include "samples.h"
-#include "starts/search.h"
+#include "training/held_out.h"
 #include "uncertainty/estimates.h"
 
 namespace kerf::fitting {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
-constexpr double deviation_of_mad = 1.4826;
-constexpr double white_below = 3.0;      ///< samples of correlation time
-constexpr double worth_one_more = 0.95;  ///< share of the held-out error that a larger law has to reach
-
-std::vector<double> residuals_of(const Problem& problem, const Values& values, const Samples& samples) {
-  std::vector<double> residuals = rendered(problem, values, samples);
-  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
-  return residuals;
-}
 
 /// Root mean square of the residuals that are chosen; NaN if none is.
 template <typename Chosen>
@@ -63,81 +48,6 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
   result.jnd_fraction = felt / n;
   result.effective_samples = n;
   result.test_rmse = rms_of(residuals, [&](std::size_t i) { return samples.fold[i] == Samples::test; });
-}
-
-/// Standard error of the root of a mean square that folds share, each with its own.
-double spread_of(const std::vector<double>& held_out, const Samples& samples, double rmse) {
-  std::vector<double> mean_squares;
-  for (std::size_t fold = 0; fold < samples.folds; ++fold) {
-    const double rms = rms_of(held_out, [&](std::size_t i) { return samples.fold[i] == fold; });
-    if (std::isfinite(rms)) mean_squares.push_back(rms * rms);
-  }
-  if (mean_squares.size() < 2) return nothing;
-  const double variance = boost::math::statistics::sample_variance(mean_squares);
-  if (!(variance > 0.0)) return 0.0;
-  return std::sqrt(variance / static_cast<double>(mean_squares.size())) / (2.0 * rmse);
-}
-
-/// Takes the error on samples that the fit has not seen; infinite if a fold could not be fitted.
-void cross_validate(FitResult& result, const Problem& problem, const Samples& samples, const Weights& weights,
-                    const Values& near, const RobustLoss& loss, std::size_t threads) {
-  if (samples.folds < 2) return;
-  std::vector<double> held_out(samples.size(), 0.0);
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> failed{false};
-  const auto work = [&] {
-    for (std::size_t fold = next++; fold < samples.folds && !failed; fold = next++) {
-      const Weights rest = without_fold(samples, weights, fold);
-      const Solution solution =
-          search(problem, samples, rest, near, {.loss = loss, .function_tolerance = 1e-8});
-      if (solution.values.empty()) {
-        failed = true;
-        return;
-      }
-      const auto residuals = residuals_of(problem, solution.values, samples);
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (samples.fold[i] == fold) held_out[i] = residuals[i];
-      }
-    }
-  };
-  {
-    std::vector<std::future<void>> helpers;
-    for (std::size_t i = 1; i < std::min(threads, samples.folds); ++i)
-      helpers.push_back(std::async(std::launch::async, work));
-    work();
-    for (auto& helper : helpers) helper.get();  // throws what it threw
-  }
-  if (failed) {
-    result.cv_rmse = std::numeric_limits<double>::infinity();
-    return;
-  }
-  result.cv_rmse = rms_of(held_out, [&](std::size_t i) { return samples.fold[i] < samples.folds; });
-  result.cv_std_error = spread_of(held_out, samples, result.cv_rmse);
-}
-
-/// 1.345 robust standard deviations of what least squares leaves.
-double loss_scale(const std::vector<double>& residuals, const Weights& weights) {
-  std::vector<double> sizes;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (weights[i] > 0.0) sizes.push_back(std::sqrt(weights[i]) * std::abs(residuals[i]));
-  }
-  const double middle = boost::math::statistics::median(sizes);
-  return std::max(robust_width * deviation_of_mad * middle, std::numeric_limits<double>::min());
-}
-
-/// Each run weighed by what a first fit leaves in it.
-Weights by_noise(const Samples& samples, const std::vector<double>& residuals) {
-  Weights weights = all_of(samples);
-  double first = 0.0;
-  for (const Run& run : samples.runs) {
-    const double noise = rms_of(residuals, [&](std::size_t i) {
-      return i >= run.begin && i < run.end && samples.fold[i] != Samples::test;
-    });
-    if (!(noise > 0.0)) return all_of(samples);
-    if (first == 0.0) first = noise;
-    for (std::size_t i = run.begin; i < run.end; ++i) weights[i] *= first * first / (noise * noise);
-  }
-  return weights;
 }
 
 /// A sensor at the end of its range repeats its largest number.
@@ -186,79 +96,41 @@ void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, co
   result.warnings.push_back(warning.str());
 }
 
-FitResult fit_problem(const Problem& problem, const Samples& samples, const FitOptions& options) {
-  FitResult result{.model = std::string(problem.model), .law_options = problem.law_options};
-  result.free_parameters = static_cast<std::size_t>(problem.coordinates());
+/// The error of the whole way to a law, choice of its size and all, on samples that it was not shown.
+void cross_validate(FitResult& result, const FitOptions& options, const Samples& samples) {
+  if (samples.folds < 2) return;
+  FitOptions alone(options);
+  alone.threads = 1;  // the folds are shared out already
+  const HeldOut errors =
+      held_out([&](const Weights& seen) { return train(result.model, alone, samples, seen, of_a_fold); },
+               samples, all_of(samples), options.threads);
+  result.cv_rmse = errors.rmse;
+  result.cv_folds = errors.folds;
+  result.cv_std_error = standard_error(errors);
+}
+
+FitResult fit_samples(std::string_view model, const Samples& samples, const FitOptions& options) {
+  const Trained law = train(model, options, samples, all_of(samples));
+  FitResult result{.model = std::string(model), .law_options = law.problem.law_options};
+  result.free_parameters = static_cast<std::size_t>(law.problem.coordinates());
   result.samples = samples.size();
   result.cv_rmse = result.cv_std_error = result.test_rmse = nothing;
-  if (samples.size() <= result.free_parameters) {
-    std::ostringstream reason;
-    reason << "cannot fit: law '" << problem.model << "' has " << result.free_parameters
-           << " parameters, and there are only " << samples.size() << " samples";
-    throw std::invalid_argument(reason.str());
-  }
   warn_of_the_sensor(result, samples);
-  Weights weights = all_of(samples);
-  RobustLoss loss;
-  Solution solution = search(problem, samples, weights, {});
-  const auto search_again = [&] {
-    const int before = solution.iterations;
-    solution = search(problem, samples, weights, solution.values, {.loss = loss});
-    solution.iterations += before;
-  };
-  if (!solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
-    weights = by_noise(samples, residuals_of(problem, solution.values, samples));
-    search_again();
-  }
-  if (!solution.values.empty() && options.loss != Loss::squares) {
-    loss = {options.loss, options.loss_scale_n > 0.0
-                              ? options.loss_scale_n
-                              : loss_scale(residuals_of(problem, solution.values, samples), weights)};
-    search_again();
-  }
-  result.message = solution.message;
-  if (solution.values.empty()) {
-    result.warnings.push_back(solution.message);
+  result.message = law.solution.message;
+  if (law.solution.values.empty()) {
+    result.warnings.push_back(law.solution.message);
     return result;
   }
-  result.converged = solution.converged;
-  result.iterations = solution.iterations;
-  const std::vector<double> residuals = residuals_of(problem, solution.values, samples);
+  result.converged = law.solution.converged;
+  result.iterations = law.solution.iterations;
+  const std::vector<double> residuals = residuals_of(law.problem, law.solution.values, samples);
   measure_errors(result, residuals, samples, options.jnd);
   warn_of_a_misfit(result);
   warn_of_pulling(result, residuals, samples);
-  estimate_parameters(result, problem, samples, weights, solution, options, loss);
+  estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
   result.weigh_information(result.effective_samples / std::max(1.0, result.correlation_time));
-  cross_validate(result, problem, samples, weights, solution.values, loss, options.threads);
+  cross_validate(result, options, samples);
   return result;
-}
-
-/// A law as large as held-out cycles pay for: one more arm is taken if it lowers their error enough. Where
-/// one does not but the residuals are still far from white, the next is tried too.
-FitResult fit_growing(std::string_view model, const FitOptions& options, const Samples& samples) {
-  const models::SizeFacts& size = models::law_facts(model).size;
-  FitResult best;
-  int failures = 0;
-  for (std::size_t count = size.first; count <= size.last; ++count) {
-    FitOptions sized(options);
-    sized.law_options[std::string(size.option)] = static_cast<double>(count);
-    FitResult next = fit_problem(make_problem(model, sized, samples), samples, sized);
-    if (next.parameters.empty()) return best.parameters.empty() ? next : best;
-    const bool white = next.correlation_time < white_below;
-    const bool validated = std::isfinite(next.cv_rmse);
-    if (!best.parameters.empty()) {
-      const double independent = std::max(best.effective_samples, next.effective_samples);
-      best.weigh_information(independent);
-      next.weigh_information(independent);
-    }
-    const bool better = best.parameters.empty() ||
-                        (validated ? next.cv_rmse < worth_one_more * best.cv_rmse : next.bic < best.bic);
-    failures = better ? 0 : failures + 1;
-    if (better) best = std::move(next);
-    if (failures == 2) break;
-    if (white) break;  // there is nothing left to explain
-  }
-  return best;
 }
 
 }  // namespace
@@ -315,10 +187,7 @@ FitResult fit(std::string_view model, std::span<const Series> recordings, const 
   if (std::all_of(samples.force.begin(), samples.force.end(), [](double f) { return f == 0.0; })) {
     throw std::invalid_argument("cannot fit: the force is zero throughout");
   }
-  const models::SizeFacts& size = models::law_facts(model).size;
-  const bool grows = size.grows && !options.law_options.contains(size.option);
-  FitResult result = grows ? fit_growing(model, options, samples)
-                           : fit_problem(make_problem(model, options, samples), samples, options);
+  FitResult result = fit_samples(model, samples, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -22,6 +22,7 @@ struct Problem {
   std::vector<bool> own;   ///< one a parameter: each recording has its own
   std::size_t runs = 1;
   std::vector<double> breakpoints;  ///< inner knots that were given by hand
+  std::size_t points_per_segment = 4;
   std::shared_ptr<SegmentedMemory> segmented_memory{};
 
   [[nodiscard]] const models::LawFacts& facts() const { return models::law_facts(model); }

@@ -59,6 +59,16 @@ std::vector<double> periods(std::span<const double> time_s, double& median_perio
   return all;
 }
 
+/// Where there are no cycles, each fold takes blocks of time from all over the recording: what happens once,
+/// a ramp before a hold, would be in one fold, and no fit without it could foretell it.
+constexpr std::size_t most_blocks = 10;      ///< a fold
+constexpr std::size_t fewest_in_block = 20;  ///< samples
+
+std::size_t blocks_of(std::size_t samples, std::size_t folds) {
+  if (folds < 2) return 0;
+  return folds * std::clamp<std::size_t>(samples / (folds * fewest_in_block), 1, most_blocks);
+}
+
 /// Folds by cycle where there are at least two; else blocks of time. The test share comes last.
 void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_t> cycle,
                   const FoldOptions& options) {
@@ -72,8 +82,9 @@ void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_
   const auto fold = samples.fold.begin() + static_cast<std::ptrdiff_t>(run.begin);
   const auto at = [&](std::size_t row) { return fold + static_cast<std::ptrdiff_t>(row); };
   if (!by_cycle) {
-    for (std::size_t k = 0; k < folds && folds >= 2; ++k)
-      std::fill(at(k * kept / folds), at((k + 1) * kept / folds), k);
+    const std::size_t blocks = blocks_of(kept, folds);
+    for (std::size_t k = 0; k < blocks; ++k)
+      std::fill(at(k * kept / blocks), at((k + 1) * kept / blocks), k % folds);
     std::fill(at(kept), at(count), Samples::test);
     return;
   }

@@ -229,6 +229,24 @@ TEST(Choice, TakesTheSimplestLawWithinTheJnd) {
   EXPECT_THAT(strict.why, testing::HasSubstr("no law stays within the JND"));
 }
 
+TEST(Choice, TakesForAsGoodWhatIsWorseByLessThanItsStandardError) {
+  FitResult best;
+  best.cv_folds = {1.0, 1.0, 1.0, 1.0};
+  best.cv_rmse = 1.0;
+  const auto law_of = [](const std::vector<double>& more) {
+    FitResult law;
+    for (const double squares : more) law.cv_folds.push_back(std::sqrt(1.0 + squares));
+    law.cv_rmse = std::sqrt(1.0 + (more[0] + more[1] + more[2] + more[3]) / 4.0);
+    return law;
+  };
+  // Mean and standard error of the differences: 0.1 and 0.0913, 0.075 and 0.1109.
+  EXPECT_FALSE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.0));
+  EXPECT_TRUE(as_good_as(law_of({0.3, -0.2, 0.2, 0.0}), best, 0.0));
+  // sqrt(0.1) = 0.316 N more, by a hand that feels 0.31 N and by one that does not feel 0.32 N.
+  EXPECT_FALSE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.31));
+  EXPECT_TRUE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.32));
+}
+
 TEST(Line, IsTheLeastThatALawHasToBeat) {
   const Law spring = Law::make("piecewise", std::vector{0.0, 0.4, 0.0, 2.0}, {{"segments", 1.0}});
   EXPECT_NEAR(line_rmse(Strokes(4000, 0.0, spring).series()), 0.0, 1e-12);

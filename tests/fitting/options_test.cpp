@@ -11,6 +11,7 @@
 #include <kerf/fitting/fit.h>
 
 #include "fitting/strokes.h"
+#include "training/training.h"
 
 namespace kerf::fitting {
 namespace {
@@ -138,7 +139,40 @@ TEST(CrossValidation, SaysHowWellItsErrorIsKnown) {
   const auto result = fit("kelvin", Strokes(6000, 0.02, kelvin).series(), {.folds = 20});
   const double known = 0.02 / std::sqrt(2.0 * 6000.0);
   EXPECT_NEAR(result.cv_std_error, known, 0.5 * known);
+  ASSERT_EQ(result.cv_folds.size(), 20U);
+  double squares = 0.0;
+  for (const double fold : result.cv_folds) squares += fold * fold / 20.0;
+  EXPECT_NEAR(std::sqrt(squares), result.cv_rmse, 1e-9) << "folds of 300 samples each";
   EXPECT_TRUE(std::isnan(fit("kelvin", Strokes(6000, 0.02, kelvin).series(), {.folds = 0}).cv_std_error));
+}
+
+TEST(CrossValidation, FindsTheNumberOfSegmentsByTheSamplesShown) {
+  // A line with a knee at 0.3, and what lies beyond 0.25 not shown.
+  const Law line = Law::make("piecewise", std::vector{0.0, 0.3, 0.4, 0.0, 1.5, 8.0}, {{"segments", 2.0}});
+  const Strokes strokes(6000, 0.01, line);
+  const Series series = strokes.series();
+  const Samples samples = check_series(std::span(&series, 1), {.folds = 2});
+  Weights before = all_of(samples);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (strokes.penetration[i] > 0.25) before[i] = 0.0;
+  }
+  const FitOptions options{.segments = CountBy::bic};
+  const auto segments = [&](const Weights& seen) {
+    return std::get<double>(train("piecewise", options, samples, seen).problem.law_options.at("segments"));
+  };
+  EXPECT_EQ(segments(before), 1.0);
+  EXPECT_EQ(segments(all_of(samples)), 2.0);
+}
+
+TEST(Segments, OfFewerPointsFitNoWorse) {
+  const Law line = Law::make("piecewise", std::vector{0.0, 0.4, 0.0, 2.0}, {{"segments", 1.0}});
+  const Strokes few(40, 0.1, line);
+  const auto rmse = [&](std::size_t points) {
+    return fit("piecewise", few.series(),
+               {.law_options = {{"segments", 6.0}}, .folds = 0, .points_per_segment = points})
+        .rmse;
+  };
+  EXPECT_LT(rmse(2), 0.99 * rmse(4));
 }
 
 TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {

@@ -16,6 +16,11 @@ bool is_judged(const Candidate& one) {
          (!one.fit || one.fit->result.can_be_chosen());
 }
 
+bool does_as_well(const Candidate& one, const Candidate& best, double jnd_n) {
+  if (one.fit && best.fit) return fitting::as_good_as(one.fit->result, best.fit->result, jnd_n);
+  return fitting::left_out(one.error_n, best.error_n) <= jnd_n;
+}
+
 std::string why_not_instead(const Candidate& one, const Candidate& taken) {
   if (one.law.parameters > taken.law.parameters) {
     return fmt::format("{} parameters, where {} does with {}", one.law.parameters, taken.law.name,
@@ -103,9 +108,8 @@ void CandidateSearch::take_the_best() {
   const auto best = std::ranges::min_element(all, {}, [](const Candidate& one) {
     return is_judged(one) ? one.error_n : std::numeric_limits<double>::infinity();
   });
-  const auto good = std::ranges::find_if(all, [&](const Candidate& one) {
-    return is_judged(one) && left_out(one.error_n, best->error_n) <= choice_.jnd_n;
-  });
+  const auto good = std::ranges::find_if(
+      all, [&](const Candidate& one) { return is_judged(one) && does_as_well(one, *best, choice_.jnd_n); });
   choice_.taken = static_cast<std::size_t>(best - all.begin());
   choice_.as_good = static_cast<std::size_t>(good - all.begin());
   check_all_the_same(*best);
@@ -159,13 +163,9 @@ void CandidateSearch::explain_the_best(const std::string& limit) {
   if (&good == &best) return explain_stability(best);
   choice_.why += fmt::format(
       ". Against it {} with {} parameters leaves out {:.2g} JND, which nobody would feel beside the rest",
-      good.law.name, good.law.parameters, left_out(good.error_n, best.error_n) / choice_.jnd_n);
+      good.law.name, good.law.parameters, fitting::left_out(good.error_n, best.error_n) / choice_.jnd_n);
   explain_stability(best);
   explain_stability(good);
-}
-
-double left_out(double error_n, double better_n) noexcept {
-  return error_n > better_n ? std::sqrt(error_n * error_n - better_n * better_n) : 0.0;
 }
 
 }  // namespace kerf::bench

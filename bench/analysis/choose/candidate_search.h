@@ -114,7 +114,4 @@ class CandidateSearch {
   const std::atomic<bool>& stop_;
 };
 
-/// What a simpler law leaves out against a better one, sqrt(e^2 - b^2) [N]; 0 if it is not worse.
-[[nodiscard]] double left_out(double error_n, double better_n) noexcept;
-
 }  // namespace kerf::bench

@@ -41,7 +41,8 @@ class LawSelection {
       throw std::invalid_argument("a law is chosen by held-out data: at least 2 folds are needed");
     choice_.settings = options.fit;
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
-    if (options.richer_too) memory_ = fitting::remember_segments(options.candidates.max_segments);
+    if (options.richer_too)
+      memory_ = fitting::remember_segments(options.candidates.max_segments, options.fit.points_per_segment);
     const AxisSeries series = fit_series(recording, options.axis, choice_.contact);
     if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
     measure(series);
@@ -107,7 +108,7 @@ class LawSelection {
       choice_.held_out = fmt::format("{} cycles, held out in {} folds", cycles, std::min(folds, cycles));
       return;
     }
-    choice_.held_out = fmt::format("{} blocks of time, held out by turns", folds);
+    choice_.held_out = fmt::format("{} folds of blocks of time, held out by turns", folds);
     if (cycles > 0) return;
     choice_.warnings.emplace_back(
         "the recording has no cycles along this axis: errors are held out by blocks of time, and laws with a "
@@ -165,6 +166,7 @@ class LawSelection {
     if (fit.laws.empty()) return;
     fit.laws.front().result.cv_rmse = taken.fit->result.cv_rmse;
     fit.laws.front().result.cv_std_error = taken.fit->result.cv_std_error;
+    fit.laws.front().result.cv_folds = taken.fit->result.cv_folds;
     taken.file = fit.laws.front().file;
     taken.fit = std::move(fit.laws.front());
   }

@@ -42,7 +42,7 @@ void decide(EffectVerdict& verdict, const Best& without, const Best& with, const
             : figures;
     return;
   }
-  const double mended_n = left_out(best_without.error_n, best_with.error_n);
+  const double mended_n = fitting::left_out(best_without.error_n, best_with.error_n);
   if (best_with.within_jnd || mended_n > jnd_n) {
     verdict.matter = Matter::matters;
     verdict.why = figures;

@@ -97,6 +97,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"bic", fit.bic},
               {"cv_rmse", json_number(fit.cv_rmse)},
               {"cv_std_error", json_number(fit.cv_std_error)},
+              {"cv_folds", fit.cv_folds},
               {"test_rmse", json_number(fit.test_rmse)},
               {"jnd_fraction", fit.jnd_fraction},
               {"correlation_time_samples", fit.correlation_time},

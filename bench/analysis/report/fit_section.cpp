@@ -179,7 +179,7 @@ std::string fit_section(const schema::Recording& recording, std::size_t axis, co
     const Window window = window_of(recording, view.series);
     std::string html = "<h2>Fits</h2>\n" + warnings_of(fits, view) + comparison_table(fits, view.force_unit);
     html +=
-        "<p class=\"soft\">Held out: each cycle (or block of time) predicted by a fit to the others. "
+        "<p class=\"soft\">Held out: each cycle (or blocks of time) predicted by a fit to the others. "
         "Rendered: with "
         "the rendering aids of laws that have branches. Outside JND: share of samples whose error a person "
         "could "

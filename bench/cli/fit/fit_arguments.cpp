@@ -87,6 +87,10 @@ void add_law_options(Verb& verb, FitArguments& arguments) {
                   "Segments of the piecewise law: a number from 1 to 16, bic (least BIC) or jnd (the fewest "
                   "within the force JND)")
       .with_default();
+  verb.add_option("--points-per-segment", arguments.options.fit.points_per_segment,
+                  "Fewest samples in a segment of the piecewise law, on each branch")
+      .within(1, 1'000'000)
+      .with_default();
   verb.add_option("--breakpoints", arguments.breakpoints,
                   "Inner breakpoints of the piecewise law by hand, 3,7.5,12: positions on the axis as charts "
                   "show them, in mm or degrees, or with a unit (0.3cm)")
@@ -121,7 +125,7 @@ void add_data_options(Verb& verb, FitArguments& arguments) {
 
 void add_estimation_options(Verb& verb, FitArguments& arguments) {
   fitting::FitOptions& fit = arguments.options.fit;
-  verb.add_option("--folds", fit.folds, "Folds of the cross-validation, by cycle or by block of time")
+  verb.add_option("--folds", fit.folds, "Folds of the cross-validation, by cycle or by blocks of time")
       .within(2, 100)
       .with_default();
   verb.add_flag("--no-folds", arguments.no_folds, "No cross-validation");

@@ -201,7 +201,7 @@ void add_choose(CLI::App& app, Context& context) {
                   "Largest number of segments of the piecewise law")
       .within(1, 16)
       .with_default();
-  verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by block of time")
+  verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by blocks of time")
       .within(2, 100)
       .with_default();
   verb.add_option("--weber", arguments->choose.fit.jnd.weber_fraction, "Weber fraction of the force JND")

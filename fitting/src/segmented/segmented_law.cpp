@@ -41,13 +41,22 @@ std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& sam
 
 /// The curves up to so many segments, remembered ones where there are.
 std::vector<SegmentedCurve> curves_of(const Problem& problem, const Curve& points, std::size_t segments) {
-  if (!problem.breakpoints.empty() || !problem.segmented_memory ||
-      problem.segmented_memory->max_segments() < segments) {
-    return fit_segments(points, {.max_segments = segments, .breakpoints = problem.breakpoints});
-  }
+  const SegmentedOptions options{.max_segments = segments,
+                                 .fewest_points = problem.points_per_segment,
+                                 .breakpoints = problem.breakpoints};
+  if (!problem.breakpoints.empty() || !problem.segmented_memory || !problem.segmented_memory->covers(options))
+    return fit_segments(points, options);
   std::vector<SegmentedCurve> curves = problem.segmented_memory->curves(points);
   std::erase_if(curves, [&](const SegmentedCurve& curve) { return curve.segments() > segments; });
   return curves;
+}
+
+std::vector<double> of_those(std::span<const double> values, const Weights& seen) {
+  std::vector<double> chosen;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (seen[i] > 0.0) chosen.push_back(values[i]);
+  }
+  return chosen;
 }
 
 double segments_in(const models::Options& options) {
@@ -70,26 +79,36 @@ std::vector<std::uint8_t> branches(const Samples& samples, bool loop) {
   return branch;
 }
 
-void prepare_segments(models::Options& law_options, const FitOptions& options, const Samples& samples) {
+void prepare_segments(Problem& problem, const FitOptions& options, const Samples& samples,
+                      const Weights& seen) {
+  problem.breakpoints = options.breakpoints;
+  problem.points_per_segment = options.points_per_segment;
+  problem.segmented_memory = options.segmented_memory;
+  models::Options& law_options = problem.law_options;
   if (!options.breakpoints.empty()) {
     law_options["segments"] = static_cast<double>(options.breakpoints.size() + 1);
   }
   if (options.segments == CountBy::given || !options.breakpoints.empty()) return;
+  constexpr std::size_t most = SegmentedOptions{}.max_segments;
+  // The search of the law that follows finds these curves again.
+  if (!problem.segmented_memory)
+    problem.segmented_memory = remember_segments(most, options.points_per_segment);
   const bool loop = std::get<bool>(law_options.at("loop"));
   const auto branch = branches(samples, loop);
   const auto position = positions(samples);
-  const Weights weights = all_of(samples);
-  const auto curves = fit_segments(
-      {.position = position,
-       .force = samples.force,
-       .weight = weights,
-       .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()});
+  const auto curves =
+      curves_of(problem,
+                {.position = position,
+                 .force = samples.force,
+                 .weight = seen,
+                 .branch = loop ? std::span<const std::uint8_t>(branch) : std::span<const std::uint8_t>()},
+                most);
   std::size_t chosen = curves.size() - 1;
   if (options.segments == CountBy::bic) {
-    const double correlation = correlation_time(residuals_of(curves.back(), samples, branch));
-    chosen = choose_by_bic(curves, static_cast<double>(samples.size()) / correlation);
+    const auto left = of_those(residuals_of(curves.back(), samples, branch), seen);
+    chosen = choose_by_bic(curves, static_cast<double>(left.size()) / correlation_time(left));
   } else {
-    chosen = fewest_within(curves, options.jnd.at(rms_of(samples.force))).value_or(chosen);
+    chosen = fewest_within(curves, options.jnd.at(rms_of(of_those(samples.force, seen)))).value_or(chosen);
   }
   law_options["segments"] = static_cast<double>(curves[chosen].segments());
 }

@@ -4,8 +4,10 @@
 
 namespace kerf::fitting {
 
-/// Sets the number of segments of a piecewise law where the options leave it to the data.
-void prepare_segments(models::Options& law_options, const FitOptions& options, const Samples& samples);
+/// Sets how a piecewise law is searched, and its number of segments where the options leave it to the data:
+/// by the samples of positive weight.
+void prepare_segments(Problem& problem, const FitOptions& options, const Samples& samples,
+                      const Weights& seen);
 
 /// The outer knots are the ends of the data and not searched; given breakpoints hold the inner ones too.
 void hold_knots(Problem& problem, bool all);

@@ -25,12 +25,14 @@ SegmentedMemory::Entry& SegmentedMemory::entry_of(const Curve& points) {
 
 std::vector<SegmentedCurve> SegmentedMemory::curves(const Curve& points) {
   Entry& entry = entry_of(points);
-  std::call_once(entry.once, [&] { entry.curves = fit_segments(points, {.max_segments = max_segments_}); });
+  std::call_once(entry.once, [&] {
+    entry.curves = fit_segments(points, {.max_segments = max_segments_, .fewest_points = fewest_points_});
+  });
   return entry.curves;
 }
 
-std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments) {
-  return std::make_shared<SegmentedMemory>(max_segments);
+std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments, std::size_t points_per_segment) {
+  return std::make_shared<SegmentedMemory>(max_segments, points_per_segment);
 }
 
 }  // namespace kerf::fitting

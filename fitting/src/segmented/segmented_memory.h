@@ -13,9 +13,13 @@ namespace kerf::fitting {
 /// wait for the one that came first.
 class SegmentedMemory {
  public:
-  explicit SegmentedMemory(std::size_t max_segments) : max_segments_(max_segments) {}
+  SegmentedMemory(std::size_t max_segments, std::size_t fewest_points)
+      : max_segments_(max_segments), fewest_points_(fewest_points) {}
 
-  [[nodiscard]] std::size_t max_segments() const noexcept { return max_segments_; }
+  /// Whether curves that were found so are among those remembered.
+  [[nodiscard]] bool covers(const SegmentedOptions& options) const noexcept {
+    return options.max_segments <= max_segments_ && options.fewest_points == fewest_points_;
+  }
   /// @throws std::invalid_argument as fit_segments() does.
   [[nodiscard]] std::vector<SegmentedCurve> curves(const Curve& points);
 
@@ -34,6 +38,7 @@ class SegmentedMemory {
   Entry& entry_of(const Curve& points);
 
   std::size_t max_segments_;
+  std::size_t fewest_points_;
   std::mutex mutex_;
   std::list<Entry> entries_;
 };

@@ -122,7 +122,8 @@ void hold(Problem& problem, std::string_view name) {
 
 }  // namespace
 
-Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples) {
+Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples,
+                     const Weights& seen) {
   Problem problem{.model = model, .law_options = given.law_options, .runs = samples.runs.size()};
   const models::LawFacts& facts = problem.facts();
   models::Options& options = problem.law_options;
@@ -133,8 +134,7 @@ Problem make_problem(std::string_view model, const FitOptions& given, const Samp
   const bool segmented = facts.search == models::Search::segments;
   if (segmented) {
     problem.breakpoints = given.breakpoints;
-    problem.segmented_memory = given.segmented_memory;
-    prepare_segments(options, given, samples);
+    prepare_segments(problem, given, samples, seen);
   }
   problem.parameters = models::Law::parameters(model, options);
   problem.free.assign(problem.parameters.size(), true);

@@ -18,8 +18,10 @@ struct Solution {
 };
 
 /// What a law needs before its parameters can be searched: options that follow from the data (range and loop
-/// of a table, loop of a piecewise law), and which parameters are free.
-[[nodiscard]] Problem make_problem(std::string_view model, const FitOptions& options, const Samples& samples);
+/// of a table, loop of a piecewise law), and which parameters are free. The number of segments, where the
+/// data decide it, follows from the samples of positive weight.
+[[nodiscard]] Problem make_problem(std::string_view model, const FitOptions& options, const Samples& samples,
+                                   const Weights& seen);
 
 struct SearchOptions {
   RobustLoss loss;

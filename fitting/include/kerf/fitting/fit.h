@@ -49,7 +49,8 @@ enum class Intervals : std::uint8_t {
 /// Piecewise curves that were found for every number of segments up to a limit, so that fits of the same
 /// samples with other numbers of segments find them again. Fits on several threads may share one.
 class SegmentedMemory;
-[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments);
+[[nodiscard]] std::shared_ptr<SegmentedMemory> remember_segments(std::size_t max_segments,
+                                                                 std::size_t points_per_segment = 4);
 
 struct FitOptions {
   models::Options
@@ -65,8 +66,9 @@ struct FitOptions {
   double loss_scale_n = 0.0;  ///< s [N]; 0: 1.345 robust standard deviations of the least-squares residuals
   bool profile = false;       ///< also intervals from the profile of the sum of squares
   CountBy segments = CountBy::given;
-  std::vector<double> breakpoints;         ///< inner knots of a piecewise law by hand, as penetrations
-  std::vector<std::string> per_recording;  ///< parameters that each recording has of its own
+  std::size_t points_per_segment = 4;  ///< fewest, on each branch, the segment's ends included; at least 1
+  std::vector<double> breakpoints;     ///< inner knots of a piecewise law by hand, as penetrations
+  std::vector<std::string> per_recording;             ///< parameters that each recording has of its own
   std::shared_ptr<SegmentedMemory> segmented_memory;  ///< none: curves are found anew each time
 };
 
@@ -108,6 +110,7 @@ struct FitResult {
   double bic = 0.0;                 ///< n_e ln(RSS/n) + (p + 1) ln n_e
   double cv_rmse = 0.0;             ///< on held-out cycles [N]; NaN if not asked for
   double cv_std_error = 0.0;        ///< of cv_rmse, by the spread from fold to fold [N]; NaN as that is
+  std::vector<double> cv_folds;     ///< error on each fold that was held out [N]; empty as cv_rmse is NaN
   double test_rmse = 0.0;           ///< on the share that no fit saw [N]; NaN if none
   double jnd_fraction = 0.0;        ///< share of samples whose error a person could feel
   double correlation_time = 1.0;    ///< of the residuals, in samples; the intervals allow for it
@@ -168,10 +171,21 @@ struct Choice {
   std::string why;
 };
 
+/// What a law leaves out against a better one, whatever both leave out: sqrt(e^2 - e_b^2) [N]; 0 if that is
+/// no better.
+[[nodiscard]] double left_out(double error_n, double better_n) noexcept;
+
+/// Whether a law does as well as the best on held-out data: nobody could feel what it leaves out against the
+/// best, left_out() <= JND, or the mean difference of the folds' mean squares is no more than its standard
+/// error, by the spread from fold to fold. Folds share most of the samples that they are trained on, so that
+/// this error is rather too small ([BengioGrandvalet2004]).
+/// Source: [Breiman1984], the rule of one standard error; here of the paired difference.
+[[nodiscard]] bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n);
+
 /// The law with fewest parameters whose error on held-out data stays within the JND at the recording's own
-/// force (root mean square), or within 5 % of the best; where none is within the JND, the reason says so.
-/// Held out are the cycles or blocks of the cross-validation, else the share that was kept back for a test.
-/// Where there is neither, the law with the least BIC.
+/// force (root mean square); where none does, of those that are as_good_as() the best, and the reason says
+/// so. Held out are the cycles or blocks of the cross-validation, else the share that was kept back for a
+/// test. Where there is neither, the law with the least BIC.
 [[nodiscard]] Choice choose_simplest(std::span<const FitResult> results, const Series& series,
                                      const FitOptions& options);
 

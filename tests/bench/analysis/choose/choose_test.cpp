@@ -233,7 +233,7 @@ TEST(Choose, StopsWhereItIsToldTo) {
 
 TEST(Choose, HoldsOutBlocksOfTimeWhereThereAreNoCycles) {
   const LawChoice choice = choose(cut_of(known_kelvin(), {.with_cycles = false}));
-  EXPECT_EQ(choice.held_out, "5 blocks of time, held out by turns");
+  EXPECT_EQ(choice.held_out, "5 folds of blocks of time, held out by turns");
   EXPECT_THAT(choice.warnings, Contains(HasSubstr("kerf segment")));
   EXPECT_EQ(taken_name(choice), "kelvin");
 }
@@ -285,9 +285,10 @@ TEST(EffectsThatMatter, AreAllInTheLawThatIsTaken) {
 }
 
 TEST(LeftOut, IsTheErrorThatABetterLawDoesNotMake) {
-  EXPECT_DOUBLE_EQ(left_out(5.0, 3.0), 4.0);
-  EXPECT_EQ(left_out(3.0, 5.0), 0.0);
-  EXPECT_EQ(left_out(std::numeric_limits<double>::infinity(), 1.0), std::numeric_limits<double>::infinity());
+  EXPECT_DOUBLE_EQ(fitting::left_out(5.0, 3.0), 4.0);
+  EXPECT_EQ(fitting::left_out(3.0, 5.0), 0.0);
+  EXPECT_EQ(fitting::left_out(std::numeric_limits<double>::infinity(), 1.0),
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(ChoiceFiles, HoldEveryCandidate) {

@@ -1,0 +1,97 @@
+#include "training/held_out.h"
+
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <numeric>
+
+#include <boost/math/statistics/univariate_statistics.hpp>
+
+namespace kerf::fitting {
+namespace {
+
+/// Squares of a fold's held-out residuals, and how many there are.
+struct Share {
+  double squares = 0.0;
+  double count = 0.0;
+};
+
+bool shown(const Samples& samples, const Weights& weights, std::size_t i) {
+  return weights[i] > 0.0 && samples.fold[i] < samples.folds;
+}
+
+std::vector<std::size_t> folds_in(const Samples& samples, const Weights& weights) {
+  std::vector<bool> present(samples.folds, false);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (shown(samples, weights, i)) present[samples.fold[i]] = true;
+  }
+  std::vector<std::size_t> folds;
+  for (std::size_t fold = 0; fold < present.size(); ++fold) {
+    if (present[fold]) folds.push_back(fold);
+  }
+  return folds;
+}
+
+Share judged(const Trained& law, const Samples& samples, const Weights& weights, std::size_t fold) {
+  const auto residuals = residuals_of(law.problem, law.solution.values, samples);
+  Share share;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (samples.fold[i] != fold || !(weights[i] > 0.0)) continue;
+    share.squares += residuals[i] * residuals[i];
+    share.count += 1.0;
+  }
+  return share;
+}
+
+}  // namespace
+
+HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, const Samples& samples,
+                 const Weights& weights, std::size_t threads) {
+  const auto folds = folds_in(samples, weights);
+  if (folds.size() < 2) return {};
+  std::vector<Share> shares(folds.size());
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> failed{false};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < folds.size() && !failed; k = next++) {
+      const Trained law = train_on(without_fold(samples, weights, folds[k]));
+      failed = failed || law.solution.values.empty();
+      if (!failed) shares[k] = judged(law, samples, weights, folds[k]);
+    }
+  };
+  {
+    std::vector<std::future<void>> helpers;
+    for (std::size_t i = 1; i < std::min(threads, folds.size()); ++i)
+      helpers.push_back(std::async(std::launch::async, work));
+    work();
+    for (auto& helper : helpers) helper.get();  // throws what it threw
+  }
+  if (failed) return {.rmse = std::numeric_limits<double>::infinity(), .folds = {}};
+  HeldOut errors;
+  Share all;
+  for (const Share& share : shares) {
+    all.squares += share.squares;
+    all.count += share.count;
+    errors.folds.push_back(std::sqrt(share.squares / share.count));
+  }
+  errors.rmse = std::sqrt(all.squares / all.count);
+  return errors;
+}
+
+Paired paired(const std::vector<double>& folds, const std::vector<double>& others) {
+  if (folds.size() != others.size() || folds.size() < 2) return {};
+  std::vector<double> differences;
+  for (std::size_t k = 0; k < folds.size(); ++k)
+    differences.push_back(folds[k] * folds[k] - others[k] * others[k]);
+  const auto n = static_cast<double>(differences.size());
+  const double mean = std::accumulate(differences.begin(), differences.end(), 0.0) / n;
+  return {.mean = mean, .std_error = std::sqrt(boost::math::statistics::sample_variance(differences) / n)};
+}
+
+double standard_error(const HeldOut& errors) {
+  if (errors.folds.size() < 2) return std::numeric_limits<double>::quiet_NaN();
+  const double of_mean_square = paired(errors.folds, std::vector<double>(errors.folds.size(), 0.0)).std_error;
+  return of_mean_square > 0.0 ? of_mean_square / (2.0 * errors.rmse) : 0.0;
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,177 @@
+#include "training/training.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <boost/math/statistics/univariate_statistics.hpp>
+
+#include "training/held_out.h"
+#include "uncertainty/statistics.h"
+
+namespace kerf::fitting {
+namespace {
+
+constexpr double robust_width = 1.345;  ///< Huber's, 95 % as good as least squares where the noise is normal
+constexpr double deviation_of_mad = 1.4826;
+constexpr double white_below = 3.0;        ///< samples of correlation time
+constexpr double worth_one_more = 0.95;    ///< share of the held-out error that a larger law has to reach
+constexpr std::size_t failures_borne = 2;  ///< sizes in a row that do not pay
+
+std::vector<double> of_those(const std::vector<double>& values, const Weights& seen) {
+  std::vector<double> chosen;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (seen[i] > 0.0) chosen.push_back(values[i]);
+  }
+  return chosen;
+}
+
+/// 1.345 robust standard deviations of what least squares leaves.
+double loss_scale(const std::vector<double>& residuals, const Weights& weights) {
+  std::vector<double> sizes;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (weights[i] > 0.0) sizes.push_back(std::sqrt(weights[i]) * std::abs(residuals[i]));
+  }
+  const double middle = boost::math::statistics::median(sizes);
+  return std::max(robust_width * deviation_of_mad * middle, std::numeric_limits<double>::min());
+}
+
+/// Each run weighed by what a first fit leaves in it.
+Weights by_noise(const Samples& samples, const std::vector<double>& residuals, const Weights& seen) {
+  Weights weights(seen);
+  double first = 0.0;
+  for (const Run& run : samples.runs) {
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      if (!(seen[i] > 0.0)) continue;
+      squares += residuals[i] * residuals[i];
+      count += 1.0;
+    }
+    if (!(squares > 0.0)) return seen;
+    const double variance = squares / count;
+    if (first == 0.0) first = variance;
+    for (std::size_t i = run.begin; i < run.end; ++i) weights[i] *= first / variance;
+  }
+  return weights;
+}
+
+/// A law of a given size.
+Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples,
+                    const Weights& seen, double function_tolerance) {
+  Trained law{.problem = make_problem(model, options, samples, seen), .weights = seen};
+  const auto p = static_cast<std::size_t>(law.problem.coordinates());
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(seen, [](double w) { return w > 0.0; }));
+  if (count <= p) {
+    std::ostringstream reason;
+    reason << "cannot fit: law '" << model << "' has " << p << " parameters, and there are only " << count
+           << " samples";
+    throw std::invalid_argument(reason.str());
+  }
+  const auto found_by = [&](const Values& near) {
+    return search(law.problem, samples, law.weights, near,
+                  {.loss = law.loss, .function_tolerance = function_tolerance});
+  };
+  const auto left = [&] { return residuals_of(law.problem, law.solution.values, samples); };
+  const auto search_again = [&] {
+    const int before = law.solution.iterations;
+    law.solution = found_by(law.solution.values);
+    law.solution.iterations += before;
+  };
+  law.solution = found_by({});
+  if (!law.solution.values.empty() && samples.runs.size() > 1 && samples.runs[0].noise_n == 0.0) {
+    law.weights = by_noise(samples, left(), seen);
+    search_again();
+  }
+  if (!law.solution.values.empty() && options.loss != Loss::squares) {
+    law.loss = {options.loss,
+                options.loss_scale_n > 0.0 ? options.loss_scale_n : loss_scale(left(), law.weights)};
+    search_again();
+  }
+  return law;
+}
+
+/// A size of a law, tried.
+struct Size {
+  Trained law;
+  HeldOut errors;
+  double mean_square = 0.0;  ///< of the residuals of the samples shown
+  std::size_t count = 0;
+};
+
+double bic_of(const Size& size, double independent_samples) {
+  FitResult result{.free_parameters = static_cast<std::size_t>(size.law.problem.coordinates())};
+  result.rmse = std::sqrt(size.mean_square);
+  result.weigh_information(independent_samples);
+  return result.bic;
+}
+
+bool pays(const Size& larger, const Size& smaller) {
+  if (std::isfinite(larger.errors.rmse) && std::isfinite(smaller.errors.rmse)) {
+    const Paired gain = paired(smaller.errors.folds, larger.errors.folds);
+    return larger.errors.rmse < worth_one_more * smaller.errors.rmse && gain.mean > gain.std_error;
+  }
+  if (!std::isnan(larger.errors.rmse)) return std::isfinite(larger.errors.rmse);
+  const auto worth = [](const Size& size) {
+    return static_cast<double>(size.count) / std::max(1.0, size.law.correlation_time);
+  };
+  const double independent = std::max(worth(smaller), worth(larger));
+  return bic_of(larger, independent) < bic_of(smaller, independent);
+}
+
+Size tried(std::string_view model, const FitOptions& sized, const Samples& samples, const Weights& seen,
+           double function_tolerance) {
+  Size size{.law = train_sized(model, sized, samples, seen, function_tolerance)};
+  if (size.law.solution.values.empty()) return size;
+  const auto left = of_those(residuals_of(size.law.problem, size.law.solution.values, samples), seen);
+  size.count = left.size();
+  size.mean_square = std::pow(rms_of(left), 2);
+  size.law.correlation_time = correlation_time(left);
+  size.errors =
+      held_out([&](const Weights& fewer) { return train_sized(model, sized, samples, fewer, of_a_fold); },
+               samples, seen, sized.threads);
+  return size;
+}
+
+/// A law as large as held-out samples among those shown pay for. Where one more does not but the residuals
+/// are still far from white, the next is tried too.
+Trained train_growing(std::string_view model, const FitOptions& options, const Samples& samples,
+                      const Weights& seen, double function_tolerance) {
+  const models::SizeFacts& facts = models::law_facts(model).size;
+  std::optional<Size> best;
+  std::size_t failures = 0;
+  for (std::size_t count = facts.first; count <= facts.last && failures < failures_borne; ++count) {
+    FitOptions sized(options);
+    sized.law_options[std::string(facts.option)] = static_cast<double>(count);
+    Size next = tried(model, sized, samples, seen, function_tolerance);
+    if (next.law.solution.values.empty()) return best ? best->law : next.law;
+    const bool white = next.law.correlation_time < white_below;
+    const bool better = !best || pays(next, *best);
+    failures = better ? 0 : failures + 1;
+    if (better) best = std::move(next);
+    if (white) break;  // there is nothing left to explain
+  }
+  return best->law;
+}
+
+}  // namespace
+
+std::vector<double> residuals_of(const Problem& problem, const Values& values, const Samples& samples) {
+  std::vector<double> residuals = rendered(problem, values, samples);
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
+  return residuals;
+}
+
+Trained train(std::string_view model, const FitOptions& options, const Samples& samples, const Weights& seen,
+              double function_tolerance) {
+  const models::SizeFacts& size = models::law_facts(model).size;
+  const bool grows = size.grows && !options.law_options.contains(size.option);
+  return grows ? train_growing(model, options, samples, seen, function_tolerance)
+               : train_sized(model, options, samples, seen, function_tolerance);
+}
+
+}  // namespace kerf::fitting

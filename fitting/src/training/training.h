@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "starts/search.h"
+
+namespace kerf::fitting {
+
+/// A law as it was found by the samples that it was shown.
+struct Trained {
+  Problem problem;
+  Solution solution;  ///< no values: nowhere
+  Weights weights;    ///< of the samples shown, each run by its noise
+  RobustLoss loss;
+  double correlation_time = 1.0;  ///< of the residuals of the samples shown, in samples
+};
+
+/// Finds a law by the samples of positive weight alone. Whatever the data decide is decided by these: the
+/// start, the weight of each run, the scale of a robust loss, the number of segments, the number of arms.
+/// Only the range of the motion is taken from all samples, so that a law is defined where it is judged.
+/// @throws std::invalid_argument where there are no more samples than parameters.
+[[nodiscard]] Trained train(std::string_view model, const FitOptions& options, const Samples& samples,
+                            const Weights& seen, double function_tolerance = 1e-12);
+inline constexpr double of_a_fold = 1e-8;  ///< such a tolerance, where only an error is asked for
+
+/// What a law leaves of the force of each sample.
+[[nodiscard]] std::vector<double> residuals_of(const Problem& problem, const Values& values,
+                                               const Samples& samples);
+
+}  // namespace kerf::fitting
