@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std:
 
 /// The JSON of `kerf fit`.
 [[nodiscard]] nlohmann::ordered_json fits_as_json(const RecordingFit& fit);
+
+/// Whether the law that a fit.json chooses stays within the JND on data that were held out; none where no law
+/// is chosen or nothing was held out. Also of files that do not say so themselves.
+[[nodiscard]] std::optional<bool> choice_within_jnd(const nlohmann::ordered_json& fits);
 
 /// What the JSON and the tables call an interval: "ci95" for a confidence of 0.95.
 [[nodiscard]] std::string interval_name(double confidence);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -134,6 +135,18 @@ json settings_as_json(const fitting::FitOptions& settings) {
 
 }  // namespace
 
+std::optional<bool> choice_within_jnd(const json& fits) {
+  const json& chosen = fits.at("choice").at("model");
+  for (const json& fit : fits.at("fits")) {
+    if (fit.at("model") != chosen) continue;
+    for (const auto* error : {"cv_rmse", "test_rmse"}) {
+      if (fit.contains(error) && fit.at(error).is_number())
+        return fit.at(error).get<double>() <= fits.at("jnd").get<double>();
+    }
+  }
+  return std::nullopt;
+}
+
 json fits_as_json(const RecordingFit& fit) {
   json fits = json::array();
   for (const FittedLaw& law : fit.laws) fits.push_back(law_as_json(law, fit));
@@ -141,16 +154,19 @@ json fits_as_json(const RecordingFit& fit) {
   for (const auto& [model, why] : fit.refusals) refusals.push_back({{"model", model}, {"why", why}});
   json recordings = json::array();
   for (const FittedRecording& recording : fit.recordings) recordings.push_back(recording_as_json(recording));
-  return {{"recording", fit.recordings.empty() ? "" : fit.recordings.front().uuid},
-          {"recordings", recordings},
-          {"samples", fit.samples()},
-          {"settings", settings_as_json(fit.settings)},
-          {"line_rmse", fit.line_rmse_n},
-          {"jnd", fit.jnd_n},
-          {"fits", fits},
-          {"refused", refusals},
-          {"choice", {{"model", fit.choice.model}, {"why", fit.choice.why}}},
-          {"warnings", fit.warnings}};
+  json all{{"recording", fit.recordings.empty() ? "" : fit.recordings.front().uuid},
+           {"recordings", recordings},
+           {"samples", fit.samples()},
+           {"settings", settings_as_json(fit.settings)},
+           {"line_rmse", fit.line_rmse_n},
+           {"jnd", fit.jnd_n},
+           {"fits", fits},
+           {"refused", refusals},
+           {"choice", {{"model", fit.choice.model}, {"why", fit.choice.why}}},
+           {"warnings", fit.warnings}};
+  const std::optional<bool> within = choice_within_jnd(all);
+  all["choice"]["within_jnd"] = within ? json(*within) : json(nullptr);
+  return all;
 }
 
 }  // namespace kerf::bench

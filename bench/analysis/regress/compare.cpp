@@ -50,6 +50,14 @@ std::string in_words(const ForceDifference& worst, const schema::ForceChannel& c
                            : fmt::format("where {:.3g} {} is allowed", worst.allowed, channel.unit));
 }
 
+/// Both counts by their names: a table of one beside a sentence of the other would not agree.
+std::string counts_in_words(const ForceComparison& comparison, bool exact) {
+  if (exact)
+    return fmt::format("the force differs in {} of {} ticks", comparison.differing, comparison.expected_rows);
+  return fmt::format("the force is outside the tolerance in {} of {} ticks, and differs at all in {}",
+                     comparison.outside, comparison.expected_rows, comparison.differing);
+}
+
 class Comparing {
  public:
   Comparing(const schema::StoredForces& stored, const RenderedForces& got, const Tolerance& tolerance)
@@ -72,8 +80,7 @@ class Comparing {
     compare_faults();
     if (result_.outside > 0) {
       const ForceDifference& worst = *result_.worst;
-      fail(fmt::format("the force differs in {} of {} ticks; worst at tick {}, {}", result_.outside,
-                       result_.expected_rows, worst.tick,
+      fail(fmt::format("{}; worst at tick {}, {}", counts_in_words(result_, tolerance_.exact), worst.tick,
                        in_words(worst, stored_.channels[worst.channel], tolerance_.exact)));
     }
     return result_;

@@ -66,13 +66,14 @@ std::string context_section(const RegressionOutcome& outcome) {
 }
 
 std::string summary_table(const SuiteOutcome& outcome) {
-  std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "ticks that differ",
-                                              "worst difference", "JND", "tick cost", "stored"}};
+  std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "outside the tolerance",
+                                              "different at all", "worst difference", "JND", "tick cost",
+                                              "stored"}};
   for (const RegressionOutcome& one : outcome.cases) {
     const auto& worst = one.comparison.worst;
     rows.push_back({one.about.name, std::string(one.about.law.law.model()),
                     fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
-                    fmt::format("{}", one.comparison.differing),
+                    fmt::format("{}", one.comparison.outside), fmt::format("{}", one.comparison.differing),
                     worst ? fmt::format("{:.3g} {}", std::abs(worst->difference()),
                                         one.stored.channels[worst->channel].unit)
                           : "0",
@@ -81,14 +82,14 @@ std::string summary_table(const SuiteOutcome& outcome) {
                     fmt::format("{}: {}", one.stored.date.substr(0, 10), one.stored.reason)});
   }
   for (const std::string& name : outcome.dropped)
-    rows.push_back({name, "", "", "FAILED: no longer in the suite", "", "", "", "", ""});
+    rows.push_back({name, "", "", "FAILED: no longer in the suite", "", "", "", "", "", ""});
   return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }
 
 std::string case_section(const RegressionOutcome& outcome, const std::vector<std::string>& pictures) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
   for (const std::string& message : outcome.messages)
-    body += fmt::format("<p class=\"answer bad\">{}.</p>\n", escaped(message));
+    body += html_answer(Answer::bad, escaped(message) + ".");
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));
   for (const std::string& picture : pictures) body += html_figure(picture);
   return body + context_section(outcome);

@@ -88,7 +88,7 @@ std::string how_different(const ForceComparison& comparison) {
   if (comparison.channels.empty()) return "other channels";
   if (comparison.differing == 0) return "the same forces, bit for bit";
   const auto most = std::ranges::max_element(comparison.channels, {}, &ChannelComparison::largest_jnds);
-  return fmt::format("{} of {} ticks, {} by up to {:.3g} {} ({:.3g} JND)", comparison.differing,
+  return fmt::format("{} of {} ticks differ, {} by up to {:.3g} {} ({:.3g} JND)", comparison.differing,
                      comparison.expected_rows, most->channel.name, most->largest_difference,
                      most->channel.unit, most->largest_jnds);
 }

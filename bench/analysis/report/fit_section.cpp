@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "fits/fit_files.h"
 #include "html/html.h"
 #include "report/comparison.h"
 #include "report/fit_view.h"
@@ -160,9 +161,12 @@ std::string parameters_part(const FitView& view, double confidence) {
 std::string choice_paragraph(const json& fits) {
   try {
     const std::string model = fits.at("choice").at("model").get<std::string>();
-    return fmt::format("<p class=\"answer{}\"><strong>Choice: {}</strong>: {}.</p>\n",
-                       model.empty() ? " bad" : "", escaped(model.empty() ? "none" : model),
-                       escaped(fits.at("choice").at("why").get<std::string>()));
+    const Answer answer = model.empty()                             ? Answer::bad
+                          : choice_within_jnd(fits).value_or(false) ? Answer::good
+                                                                    : Answer::partly;
+    return html_answer(
+        answer, fmt::format("<strong>Choice: {}</strong>: {}.", escaped(model.empty() ? "none" : model),
+                            escaped(fits.at("choice").at("why").get<std::string>())));
   } catch (const json::exception& error) {
     throw std::invalid_argument(fmt::format("fit.json is not what 'kerf fit' writes: {}", error.what()));
   }

@@ -10,9 +10,9 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::string_view style = R"(
-:root { --ink: #1b1f24; --soft: #57606a; --paper: #fbfbfa; --card: #ffffff; --line: #d8dee4; --good: #00734f; --bad: #a63c00; }
+:root { --ink: #1b1f24; --soft: #57606a; --paper: #fbfbfa; --card: #ffffff; --line: #d8dee4; --good: #00734f; --partly: #9a6700; --bad: #a63c00; }
 @media (prefers-color-scheme: dark) {
-  :root { --ink: #e6edf3; --soft: #9da7b1; --paper: #14181d; --card: #1c2229; --line: #38414a; --good: #4cc796; --bad: #ff9157; }
+  :root { --ink: #e6edf3; --soft: #9da7b1; --paper: #14181d; --card: #1c2229; --line: #38414a; --good: #4cc796; --partly: #e3b341; --bad: #ff9157; }
 }
 * { box-sizing: border-box; }
 body { margin: 0 auto; max-width: 1000px; padding: 2rem 1.5rem 4rem; color: var(--ink); background: var(--paper);
@@ -22,6 +22,7 @@ h2 { font-size: 1.25rem; margin: 2.6rem 0 .8rem; padding-top: .8rem; border-top:
 p { margin: .5rem 0; }
 .soft { color: var(--soft); }
 .answer { font-size: 1.08rem; border-left: 4px solid var(--good); padding: .2rem 0 .2rem .9rem; margin: 1rem 0; }
+.answer.partly { border-color: var(--partly); border-left-style: dashed; }
 .answer.bad { border-color: var(--bad); }
 figure { margin: 1rem 0; padding: .6rem; background: #fff; border: 1px solid var(--line); border-radius: 6px; }
 figure svg { display: block; width: 100%; height: auto; }
@@ -76,6 +77,11 @@ std::string html_table(const std::vector<std::vector<std::string>>& rows) {
     html += "</tr>\n";
   }
   return html + "</table></div>\n";
+}
+
+std::string html_answer(Answer answer, std::string_view html) {
+  const char* kind = answer == Answer::good ? "" : answer == Answer::partly ? " partly" : " bad";
+  return fmt::format("<p class=\"answer{}\">{}</p>\n", kind, html);
 }
 
 std::string html_figure(std::string_view svg) { return fmt::format("<figure>{}</figure>\n", svg); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,12 @@ namespace kerf::bench {
 
 /// A table of texts, which are escaped; the first row is its head.
 [[nodiscard]] std::string html_table(const std::vector<std::vector<std::string>>& rows);
+
+/// What an answer says. One with a reservation, or one that nobody could judge, is neither good nor bad.
+enum class Answer : std::uint8_t { good, partly, bad };
+
+/// A paragraph, already HTML, beside a bar in the colour of what it says.
+[[nodiscard]] std::string html_answer(Answer answer, std::string_view html);
 
 /// A drawing, such as what draw() returns, as a figure of a page.
 [[nodiscard]] std::string html_figure(std::string_view svg);

@@ -88,14 +88,15 @@ TEST(CompareForces, FindsTheWorstTickAndItsChannel) {
   RenderedForces got = as_stored(one);
   got.force[60] = 1.2;
   got.force[141] = 0.5;
+  got.force[180] = 1.01;  // within the tolerance
   const ForceComparison comparison = compare_forces(one, got, {.force_n = 0.1});
   EXPECT_EQ(comparison.outside, 2U);
   EXPECT_EQ(comparison.worst->tick, 70U);
   EXPECT_EQ(comparison.worst->channel, 1U);
-  EXPECT_THAT(
-      comparison.messages,
-      ElementsAre(StartsWith("the force differs in 2 of 100 ticks; worst at tick 70, y: expected 1 N, "
-                             "got 0.5 N, 0.5 N apart")));
+  EXPECT_THAT(comparison.messages,
+              ElementsAre(StartsWith(
+                  "the force is outside the tolerance in 2 of 100 ticks, and differs at all in 3; worst "
+                  "at tick 70, y: expected 1 N, got 0.5 N, 0.5 N apart")));
   EXPECT_EQ(comparison.channels[0].outside, 1U);
   EXPECT_DOUBLE_EQ(comparison.channels[1].largest_difference, 0.5);
 }

@@ -1,5 +1,6 @@
 #include "regress/junit.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,6 +82,42 @@ TEST_F(SilentLaw, IsDrawnBesideWhatWasExpected) {
   EXPECT_THAT(page, AllOf(HasSubstr("1 of 1 cases did not pass"), HasSubstr("<svg"), HasSubstr("FAILED"),
                           Not(HasSubstr("<first>"))));
   EXPECT_THAT(test::read_text(folder_.at("page/kelvin-worst.svg")), HasSubstr("<svg"));
+}
+
+/// A suite with a tolerance, whose law became a little stiffer: some ticks are outside, more differ at all.
+class StifferLaw : public testing::Test {
+ protected:
+  StifferLaw() {
+    std::string tolerant = test::one_case;
+    tolerant.replace(tolerant.find("exact = true"), 12, "absolute = { value = 0.01, unit = \"N\" }");
+    folder_.write_suite(tolerant);
+    const Suite before = read_suite(folder_.suite());
+    write_update(before, plan_update(before, {}), "first");
+    folder_.change_law("value = 8, unit = \"N/rad\"", "value = 8.1, unit = \"N/rad\"");
+    suite_ = read_suite(folder_.suite());
+    outcome_ = run_suite(suite_, {});
+  }
+  test::SuiteFolder folder_;
+  Suite suite_;
+  SuiteOutcome outcome_;
+};
+
+TEST_F(StifferLaw, IsCountedAlikeInTableSentenceAndJUnit) {
+  const ForceComparison& counts = outcome_.cases[0].comparison;
+  ASSERT_GT(counts.outside, 0U);
+  ASSERT_GT(counts.differing, counts.outside);
+  const std::string sentence =
+      fmt::format("the force is outside the tolerance in {} of 400 ticks, and differs at all in {}; worst",
+                  counts.outside, counts.differing);
+  write_regress_page(suite_, outcome_, folder_.at("page"));
+  const std::string page = test::read_text(folder_.at("page/regress.html"));
+  EXPECT_THAT(
+      page,
+      AllOf(HasSubstr("<th>outside the tolerance</th><th>different at all</th>"),
+            HasSubstr(fmt::format("<td>FAILED</td><td>{}</td><td>{}</td>", counts.outside, counts.differing)),
+            HasSubstr(sentence)));
+  EXPECT_THAT(junit_xml(suite_, outcome_), HasSubstr("<failure message=\"" + sentence));
+  EXPECT_THAT(outcome_.cases[0].messages, testing::Contains(HasSubstr(sentence)));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST_F(Update, SaysWhyAndByHowMuchAndKeepsTheReasons) {
   const StoredChange softer = change();
   EXPECT_EQ(softer.kind, ChangeKind::changed);
   EXPECT_THAT(softer.why, AllOf(StartsWith("the law file has changed since 20"), HasSubstr("first forces")));
-  EXPECT_THAT(softer.what, AllOf(HasSubstr("of 400 ticks, theta by up to"), HasSubstr("JND")));
+  EXPECT_THAT(softer.what, AllOf(HasSubstr("of 400 ticks differ, theta by up to"), HasSubstr("JND")));
   store("the liver was\nstiffer");
   store("nothing new");
   const auto stored = schema::read_regression(suite().stored);

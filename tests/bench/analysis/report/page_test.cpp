@@ -75,6 +75,45 @@ TEST_F(ReportProgram, ShowsAFitFromEverySide) {
   }
 }
 
+/// The class and the first words of each answer of a page.
+constexpr auto partly = "<p class=\"answer partly\"><strong>";
+
+TEST_F(ReportProgram, HasNoGreenBesideAChoiceThatIsNotWithinTheJnd) {
+  record("cut.h5");
+  const auto fit = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"fit", file_, "--models", "kelvin", "-o", fits(), "--force"});
+    ASSERT_EQ(run_kerf(more).exit_status, 0);
+    ASSERT_EQ(report({"--fits", fits(), "--force"}).exit_status, 0);
+  };
+  fit({"--weber", "0", "--threshold", "0.001"});
+  EXPECT_THAT(test::read_text(page()),
+              HasSubstr(partly + std::string("Choice: kelvin</strong>: no law stays")));
+  EXPECT_THAT(test::read_text(fits() + "/fit.json"), HasSubstr("\"within_jnd\": false"));
+  fit({"--no-folds"});
+  EXPECT_THAT(test::read_text(page()),
+              HasSubstr(partly + std::string("Choice: kelvin</strong>: kelvin has the")));
+  EXPECT_THAT(test::read_text(fits() + "/fit.json"), HasSubstr("\"within_jnd\": null"));
+  fit({});
+  EXPECT_THAT(test::read_text(page()), HasSubstr("<p class=\"answer\"><strong>Choice: kelvin"));
+  EXPECT_THAT(test::read_text(fits() + "/fit.json"), HasSubstr("\"within_jnd\": true"));
+}
+
+TEST_F(ReportProgram, HasNoGreenBesideALawThatIsNotPassive) {
+  record("cut.h5");
+  ASSERT_EQ(run_kerf({"fit", file_, "--models", "kelvin", "--no-folds", "-o", fits()}).exit_status, 0);
+  ASSERT_EQ(run_kerf({"check", fits() + "/kelvin.law.toml", "--virtual", "--seconds", "0.5", "-o", check()})
+                .exit_status,
+            0);
+  ASSERT_EQ(report({"--check", check()}).exit_status, 0);
+  EXPECT_THAT(test::read_text(page()), HasSubstr("<p class=\"answer\"><strong>Closed loop: pass.</strong>"));
+  const std::string gives =
+      std::regex_replace(test::read_text(check()), std::regex("\"passive\": true"), "\"passive\": false");
+  test::write_text(check(), gives);
+  ASSERT_EQ(report({"--check", check(), "--force"}).exit_status, 0);
+  EXPECT_THAT(test::read_text(page()),
+              HasSubstr(partly + std::string("Closed loop: in time, but not passive.</strong>")));
+}
+
 TEST_F(ReportProgram, FoldsAwayAllButTheBestLaws) {
   record("cut.h5");
   ASSERT_EQ(
