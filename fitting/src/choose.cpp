@@ -10,6 +10,7 @@
 namespace kerf::fitting {
 namespace {
 
+constexpr double nearly = 1.05;  ///< times the least error: cycles that differ much hide what a hand feels
 const Choice no_choice{.model = "", .why = "no law could be fitted"};
 
 Choice least_bic(std::span<const FitResult> results) {
@@ -33,7 +34,7 @@ double left_out(double error_n, double better_n) noexcept {
 bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
   if (left_out(law.cv_rmse, best.cv_rmse) <= jnd_n) return true;
   const Paired worse = paired(law.cv_folds, best.cv_folds);
-  return worse.std_error > 0.0 && worse.mean <= worse.std_error;
+  return law.cv_rmse <= nearly * best.cv_rmse && worse.std_error > 0.0 && worse.mean <= worse.std_error;
 }
 
 Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& options) {

@@ -242,6 +242,7 @@ TEST(Choice, TakesForAsGoodWhatIsWorseByLessThanItsStandardError) {
   // Mean and standard error of the differences: 0.1 and 0.0913, 0.075 and 0.1109.
   EXPECT_FALSE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.0));
   EXPECT_TRUE(as_good_as(law_of({0.3, -0.2, 0.2, 0.0}), best, 0.0));
+  EXPECT_FALSE(as_good_as(law_of({1.2, -0.6, 0.8, 0.0}), best, 0.0)) << "but for the spread, 16 % worse";
   // sqrt(0.1) = 0.316 N more, by a hand that feels 0.31 N and by one that does not feel 0.32 N.
   EXPECT_FALSE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.31));
   EXPECT_TRUE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.32));

@@ -161,9 +161,11 @@ void CandidateSearch::explain_the_best(const std::string& limit) {
   choice_.why = fmt::format("None is within {}; the best is {} with {:.3g} N on {}, {:.2g} JND", limit,
                             best.law.name, best.error_n, choice_.held_out, best.error_jnd);
   if (&good == &best) return explain_stability(best);
-  choice_.why += fmt::format(
-      ". Against it {} with {} parameters leaves out {:.2g} JND, which nobody would feel beside the rest",
-      good.law.name, good.law.parameters, fitting::left_out(good.error_n, best.error_n) / choice_.jnd_n);
+  const double more_n = fitting::left_out(good.error_n, best.error_n);
+  choice_.why += fmt::format(". Against it {} with {} parameters leaves out {:.2g} JND, {}", good.law.name,
+                             good.law.parameters, more_n / choice_.jnd_n,
+                             more_n <= choice_.jnd_n ? "which nobody would feel beside the rest"
+                                                     : "less than that differs from fold to fold");
   explain_stability(best);
   explain_stability(good);
 }

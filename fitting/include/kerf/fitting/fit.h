@@ -176,10 +176,10 @@ struct Choice {
 [[nodiscard]] double left_out(double error_n, double better_n) noexcept;
 
 /// Whether a law does as well as the best on held-out data: nobody could feel what it leaves out against the
-/// best, left_out() <= JND, or the mean difference of the folds' mean squares is no more than its standard
-/// error, by the spread from fold to fold. Folds share most of the samples that they are trained on, so that
-/// this error is rather too small ([BengioGrandvalet2004]).
-/// Source: [Breiman1984], the rule of one standard error; here of the paired difference.
+/// best, left_out() <= JND, or its error is larger by no more than 5 % and the mean difference of the folds'
+/// mean squares by no more than its standard error, by the spread from fold to fold. Folds share most of the
+/// samples that they are trained on, so that this error is rather too small ([BengioGrandvalet2004]). Source:
+/// [Breiman1984], the rule of one standard error; here of the paired difference.
 [[nodiscard]] bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n);
 
 /// The law with fewest parameters whose error on held-out data stays within the JND at the recording's own
