@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <sstream>
 #include <vector>
@@ -13,16 +14,26 @@ namespace {
 constexpr double nearly = 1.05;  ///< times the least error: cycles that differ much hide what a hand feels
 const Choice no_choice{.model = "", .why = "no law could be fitted"};
 
-Choice least_bic(std::span<const FitResult> results) {
-  const FitResult* best = nullptr;
+/// The laws that are not out of the question; those that say no more than a simpler one only where there is
+/// no other.
+std::vector<const FitResult*> eligible(std::span<const FitResult> results, double FitResult::*measure) {
+  std::vector<const FitResult*> laws;
   for (const FitResult& result : results) {
-    if (result.can_be_chosen() && (best == nullptr || result.bic < best->bic)) best = &result;
+    if (result.can_be_chosen() && std::isfinite(result.*measure)) laws.push_back(&result);
   }
-  if (best == nullptr) return no_choice;
+  const auto determined = [](const FitResult* law) { return law->undetermined_arms == 0; };
+  if (std::ranges::any_of(laws, determined)) std::erase_if(laws, std::not_fn(determined));
+  return laws;
+}
+
+Choice least_bic(std::span<const FitResult> results) {
+  const auto laws = eligible(results, &FitResult::bic);
+  if (laws.empty()) return no_choice;
+  const FitResult& best = **std::ranges::min_element(laws, {}, [](const FitResult* law) { return law->bic; });
   std::ostringstream why;
-  why << best->model << " has the least BIC (" << std::fixed << std::setprecision(0) << best->bic
+  why << best.model << " has the least BIC (" << std::fixed << std::setprecision(0) << best.bic
       << "); no data were held out to judge the laws by";
-  return {.model = best->model, .why = why.str()};
+  return {.model = best.model, .why = why.str()};
 }
 
 }  // namespace
@@ -40,10 +51,7 @@ bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
 Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& options) {
   if (options.folds == 0 && !(options.test_share > 0.0)) return least_bic(results);
   const auto error = options.folds > 0 ? &FitResult::cv_rmse : &FitResult::test_rmse;
-  std::vector<const FitResult*> candidates;
-  for (const FitResult& result : results) {
-    if (result.can_be_chosen() && std::isfinite(result.*error)) candidates.push_back(&result);
-  }
+  auto candidates = eligible(results, error);
   if (candidates.empty()) return no_choice;
   const double force_rms = rms_of(series.force);
   const double limit = options.jnd.at(force_rms);
@@ -58,17 +66,19 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto* a, const auto* b) { return a->free_parameters < b->free_parameters; });
   const auto chosen = *std::ranges::find_if(candidates, serves);
+  const std::string unit = " " + options.force_unit;
   std::ostringstream why;
   why << std::setprecision(3);
   if (felt) {
-    why << "no law stays within the JND of " << limit << " N (at the root mean square force of " << force_rms
-        << " N) on held-out data; " << chosen->model << " with " << chosen->*error
-        << " N has the fewest parameters (" << chosen->free_parameters
-        << ") of those that do as well as the best, " << best->model << " with " << best->*error << " N";
+    why << "no law stays within the JND of " << limit << unit << " (at the root mean square force of "
+        << force_rms << unit << ") on held-out data; " << chosen->model << " with " << chosen->*error << unit
+        << " has the fewest parameters (" << chosen->free_parameters
+        << ") of those that do as well as the best, " << best->model << " with " << best->*error << unit;
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
-        << ") of the laws whose error on held-out data (" << chosen->*error << " N) stays within the JND of "
-        << limit << " N (at the root mean square force of " << force_rms << " N)";
+        << ") of the laws whose error on held-out data (" << chosen->*error << unit
+        << ") stays within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
+        << unit << ")";
   }
   return {.model = chosen->model, .why = why.str()};
 }

@@ -51,7 +51,7 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
 }
 
 /// A sensor at the end of its range repeats its largest number.
-void warn_of_the_sensor(FitResult& result, const Samples& samples) {
+void warn_of_the_sensor(FitResult& result, const Samples& samples, const std::string& unit) {
   const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const double largest = *std::max_element(samples.force.begin(), samples.force.end(), by_size);
   std::size_t longest = 0;
@@ -66,7 +66,7 @@ void warn_of_the_sensor(FitResult& result, const Samples& samples) {
     result.warnings.emplace_back("the force never changes: a sensor that is stuck reads like that");
   } else if (longest >= 10 && 200 * count > samples.size()) {
     std::ostringstream warning;
-    warning << "the force stands at its largest value, " << largest << " N, for " << count
+    warning << "the force stands at its largest value, " << largest << " " << unit << ", for " << count
             << " samples, up to " << longest << " in a row: the sensor may be saturated there";
     result.warnings.push_back(warning.str());
   }
@@ -115,7 +115,7 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   result.free_parameters = static_cast<std::size_t>(law.problem.coordinates());
   result.samples = samples.size();
   result.cv_rmse = result.cv_std_error = result.test_rmse = nothing;
-  warn_of_the_sensor(result, samples);
+  warn_of_the_sensor(result, samples, options.force_unit);
   result.message = law.solution.message;
   if (law.solution.values.empty()) {
     result.warnings.push_back(law.solution.message);

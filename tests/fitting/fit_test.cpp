@@ -181,6 +181,7 @@ TEST(Fit, OfOneRelaxationTimeNamesASecondArm) {
   for (const double arms : {1.0, 2.0}) {
     const FitResult result = fit("maxwell", held.series(), {.law_options = {{"arms", arms}}, .folds = 0});
     EXPECT_TRUE(result.converged) << result.message;
+    EXPECT_EQ(result.undetermined_arms, arms > 1.0 ? 1U : 0U);
     EXPECT_THAT(result.warnings,
                 arms > 1.0 ? testing::Matcher<std::vector<std::string>>(Contains(HasSubstr(not_determined)))
                            : testing::Matcher<std::vector<std::string>>(testing::IsEmpty()));
@@ -248,6 +249,17 @@ TEST(Choice, TakesForAsGoodWhatIsWorseByLessThanItsStandardError) {
   EXPECT_TRUE(as_good_as(law_of({0.3, -0.1, 0.2, 0.0}), best, 0.32));
 }
 
+TEST(Choice, PassesOverALawThatTheDataDoNotTellFromASimplerOne) {
+  FitResult one{.model = "kelvin", .free_parameters = 3, .r2 = 0.9, .cv_rmse = 0.30, .converged = true};
+  FitResult two{.model = "maxwell", .free_parameters = 5, .r2 = 0.9, .cv_rmse = 0.25, .converged = true};
+  one.bic = 10.0;
+  two.undetermined_arms = 1;
+  const Strokes strokes(4000, 0.0, kelvin);
+  EXPECT_EQ(choose_simplest(std::vector{one, two}, strokes.series(), {}).model, "kelvin");
+  EXPECT_EQ(choose_simplest(std::vector{one, two}, strokes.series(), {.folds = 0}).model, "kelvin");
+  EXPECT_EQ(choose_simplest(std::vector{two}, strokes.series(), {}).model, "maxwell") << "there is no other";
+}
+
 TEST(Line, IsTheLeastThatALawHasToBeat) {
   const Law spring = Law::make("piecewise", std::vector{0.0, 0.4, 0.0, 2.0}, {{"segments", 1.0}});
   EXPECT_NEAR(line_rmse(Strokes(4000, 0.0, spring).series()), 0.0, 1e-12);
@@ -264,8 +276,11 @@ TEST(Jnd, IsTheLargerOfAFractionAndAThreshold) {
 }
 
 TEST(Jnd, IsThatOfTheUnit) {
-  EXPECT_EQ(&jnd_of("N"), &force_jnd);
-  EXPECT_EQ(&jnd_of("N·m"), &torque_jnd);
+  EXPECT_EQ(jnd_of("N", 0.08).at(0.0), force_jnd.threshold) << "a force is one at the hand already";
+  EXPECT_EQ(jnd_of("N·m").at(0.06), 0.127 * 0.06) << "between fingers, [JanduraSrinivasan1994]";
+  EXPECT_EQ(jnd_of("N·m").at(0.0), torque_jnd.threshold);
+  EXPECT_EQ(jnd_of("N·m", 0.08).at(0.4), 0.07 * 0.4) << "of the force at the end of the lever";
+  EXPECT_EQ(jnd_of("N·m", 0.08).at(0.0), 0.05 * 0.08);
 }
 
 TEST(Jnd, OfATorqueIsFeltAtALever) {

@@ -11,9 +11,12 @@
 namespace kerf::bench {
 namespace {
 
+/// Than a simpler law does.
+bool says_no_more(const Candidate& one) { return one.fit && one.fit->result.undetermined_arms > 0; }
+
 bool is_judged(const Candidate& one) {
   return one.file && one.converged && std::isfinite(one.error_n) &&
-         (!one.fit || one.fit->result.can_be_chosen());
+         (!one.fit || one.fit->result.can_be_chosen()) && !says_no_more(one);
 }
 
 bool does_as_well(const Candidate& one, const Candidate& best, double jnd_n) {
@@ -36,6 +39,11 @@ std::string why_not_instead(const Candidate& one, const Candidate& taken) {
 }
 
 }  // namespace
+
+std::string_view taken_in_words(const LawChoice& choice) noexcept {
+  if (choice.serves) return "taken";
+  return choice.in_doubt ? "in doubt: the machine was too late to tell" : "does not serve";
+}
 
 CandidateSearch::CandidateSearch(LawChoice& choice, const CandidateSearchOptions& options,
                                  const schema::Recording& recording, const std::atomic<bool>& stop)
@@ -68,9 +76,11 @@ void CandidateSearch::consider(std::size_t place) {
   } else if (!candidate.within_jnd) {
     candidate.why = fmt::format("{:.2g} JND off", candidate.error_jnd);
     if (const double more_n = candidate.error_n - choice_.jnd_n; more_n > 0.0)
-      candidate.why += fmt::format(", {:.2g} N more than the JND", more_n);
+      candidate.why += fmt::format(", {:.2g} {} more than the JND", more_n, choice_.force_unit);
   } else if (choice_.taken) {
     candidate.why = why_not_instead(candidate, choice_.candidates[*choice_.taken]);
+  } else if (says_no_more(candidate)) {
+    candidate.why = "the data do not tell it from a law with fewer arms";
   } else if (passes_checks(candidate)) {
     choice_.taken = place;
   }
@@ -123,8 +133,9 @@ void CandidateSearch::finish() {
 }
 
 void CandidateSearch::explain() {
-  const std::string limit = fmt::format("the JND of {:.3g} N (at the root mean square force of {:.3g} N)",
-                                        choice_.jnd_n, choice_.force_rms_n);
+  const std::string limit =
+      fmt::format("the JND of {:.3g} {} (at the root mean square force of {:.3g} {})", choice_.jnd_n,
+                  choice_.force_unit, choice_.force_rms_n, choice_.force_unit);
   if (choice_.as_good) return explain_the_best(limit);
   if (!choice_.taken) {
     const auto within = std::ranges::count_if(choice_.candidates, &Candidate::within_jnd);
@@ -136,9 +147,9 @@ void CandidateSearch::explain() {
     return;
   }
   const Candidate& taken = choice_.candidates[*choice_.taken];
-  choice_.why = fmt::format("{} with {} parameters is the simplest law within {}: {:.3g} N on {}, {:.2g} JND",
-                            taken.law.name, taken.law.parameters, limit, taken.error_n, choice_.held_out,
-                            taken.error_jnd);
+  choice_.why = fmt::format(
+      "{} with {} parameters is the simplest law within {}: {:.3g} {} on {}, {:.2g} JND", taken.law.name,
+      taken.law.parameters, limit, taken.error_n, choice_.force_unit, choice_.held_out, taken.error_jnd);
   if (*choice_.taken > 0)
     choice_.why += fmt::format("; {} as simple or simpler were passed over", *choice_.taken);
   if (choice_.in_doubt) {
@@ -158,8 +169,9 @@ void CandidateSearch::explain_stability(const Candidate& candidate) {
 void CandidateSearch::explain_the_best(const std::string& limit) {
   const Candidate& best = choice_.candidates[*choice_.taken];
   const Candidate& good = choice_.candidates[*choice_.as_good];
-  choice_.why = fmt::format("None is within {}; the best is {} with {:.3g} N on {}, {:.2g} JND", limit,
-                            best.law.name, best.error_n, choice_.held_out, best.error_jnd);
+  choice_.why =
+      fmt::format("None is within {}; the best is {} with {:.3g} {} on {}, {:.2g} JND", limit, best.law.name,
+                  best.error_n, choice_.force_unit, choice_.held_out, best.error_jnd);
   if (&good == &best) return explain_stability(best);
   const double more_n = fitting::left_out(good.error_n, best.error_n);
   choice_.why += fmt::format(". Against it {} with {} parameters leaves out {:.2g} JND, {}", good.law.name,

@@ -60,6 +60,7 @@ struct Candidate {
 struct LawChoice {
   double jnd_n = 0.0;  ///< at the root mean square force
   double force_rms_n = 0.0;
+  std::string force_unit = "N";
   std::string held_out;               ///< "5 folds of 10 cycles"
   std::vector<Candidate> candidates;  ///< in the order of the search
   std::optional<std::size_t> taken;   ///< the law that serves; where none is within the JND, the best one
@@ -73,6 +74,9 @@ struct LawChoice {
   models::Contact contact;
   fitting::FitOptions settings;
 };
+
+/// What tables say of the law that was taken: "taken", or what speaks against it.
+[[nodiscard]] std::string_view taken_in_words(const LawChoice& choice) noexcept;
 
 /// Goes over candidates whose errors are known, from the simplest on, and takes the first that serves. Not
 /// the question of fitting::choose_simplest(), which asks what describes a recording: here a law has to hold

@@ -90,8 +90,10 @@ json choice_as_json(const LawChoice& choice) {
   return {
       {"jnd", choice.jnd_n},
       {"force_rms", choice.force_rms_n},
+      {"force_unit", choice.force_unit},
       {"weber_fraction", choice.settings.jnd.weber_fraction},
       {"threshold", choice.settings.jnd.threshold},
+      {"jnd_source", choice.settings.jnd_source},
       {"held_out_by", choice.held_out},
       {"choice",
        {{"law", name_at(choice.taken)},

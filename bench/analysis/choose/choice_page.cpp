@@ -30,9 +30,10 @@ std::string deadline_in_words(const json& deadline) {
   return deadline.at("machine_late").get<bool>() ? "machine late" : "NOT held";
 }
 
-std::string candidate_table(const json& all) {
-  std::vector<std::vector<std::string>> rows{
-      {"law", "parameters", "error [N]", "JND", "tick [us]", "deadlines", "stable", "why passed over"}};
+std::string candidate_table(const json& all, const LawChoice& choice) {
+  std::vector<std::vector<std::string>> rows{{"law", "parameters",
+                                              fmt::format("error [{}]", choice.force_unit), "JND",
+                                              "tick [us]", "deadlines", "stable", "why passed over"}};
   for (const json& one : all.at("candidates")) {
     const Stable stable = stable_from(one.at("stable"));
     const auto why = one.at("passed_over").get<std::string>();
@@ -40,7 +41,8 @@ std::string candidate_table(const json& all) {
                     fmt::format("{}", one.at("parameters").get<std::size_t>()), number(one.at("held_out")),
                     number(one.at("held_out_jnd"), "{:.2g}"), number(one.at("tick_us"), "{:.3f}"),
                     deadline_in_words(one.at("deadline")),
-                    std::string(stable == Stable::no ? "NO" : name_of(stable)), why.empty() ? "taken" : why});
+                    std::string(stable == Stable::no ? "NO" : name_of(stable)),
+                    why.empty() ? std::string(taken_in_words(choice)) : why});
   }
   return html_table(rows);
 }
@@ -142,7 +144,7 @@ std::string choice_page(const json& all, const std::filesystem::path& file, cons
             "</details>\n";
   }
   if (!choice.effects.empty()) body += "<h2>Which effects matter</h2>\n" + effect_table(all);
-  body += "<h2>All candidates</h2>\n" + html_figure(draw(choice_chart(all))) + candidate_table(all);
+  body += "<h2>All candidates</h2>\n" + html_figure(draw(choice_chart(all))) + candidate_table(all, choice);
   return html_page(name, body);
 }
 

@@ -40,6 +40,7 @@ class LawSelection {
     if (options.fit.folds < 2)
       throw std::invalid_argument("a law is chosen by held-out data: at least 2 folds are needed");
     choice_.settings = options.fit;
+    choice_.force_unit = recording.axes[options.axis].force_unit;
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
     if (options.richer_too)
       memory_ = fitting::remember_segments(options.candidates.max_segments, options.fit.points_per_segment);

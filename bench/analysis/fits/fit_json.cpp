@@ -103,6 +103,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"jnd_fraction", fit.jnd_fraction},
               {"correlation_time_samples", fit.correlation_time},
               {"correlation", correlation_as_json(fit)},
+              {"undetermined_arms", fit.undetermined_arms},
               {"converged", fit.converged},
               {"iterations", fit.iterations},
               {"seconds", fit.seconds},
@@ -130,7 +131,8 @@ json settings_as_json(const fitting::FitOptions& settings) {
           {"loss", name_of(settings.loss)},
           {"loss_scale", settings.loss_scale_n > 0.0 ? json(settings.loss_scale_n) : json(nullptr)},
           {"weber_fraction", settings.jnd.weber_fraction},
-          {"threshold", settings.jnd.threshold}};
+          {"threshold", settings.jnd.threshold},
+          {"jnd_source", settings.jnd_source}};
 }
 
 }  // namespace
@@ -157,6 +159,7 @@ json fits_as_json(const RecordingFit& fit) {
   json all{{"recording", fit.recordings.empty() ? "" : fit.recordings.front().uuid},
            {"recordings", recordings},
            {"samples", fit.samples()},
+           {"force_unit", fit.settings.force_unit},
            {"settings", settings_as_json(fit.settings)},
            {"line_rmse", fit.line_rmse_n},
            {"jnd", fit.jnd_n},

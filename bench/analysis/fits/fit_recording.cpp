@@ -127,8 +127,8 @@ void check_same_units(std::span<const FitSource> sources) {
 }
 
 fitting::FitOptions options_for(const std::string& model, const FitRecordingOptions& options,
-                                const models::Contact& contact) {
-  fitting::FitOptions fit = options.fit;
+                                const fitting::FitOptions& settings, const models::Contact& contact) {
+  fitting::FitOptions fit = settings;
   for (const auto& [name, value] : options_of_law(model, options.law_options)) fit.law_options[name] = value;
   const models::LawFacts& facts = models::law_facts(model);
   if (facts.search == models::Search::segments)
@@ -229,9 +229,10 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   const auto models = models_of(options);
   for (const std::string& model : models) fitting::check_model(model);  // a mistake of the caller
   check_law_options(models, options.law_options);
-  RecordingFit fit{.recordings = {}, .choice = {}, .settings = options.fit};
-  const Sources sources = sources_of(all, fit);
   const schema::Axis& axis = all[0].recording->axes[all[0].axis];
+  RecordingFit fit{.recordings = {}, .choice = {}, .settings = options.fit};
+  fit.settings.force_unit = axis.force_unit;
+  const Sources sources = sources_of(all, fit);
   const auto named = [&](const std::string& model) {
     return options.models.empty() ||
            std::find(options.models.begin(), options.models.end(), model) != options.models.end();
@@ -244,7 +245,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     try {
       check_units(model, axis);
       fitting::FitResult result =
-          fitting::fit(model, sources.views(), options_for(model, options, all[0].contact));
+          fitting::fit(model, sources.views(), options_for(model, options, fit.settings, all[0].contact));
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
       fit.laws.push_back(finished(std::move(result), sources));
     } catch (const std::invalid_argument& error) {
@@ -255,7 +256,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = options.fit.jnd.at(fitting::rms_of(sources.pool.force));
-  fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, options.fit);
+  fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);
   return fit;
 }
 

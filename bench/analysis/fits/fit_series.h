@@ -1,6 +1,7 @@
 #pragma once
 
 #include <kerf/fitting/fit.h>
+#include <kerf/schema/recording.h>
 
 #include "recordings/axis_series.h"
 
@@ -14,6 +15,12 @@ namespace kerf::bench {
           .force = series.force,
           .cycle = series.cycle,
           .noise_n = noise_n};
+}
+
+/// Verdicts by the JND of what an axis exerts.
+inline void take_jnd_of(const schema::Axis& axis, fitting::FitOptions& options) {
+  options.jnd = fitting::jnd_of(axis.force_unit, axis.lever);
+  options.jnd_source = fitting::jnd_source_of(axis.force_unit, axis.lever);
 }
 
 }  // namespace kerf::bench

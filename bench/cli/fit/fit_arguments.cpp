@@ -145,10 +145,7 @@ void add_estimation_options(Verb& verb, FitArguments& arguments) {
       .within(0.5, 0.9999)
       .with_default();
   verb.add_flag("--profile", fit.profile, "Also intervals from the profile of the sum of squares");
-  verb.add_option("--weber", fit.jnd.weber_fraction, "Weber fraction of the force JND")
-      .within(0.0, 1.0)
-      .with_default();
-  verb.add_option("--threshold", fit.jnd.threshold, "Smallest force JND [N]").not_negative().with_default();
+  add_jnd_options(verb, arguments.jnd);
 }
 
 }  // namespace
@@ -205,6 +202,7 @@ FitRecordingOptions options_of(const FitArguments& arguments, const FitSource& s
   options.fit.breakpoints = breakpoints_of(arguments, source);
   options.fit.loss = loss_of(arguments.loss);
   if (arguments.no_folds) options.fit.folds = 0;
+  arguments.jnd.put_into(options.fit, source.recording->axes[source.axis]);
   options.law_options = law_options_of(arguments);
   return options;
 }

@@ -8,6 +8,7 @@
 
 #include "fits/fit_recording.h"
 #include "program/contact_arguments.h"
+#include "program/jnd_arguments.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
@@ -23,6 +24,7 @@ struct FitArguments {
   std::string axis;
   ContactArguments contact;
   std::vector<double> noise;
+  JndArguments jnd;
 
   std::string segments = "5";
   std::vector<std::string> breakpoints;

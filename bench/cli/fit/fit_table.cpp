@@ -9,18 +9,20 @@ namespace {
 
 constexpr std::size_t parameters_said = 16;  ///< of a law; fit.csv has them all
 
-std::string newtons(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
+std::string number_or_dash(double value) { return std::isfinite(value) ? fmt::format("{:.4f}", value) : "-"; }
 
 void say_comparison(const RecordingFit& fit, Context& context) {
+  const std::string& unit = fit.settings.force_unit;
   const bool tested = fit.settings.test_share > 0.0;
-  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}{} {:>6} {:>9}", "law", "free", "rmse N",
-                          "max N", "R2", "held-out", tested ? "      test" : "", "> JND", "converged"));
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}{} {:>6} {:>9}", "law", "free",
+                          "rmse " + unit, "max " + unit, "R2", "held-out", tested ? "      test" : "",
+                          "> JND", "converged"));
   for (const FittedLaw& law : fit.laws) {
     const fitting::FitResult& result = law.result;
     context.say(fmt::format("  {:17} {:4} {:9.4f} {:9.4f} {:7.4f} {:>9}{} {:5.1f}% {:>9}", result.model,
                             result.free_parameters, result.rmse, result.max_abs, result.r2,
-                            newtons(result.cv_rmse),
-                            tested ? fmt::format(" {:>9}", newtons(result.test_rmse)) : "",
+                            number_or_dash(result.cv_rmse),
+                            tested ? fmt::format(" {:>9}", number_or_dash(result.test_rmse)) : "",
                             100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
   }
   context.say(fmt::format("  {:17} {:4} {:9.4f}", "straight line", 2, fit.line_rmse_n));

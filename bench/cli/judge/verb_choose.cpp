@@ -17,6 +17,7 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "program/contact_arguments.h"
+#include "program/jnd_arguments.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
 #include "recordings/whole_recording.h"
@@ -38,6 +39,7 @@ struct ChooseVerbArguments {
   std::optional<double> record_s;
   LoopCheckOptions loop;
   ChooseOptions choose;
+  JndArguments jnd;
 };
 
 std::string deadline_in_short(const std::optional<Deadline>& deadline) {
@@ -47,15 +49,16 @@ std::string deadline_in_short(const std::optional<Deadline>& deadline) {
 }
 
 void say_choice(const LawChoice& choice, Context& context) {
-  context.say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>10}  {}", "law", "free", "held-out N",
-                          "JND", "tick us", "deadline", "stable", "why passed over"));
+  context.say(fmt::format("  {:20} {:>4} {:>10} {:>7} {:>8} {:>8} {:>10}  {}", "law", "free",
+                          "held-out " + choice.force_unit, "JND", "tick us", "deadline", "stable",
+                          "why passed over"));
   for (const Candidate& one : choice.candidates) {
     const std::string error = one.file ? fmt::format("{:.4g}", one.error_n) : "-";
     const std::string jnd = one.file ? fmt::format("{:.3g}", one.error_jnd) : "-";
     context.say(fmt::format("  {:20} {:4} {:>10} {:>7} {:8.3f} {:>8} {:>10}  {}", one.law.name,
                             one.law.parameters, error, jnd, one.tick_us, deadline_in_short(one.deadline),
                             one.stability.stable == Stable::no ? "NO" : name_of(one.stability.stable),
-                            one.why.empty() ? "taken" : one.why));
+                            one.why.empty() ? taken_in_words(choice) : one.why));
   }
   context.say("");
   for (const EffectVerdict& effect : choice.effects)
@@ -101,6 +104,7 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
                               .begins = say_begins};
   options.choose.axis = find_cut_axis(recording, arguments.axis);
   options.choose.contact = arguments.contact.over(contact_of(recording, options.choose.axis));
+  arguments.jnd.put_into(options.choose.fit, recording.axes[options.choose.axis]);
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
   DeviceChoice made = choose_on_device(recording, file.at, std::move(options), stop);
   made.json["recording"] = file.name.string();
@@ -109,7 +113,7 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
 
 void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, const Scene& scene,
                       Output& output, const std::atomic<bool>& stop) {
-  FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.choose.fit.jnd};
+  FidelityOptions options{.rate_hz = arguments.loop.rate_hz, .jnd = arguments.jnd.over(fitting::force_jnd)};
   LoopCheckOptions loop = arguments.loop;
   if (loop.device_uri.empty()) loop.device_uri = device_of(scene);
   const std::string uri = loop.device_uri;
@@ -204,12 +208,7 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by blocks of time")
       .within(2, 100)
       .with_default();
-  verb.add_option("--weber", arguments->choose.fit.jnd.weber_fraction, "Weber fraction of the force JND")
-      .within(0.0, 1.0)
-      .with_default();
-  verb.add_option("--threshold", arguments->choose.fit.jnd.threshold, "Smallest force JND [N]")
-      .positive()
-      .with_default();
+  add_jnd_options(verb, arguments->jnd);
   verb.add_option("--record-seconds", arguments->record_s,
                   "Duration of the recording of a scene (default: the scene's) [s]")
       .within(1.0, 600.0);

@@ -23,12 +23,6 @@ models::Contact contact_with(const schema::Recording& recording, std::size_t axi
   return contact_of(about, axis);
 }
 
-fitting::Jnd jnd_of_axis(const schema::Axis& axis) {
-  fitting::Jnd jnd = fitting::force_jnd;
-  jnd.threshold *= fitting::felt_lever(axis.force_unit, axis.lever);
-  return jnd;
-}
-
 }  // namespace
 
 EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
@@ -45,7 +39,7 @@ EditorCurve editor_curve(const schema::Recording& recording, std::size_t axis) {
                     .penetration = {},
                     .closing = cycles.closing_mean,
                     .opening = cycles.opening_mean,
-                    .jnd = jnd_of_axis(about)};
+                    .jnd = fitting::jnd_of(about.force_unit, about.lever)};
   const double direction = curve.contact.direction;
   for (const double position : cycles.grid) {
     curve.penetration.push_back(direction * (position - curve.contact.position));

@@ -130,7 +130,7 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
               {"rows", residual.size()},
               {"rmse", std::sqrt(squares / static_cast<double>(residual.size()))},
               {"worst", worst},
-              {"jnd_n", fitting::force_jnd.at(fitting::rms_of(series.force))}};
+              {"jnd_n", fitting::jnd_of(about.force_unit, about.lever).at(fitting::rms_of(series.force))}};
   add_over_time(series, residual, columns, result);
   add_over_penetration(series, force, result);
   return result;

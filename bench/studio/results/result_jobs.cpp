@@ -9,6 +9,7 @@
 #include "choose/choice_files.h"
 #include "choose/choose_on_device.h"
 #include "fits/fit_files.h"
+#include "fits/fit_series.h"
 #include "host/realtime.h"
 #include "laws/render.h"
 #include "recordings/axes.h"
@@ -18,12 +19,13 @@ namespace kerf::bench {
 namespace {
 
 RecordingFit fitted(const schema::Recording& recording, const FitRequest& request,
-                    const FitRecordingOptions& options) {
+                    FitRecordingOptions options) {
   const std::size_t axis = find_axis(recording, request.axis);
   const FitSource source{.recording = &recording,
                          .name = request.recording.path.stem().string(),
                          .axis = axis,
                          .contact = contact_of(recording, axis)};
+  take_jnd_of(recording.axes[axis], options.fit);
   return fit_recordings(std::span(&source, 1), options);
 }
 
@@ -64,6 +66,7 @@ std::string run_choice(Workspace& workspace, const ChoiceRequest& request, JobPr
   DeviceChoiceOptions options{
       .loop = {.rate_hz = request.rate_hz}, .tried_by = TriedBy::virtual_time, .begins = {}};
   options.choose.axis = find_cut_axis(recording, request.axis);
+  take_jnd_of(recording.axes[options.choose.axis], options.choose.fit);
   options.choose.candidates.max_segments = request.max_segments;
   options.choose.threads = usable_processors();
   options.choose.done = &progress.done;

@@ -266,6 +266,7 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
         !does_without(arm, problem, samples, weights, solution, loss, result, options.confidence))
       continue;
     std::erase_if(unknowns, is_of_the_arm);
+    ++result.undetermined_arms;
     result.warnings.push_back("the arm of '" + problem.parameters[arm.front()].name + "' and '" +
                               problem.parameters[arm.back()].name +
                               "' is not determined: the data do not tell this law from one without it");

@@ -245,7 +245,8 @@ export interface FitFile {
   jnd: number;
   fits: LawFit[];
   refused: { model: string; why: string }[];
-  choice: { model: string; why: string };
+  choice: { model: string; why: string; within_jnd?: boolean | null }; // null: nothing was held out
+  force_unit?: string; // missing in files of earlier versions
   warnings: string[];
 }
 export interface ChartPoint {
@@ -296,7 +297,8 @@ export interface ChoiceFile {
   device: string | null;
   jnd: number;
   held_out_by: string;
-  choice: { law: string | null; serves: boolean; as_good: string | null; why: string };
+  choice: { law: string | null; serves: boolean; in_doubt?: boolean; as_good: string | null; why: string };
+  force_unit?: string; // missing in files of earlier versions
   effects: { effect: string; verdict: string; why: string }[];
   candidates: ChoiceCandidate[];
   warnings: string[];

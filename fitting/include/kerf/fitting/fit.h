@@ -56,6 +56,8 @@ struct FitOptions {
   models::Options
       law_options;  ///< integrator, thickness, segments, points, loop, ...; the rest from the data
   Jnd jnd;
+  std::string jnd_source;        ///< who measured it, in words
+  std::string force_unit = "N";  ///< in the words of warnings and reasons
   std::size_t folds =
       5;  ///< of the cross-validation: by cycle, or by blocks of time where there are no cycles; 0: none
   std::size_t threads = 1;   ///< among which the folds are shared out; the result does not depend on it
@@ -117,6 +119,7 @@ struct FitResult {
   std::vector<double> correlation;  ///< matrix of the searched parameters, row by row; empty for tables
   std::vector<std::string> searched;  ///< their names, in the order of that matrix
   std::vector<Profile> profiles;
+  std::size_t undetermined_arms = 0;  ///< that the data do not tell from none: a simpler law says as much
   bool converged = false;
   int iterations = 0;
   double seconds = 0.0;
@@ -186,6 +189,7 @@ struct Choice {
 /// force (root mean square); where none does, of those that are as_good_as() the best, and the reason says
 /// so. Held out are the cycles or blocks of the cross-validation, else the share that was kept back for a
 /// test. Where there is neither, the law with the least BIC.
+/// A law with undetermined_arms is chosen only where there is no other.
 [[nodiscard]] Choice choose_simplest(std::span<const FitResult> results, const Series& series,
                                      const FitOptions& options);
 

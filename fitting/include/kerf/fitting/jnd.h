@@ -23,8 +23,12 @@ inline constexpr double fingers_m = 0.01;
 /// threshold is assumed, that of a force at the fingers.
 inline constexpr Jnd torque_jnd{.weber_fraction = 0.127, .threshold = 5e-4};
 
-/// Of what has that unit: a torque in N·m, else a force in N.
-[[nodiscard]] const Jnd& jnd_of(std::string_view force_unit) noexcept;
+/// Of what an axis exerts: a force in N; a torque in N·m as the force at the hand, where the axis names the
+/// lever to it, else between fingers.
+[[nodiscard]] Jnd jnd_of(std::string_view force_unit, double axis_lever = 1.0) noexcept;
+
+/// Who measured that, in words.
+[[nodiscard]] std::string_view jnd_source_of(std::string_view force_unit, double axis_lever = 1.0) noexcept;
 
 /// The lever by which a force at the hand gives what an axis has [m]: 1 for a force in N; for a torque in N·m
 /// that of the axis, and `fingers_m` where it names none (1).

@@ -61,6 +61,10 @@ async function testFits(page, studio) {
     "laws, the least error first",
   );
   expect((await page.textContent("main p.choice")).includes(written.choice.why), "the choice says why");
+  const { model, within_jnd } = written.choice;
+  const mark = within_jnd ? "simplest within the JND" : "as good as the best, not within the JND";
+  const row = page.locator("table.fits tbody tr", { hasText: model });
+  expect((await row.textContent()).includes(mark), `${model} is marked as what it is: ${mark}`);
   await page.getByRole("button", { name: "exponential", exact: true }).click();
   await until("the parameters are those of the exponential law", async () =>
     (await page.locator(".detail tbody th").allTextContents()).includes("exponent"),
@@ -144,6 +148,11 @@ async function testChoice(page, studio) {
   const written = await jsonIn(studio, "short.choice/choose.json");
   expect((await page.textContent("section.choice h2")).endsWith(written.choice.law), "the law that was taken");
   expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
+  expectEqual(
+    await page.locator(".candidates td:nth-child(7)").filter({ hasText: /^taken$/ }).count(),
+    written.choice.serves ? 1 : 0,
+    "a law is taken where it serves",
+  );
   expectEqual(await page.locator(".candidates tbody tr").count(), written.candidates.length, "the candidates");
   const stable = { true: "yes", false: "no", null: "not judged" };
   expectEqual(

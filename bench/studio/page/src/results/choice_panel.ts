@@ -5,15 +5,27 @@ import type { Context } from "../ui/view";
 import { feelButton } from "./law_panel";
 import { lawBeside, stableWord } from "./names";
 
-function candidateTable(of: readonly ChoiceCandidate[]): HTMLElement {
+/** What speaks against the law that is named; nothing where it serves. */
+function doubt(of: ChoiceFile): string {
+  if (of.choice.serves) return "";
+  return of.choice.in_doubt ? "in doubt: the machine was too late to tell" : "does not serve";
+}
+
+function title(of: ChoiceFile): string {
+  if (!of.choice.law) return "Nothing was chosen";
+  if (of.choice.serves) return `Chosen: ${of.choice.law}`;
+  return of.choice.in_doubt ? `In doubt: ${of.choice.law}` : `None serves; the nearest is ${of.choice.law}`;
+}
+
+function candidateTable(of: readonly ChoiceCandidate[], unit: string, ifTaken: string): HTMLElement {
   const rows = of.map((it) => [
     it.law,
     String(it.parameters),
-    withUnit(it.held_out, "N"),
+    withUnit(it.held_out, unit),
     plain(it.held_out_jnd, 2),
     `${plain(it.tick_us, 2)} µs`,
     stableWord(it.stable),
-    it.passed_over || "taken",
+    it.passed_over || ifTaken,
   ]);
   const all = table(
     "The candidates, simplest first",
@@ -62,16 +74,17 @@ export class ChoicePanel {
 
   private show(file: WorkspaceFile, of: ChoiceFile): void {
     const law = of.choice.law ? lawBeside(this.workspace, file, `${of.choice.law}.law.toml`) : undefined;
+    const unit = of.force_unit ?? "N";
     const head = element(
       "div",
       { class: "head" },
-      element("h2", {}, of.choice.law ? `Chosen: ${of.choice.law}` : "Nothing was chosen"),
+      element("h2", {}, title(of)),
     );
     if (law) {
-      const title = of.choice.law ?? law.name;
+      const name = of.choice.law ?? law.name;
       head.append(
-        button("Open", () => this.openLaw(law.id, title), { "aria-label": `Open ${title}` }),
-        feelButton(this.context, law.id, title),
+        button("Open", () => this.openLaw(law.id, name), { "aria-label": `Open ${name}` }),
+        feelButton(this.context, law.id, name),
       );
     }
     head.append(...this.again("Choose again"));
@@ -81,7 +94,7 @@ export class ChoicePanel {
       element(
         "p",
         { class: "quiet" },
-        `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, "N")}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`,
+        `Errors: ${of.held_out_by}. JND ${withUnit(of.jnd, unit)}. ${of.device ? `Stability on ${of.device}.` : ""} ${law?.name ?? ""}`,
       ),
       element(
         "ul",
@@ -90,7 +103,7 @@ export class ChoicePanel {
           element("li", {}, element("strong", {}, `${it.effect} ${it.verdict}`), `: ${it.why}`),
         ),
       ),
-      candidateTable(of.candidates),
+      candidateTable(of.candidates, unit, doubt(of) || "taken"),
       ...of.warnings.map((it) => element("p", { class: "quiet" }, it)),
     );
   }

@@ -35,6 +35,7 @@ export class FitPage {
     private readonly fit: FitFile,
   ) {
     const of = fit.recordings[0];
+    const unit = fit.force_unit ?? "N";
     this.recording = recordingsFor(workspace, of?.name ?? "")[0]?.id ?? "";
     this.table = new FitTable(fit, (law) => this.look(law));
     const refused = fit.refused.map((it) => `${it.model}: ${it.why}`);
@@ -45,7 +46,8 @@ export class FitPage {
         "p",
         { class: "quiet" },
         `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
-          `JND ${withUnit(fit.jnd, "N")}; a straight line leaves ${withUnit(fit.line_rmse, "N")}.`,
+          `JND ${withUnit(fit.jnd, unit)}; a straight line leaves ${withUnit(fit.line_rmse, unit)}. ` +
+          "Errors are over every row; the segment editor's are over the averaged cycle, without what cycles differ by.",
       ),
       this.table.root,
       element(

@@ -11,6 +11,15 @@ export function errorOf(fit: LawFit): number {
   return fit.cv_rmse ?? fit.rmse;
 }
 
+/** What is said of the law that was chosen: it serves only where its error on held-out data is within the JND. */
+export function choiceMark(file: FitFile): string {
+  const chosen = file.fits.find((it) => it.model === file.choice.model);
+  if (!chosen) return "";
+  const within = file.choice.within_jnd ?? (chosen.cv_rmse === null ? null : chosen.cv_rmse <= file.jnd);
+  if (within === null) return "least BIC, nothing held out";
+  return within ? "simplest within the JND" : "as good as the best, not within the JND";
+}
+
 function head(text: string, number = true): HTMLTableCellElement {
   return element("th", { scope: "col", ...(number ? { class: "number" } : {}) }, text);
 }
@@ -25,12 +34,13 @@ export class FitTable {
   private readonly rows = new Map<string, HTMLTableRowElement>();
 
   constructor(file: FitFile, choose: (fit: LawFit) => void) {
+    const unit = file.force_unit ?? "N";
     const sorted = [...file.fits].sort((a, b) => errorOf(a) - errorOf(b));
     const body = element("tbody");
     for (const fit of sorted) {
       const open = element("button", { type: "button", class: "link", click: () => choose(fit) }, fit.model);
       const marks = [
-        fit.model === file.choice.model ? "simplest that serves" : "",
+        fit.model === file.choice.model ? choiceMark(file) : "",
         fit.converged ? "" : "did not converge",
       ].filter(Boolean);
       const row = element(
@@ -38,8 +48,8 @@ export class FitTable {
         {},
         element("th", { scope: "row" }, open),
         cell(String(fit.free_parameters)),
-        cell(withUnit(fit.rmse, "N")),
-        cell(withUnit(fit.cv_rmse, "N")),
+        cell(withUnit(fit.rmse, unit)),
+        cell(withUnit(fit.cv_rmse, unit)),
         cell(plain(errorOf(fit) / file.jnd, 2)),
         cell(fit.bic.toFixed(0).replace("-", "−")),
         element("td", {}, marks.join(", ")),

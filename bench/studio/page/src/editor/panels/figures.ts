@@ -23,7 +23,7 @@ export class Figures {
     this.table = element(
       "table",
       { class: "figures" },
-      element("caption", {}, "Law against averaged cycle"),
+      element("caption", {}, "Law against averaged cycle, without what cycles differ by"),
       element(
         "tbody",
         {},
