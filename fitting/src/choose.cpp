@@ -16,10 +16,11 @@ const Choice no_choice{.model = "", .why = "no law could be fitted"};
 
 /// The laws that are not out of the question; those that say no more than a simpler one only where there is
 /// no other.
-std::vector<const FitResult*> eligible(std::span<const FitResult> results, double FitResult::*measure) {
+template <typename Measure>
+std::vector<const FitResult*> eligible(std::span<const FitResult> results, Measure&& measure) {
   std::vector<const FitResult*> laws;
   for (const FitResult& result : results) {
-    if (result.can_be_chosen() && std::isfinite(result.*measure)) laws.push_back(&result);
+    if (result.can_be_chosen() && std::isfinite(measure(result))) laws.push_back(&result);
   }
   const auto determined = [](const FitResult* law) { return law->undetermined_arms == 0; };
   if (std::ranges::any_of(laws, determined)) std::erase_if(laws, std::not_fn(determined));
@@ -27,7 +28,7 @@ std::vector<const FitResult*> eligible(std::span<const FitResult> results, doubl
 }
 
 Choice least_bic(std::span<const FitResult> results) {
-  const auto laws = eligible(results, &FitResult::bic);
+  const auto laws = eligible(results, [](const FitResult& law) { return law.bic; });
   if (laws.empty()) return no_choice;
   const FitResult& best = **std::ranges::min_element(laws, {}, [](const FitResult* law) { return law->bic; });
   std::ostringstream why;
@@ -43,25 +44,28 @@ double left_out(double error_n, double better_n) noexcept {
 }
 
 bool as_good_as(const FitResult& law, const FitResult& best, double jnd_n) {
-  if (left_out(law.cv_rmse, best.cv_rmse) <= jnd_n) return true;
-  const Paired worse = paired(law.cv_folds, best.cv_folds);
-  return law.cv_rmse <= nearly * best.cv_rmse && worse.std_error > 0.0 && worse.mean <= worse.std_error;
+  if (left_out(law.held_out_rmse(), best.held_out_rmse()) <= jnd_n) return true;
+  const Paired worse = paired(law.held_out_folds(), best.held_out_folds());
+  return law.held_out_rmse() <= nearly * best.held_out_rmse() && worse.std_error > 0.0 &&
+         worse.mean <= worse.std_error;
 }
 
 Choice choose_simplest(std::span<const FitResult> results, const Series& series, const FitOptions& options) {
   if (options.folds == 0 && !(options.test_share > 0.0)) return least_bic(results);
-  const auto error = options.folds > 0 ? &FitResult::cv_rmse : &FitResult::test_rmse;
+  const auto error = [&](const FitResult& law) {
+    return options.folds > 0 ? law.held_out_rmse() : law.held_out_test();
+  };
   auto candidates = eligible(results, error);
   if (candidates.empty()) return no_choice;
-  const double force_rms = rms_of(series.force);
+  const double force_rms = rms_of(series);
   const double limit = options.jnd.at(force_rms);
   const auto best =
-      *std::ranges::min_element(candidates, {}, [&](const FitResult* result) { return result->*error; });
-  const bool felt = best->*error > limit;
+      *std::ranges::min_element(candidates, {}, [&](const FitResult* result) { return error(*result); });
+  const bool felt = error(*best) > limit;
   const auto serves = [&](const FitResult* result) {
-    if (!felt) return result->*error <= limit;
+    if (!felt) return error(*result) <= limit;
     return options.folds > 0 ? as_good_as(*result, *best, limit)
-                             : left_out(result->*error, best->*error) <= limit;
+                             : left_out(error(*result), error(*best)) <= limit;
   };
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto* a, const auto* b) { return a->free_parameters < b->free_parameters; });
@@ -71,12 +75,12 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   why << std::setprecision(3);
   if (felt) {
     why << "no law stays within the JND of " << limit << unit << " (at the root mean square force of "
-        << force_rms << unit << ") on held-out data; " << chosen->model << " with " << chosen->*error << unit
+        << force_rms << unit << ") on held-out data; " << chosen->model << " with " << error(*chosen) << unit
         << " has the fewest parameters (" << chosen->free_parameters
-        << ") of those that do as well as the best, " << best->model << " with " << best->*error << unit;
+        << ") of those that do as well as the best, " << best->model << " with " << error(*best) << unit;
   } else {
     why << chosen->model << " has the fewest parameters (" << chosen->free_parameters
-        << ") of the laws whose error on held-out data (" << chosen->*error << unit
+        << ") of the laws whose error on held-out data (" << error(*chosen) << unit
         << ") stays within the JND of " << limit << unit << " (at the root mean square force of " << force_rms
         << unit << ")";
   }

@@ -30,11 +30,15 @@ double rms_of(const std::vector<double>& residuals, Chosen&& chosen) {
   return count > 0.0 ? std::sqrt(squares / count) : nothing;
 }
 
+auto in_test(const Samples& samples) {
+  return [&](std::size_t i) { return samples.fold[i] == Samples::test && samples.counts[i] != 0; };
+}
+
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
   double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (samples.fold[i] == Samples::test) continue;
+    if (samples.fold[i] == Samples::test || samples.counts[i] == 0) continue;
     n += 1.0;
     squares += residuals[i] * residuals[i];
     sum += samples.force[i];
@@ -47,7 +51,15 @@ void measure_errors(FitResult& result, const std::vector<double>& residuals, con
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
   result.jnd_fraction = felt / n;
   result.effective_samples = n;
-  result.test_rmse = rms_of(residuals, [&](std::size_t i) { return samples.fold[i] == Samples::test; });
+  result.test_rmse = rms_of(residuals, in_test(samples));
+}
+
+/// The same of the law as it is rendered.
+void measure_rendered(FitResult& result, const std::vector<double>& residuals, const Samples& samples) {
+  if (residuals.empty()) return;
+  result.rendered.rmse = rms_of(
+      residuals, [&](std::size_t i) { return samples.fold[i] != Samples::test && samples.counts[i] != 0; });
+  result.rendered.test_rmse = rms_of(residuals, in_test(samples));
 }
 
 /// A sensor at the end of its range repeats its largest number.
@@ -103,17 +115,21 @@ void cross_validate(FitResult& result, const FitOptions& options, const Samples&
   alone.threads = 1;  // the folds are shared out already
   const HeldOut errors =
       held_out([&](const Weights& seen) { return train(result.model, alone, samples, seen, of_a_fold); },
-               samples, all_of(samples), options.threads);
-  result.cv_rmse = errors.rmse;
-  result.cv_folds = errors.folds;
-  result.cv_std_error = standard_error(errors);
+               samples, all_of(samples), options.threads, options.render);
+  result.cv_rmse = errors.fitted.rmse;
+  result.cv_std_error = standard_error(errors.fitted);
+  result.cv_folds = errors.fitted.folds;
+  if (!options.render) return;
+  result.rendered.cv_rmse = errors.rendered.rmse;
+  result.rendered.cv_std_error = standard_error(errors.rendered);
+  result.rendered.cv_folds = errors.rendered.folds;
 }
 
 FitResult fit_samples(std::string_view model, const Samples& samples, const FitOptions& options) {
   const Trained law = train(model, options, samples, all_of(samples));
   FitResult result{.model = std::string(model), .law_options = law.problem.law_options};
   result.free_parameters = static_cast<std::size_t>(law.problem.coordinates());
-  result.samples = samples.size();
+  result.samples = static_cast<std::size_t>(std::ranges::count(samples.counts, 1));
   result.cv_rmse = result.cv_std_error = result.test_rmse = nothing;
   warn_of_the_sensor(result, samples, options.force_unit);
   result.message = law.solution.message;
@@ -125,6 +141,8 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   result.iterations = law.solution.iterations;
   const std::vector<double> residuals = residuals_of(law.problem, law.solution.values, samples);
   measure_errors(result, residuals, samples, options.jnd);
+  measure_rendered(result, rendered_residuals(law.problem, law.solution.values, samples, options.render),
+                   samples);
   warn_of_a_misfit(result);
   warn_of_pulling(result, residuals, samples);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
@@ -144,6 +162,18 @@ void FitResult::weigh_information(double independent_samples) {
   aic = likelihood + 2.0 * p;
   aicc = left > 0.0 ? aic + 2.0 * p * (p + 1.0) / left : std::numeric_limits<double>::infinity();
   bic = likelihood + p * std::log(effective_samples);
+}
+
+double FitResult::held_out_rmse() const noexcept {
+  return std::isnan(rendered.cv_rmse) ? cv_rmse : rendered.cv_rmse;
+}
+
+double FitResult::held_out_test() const noexcept {
+  return std::isnan(rendered.test_rmse) ? test_rmse : rendered.test_rmse;
+}
+
+const std::vector<double>& FitResult::held_out_folds() const noexcept {
+  return std::isnan(rendered.cv_rmse) ? cv_folds : rendered.cv_folds;
 }
 
 models::Law FitResult::law(std::size_t recording) const {
@@ -196,11 +226,25 @@ FitResult fit(std::string_view model, const Series& series, const FitOptions& op
   return fit(model, std::span(&series, 1), options);
 }
 
+double rms_of(const Series& series) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < series.force.size(); ++i) {
+    if (!series.counts.empty() && series.counts[i] == 0) continue;
+    squares += series.force[i] * series.force[i];
+    count += 1.0;
+  }
+  return std::sqrt(squares / count);
+}
+
 double line_rmse(const Series& series) {
-  const auto n = static_cast<double>(series.force.size());
+  const auto counts = [&](std::size_t i) { return series.counts.empty() || series.counts[i] != 0; };
+  double n = 0.0;
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i < series.force.size(); ++i) {
+    if (!counts(i)) continue;
+    n += 1.0;
     const Eigen::Vector2d row(1.0, series.penetration[i]);
     normal += row * row.transpose();
     right += row * series.force[i];
@@ -208,6 +252,7 @@ double line_rmse(const Series& series) {
   const Eigen::Vector2d line = solve_normal(normal, right);
   double squares = 0.0;
   for (std::size_t i = 0; i < series.force.size(); ++i) {
+    if (!counts(i)) continue;
     const double error = line[0] + line[1] * series.penetration[i] - series.force[i];
     squares += error * error;
   }

@@ -24,8 +24,9 @@ void check_finite(std::span<const double> values, const char* name) {
 void check_columns(const Series& series) {
   const std::size_t count = series.force.size();
   if (series.time_s.size() != count || series.penetration.size() != count ||
-      series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count)) {
-    refuse("time, penetration, velocity, force and cycle differ in length");
+      series.velocity.size() != count || (!series.cycle.empty() && series.cycle.size() != count) ||
+      (!series.counts.empty() && series.counts.size() != count)) {
+    refuse("time, penetration, velocity, force, cycle and counts differ in length");
   }
   if (count < 4) refuse("there are only " + std::to_string(count) + " samples");
   check_finite(series.time_s, "time");
@@ -116,6 +117,8 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     if (samples.runs.empty()) samples.median_period_s = median_period_s;
     samples.period_s.insert(samples.period_s.end(), run_periods.begin(), run_periods.end());
     samples.force.insert(samples.force.end(), series.force.begin(), series.force.end());
+    samples.counts.insert(samples.counts.end(), series.counts.begin(), series.counts.end());
+    samples.counts.resize(samples.size(), 1);
     samples.motion.reserve(samples.size());
     for (std::size_t i = 0; i < series.force.size(); ++i) {
       samples.motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
@@ -157,6 +160,7 @@ Samples thinned(const Samples& samples, std::size_t count) {
       const double usual_s = static_cast<double>(step) * samples.median_period_s;
       few.period_s.push_back(std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s);
       few.force.push_back(samples.force[i]);
+      few.counts.push_back(samples.counts[i]);
       few.fold.push_back(samples.fold[i]);
       period_s = 0.0;
     }
@@ -174,7 +178,7 @@ Weights all_of(const Samples& samples) {
   for (const Run& run : samples.runs) {
     const double share = known ? samples.runs.front().noise_n / run.noise_n : 1.0;
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      weights[i] = samples.fold[i] == Samples::test ? 0.0 : share * share;
+      weights[i] = samples.fold[i] == Samples::test || samples.counts[i] == 0 ? 0.0 : share * share;
     }
   }
   return weights;

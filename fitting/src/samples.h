@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,8 @@ struct Samples {
   std::vector<models::Motion> motion;
   std::vector<double> period_s;  ///< time since the sample before
   std::vector<double> force;
-  std::vector<std::size_t> fold;  ///< held out in that fold of the cross-validation; no_fold: never
+  std::vector<std::uint8_t> counts;  ///< 0: a law only runs through it
+  std::vector<std::size_t> fold;     ///< held out in that fold of the cross-validation; no_fold: never
   std::vector<Run> runs;
   std::size_t folds = 0;
   double least = 0.0;  ///< smallest penetration

@@ -46,7 +46,9 @@ struct Candidate {
   std::optional<LawFile> file;   ///< none if it could not be fitted, or was not
   std::optional<FittedLaw> fit;  ///< none of a law that was known and not fitted
   bool converged = false;
-  double error_n = std::numeric_limits<double>::infinity();  ///< root mean square, on held-out data
+  double error_n =
+      std::numeric_limits<double>::infinity();  ///< root mean square, on held-out data, as rendered
+  double fitted_n = std::numeric_limits<double>::quiet_NaN();  ///< the same of the law as it was fitted
   double error_jnd = std::numeric_limits<double>::infinity();
   double error_torque_n_m = std::numeric_limits<double>::quiet_NaN();  ///< of a law that gives torques
   double tick_us = 0.0;                                                ///< median
@@ -69,6 +71,8 @@ struct LawChoice {
   /// Where none is within the JND: the simplest law that leaves out no more than the JND against the best.
   std::optional<std::size_t> as_good;
   std::string why;
+  std::optional<fitting::Floor> floor;  ///< what is possible at all on the recording
+  std::string blame;  ///< what is to blame where the law that is named is not within the JND
   std::vector<EffectVerdict> effects;
   std::vector<std::string> warnings;
   models::Contact contact;

@@ -8,6 +8,7 @@
 #include "files/json_file.h"
 #include "files/json_number.h"
 #include "files/whole_file.h"
+#include "fits/fit_files.h"
 #include "recordings/provenance.h"
 #include "tables/csv.h"
 
@@ -41,6 +42,7 @@ json candidate_as_json(const Candidate& candidate) {
               {"converged", candidate.converged},
               {"rmse", candidate.fit ? json_number(candidate.fit->result.rmse) : json(nullptr)},
               {"held_out", json_number(candidate.error_n)},
+              {"held_out_fitted", json_number(candidate.fitted_n)},
               {"held_out_jnd", json_number(candidate.error_jnd)},
               {"within_jnd", candidate.within_jnd},
               {"tick_us", candidate.tick_us},
@@ -101,7 +103,9 @@ json choice_as_json(const LawChoice& choice) {
         {"in_doubt", choice.in_doubt},
         {"as_good", name_at(choice.as_good)},
         {"parameters", choice.taken ? parameters_of(choice.candidates.at(*choice.taken)) : json::object()},
-        {"why", choice.why}}},
+        {"why", choice.why},
+        {"blame", choice.blame.empty() ? json(nullptr) : json(choice.blame)}}},
+      {"floor", choice.floor ? floor_as_json(*choice.floor) : json(nullptr)},
       {"effects", effects},
       {"candidates", candidates},
       {"warnings", choice.warnings}};

@@ -134,6 +134,7 @@ std::string choice_page(const json& all, const std::filesystem::path& file, cons
   std::string body = fmt::format("<h1>Which law serves {}</h1>\n<p class=\"soft\">{}</p>\n", escaped(name),
                                  escaped(choice.held_out));
   body += fmt::format("<p class=\"answer{}\">{}.</p>\n", choice.serves ? "" : " bad", escaped(choice.why));
+  if (!choice.blame.empty()) body += fmt::format("<p>What is to blame: {}.</p>\n", escaped(choice.blame));
   for (const std::string& warning : choice.warnings)
     body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(warning));
   if (choice.taken && !file.empty()) {

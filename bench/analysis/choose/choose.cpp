@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "chart/tick_cost.h"
+#include "fits/fit_series.h"
 #include "recordings/axis_series.h"
 #include "threads/for_each_index.h"
 
@@ -44,8 +45,9 @@ class LawSelection {
     choice_.contact = options.contact.value_or(contact_of(recording, options.axis));
     if (options.richer_too)
       memory_ = fitting::remember_segments(options.candidates.max_segments, options.fit.points_per_segment);
-    const AxisSeries series = fit_series(recording, options.axis, choice_.contact);
+    AxisSeries series = fit_series(recording, options.axis, choice_.contact);
     if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
+    if (options.rows == Counted::contact) count_contact(series);
     measure(series);
     const std::size_t cycles = cycles_in(recording, options.axis);
     describe_folds(cycles);
@@ -74,7 +76,11 @@ class LawSelection {
       throw std::invalid_argument(all.empty() ? "no law fits the axis" : all.front().why);
     choice_.effects = judge_effects(all, choice_.taken, choice_.jnd_n);
     search_.finish();
-    if (choice_.taken) fit_with_intervals(all[*choice_.taken]);
+    if (choice_.taken) {
+      const Candidate& taken = all[*choice_.taken];
+      choice_.blame = fitting::blame(taken.error_n, taken.fitted_n, *choice_.floor, choice_.jnd_n);
+      fit_with_intervals(all[*choice_.taken]);
+    }
     return std::move(choice_);
   }
 
@@ -93,8 +99,18 @@ class LawSelection {
     }
   }
 
+  void count_contact(AxisSeries& series) {
+    const std::size_t counted = mark_contact(series, options_.fit.jnd.threshold);
+    if (2 * counted >= series.force.size()) return;
+    choice_.warnings.push_back(
+        fmt::format("{} of {} rows are out of contact and do not count (--rows all takes all)",
+                    series.force.size() - counted, series.force.size()));
+  }
+
   void measure(const AxisSeries& series) {
-    choice_.force_rms_n = fitting::rms_of(series.force);
+    const fitting::Series view = fitted_view(series);
+    choice_.force_rms_n = fitting::rms_of(view);
+    choice_.floor = fitting::floor_of(std::span(&view, 1), options_.fit);
     choice_.jnd_n = options_.fit.jnd.at(choice_.force_rms_n);
     const double duration_s = series.time_s.back() - series.time_s.front();
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
@@ -121,6 +137,9 @@ class LawSelection {
                                       .axis = options_.axis,
                                       .contact = choice_.contact,
                                       .law_options = law.law_options,
+                                      .rows = options_.rows,
+                                      .loop_rate_hz = options_.loop_rate_hz,
+                                      .floor = false,
                                       .fit = std::move(settings)});
   }
 
@@ -140,7 +159,8 @@ class LawSelection {
     const fitting::FitResult& result = candidate.fit->result;
     candidate.converged = result.converged;
     if (!result.converged) candidate.why = fmt::format("its fit did not converge: {}", result.message);
-    if (std::isfinite(result.cv_rmse)) candidate.error_n = result.cv_rmse;
+    if (std::isfinite(result.held_out_rmse())) candidate.error_n = result.held_out_rmse();
+    candidate.fitted_n = result.cv_rmse;
     candidate.error_jnd = candidate.error_n / choice_.jnd_n;
     if (result.converged && !result.can_be_chosen())
       candidate.why = fmt::format("it fits worse than the mean of the force does (R2 {:.2g})", result.r2);
@@ -168,6 +188,7 @@ class LawSelection {
     fit.laws.front().result.cv_rmse = taken.fit->result.cv_rmse;
     fit.laws.front().result.cv_std_error = taken.fit->result.cv_std_error;
     fit.laws.front().result.cv_folds = taken.fit->result.cv_folds;
+    fit.laws.front().result.rendered = taken.fit->result.rendered;
     taken.file = fit.laws.front().file;
     taken.fit = std::move(fit.laws.front());
   }

@@ -26,6 +26,9 @@ void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std:
 /// The JSON of `kerf fit`.
 [[nodiscard]] nlohmann::ordered_json fits_as_json(const RecordingFit& fit);
 
+/// What is possible at all on a recording, as fit.json and choose.json say it.
+[[nodiscard]] nlohmann::ordered_json floor_as_json(const fitting::Floor& floor);
+
 /// Whether the law that a fit.json chooses stays within the JND on data that were held out; none where no law
 /// is chosen or nothing was held out. Also of files that do not say so themselves.
 [[nodiscard]] std::optional<bool> choice_within_jnd(const nlohmann::ordered_json& fits);

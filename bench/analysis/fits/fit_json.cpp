@@ -75,6 +75,13 @@ json own_as_json(const FittedLaw& law, const RecordingFit& fit, const std::strin
   return own;
 }
 
+json parts_as_json(const fitting::FitResult& fit, const fitting::Floor& floor) {
+  if (floor.folds < 2) return nullptr;
+  const fitting::ErrorParts parts = fitting::parts_of(fit.held_out_rmse(), fit.cv_rmse, floor);
+  return {{"loop", parts.loop}, {"law", parts.law},       {"hand", parts.hand},
+          {"data", parts.data}, {"spread", parts.spread}, {"sensor", parts.sensor}};
+}
+
 json law_as_json(const FittedLaw& law, const RecordingFit& all) {
   const fitting::FitResult& fit = law.result;
   const std::string interval = interval_name(all.settings.confidence);
@@ -89,7 +96,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"free_parameters", fit.free_parameters},
               {"samples", fit.samples},
               {"rmse", fit.rmse},
-              {"rmse_rendered", law.rmse_rendered},
+              {"rmse_rendered", json_number(fit.rendered.rmse)},
               {"max_abs", fit.max_abs},
               {"r2", fit.r2},
               {"effective_samples", fit.effective_samples},
@@ -99,7 +106,11 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"cv_rmse", json_number(fit.cv_rmse)},
               {"cv_std_error", json_number(fit.cv_std_error)},
               {"cv_folds", fit.cv_folds},
+              {"cv_rmse_rendered", json_number(fit.rendered.cv_rmse)},
+              {"cv_std_error_rendered", json_number(fit.rendered.cv_std_error)},
+              {"cv_folds_rendered", fit.rendered.cv_folds},
               {"test_rmse", json_number(fit.test_rmse)},
+              {"test_rmse_rendered", json_number(fit.rendered.test_rmse)},
               {"jnd_fraction", fit.jnd_fraction},
               {"correlation_time_samples", fit.correlation_time},
               {"correlation", correlation_as_json(fit)},
@@ -109,6 +120,8 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"seconds", fit.seconds},
               {"message", fit.message},
               {"warnings", fit.warnings}};
+  if (all.floor && std::isfinite(fit.held_out_rmse())) result["error_parts"] = parts_as_json(fit, *all.floor);
+  if (const std::string why = all.blame(law); !why.empty()) result["blame"] = why;
   if (!fit.profiles.empty()) result["profiles"] = profiles_as_json(fit);
   if (!fit.others.empty()) result["per_recording"] = own_as_json(law, all, interval);
   return result;
@@ -121,11 +134,15 @@ json recording_as_json(const FittedRecording& recording) {
           {"contact", {{"position", recording.contact.position}, {"direction", recording.contact.direction}}},
           {"samples", recording.samples},
           {"left_out", recording.left_out},
+          {"counted", recording.counted},
           {"noise", recording.noise_n > 0.0 ? json(recording.noise_n) : json(nullptr)}};
 }
 
-json settings_as_json(const fitting::FitOptions& settings) {
-  return {{"folds", settings.folds},
+json settings_as_json(const RecordingFit& fit) {
+  const fitting::FitOptions& settings = fit.settings;
+  return {{"rows", fit.rows == Counted::all ? "all" : "contact"},
+          {"loop_rate_hz", fit.loop_rate_hz},
+          {"folds", settings.folds},
           {"test_share", settings.test_share},
           {"confidence", settings.confidence},
           {"loss", name_of(settings.loss)},
@@ -137,11 +154,22 @@ json settings_as_json(const fitting::FitOptions& settings) {
 
 }  // namespace
 
+json floor_as_json(const fitting::Floor& floor) {
+  const bool known = floor.folds >= 2;
+  const auto error = [&](double value) { return known ? json(value) : json(nullptr); };
+  return {{"position", error(floor.position_n)},
+          {"velocity", error(floor.velocity_n)},
+          {"unlimited", error(floor.unlimited_n)},
+          {"noise", floor.noise_n},
+          {"quantum", floor.quantum_n > 0.0 ? json(floor.quantum_n) : json(nullptr)},
+          {"held_out", known ? json(floor.by_cycle ? "cycles" : "blocks") : json(nullptr)}};
+}
+
 std::optional<bool> choice_within_jnd(const json& fits) {
   const json& chosen = fits.at("choice").at("model");
   for (const json& fit : fits.at("fits")) {
     if (fit.at("model") != chosen) continue;
-    for (const auto* error : {"cv_rmse", "test_rmse"}) {
+    for (const auto* error : {"cv_rmse_rendered", "cv_rmse", "test_rmse_rendered", "test_rmse"}) {
       if (fit.contains(error) && fit.at(error).is_number())
         return fit.at(error).get<double>() <= fits.at("jnd").get<double>();
     }
@@ -160,13 +188,14 @@ json fits_as_json(const RecordingFit& fit) {
            {"recordings", recordings},
            {"samples", fit.samples()},
            {"force_unit", fit.settings.force_unit},
-           {"settings", settings_as_json(fit.settings)},
+           {"settings", settings_as_json(fit)},
            {"line_rmse", fit.line_rmse_n},
            {"jnd", fit.jnd_n},
            {"fits", fits},
            {"refused", refusals},
            {"choice", {{"model", fit.choice.model}, {"why", fit.choice.why}}},
            {"warnings", fit.warnings}};
+  if (fit.floor) all["floor"] = floor_as_json(*fit.floor);
   const std::optional<bool> within = choice_within_jnd(all);
   all["choice"]["within_jnd"] = within ? json(*within) : json(nullptr);
   return all;

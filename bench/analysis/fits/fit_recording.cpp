@@ -11,6 +11,7 @@
 
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
+#include "fits/rendered_series.h"
 #include "recordings/provenance.h"
 #include "signal/quantiles.h"
 
@@ -21,17 +22,11 @@ constexpr double velocity_corner_rad_s = 10.0;  // [Okamura2003], section 2.2
 constexpr double ramp_share = 0.05;             // of the 95th percentile of the speed
 constexpr double reversal_share = 0.05;  // of the range of the penetration, until the full force is back
 
-double squares_left(const models::Law& law, const AxisSeries& series) {
-  const auto force = render(law, series);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) squares += std::pow(force[i] - series.force[i], 2);
-  return squares;
-}
-
 /// Recordings and their series, side by side.
 struct Sources {
   std::span<const FitSource> all;
   std::vector<AxisSeries> series;
+  std::vector<RenderedSeries> rendered;
   AxisSeries pool;
 
   [[nodiscard]] std::vector<fitting::Series> views() const {
@@ -78,12 +73,6 @@ FittedLaw finished(fitting::FitResult result, const Sources& sources) {
   for (std::size_t i = 1; own && i < sources.all.size(); ++i) {
     fitted.others.push_back(file_of(fitted.result, sources, i));
   }
-  double squares = 0.0;
-  for (std::size_t i = 0; i < sources.all.size(); ++i) {
-    const LawFile& of = own && i > 0 ? fitted.others[i - 1] : fitted.file;
-    squares += squares_left(of.law, sources.series[i]);
-  }
-  fitted.rmse_rendered = std::sqrt(squares / static_cast<double>(sources.pool.force.size()));
   return fitted;
 }
 
@@ -127,33 +116,54 @@ void check_same_units(std::span<const FitSource> sources) {
 }
 
 fitting::FitOptions options_for(const std::string& model, const FitRecordingOptions& options,
-                                const fitting::FitOptions& settings, const models::Contact& contact) {
+                                const fitting::FitOptions& settings, const Sources& sources) {
   fitting::FitOptions fit = settings;
+  fit.render = [&sources](const models::Law& law, std::size_t recording) {
+    return sources.rendered[recording].force(
+        models::Law::make(law.model(), law.values(), with_rendering_aids(law.options(), sources.pool)));
+  };
   for (const auto& [name, value] : options_of_law(model, options.law_options)) fit.law_options[name] = value;
   const models::LawFacts& facts = models::law_facts(model);
   if (facts.search == models::Search::segments)
     fit.law_options.try_emplace(std::string(facts.size.option), static_cast<double>(options.segments));
   for (const models::DataOption& option : facts.from_data) {
     if (option.from == models::From::contact)
-      fit.law_options.try_emplace(std::string(option.name), contact.position);
+      fit.law_options.try_emplace(std::string(option.name), sources.all[0].contact.position);
   }
   return fit;
 }
 
+/// Which rows count, and what is to be known of it.
+std::size_t mark_rows(AxisSeries& series, const std::string& whose, RecordingFit& fit) {
+  const std::size_t rows = series.force.size();
+  if (fit.rows == Counted::all) return rows;
+  const std::size_t counted = mark_contact(series, fit.settings.jnd.threshold);
+  if (2 * counted < rows) {
+    fit.warnings.push_back(
+        fmt::format("{}{} of {} rows are out of contact: laws are fitted to and judged by the other {} alone "
+                    "(--rows all takes all)",
+                    whose, rows - counted, rows, counted));
+  }
+  return counted;
+}
+
 Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
-  Sources sources{.all = all, .series = {}, .pool = {}};
+  Sources sources{.all = all, .series = {}, .rendered = {}, .pool = {}};
   for (const FitSource& source : all) {
     sources.series.push_back(fit_series(*source.recording, source.axis, source.contact));
     const std::size_t left_out = sources.series.back().left_out;
+    const std::string whose = all.size() > 1 ? source.name + ": " : "";
+    const std::size_t counted = mark_rows(sources.series.back(), whose, fit);
+    sources.rendered.emplace_back(sources.series.back(), fit.loop_rate_hz);
     fit.recordings.push_back({.name = source.name,
                               .uuid = source.recording->header.uuid,
                               .axis = source.recording->axes[source.axis].name,
                               .contact = source.contact,
                               .samples = source.recording->rows(),
                               .left_out = left_out,
+                              .counted = counted,
                               .noise_n = source.noise_n});
     if (left_out == 0) continue;
-    const std::string whose = all.size() > 1 ? source.name + ": " : "";
     fit.warnings.push_back(fmt::format("{}{} rows are not finite and are left out", whose, left_out));
   }
   sources.pool = pooled(sources.series);
@@ -189,6 +199,11 @@ models::Options with_rendering_aids(models::Options options, const AxisSeries& s
 std::size_t RecordingFit::samples() const {
   return std::accumulate(recordings.begin(), recordings.end(), std::size_t{0},
                          [](std::size_t sum, const auto& one) { return sum + one.samples; });
+}
+
+std::string RecordingFit::blame(const FittedLaw& law) const {
+  if (!floor) return "";
+  return fitting::blame(law.result.held_out_rmse(), law.result.cv_rmse, *floor, jnd_n);
 }
 
 std::string RecordingFit::refusal() const {
@@ -231,6 +246,8 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   check_law_options(models, options.law_options);
   const schema::Axis& axis = all[0].recording->axes[all[0].axis];
   RecordingFit fit{.recordings = {}, .choice = {}, .settings = options.fit};
+  fit.rows = options.rows;
+  fit.loop_rate_hz = options.loop_rate_hz;
   fit.settings.force_unit = axis.force_unit;
   const Sources sources = sources_of(all, fit);
   const auto named = [&](const std::string& model) {
@@ -245,7 +262,7 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     try {
       check_units(model, axis);
       fitting::FitResult result =
-          fitting::fit(model, sources.views(), options_for(model, options, fit.settings, all[0].contact));
+          fitting::fit(model, sources.views(), options_for(model, options, fit.settings, sources));
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
       fit.laws.push_back(finished(std::move(result), sources));
     } catch (const std::invalid_argument& error) {
@@ -255,7 +272,8 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   if (fit.laws.empty()) return fit;
   const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
-  fit.jnd_n = options.fit.jnd.at(fitting::rms_of(sources.pool.force));
+  fit.jnd_n = options.fit.jnd.at(fitting::rms_of(pool));
+  if (options.floor) fit.floor = fitting::floor_of(sources.views(), fit.settings);
   fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);
   return fit;
 }

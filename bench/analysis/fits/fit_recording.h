@@ -8,8 +8,10 @@
 #include <vector>
 
 #include <kerf/fitting/fit.h>
+#include <kerf/fitting/floor.h>
 #include <kerf/schema/recording.h>
 
+#include "fits/contact_rows.h"
 #include "laws/law_file.h"
 #include "laws/render.h"
 
@@ -21,6 +23,9 @@ struct FitRecordingOptions {
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   std::size_t segments = 5;                ///< of the piecewise law
   std::vector<std::string> law_options;    ///< NAME=VALUE, each for the laws that have it
+  Counted rows = Counted::contact;               ///< that count
+  double loop_rate_hz = 1000.0;            ///< of the loop that errors as rendered are of
+  bool floor = true;                       ///< also what is possible at all
   fitting::FitOptions fit;
   const std::atomic<bool>* stop = nullptr;   ///< no further law is begun then
   std::atomic<std::size_t>* done = nullptr;  ///< counts the laws of models_of()
@@ -40,7 +45,6 @@ struct FittedLaw {
   fitting::FitResult result;
   LawFile file;                 ///< with the rendering aids of laws that have branches
   std::vector<LawFile> others;  ///< of the further recordings, where their parameters or contacts differ
-  double rmse_rendered = 0.0;   ///< error with those aids on [N]
 };
 
 /// What a fit took from a recording.
@@ -51,6 +55,7 @@ struct FittedRecording {
   models::Contact contact;
   std::size_t samples = 0;
   std::size_t left_out = 0;  ///< rows that are not finite
+  std::size_t counted = 0;   ///< rows that count
   double noise_n = 0.0;
 };
 
@@ -68,10 +73,15 @@ struct RecordingFit {
   std::vector<FittedLaw> laws;
   std::vector<Refusal> refusals;
   fitting::Choice choice;
+  std::optional<fitting::Floor> floor;
   std::vector<std::string> warnings;
   fitting::FitOptions settings;  ///< as asked for
+  Counted rows = Counted::contact;     ///< as asked for
+  double loop_rate_hz = 0.0;     ///< as asked for
 
   [[nodiscard]] std::size_t samples() const;
+  /// What is to blame for the error of a law, in one sentence; empty where nothing is.
+  [[nodiscard]] std::string blame(const FittedLaw& law) const;
   /// Why no law could be fitted, where all refused for one reason; else empty.
   [[nodiscard]] std::string refusal() const;
 };

@@ -14,7 +14,8 @@ namespace kerf::bench {
           .velocity = series.velocity,
           .force = series.force,
           .cycle = series.cycle,
-          .noise_n = noise_n};
+          .noise_n = noise_n,
+          .counts = series.counts};
 }
 
 /// Verdicts by the JND of what an axis exerts.

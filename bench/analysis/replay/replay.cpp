@@ -61,7 +61,7 @@ nlohmann::ordered_json table_as_json(const FittedLaw& table, std::size_t rows) {
                               {"rows", rows},
                               {"axis", table.file.axis},
                               {"rmse", table.result.rmse},
-                              {"rmse_rendered", table.rmse_rendered}};
+                              {"rmse_rendered", table.result.rendered.rmse}};
   for (const auto& [name, value] : table.file.law.options())
     std::visit([&, key = name](const auto& held) { json["law_options"][key] = held; }, value);
   return json;

@@ -50,21 +50,22 @@ void scale(Chart& chart) {
 }  // namespace
 
 std::string comparison_table(const json& fits, const std::string& unit) {
-  std::vector<std::vector<std::string>> rows{{"law", "free parameters", "rmse [" + unit + "]",
-                                              "rmse rendered [" + unit + "]", "largest [" + unit + "]", "R²",
-                                              "AIC", "BIC", "rmse held out [" + unit + "]", "outside JND",
-                                              "converged"}};
+  std::vector<std::vector<std::string>> rows{
+      {"law", "free parameters", "rmse [" + unit + "]", "rmse rendered [" + unit + "]",
+       "largest [" + unit + "]", "R²", "AIC", "BIC", "rmse held out [" + unit + "]",
+       "held out as rendered [" + unit + "]", "outside JND", "converged"}};
   const bool tested = has_any(fits, "test_rmse");
-  if (tested) rows[0].insert(rows[0].begin() + 9, "rmse in the test [" + unit + "]");
+  if (tested) rows[0].insert(rows[0].begin() + 10, "rmse in the test [" + unit + "]");
   for (const json& fit : fits.at("fits")) {
     rows.push_back({fit.at("model").get<std::string>(),
                     fmt::format("{}", fit.at("free_parameters").get<int>()), number_text(fit.at("rmse")),
                     number_text(fit.at("rmse_rendered")), number_text(fit.at("max_abs")),
                     number_text(fit.at("r2"), "{:.4f}"), number_text(fit.at("aic"), "{:.0f}"),
                     number_text(fit.at("bic"), "{:.0f}"), number_text(fit.at("cv_rmse")),
+                    number_text(fit.value("cv_rmse_rendered", json(nullptr))),
                     fmt::format("{:.1f} %", 100.0 * fit.at("jnd_fraction").get<double>()),
                     fit.at("converged").get<bool>() ? "yes" : "no"});
-    if (tested) rows.back().insert(rows.back().begin() + 9, number_text(fit.at("test_rmse")));
+    if (tested) rows.back().insert(rows.back().begin() + 10, number_text(fit.at("test_rmse")));
   }
   rows.push_back({"straight line", "2", number_text(fits.at("line_rmse"))});
   return html_table(rows);
@@ -83,6 +84,12 @@ Chart comparison_chart(const json& fits, const std::string& unit) {
                  .colour = Colour::vermillion,
                  .mark = Mark::points,
                  .width = 3.0};
+  Curve rendered{.label = "held out, as rendered",
+                 .x = {},
+                 .y = {},
+                 .colour = Colour::green,
+                 .mark = Mark::points,
+                 .width = 2.5};
   Curve tested{.label = "test", .x = {}, .y = {}, .colour = Colour::blue, .mark = Mark::points, .width = 2.5};
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const double y = rows - static_cast<double>(i);
@@ -95,12 +102,13 @@ Chart comparison_chart(const json& fits, const std::string& unit) {
     };
     add(all, "rmse");
     add(held_out, "cv_rmse");
+    add(rendered, "cv_rmse_rendered");
     add(tested, "test_rmse");
   }
   chart.y_ticks.push_back({.at = 0.0, .name = "straight line"});
   all.x.push_back(fits.at("line_rmse").get<double>());
   all.y.push_back(0.0);
-  for (Curve* curve : {&all, &held_out, &tested}) {
+  for (Curve* curve : {&all, &held_out, &rendered, &tested}) {
     if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
   }
   if (fits.contains("jnd") && fits.at("jnd").get<double>() > 0.0) {
@@ -108,6 +116,9 @@ Chart comparison_chart(const json& fits, const std::string& unit) {
     jnd.at = fits.at("jnd").get<double>();
     jnd.label = "what a person feels (JND)";
   }
+  if (fits.contains("floor") && fits.at("floor").at("velocity").is_number())
+    chart.vertical.push_back(
+        {.at = fits.at("floor").at("velocity").get<double>(), .label = "best map of x, v"});
   scale(chart);
   chart.y_range = {-0.6, rows + 1.2};
   chart.height_px = 110 + 24 * static_cast<int>(laws.size() + 2);

@@ -156,6 +156,14 @@ std::string parameters_part(const FitView& view, double confidence) {
   return html + "</details>\n";
 }
 
+std::string blame_of(const json& fits, const std::string& model) {
+  for (const json& fit : fits.at("fits")) {
+    if (fit.at("model") == model && fit.contains("blame"))
+      return fmt::format(" What is to blame: {}.", escaped(fit.at("blame").get<std::string>()));
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string choice_paragraph(const json& fits) {
@@ -165,8 +173,8 @@ std::string choice_paragraph(const json& fits) {
                           : choice_within_jnd(fits).value_or(false) ? Answer::good
                                                                     : Answer::partly;
     return html_answer(
-        answer, fmt::format("<strong>Choice: {}</strong>: {}.", escaped(model.empty() ? "none" : model),
-                            escaped(fits.at("choice").at("why").get<std::string>())));
+        answer, fmt::format("<strong>Choice: {}</strong>: {}.{}", escaped(model.empty() ? "none" : model),
+                            escaped(fits.at("choice").at("why").get<std::string>()), blame_of(fits, model)));
   } catch (const json::exception& error) {
     throw std::invalid_argument(fmt::format("fit.json is not what 'kerf fit' writes: {}", error.what()));
   }
@@ -183,11 +191,11 @@ std::string fit_section(const schema::Recording& recording, std::size_t axis, co
     const Window window = window_of(recording, view.series);
     std::string html = "<h2>Fits</h2>\n" + warnings_of(fits, view) + comparison_table(fits, view.force_unit);
     html +=
-        "<p class=\"soft\">Held out: each cycle (or blocks of time) predicted by a fit to the others. "
-        "Rendered: with "
-        "the rendering aids of laws that have branches. Outside JND: share of samples whose error a person "
-        "could "
-        "feel. The straight line's error is over all samples.</p>\n";
+        "<p class=\"soft\">Held out: each cycle (or blocks of time) predicted by a fit to the others. As "
+        "rendered: by a loop, with its late velocity, its latency, and the rendering aids of laws that have "
+        "branches; the choice goes by that. Outside JND: share of samples whose error a person could feel. "
+        "Errors are over the rows in contact unless all were asked for. Best map of x, v: no function of "
+        "penetration and velocity was found that errs by less on held-out data.</p>\n";
     html += html_figure(draw(comparison_chart(fits, view.force_unit)));
     if (view.shown < view.traces.size())
       html +=

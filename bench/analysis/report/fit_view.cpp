@@ -36,7 +36,7 @@ std::string law_file_of(const json& fit, std::size_t place) {
 }  // namespace
 
 double compared_error(const json& fit) {
-  for (const auto* name : {"cv_rmse", "test_rmse", "rmse"}) {
+  for (const auto* name : {"cv_rmse_rendered", "cv_rmse", "test_rmse_rendered", "test_rmse", "rmse"}) {
     if (fit.contains(name) && fit.at(name).is_number()) return fit.at(name).get<double>();
   }
   return std::numeric_limits<double>::infinity();

@@ -112,6 +112,13 @@ void add_law_options(Verb& verb, FitArguments& arguments) {
 void add_data_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--axis", arguments.axis, "Axis to fit (default: the first)");
   add_contact_options(verb, arguments.contact, "from the recording");
+  verb.add_option("--rows", arguments.rows, "Rows that laws are fitted to and judged by")
+      .one_of({"contact", "all"})
+      .with_default();
+  verb.add_option("--rate", arguments.options.loop_rate_hz,
+                  "Rate of the loop that errors as rendered are of [Hz]")
+      .within(100.0, 10000.0)
+      .with_default();
   verb.add_option("--noise", arguments.noise,
                   "Standard deviation of the force's noise, one or one a recording [N] (default: estimated)")
       .separated_by(',')
@@ -202,6 +209,7 @@ FitRecordingOptions options_of(const FitArguments& arguments, const FitSource& s
   options.fit.breakpoints = breakpoints_of(arguments, source);
   options.fit.loss = loss_of(arguments.loss);
   if (arguments.no_folds) options.fit.folds = 0;
+  options.rows = arguments.rows == "all" ? Counted::all : Counted::contact;
   arguments.jnd.put_into(options.fit, source.recording->axes[source.axis]);
   options.law_options = law_options_of(arguments);
   return options;

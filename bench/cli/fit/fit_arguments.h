@@ -25,6 +25,7 @@ struct FitArguments {
   ContactArguments contact;
   std::vector<double> noise;
   JndArguments jnd;
+  std::string rows = "contact";
 
   std::string segments = "5";
   std::vector<std::string> breakpoints;

@@ -14,14 +14,14 @@ std::string number_or_dash(double value) { return std::isfinite(value) ? fmt::fo
 void say_comparison(const RecordingFit& fit, Context& context) {
   const std::string& unit = fit.settings.force_unit;
   const bool tested = fit.settings.test_share > 0.0;
-  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}{} {:>6} {:>9}", "law", "free",
-                          "rmse " + unit, "max " + unit, "R2", "held-out", tested ? "      test" : "",
-                          "> JND", "converged"));
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9} {:>9}{} {:>6} {:>9}", "law", "free",
+                          "rmse " + unit, "max " + unit, "R2", "held-out", "rendered",
+                          tested ? "      test" : "", "> JND", "converged"));
   for (const FittedLaw& law : fit.laws) {
     const fitting::FitResult& result = law.result;
-    context.say(fmt::format("  {:17} {:4} {:9.4f} {:9.4f} {:7.4f} {:>9}{} {:5.1f}% {:>9}", result.model,
+    context.say(fmt::format("  {:17} {:4} {:9.4f} {:9.4f} {:7.4f} {:>9} {:>9}{} {:5.1f}% {:>9}", result.model,
                             result.free_parameters, result.rmse, result.max_abs, result.r2,
-                            number_or_dash(result.cv_rmse),
+                            number_or_dash(result.cv_rmse), number_or_dash(result.rendered.cv_rmse),
                             tested ? fmt::format(" {:>9}", number_or_dash(result.test_rmse)) : "",
                             100.0 * result.jnd_fraction, result.converged ? "yes" : "NO"));
   }
@@ -60,13 +60,27 @@ void say_parameters(const RecordingFit& fit, const FittedLaw& law, Context& cont
   }
 }
 
+void say_floor(const RecordingFit& fit, Context& context) {
+  if (!fit.floor || fit.floor->folds < 2) return;
+  const auto of_law = [&](double error) { return fmt::format("{:.4f}", error); };
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "best map of x, +-", "", "", "", "",
+                          of_law(fit.floor->position_n)));
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "best map of x, v", "", "", "", "",
+                          of_law(fit.floor->velocity_n)));
+}
+
 }  // namespace
 
 void say_fit(const RecordingFit& fit, Context& context) {
   say_comparison(fit, context);
+  say_floor(fit, context);
   for (const FittedLaw& law : fit.laws) say_parameters(fit, law, context);
   context.say(fit.choice.model.empty() ? fit.choice.why
                                        : fmt::format("choice: {}: {}", fit.choice.model, fit.choice.why));
+  for (const FittedLaw& law : fit.laws) {
+    const std::string blame = law.result.model == fit.choice.model ? fit.blame(law) : "";
+    if (!blame.empty()) context.say("what is to blame: " + blame);
+  }
 }
 
 void warn_of(const RecordingFit& fit) {

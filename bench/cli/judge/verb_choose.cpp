@@ -40,6 +40,7 @@ struct ChooseVerbArguments {
   LoopCheckOptions loop;
   ChooseOptions choose;
   JndArguments jnd;
+  std::string rows = "contact";
 };
 
 std::string deadline_in_short(const std::optional<Deadline>& deadline) {
@@ -76,6 +77,7 @@ void finish(const ChooseVerbArguments& arguments, Context& context, LawChoice& c
   for (const std::string& warning : choice.warnings) warn(warning);
   say_choice(choice, context);
   context.say(choice.why);
+  if (!choice.blame.empty()) context.say("what is to blame: " + choice.blame);
   if (output) {
     write_choice(choice, context.result, recording, output->path());
     output->commit();
@@ -104,6 +106,8 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
                               .begins = say_begins};
   options.choose.axis = find_cut_axis(recording, arguments.axis);
   options.choose.contact = arguments.contact.over(contact_of(recording, options.choose.axis));
+  options.choose.rows = arguments.rows == "all" ? Counted::all : Counted::contact;
+  options.choose.loop_rate_hz = arguments.loop.rate_hz;
   arguments.jnd.put_into(options.choose.fit, recording.axes[options.choose.axis]);
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
   DeviceChoice made = choose_on_device(recording, file.at, std::move(options), stop);
@@ -207,6 +211,9 @@ void add_choose(CLI::App& app, Context& context) {
       .with_default();
   verb.add_option("--folds", arguments->choose.fit.folds, "Folds, by cycle or by blocks of time")
       .within(2, 100)
+      .with_default();
+  verb.add_option("--rows", arguments->rows, "Rows that laws are fitted to and judged by")
+      .one_of({"contact", "all"})
       .with_default();
   add_jnd_options(verb, arguments->jnd);
   verb.add_option("--record-seconds", arguments->record_s,

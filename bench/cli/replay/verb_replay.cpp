@@ -157,8 +157,8 @@ void play_table(const ReplayVerbArguments& arguments, Context& context, const So
         "segment' finds them");
   options.law = table.file;
   context.say(
-      fmt::format("a table of {} rows: rms {:.3g} {} beside what was recorded, {:.3g} with its smoothing",
-                  recording.rows(), table.result.rmse, table.file.force_unit, table.rmse_rendered));
+      fmt::format("a table of {} rows: rms {:.3g} {} beside what was recorded, {:.3g} as a loop renders it",
+                  recording.rows(), table.result.rmse, table.file.force_unit, table.result.rendered.rmse));
   const StopOnSignal signals;
   ConfirmOnEnter confirm;
   options.zero_hold = &confirm.hold();

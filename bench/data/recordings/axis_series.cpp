@@ -97,6 +97,8 @@ AxisSeries pooled(const std::vector<AxisSeries>& all) {
     append(together.penetration, one.penetration);
     append(together.velocity, one.velocity);
     append(together.force, one.force);
+    append(together.counts, one.counts);
+    together.counts.resize(together.force.size(), 1);
   }
   return together;
 }

@@ -17,6 +17,7 @@ struct AxisSeries {
   std::vector<double> velocity;
   std::vector<double> force;         ///< resisting
   std::vector<std::uint32_t> cycle;  ///< cycle of each row, 0 for none; empty if the recording has no cycles
+  std::vector<std::uint8_t> counts;  ///< whether fits and verdicts go by a row; empty: by all
   std::size_t left_out = 0;          ///< rows of the recording that are not here
 };
 

@@ -10,6 +10,8 @@
 
 #include <kerf/fitting/jnd.h>
 
+#include "fits/contact_rows.h"
+#include "fits/fit_series.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
 
@@ -113,24 +115,27 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
                   std::size_t columns) {
   const schema::Axis& about = recording.axes.at(axis);
   check_units(law, about);
-  const AxisSeries series = fit_series(recording, axis, law.contact);
+  AxisSeries series = fit_series(recording, axis, law.contact);
   if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
+  const fitting::Jnd jnd = fitting::jnd_of(about.force_unit, about.lever);
+  const std::size_t counted = mark_contact(series, jnd.threshold);
   const std::vector<double> force = render(without_rendering_aids(law.law), series);
   std::vector<double> residual;
   double squares = 0.0;
   double worst = 0.0;
   for (std::size_t i = 0; i < force.size(); ++i) {
     residual.push_back(force[i] - series.force[i]);
+    if (!series.counts.empty() && series.counts[i] == 0) continue;
     squares += residual.back() * residual.back();
     worst = std::max(worst, std::abs(residual.back()));
   }
   json result{{"axis", about.name},
               {"position_unit", about.position_unit},
               {"force_unit", about.force_unit},
-              {"rows", residual.size()},
-              {"rmse", std::sqrt(squares / static_cast<double>(residual.size()))},
+              {"rows", counted},
+              {"rmse", std::sqrt(squares / static_cast<double>(counted))},
               {"worst", worst},
-              {"jnd_n", fitting::jnd_of(about.force_unit, about.lever).at(fitting::rms_of(series.force))}};
+              {"jnd_n", jnd.at(fitting::rms_of(fitted_view(series)))}};
   add_over_time(series, residual, columns, result);
   add_over_penetration(series, force, result);
   return result;

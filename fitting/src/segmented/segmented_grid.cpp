@@ -11,7 +11,9 @@
 namespace kerf::fitting::segmented {
 namespace {
 
-constexpr std::size_t unlimited = std::size_t{1} << 32;
+/// Paths kept at a place on one branch: where no segment more is worth anything, as many as there are ways to
+/// place it are as good, and to keep them all takes gigabytes.
+constexpr std::size_t single_beam = 512;
 constexpr double rounding = 1e-13;  ///< of the whole sum of squares: below it paths count as equal
 
 /// The lines between any two places, worked out when first asked for.
@@ -162,12 +164,10 @@ class Search {
     if (!(most > 0.0)) return;
     gather(s, place, most);
     if (gathered_.empty()) return;
-    if (branches_ == 1) {
-      layers_[s][place] = lower_envelope(gathered_, most, windowed() ? grid_.beam : unlimited);
-      return;
-    }
     double lost = infinite;
-    layers_[s][place] = undominated(gathered_, most, grid_.beam, lost);
+    layers_[s][place] = branches_ == 1
+                            ? lower_envelope(gathered_, most, windowed() ? grid_.beam : single_beam, lost)
+                            : undominated(gathered_, most, grid_.beam, lost);
     for (std::size_t total = s + 1; total <= grid_.max_segments && lost < infinite; ++total) {
       lost_[total] = std::min(lost_[total], lost + rest_[total - s][place]);
     }

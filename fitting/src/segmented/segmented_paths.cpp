@@ -187,10 +187,12 @@ Path prolonged(const Path& path, const Line* lines, std::size_t branches) noexce
   return longer;
 }
 
-std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::size_t most) {
+std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::size_t most, double& lost) {
+  lost = infinite;
   if (paths.size() > most * crowd) {
-    std::nth_element(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(most * crowd), paths.end(),
-                     lower);
+    const auto first_lost = paths.begin() + static_cast<std::ptrdiff_t>(most * crowd);
+    std::nth_element(paths.begin(), first_lost, paths.end(), lower);
+    lost = first_lost->least;
     paths.resize(most * crowd);
   }
   std::vector<std::size_t> kept;
@@ -203,7 +205,10 @@ std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::s
   lowest.reserve(kept.size());
   for (const std::size_t i : kept) lowest.push_back(paths[i]);
   std::sort(lowest.begin(), lowest.end(), lower);
-  if (lowest.size() > most) lowest.resize(most);
+  if (lowest.size() > most) {
+    lost = std::min(lost, lowest[most].least);
+    lowest.resize(most);
+  }
   return lowest;
 }
 

@@ -24,8 +24,9 @@ struct Path {
 
 /// Keeps, in the order of their least errors, the paths that are somewhere the best of all and below the
 /// ceiling. One branch: exactly those, the lower envelope of the parabolas, if there are not more than
-/// `most`.
-[[nodiscard]] std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::size_t most);
+/// `most`. Returns through `lost` the least error of those that only that limit removed, or infinity.
+[[nodiscard]] std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::size_t most,
+                                               double& lost);
 
 /// Two branches: those that no other one beats wherever they are below the ceiling, at most `most`. Returns
 /// through `lost` the least error of those that only that limit removed, or infinity.

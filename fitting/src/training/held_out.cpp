@@ -32,10 +32,10 @@ std::vector<std::size_t> folds_in(const Samples& samples, const Weights& weights
   return folds;
 }
 
-Share judged(const Trained& law, const Samples& samples, const Weights& weights, std::size_t fold) {
-  const auto residuals = residuals_of(law.problem, law.solution.values, samples);
+Share judged(const std::vector<double>& residuals, const Samples& samples, const Weights& weights,
+             std::size_t fold) {
   Share share;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (samples.fold[i] != fold || !(weights[i] > 0.0)) continue;
     share.squares += residuals[i] * residuals[i];
     share.count += 1.0;
@@ -43,20 +43,37 @@ Share judged(const Trained& law, const Samples& samples, const Weights& weights,
   return share;
 }
 
+FoldErrors together(const std::vector<Share>& shares) {
+  FoldErrors errors;
+  Share all;
+  for (const Share& share : shares) {
+    all.squares += share.squares;
+    all.count += share.count;
+    errors.folds.push_back(std::sqrt(share.squares / share.count));
+  }
+  errors.rmse = std::sqrt(all.squares / all.count);
+  return errors;
+}
+
 }  // namespace
 
 HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, const Samples& samples,
-                 const Weights& weights, std::size_t threads) {
+                 const Weights& weights, std::size_t threads, const decltype(FitOptions::render)& render) {
   const auto folds = folds_in(samples, weights);
   if (folds.size() < 2) return {};
-  std::vector<Share> shares(folds.size());
+  std::vector<Share> fitted(folds.size());
+  std::vector<Share> as_rendered(folds.size());
   std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
   const auto work = [&] {
     for (std::size_t k = next++; k < folds.size() && !failed; k = next++) {
       const Trained law = train_on(without_fold(samples, weights, folds[k]));
       failed = failed || law.solution.values.empty();
-      if (!failed) shares[k] = judged(law, samples, weights, folds[k]);
+      if (failed) break;
+      const Values& values = law.solution.values;
+      fitted[k] = judged(residuals_of(law.problem, values, samples), samples, weights, folds[k]);
+      as_rendered[k] =
+          judged(rendered_residuals(law.problem, values, samples, render), samples, weights, folds[k]);
     }
   };
   {
@@ -66,16 +83,11 @@ HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, co
     work();
     for (auto& helper : helpers) helper.get();  // throws what it threw
   }
-  if (failed) return {.rmse = std::numeric_limits<double>::infinity(), .folds = {}};
-  HeldOut errors;
-  Share all;
-  for (const Share& share : shares) {
-    all.squares += share.squares;
-    all.count += share.count;
-    errors.folds.push_back(std::sqrt(share.squares / share.count));
+  if (failed) {
+    const FoldErrors none{.rmse = std::numeric_limits<double>::infinity(), .folds = {}};
+    return {.fitted = none, .rendered = render ? none : FoldErrors{}};
   }
-  errors.rmse = std::sqrt(all.squares / all.count);
-  return errors;
+  return {.fitted = together(fitted), .rendered = render ? together(as_rendered) : FoldErrors{}};
 }
 
 Paired paired(const std::vector<double>& folds, const std::vector<double>& others) {
@@ -88,7 +100,7 @@ Paired paired(const std::vector<double>& folds, const std::vector<double>& other
   return {.mean = mean, .std_error = std::sqrt(boost::math::statistics::sample_variance(differences) / n)};
 }
 
-double standard_error(const HeldOut& errors) {
+double standard_error(const FoldErrors& errors) {
   if (errors.folds.size() < 2) return std::numeric_limits<double>::quiet_NaN();
   const double of_mean_square = paired(errors.folds, std::vector<double>(errors.folds.size(), 0.0)).std_error;
   return of_mean_square > 0.0 ? of_mean_square / (2.0 * errors.rmse) : 0.0;

@@ -10,15 +10,20 @@
 namespace kerf::fitting {
 
 /// Errors on samples that no fit was shown.
-struct HeldOut {
+struct FoldErrors {
   double rmse = std::numeric_limits<double>::quiet_NaN();  ///< infinite if a fold could not be fitted
   std::vector<double> folds;                               ///< root mean square of each fold; empty if none
+};
+struct HeldOut {
+  FoldErrors fitted;
+  FoldErrors rendered;  ///< nothing where nothing renders
 };
 
 /// Trains on all samples of positive weight but those of one fold, and judges by these, fold by fold.
 /// Nothing where fewer than two folds are left.
 [[nodiscard]] HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on,
-                               const Samples& samples, const Weights& weights, std::size_t threads);
+                               const Samples& samples, const Weights& weights, std::size_t threads,
+                               const decltype(FitOptions::render)& render = {});
 
 /// Mean difference of the folds' mean squares, and its standard error; 0 where they cannot be paired.
 struct Paired {
@@ -28,6 +33,6 @@ struct Paired {
 [[nodiscard]] Paired paired(const std::vector<double>& folds, const std::vector<double>& others);
 
 /// Standard error of the root of the mean square, by the spread from fold to fold; NaN for fewer than two.
-[[nodiscard]] double standard_error(const HeldOut& errors);
+[[nodiscard]] double standard_error(const FoldErrors& errors);
 
 }  // namespace kerf::fitting

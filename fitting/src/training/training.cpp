@@ -111,11 +111,12 @@ double bic_of(const Size& size, double independent_samples) {
 }
 
 bool pays(const Size& larger, const Size& smaller) {
-  if (std::isfinite(larger.errors.rmse) && std::isfinite(smaller.errors.rmse)) {
-    const Paired gain = paired(smaller.errors.folds, larger.errors.folds);
-    return larger.errors.rmse < worth_one_more * smaller.errors.rmse && gain.mean > gain.std_error;
+  if (std::isfinite(larger.errors.fitted.rmse) && std::isfinite(smaller.errors.fitted.rmse)) {
+    const Paired gain = paired(smaller.errors.fitted.folds, larger.errors.fitted.folds);
+    return larger.errors.fitted.rmse < worth_one_more * smaller.errors.fitted.rmse &&
+           gain.mean > gain.std_error;
   }
-  if (!std::isnan(larger.errors.rmse)) return std::isfinite(larger.errors.rmse);
+  if (!std::isnan(larger.errors.fitted.rmse)) return std::isfinite(larger.errors.fitted.rmse);
   const auto worth = [](const Size& size) {
     return static_cast<double>(size.count) / std::max(1.0, size.law.correlation_time);
   };
@@ -162,6 +163,18 @@ Trained train_growing(std::string_view model, const FitOptions& options, const S
 
 std::vector<double> residuals_of(const Problem& problem, const Values& values, const Samples& samples) {
   std::vector<double> residuals = rendered(problem, values, samples);
+  for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
+  return residuals;
+}
+
+std::vector<double> rendered_residuals(const Problem& problem, const Values& values, const Samples& samples,
+                                       const decltype(FitOptions::render)& render) {
+  std::vector<double> residuals;
+  if (!render) return residuals;
+  for (std::size_t run = 0; run < samples.runs.size(); ++run) {
+    const auto part = render(models::Law::make(problem.model, values[run], problem.law_options), run);
+    residuals.insert(residuals.end(), part.begin(), part.end());
+  }
   for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
   return residuals;
 }

@@ -24,6 +24,11 @@ struct Trained {
                             const Weights& seen, double function_tolerance = 1e-12);
 inline constexpr double of_a_fold = 1e-8;  ///< such a tolerance, where only an error is asked for
 
+/// What a law leaves of the force of each sample as a loop renders it; nothing where nothing renders it.
+[[nodiscard]] std::vector<double> rendered_residuals(const Problem& problem, const Values& values,
+                                                     const Samples& samples,
+                                                     const decltype(FitOptions::render)& render);
+
 /// What a law leaves of the force of each sample.
 [[nodiscard]] std::vector<double> residuals_of(const Problem& problem, const Values& values,
                                                const Samples& samples);

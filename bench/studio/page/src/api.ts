@@ -231,6 +231,8 @@ export interface LawFit {
   r2: number;
   bic: number;
   cv_rmse: number | null;
+  cv_rmse_rendered?: number | null; // missing in files of earlier versions
+  blame?: string; // what is to blame for its error, where it is not within the JND
   jnd_fraction: number;
   correlation: { parameters: string[]; matrix: (number | null)[][] };
   converged: boolean;
@@ -284,6 +286,7 @@ export interface ChoiceCandidate {
   parameters: number;
   converged: boolean;
   held_out: number | null;
+  held_out_fitted?: number | null; // missing in files of earlier versions
   held_out_jnd: number | null;
   within_jnd: boolean;
   tick_us: number;
@@ -297,7 +300,7 @@ export interface ChoiceFile {
   device: string | null;
   jnd: number;
   held_out_by: string;
-  choice: { law: string | null; serves: boolean; in_doubt?: boolean; as_good: string | null; why: string };
+  choice: { law: string | null; serves: boolean; in_doubt?: boolean; as_good: string | null; why: string; blame?: string | null };
   force_unit?: string; // missing in files of earlier versions
   effects: { effect: string; verdict: string; why: string }[];
   candidates: ChoiceCandidate[];

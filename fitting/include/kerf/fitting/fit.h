@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +24,9 @@ struct Series {
   std::span<const double> force;         ///< resisting force [N]
   std::span<const std::uint32_t> cycle;  ///< cycle of each sample, 0 for none; empty if not segmented
   double noise_n = 0.0;                  ///< standard deviation of the force's noise; 0: not known [N]
+  /// Whether a sample counts: laws run through all samples, and are fitted to and judged by these. Empty:
+  /// all.
+  std::span<const std::uint8_t> counts;
 };
 
 /// What a residual r costs, in units of a scale s: r^2 (least squares), or less for those far off.
@@ -72,6 +77,9 @@ struct FitOptions {
   std::vector<double> breakpoints;     ///< inner knots of a piecewise law by hand, as penetrations
   std::vector<std::string> per_recording;             ///< parameters that each recording has of its own
   std::shared_ptr<SegmentedMemory> segmented_memory;  ///< none: curves are found anew each time
+  /// The force that a loop gives with a law at each sample of a recording, by its velocity and its latency;
+  /// none: laws are judged as fitted.
+  std::function<std::vector<double>(const models::Law& law, std::size_t recording)> render;
 };
 
 /// A parameter with its uncertainty. A parameter that was not searched (the ends of a piecewise law's knots)
@@ -96,27 +104,37 @@ struct Profile {
   double upper = 0.0;
 };
 
+/// Errors of a law as a loop renders it [N]; NaN as those of the law as fitted, and where nothing renders it.
+struct AsRendered {
+  double rmse = std::numeric_limits<double>::quiet_NaN();
+  double test_rmse = std::numeric_limits<double>::quiet_NaN();
+  double cv_rmse = std::numeric_limits<double>::quiet_NaN();
+  double cv_std_error = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> cv_folds;
+};
+
 struct FitResult {
   std::string model;
   models::Options law_options;
   std::vector<Estimate> parameters;  ///< of the first recording, where some are each recording's own
   std::vector<Estimate> others;      ///< those of the further recordings' own
   std::size_t free_parameters = 0;
-  std::size_t samples = 0;
-  double rmse = 0.0;     ///< [N]
-  double max_abs = 0.0;  ///< [N]
+  std::size_t samples = 0;  ///< that count, those of the test too
+  double rmse = 0.0;        ///< [N]
+  double max_abs = 0.0;     ///< [N]
   double r2 = 0.0;
-  double effective_samples = 0.0;   ///< n_e, independent ones that the samples are worth: weigh_information()
-  double aic = 0.0;                 ///< n_e ln(RSS/n) + 2 (p + 1)
-  double aicc = 0.0;                ///< AIC + 2 (p + 1) (p + 2) / (n_e - p - 2); infinite for n_e <= p + 2
-  double bic = 0.0;                 ///< n_e ln(RSS/n) + (p + 1) ln n_e
-  double cv_rmse = 0.0;             ///< on held-out cycles [N]; NaN if not asked for
-  double cv_std_error = 0.0;        ///< of cv_rmse, by the spread from fold to fold [N]; NaN as that is
-  std::vector<double> cv_folds;     ///< error on each fold that was held out [N]; empty as cv_rmse is NaN
-  double test_rmse = 0.0;           ///< on the share that no fit saw [N]; NaN if none
-  double jnd_fraction = 0.0;        ///< share of samples whose error a person could feel
-  double correlation_time = 1.0;    ///< of the residuals, in samples; the intervals allow for it
-  std::vector<double> correlation;  ///< matrix of the searched parameters, row by row; empty for tables
+  double effective_samples = 0.0;  ///< n_e, independent ones that the samples are worth: weigh_information()
+  double aic = 0.0;                ///< n_e ln(RSS/n) + 2 (p + 1)
+  double aicc = 0.0;               ///< AIC + 2 (p + 1) (p + 2) / (n_e - p - 2); infinite for n_e <= p + 2
+  double bic = 0.0;                ///< n_e ln(RSS/n) + (p + 1) ln n_e
+  double cv_rmse = 0.0;            ///< on held-out cycles [N]; NaN if not asked for
+  double cv_std_error = 0.0;       ///< of cv_rmse, by the spread from fold to fold [N]; NaN as that is
+  std::vector<double> cv_folds;    ///< error on each fold that was held out [N]; empty as cv_rmse is NaN
+  AsRendered rendered;
+  double test_rmse = 0.0;             ///< on the share that no fit saw [N]; NaN if none
+  double jnd_fraction = 0.0;          ///< share of samples whose error a person could feel
+  double correlation_time = 1.0;      ///< of the residuals, in samples; the intervals allow for it
+  std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
   std::vector<std::string> searched;  ///< their names, in the order of that matrix
   std::vector<Profile> profiles;
   std::size_t undetermined_arms = 0;  ///< that the data do not tell from none: a simpler law says as much
@@ -129,6 +147,11 @@ struct FitResult {
   /// It converged, and not to something that the mean of the force explains better: what does is no answer,
   /// however it compares with others.
   [[nodiscard]] bool can_be_chosen() const noexcept { return converged && r2 >= 0.0; }
+
+  /// What verdicts go by: as rendered where something renders it, else as fitted.
+  [[nodiscard]] double held_out_rmse() const noexcept;
+  [[nodiscard]] double held_out_test() const noexcept;
+  [[nodiscard]] const std::vector<double>& held_out_folds() const noexcept;
 
   /// Takes the information criteria by a number of independent samples, p the free parameters: neighbours at
   /// 1 kHz say nearly the same, and by their number the richest law always wins. A fit sets them by its own
@@ -164,6 +187,9 @@ void check_model(std::string_view model);
 [[nodiscard]] FitResult fit(std::string_view model, std::span<const Series> recordings,
                             const FitOptions& options = {});
 [[nodiscard]] FitResult fit(std::string_view model, const Series& series, const FitOptions& options = {});
+
+/// Root mean square of the force of the samples that count: the JND of a recording is taken there [N].
+[[nodiscard]] double rms_of(const Series& series);
 
 /// Root mean square error of the straight line of force over penetration: what any law has to beat [N].
 [[nodiscard]] double line_rmse(const Series& series);

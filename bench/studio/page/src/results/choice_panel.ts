@@ -91,6 +91,7 @@ export class ChoicePanel {
     this.root.replaceChildren(
       head,
       element("p", { class: of.choice.serves ? "" : "wrong" }, of.choice.why),
+      of.choice.blame ? element("p", {}, `What is to blame: ${of.choice.blame}.`) : "",
       element(
         "p",
         { class: "quiet" },

@@ -36,6 +36,7 @@ export class FitPage {
   ) {
     const of = fit.recordings[0];
     const unit = fit.force_unit ?? "N";
+    const blamed = fit.fits.find((it) => it.model === fit.choice.model)?.blame;
     this.recording = recordingsFor(workspace, of?.name ?? "")[0]?.id ?? "";
     this.table = new FitTable(fit, (law) => this.look(law));
     const refused = fit.refused.map((it) => `${it.model}: ${it.why}`);
@@ -47,7 +48,7 @@ export class FitPage {
         { class: "quiet" },
         `${of?.name ?? ""}, axis ${of?.axis ?? ""}: ${fit.samples} samples. ` +
           `JND ${withUnit(fit.jnd, unit)}; a straight line leaves ${withUnit(fit.line_rmse, unit)}. ` +
-          "Errors are over every row; the segment editor's are over the averaged cycle, without what cycles differ by.",
+          "Errors are over every row in contact; the segment editor's are over the averaged cycle, without what cycles differ by.",
       ),
       this.table.root,
       element(
@@ -56,6 +57,7 @@ export class FitPage {
         element("strong", {}, fit.choice.model ? `Choice: ${fit.choice.model}. ` : "No choice. "),
         fit.choice.why,
       ),
+      blamed ? element("p", {}, element("strong", {}, "What is to blame: "), `${blamed}.`) : null,
       list("Warnings", fit.warnings, "warnings"),
       list(`${refused.length} laws could not be fitted`, refused),
       element("p", {}, element("a", { href: "#/fits" }, "All fits")),

@@ -6,16 +6,16 @@ import { intervalBar, intervalOf, reachOf } from "./interval_bar";
 const maxShown = 40;
 const entangled = 0.95; // correlations beyond it are told
 
-/** What a law errs by where it was not fitted; without folds, where it was. */
+/** What a law errs by where it was not fitted, as a loop renders it; without folds, where it was. */
 export function errorOf(fit: LawFit): number {
-  return fit.cv_rmse ?? fit.rmse;
+  return fit.cv_rmse_rendered ?? fit.cv_rmse ?? fit.rmse;
 }
 
 /** What is said of the law that was chosen: it serves only where its error on held-out data is within the JND. */
 export function choiceMark(file: FitFile): string {
   const chosen = file.fits.find((it) => it.model === file.choice.model);
   if (!chosen) return "";
-  const within = file.choice.within_jnd ?? (chosen.cv_rmse === null ? null : chosen.cv_rmse <= file.jnd);
+  const within = file.choice.within_jnd ?? (chosen.cv_rmse === null ? null : errorOf(chosen) <= file.jnd);
   if (within === null) return "least BIC, nothing held out";
   return within ? "simplest within the JND" : "as good as the best, not within the JND";
 }
@@ -50,6 +50,7 @@ export class FitTable {
         cell(String(fit.free_parameters)),
         cell(withUnit(fit.rmse, unit)),
         cell(withUnit(fit.cv_rmse, unit)),
+        cell(withUnit(fit.cv_rmse_rendered, unit)),
         cell(plain(errorOf(fit) / file.jnd, 2)),
         cell(fit.bic.toFixed(0).replace("-", "−")),
         element("td", {}, marks.join(", ")),
@@ -75,6 +76,7 @@ export class FitTable {
             head("free"),
             head("error"),
             head("held out"),
+            head("as rendered"),
             head("in JNDs"),
             head("BIC"),
             head("", false),

@@ -1,0 +1,233 @@
+#include "kerf/fitting/floor.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include <boost/math/statistics/univariate_statistics.hpp>
+
+#include "floor/force_map.h"
+#include "samples.h"
+
+namespace kerf::fitting {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr std::size_t most_samples = 50000;  ///< more say nothing that these do not
+constexpr double deviation_of_mad = 1.4826;
+constexpr std::array<std::size_t, 6> curve_bins{8, 16, 32, 64, 128, 256};
+constexpr std::array<std::size_t, 3> surface_bins{4, 8, 16};
+
+/// A sample that counts.
+struct Point {
+  double x = 0.0;
+  double v = 0.0;
+  double force = 0.0;
+  std::size_t fold = 0;
+};
+
+struct Points {
+  std::vector<Point> all;
+  std::size_t folds = 0;
+  double least = 0.0;
+  double most = 0.0;
+  std::vector<double> velocities;  ///< sorted
+};
+
+Points points_of(const Samples& samples) {
+  Points points{.folds = samples.folds, .least = samples.least, .most = samples.most};
+  const auto is_held_out = [&](std::size_t i) {
+    return samples.counts[i] != 0 && samples.fold[i] < samples.folds;
+  };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) count += is_held_out(i) ? 1 : 0;
+  const std::size_t step = std::max<std::size_t>(1, count / most_samples);
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!is_held_out(i) || place++ % step != 0) continue;
+    points.all.push_back({.x = samples.motion[i].penetration,
+                          .v = samples.motion[i].velocity,
+                          .force = samples.force[i],
+                          .fold = samples.fold[i]});
+    points.velocities.push_back(samples.motion[i].velocity);
+  }
+  std::ranges::sort(points.velocities);
+  return points;
+}
+
+/// A map of the force, as fine as it says; no surface for 0 rows.
+struct Fineness {
+  std::size_t curve = 0;
+  bool with_slopes = false;
+  std::size_t surface = 0;
+  std::size_t rows = 0;
+};
+
+std::vector<double> quantile_borders(const std::vector<double>& sorted, std::size_t rows) {
+  std::vector<double> borders;
+  for (std::size_t row = 1; row < rows; ++row) borders.push_back(sorted[row * sorted.size() / rows]);
+  return borders;
+}
+
+/// Squares that a map leaves of one fold, trained on the folds that it is shown.
+template <typename Shown>
+double squares_left(const Points& points, const Fineness& fine, std::size_t held, Shown&& shown) {
+  std::array<BinnedCurve, 2> curve{BinnedCurve(points.least, points.most, fine.curve, fine.with_slopes),
+                                   BinnedCurve(points.least, points.most, fine.curve, fine.with_slopes)};
+  const auto of_direction = [&](const Point& point) -> BinnedCurve& { return curve[point.v < 0.0 ? 1 : 0]; };
+  for (const Point& point : points.all) {
+    if (shown(point.fold)) of_direction(point).add(point.x, point.v, point.force);
+  }
+  for (BinnedCurve& one : curve) one.settle();
+  BinnedSurface surface(points.least, points.most, std::max<std::size_t>(1, fine.surface),
+                        quantile_borders(points.velocities, std::max<std::size_t>(2, fine.rows)));
+  if (fine.rows > 0) {
+    for (const Point& point : points.all) {
+      if (shown(point.fold))
+        surface.add(point.x, point.v, point.force - of_direction(point).at(point.x, point.v));
+    }
+    surface.settle();
+  }
+  double squares = 0.0;
+  for (const Point& point : points.all) {
+    if (point.fold != held) continue;
+    double left = point.force - of_direction(point).at(point.x, point.v);
+    if (fine.rows > 0) left -= surface.at(point.x, point.v);
+    squares += left * left;
+  }
+  return squares;
+}
+
+/// Error on all folds, each foretold by the other folds or by every other one of them.
+double error_of(const Points& points, const Fineness& fine, bool by_half) {
+  double squares = 0.0;
+  for (std::size_t held = 0; held < points.folds; ++held) {
+    squares += squares_left(points, fine, held, [&](std::size_t fold) {
+      const std::size_t place = (fold + points.folds - held) % points.folds;
+      return place != 0 && (!by_half || place % 2 == 1);
+    });
+  }
+  return std::sqrt(squares / static_cast<double>(points.all.size()));
+}
+
+/// sqrt(a) of e^2(n) = a + b/n, from the errors with all the other folds shown and with half of them.
+double with_any_number(double with_all, double with_half, std::size_t folds) {
+  const auto all = static_cast<double>(folds - 1);
+  const auto half = static_cast<double>(folds / 2);
+  if (!(all > half)) return with_all;
+  const double square = (all * with_all * with_all - half * with_half * with_half) / (all - half);
+  return std::sqrt(std::clamp(square, 0.0, with_all * with_all));
+}
+
+/// The usual step between neighbouring values where values come again and again; else 0.
+double quantum_of(std::vector<double> force) {
+  const std::size_t count = force.size();
+  std::ranges::sort(force);
+  force.erase(std::ranges::unique(force).begin(), force.end());
+  if (4 * force.size() > count || force.size() < 3) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < force.size(); ++i) steps.push_back(force[i] - force[i - 1]);
+  return boost::math::statistics::median(steps);
+}
+
+/// Of white noise the second difference has six times the variance; of motion that is sampled finely it has
+/// none.
+double noise_of_rows(const Samples& samples) {
+  std::vector<double> sizes;
+  for (const Run& run : samples.runs) {
+    for (std::size_t i = run.begin + 2; i < run.end; ++i)
+      sizes.push_back(std::abs(samples.force[i] - 2.0 * samples.force[i - 1] + samples.force[i - 2]));
+  }
+  return sizes.empty() ? 0.0 : deviation_of_mad * boost::math::statistics::median(sizes) / std::sqrt(6.0);
+}
+
+double squared(double value) { return value * value; }
+
+}  // namespace
+
+Floor floor_of(std::span<const Series> recordings, const FitOptions& options) {
+  const Samples samples =
+      check_series(recordings, {.folds = options.folds, .test_share = options.test_share});
+  Floor floor{.quantum_n = quantum_of(samples.force), .by_cycle = samples.has_cycles};
+  floor.noise_n = samples.runs.front().noise_n > 0.0
+                      ? samples.runs.front().noise_n
+                      : std::max(noise_of_rows(samples), floor.quantum_n / std::sqrt(12.0));
+  const Points points = points_of(samples);
+  if (points.folds < 2 || points.all.empty()) return floor;
+  floor.folds = points.folds;
+  Fineness best;
+  const auto try_all = [&](const std::vector<Fineness>& all) {
+    double least = infinite;
+    for (const Fineness& fine : all) {
+      const double error = error_of(points, fine, false);
+      if (error < least) best = fine;
+      least = std::min(least, error);
+    }
+    return least;
+  };
+  const auto pays = [&](std::vector<Fineness> all) {
+    all.insert(all.begin(), best);
+    return try_all(all);
+  };
+  std::vector<Fineness> curves;
+  for (const std::size_t bins : curve_bins) curves.push_back({.curve = bins});
+  floor.position_n = try_all(curves);
+  for (Fineness& fine : curves) fine.with_slopes = true;
+  (void)pays(curves);
+  std::vector<Fineness> surfaces;
+  for (const std::size_t bins : surface_bins) {
+    for (const std::size_t rows : surface_bins) {
+      surfaces.push_back(best);
+      surfaces.back().surface = bins;
+      surfaces.back().rows = rows;
+    }
+  }
+  floor.velocity_n = pays(surfaces);
+  floor.unlimited_n = with_any_number(floor.velocity_n, error_of(points, best, true), points.folds);
+  return floor;
+}
+
+ErrorParts parts_of(double rendered_n, double fitted_n, const Floor& floor) {
+  double left = squared(rendered_n);
+  const auto take_down_to = [&](double level_n) {
+    const double part = std::max(0.0, left - squared(level_n));
+    left -= part;
+    return std::sqrt(part);
+  };
+  ErrorParts parts;
+  parts.loop = take_down_to(fitted_n);
+  parts.law = take_down_to(floor.position_n);
+  parts.hand = take_down_to(floor.velocity_n);
+  parts.data = take_down_to(floor.unlimited_n);
+  parts.spread = take_down_to(floor.noise_n);
+  parts.sensor = std::sqrt(left);
+  return parts;
+}
+
+std::string blame(double rendered_n, double fitted_n, const Floor& floor, double jnd_n) {
+  if (floor.folds < 2 || !std::isfinite(rendered_n) || rendered_n <= jnd_n) return "";
+  const ErrorParts parts = parts_of(rendered_n, fitted_n, floor);
+  const std::string_view from = floor.by_cycle ? "from cycle to cycle" : "from one block of time to another";
+  std::array<std::pair<double, std::string>, 6> all{{{parts.loop, "the loop's filter and latency"},
+                                                     {parts.law, "the law"},
+                                                     {parts.hand, "the hand, whose speed changes"},
+                                                     {parts.data, "too little data"},
+                                                     {parts.spread, "the spread " + std::string(from)},
+                                                     {parts.sensor, "the sensor"}}};
+  std::ranges::stable_sort(all, std::greater<>{}, [](const auto& part) { return part.first; });
+  std::ostringstream words;
+  words.precision(2);
+  words << "of " << rendered_n / jnd_n << " JND, " << all[0].second << " is most to blame ("
+        << all[0].first / jnd_n << ")";
+  for (std::size_t i = 1; i < all.size() && all[i].first >= 0.1 * jnd_n; ++i)
+    words << (i == 1 ? ", beside " : ", ") << all[i].second << " (" << all[i].first / jnd_n << ")";
+  words << "; no function of position and velocity was found that errs by less than "
+        << floor.velocity_n / jnd_n << " JND";
+  return words.str();
+}
+
+}  // namespace kerf::fitting

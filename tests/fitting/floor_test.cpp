@@ -1,0 +1,171 @@
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/fitting/floor.h>
+
+#include "strokes.h"
+
+namespace kerf::fitting {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Strokes of 0.4, each with a speed and a gain of its own.
+struct Cycles {
+  std::vector<double> time_s, penetration, velocity, force;
+  std::vector<std::uint32_t> cycle;
+
+  template <typename Force>
+  Cycles(std::size_t count, double speed_spread, double gain_spread, double noise_n, Force&& of) {
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal(0.0, 1.0);
+    for (std::uint32_t number = 1; number <= count; ++number) {
+      const double rate = 4.0 * std::exp(speed_spread * normal(random));  // [rad/s]
+      const double gain = 1.0 + gain_spread * normal(random);
+      const auto rows = static_cast<std::size_t>(2.0 * M_PI / rate / 1e-3);
+      for (std::size_t i = 0; i < rows; ++i) {
+        const double phase = rate * 1e-3 * static_cast<double>(i);
+        time_s.push_back(1e-3 * static_cast<double>(time_s.size()));
+        penetration.push_back(0.2 * (1.0 - std::cos(phase)));
+        velocity.push_back(0.2 * rate * std::sin(phase));
+        force.push_back(gain * of(penetration.back(), velocity.back()) + noise_n * normal(random));
+        cycle.push_back(number);
+      }
+    }
+  }
+
+  [[nodiscard]] Floor floor() const {
+    const Series series{
+        .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = cycle};
+    return floor_of(std::span(&series, 1), {});
+  }
+};
+
+double spring(double x, double) { return 10.0 * x + 30.0 * x * x; }
+double loop(double x, double v) { return spring(x, v) * (v < 0.0 ? 0.5 : 1.0); }
+double damper(double x, double v) { return 10.0 * x + 1.5 * v; }
+
+TEST(Floor, OfAFunctionOfPositionAndDirectionIsTheNoise) {
+  for (const auto& law : {spring, loop}) {
+    const Floor floor = Cycles(20, 0.3, 0.0, 0.05, law).floor();
+    EXPECT_NEAR(floor.position_n, 0.05, 0.002);
+    EXPECT_NEAR(floor.velocity_n, 0.05, 0.002);
+    EXPECT_NEAR(floor.unlimited_n, 0.05, 0.002);
+    EXPECT_NEAR(floor.noise_n, 0.05, 0.002);
+    EXPECT_EQ(floor.quantum_n, 0.0);
+    EXPECT_TRUE(floor.by_cycle);
+  }
+}
+
+TEST(Floor, OfADamperMovedAtManySpeedsNeedsTheVelocity) {
+  const Floor floor = Cycles(20, 0.3, 0.0, 0.02, damper).floor();
+  EXPECT_GT(floor.position_n, 0.1) << "cycles differ by their speeds";
+  EXPECT_LT(floor.velocity_n, 0.5 * floor.position_n);
+  const std::string words = blame(floor.position_n, floor.position_n, floor, 0.05);
+  EXPECT_THAT(words, HasSubstr("the hand, whose speed changes is most to blame"));
+}
+
+TEST(Floor, OfCyclesThatDifferIsTheirSpread) {
+  const Cycles cycles(40, 0.0, 0.2, 0.02, spring);
+  const Floor floor = cycles.floor();
+  double squares = 0.0;  // of the force at a gain of 1
+  for (const double x : cycles.penetration) squares += std::pow(spring(x, 0.0), 2);
+  const double rms = std::sqrt(squares / static_cast<double>(cycles.penetration.size()));
+  EXPECT_NEAR(floor.position_n, 0.2 * rms, 0.04 * rms)
+      << "a standard deviation by 40 cycles is known to 11 %";
+  EXPECT_THAT(blame(floor.position_n, floor.position_n, floor, 0.05),
+              HasSubstr("the spread from cycle to cycle is most to blame"));
+}
+
+TEST(Floor, OfASensorInStepsKnowsTheStep) {
+  Cycles cycles(10, 0.0, 0.0, 0.0, spring);
+  for (double& force : cycles.force) force = 0.25 * std::round(force / 0.25);
+  const Floor floor = cycles.floor();
+  EXPECT_DOUBLE_EQ(floor.quantum_n, 0.25);
+  EXPECT_NEAR(floor.noise_n, 0.25 / std::sqrt(12.0), 1e-12) << "steps are rounded, so uniform";
+}
+
+TEST(Floor, GoesByTheSamplesThatCount) {
+  Cycles cycles(10, 0.3, 0.0, 0.05, spring);
+  std::vector<std::uint8_t> counts(cycles.force.size(), 1);
+  for (std::size_t i = 0; i < counts.size(); i += 3) {
+    counts[i] = 0;
+    cycles.force[i] = -100.0;
+  }
+  const Series series{.time_s = cycles.time_s,
+                      .penetration = cycles.penetration,
+                      .velocity = cycles.velocity,
+                      .force = cycles.force,
+                      .cycle = cycles.cycle,
+                      .noise_n = 0.05,
+                      .counts = counts};
+  EXPECT_NEAR(floor_of(std::span(&series, 1), {}).position_n, 0.05, 0.002);
+}
+
+TEST(ErrorParts, HaveSquaresThatAddUp) {
+  const Floor floor{
+      .position_n = 0.5, .velocity_n = 0.4, .unlimited_n = 0.3, .noise_n = 0.1, .by_cycle = true, .folds = 5};
+  const ErrorParts parts = parts_of(0.7, 0.6, floor);
+  EXPECT_NEAR(parts.loop, std::sqrt(0.49 - 0.36), 1e-12);
+  EXPECT_NEAR(parts.law, std::sqrt(0.36 - 0.25), 1e-12);
+  EXPECT_NEAR(parts.hand, std::sqrt(0.25 - 0.16), 1e-12);
+  EXPECT_NEAR(parts.data, std::sqrt(0.16 - 0.09), 1e-12);
+  EXPECT_NEAR(parts.spread, std::sqrt(0.09 - 0.01), 1e-12);
+  EXPECT_NEAR(parts.sensor, 0.1, 1e-12);
+  // A memory foretells more than any map: nothing is left for law, hand and too little data.
+  const ErrorParts better = parts_of(0.2, 0.2, floor);
+  EXPECT_EQ(better.law + better.hand + better.data, 0.0);
+  EXPECT_NEAR(better.spread, std::sqrt(0.04 - 0.01), 1e-12);
+  EXPECT_EQ(blame(0.7, 0.6, floor, 0.7), "") << "nobody feels it";
+  EXPECT_THAT(blame(0.7, 0.6, floor, 0.1), StartsWith("of 7 JND, the loop's filter and latency"));
+  EXPECT_EQ(blame(0.7, 0.6, {}, 0.1), "") << "nothing was held out";
+}
+
+TEST(Fit, RunsThroughSamplesThatDoNotCount) {
+  const models::Law kelvin = models::Law::make("kelvin", std::vector{20.0, 50.0, 5.0});
+  test::Strokes strokes(6000, 0.0, kelvin);
+  std::vector<std::uint8_t> counts(strokes.force.size(), 1);
+  for (std::size_t i = 2000; i < 2500; ++i) {
+    counts[i] = 0;
+    strokes.force[i] = 1e3;
+  }
+  Series series = strokes.series();
+  series.counts = counts;
+  const FitResult result = fit("kelvin", series);
+  EXPECT_NEAR(result.parameters[1].value, 50.0, 1e-4);
+  EXPECT_LT(result.cv_rmse, 1e-5);
+  EXPECT_LT(result.max_abs, 1e-5);
+  EXPECT_EQ(result.samples, 5500U);
+  EXPECT_LT(rms_of(series), 20.0);
+  EXPECT_LT(line_rmse(series), 20.0);
+}
+
+TEST(Fit, IsJudgedAsItIsRendered) {
+  const models::Law spring_law = models::Law::make("precontact", std::vector{30.0, 1e-6});
+  const test::Strokes strokes(6000, 0.0, spring_law);
+  FitOptions options;
+  options.render = [&](const models::Law& law, std::size_t) {
+    std::vector<double> late = strokes.force;  // half a newton too little, whatever the law
+    for (double& force : late) force -= 0.5;
+    (void)law;
+    return late;
+  };
+  const FitResult result = fit("kelvin", strokes.series(true), options);
+  EXPECT_LT(result.cv_rmse, 1e-3);
+  EXPECT_NEAR(result.rendered.rmse, 0.5, 1e-12);
+  EXPECT_NEAR(result.rendered.cv_rmse, 0.5, 1e-12);
+  EXPECT_EQ(result.held_out_rmse(), result.rendered.cv_rmse);
+  const std::vector results{result};
+  EXPECT_THAT(choose_simplest(results, strokes.series(true), options).why,
+              HasSubstr("(0.5 N) stays within the JND"));
+}
+
+}  // namespace
+}  // namespace kerf::fitting
