@@ -59,6 +59,13 @@ Choice choose_simplest(std::span<const FitResult> results, const Series& series,
   if (candidates.empty()) return no_choice;
   const double force_rms = rms_of(series);
   const double limit = options.jnd.at(force_rms);
+  if (force_rms <= limit) {
+    std::ostringstream why;
+    why << std::setprecision(3) << "no force at all is within the JND of " << limit << " "
+        << options.force_unit << " too, at a root mean square force of " << force_rms << " "
+        << options.force_unit << ": there is nothing to choose by";
+    return {.model = "", .why = why.str()};
+  }
   const auto best =
       *std::ranges::min_element(candidates, {}, [&](const FitResult* result) { return error(*result); });
   const bool felt = error(*best) > limit;

@@ -74,9 +74,7 @@ void warn_of_the_sensor(FitResult& result, const Samples& samples, const std::st
     count += force == largest ? 1 : 0;
     longest = std::max(longest, row);
   }
-  if (count == samples.size()) {
-    result.warnings.emplace_back("the force never changes: a sensor that is stuck reads like that");
-  } else if (longest >= 10 && 200 * count > samples.size()) {
+  if (longest >= 10 && 200 * count > samples.size()) {
     std::ostringstream warning;
     warning << "the force stands at its largest value, " << largest << " " << unit << ", for " << count
             << " samples, up to " << longest << " in a row: the sensor may be saturated there";
@@ -146,6 +144,10 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   warn_of_a_misfit(result);
   warn_of_pulling(result, residuals, samples);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
+  if (!result.converged && result.undetermined_arms > 0) {  // a valley without an end, and all of it as good
+    result.converged = true;
+    result.message = "the sum of squares stands still along an arm that is not determined";
+  }
   result.weigh_information(result.effective_samples / std::max(1.0, result.correlation_time));
   cross_validate(result, options, samples);
   return result;
@@ -214,9 +216,6 @@ FitResult fit(std::string_view model, std::span<const Series> recordings, const 
   check_model(model);
   const Samples samples =
       check_series(recordings, {.folds = options.folds, .test_share = options.test_share});
-  if (std::all_of(samples.force.begin(), samples.force.end(), [](double f) { return f == 0.0; })) {
-    throw std::invalid_argument("cannot fit: the force is zero throughout");
-  }
   FitResult result = fit_samples(model, samples, options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

@@ -21,6 +21,25 @@ void check_finite(std::span<const double> values, const char* name) {
   }
 }
 
+/// What a sensor that is stuck gives, and one that failed once: no law is told by them.
+void check_force(std::span<const double> force) {
+  constexpr std::size_t enough = 20;  // samples, of which one has no business to be more than all others
+  if (std::ranges::all_of(force, [&](double one) { return one == force.front(); })) {
+    if (force.front() == 0.0) refuse("the force is zero throughout");
+    std::ostringstream reason;
+    reason << "the force is " << force.front() << " throughout: a sensor that is stuck reads like that";
+    refuse(reason.str());
+  }
+  double squares = 0.0;
+  for (const double one : force) squares += one * one;
+  const auto largest = std::ranges::max_element(force, {}, [](double one) { return std::abs(one); });
+  if (force.size() < enough || 2.0 * *largest * *largest <= squares) return;
+  std::ostringstream reason;
+  reason << "the force of sample " << largest - force.begin() << ", " << *largest
+         << ", has more squares than all others together: leave it out";
+  refuse(reason.str());
+}
+
 void check_columns(const Series& series) {
   const std::size_t count = series.force.size();
   if (series.time_s.size() != count || series.penetration.size() != count ||
@@ -33,6 +52,7 @@ void check_columns(const Series& series) {
   check_finite(series.penetration, "penetration");
   check_finite(series.velocity, "velocity");
   check_finite(series.force, "force");
+  check_force(series.force);
   if (!(series.noise_n >= 0.0) || !std::isfinite(series.noise_n)) {
     refuse("the noise of a recording must be a positive number, or 0 where it is not known");
   }

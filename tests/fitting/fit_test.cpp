@@ -260,6 +260,14 @@ TEST(Choice, PassesOverALawThatTheDataDoNotTellFromASimplerOne) {
   EXPECT_EQ(choose_simplest(std::vector{two}, strokes.series(), {}).model, "maxwell") << "there is no other";
 }
 
+TEST(Choice, NamesNoLawWhereNoForceIsFelt) {
+  const Strokes idle(4000, 0.01, Law::make("precontact", std::vector{1e-9, 1e-6}));
+  const std::vector results{fit("friction", idle.series(true))};
+  const Choice choice = choose_simplest(results, idle.series(true), {});
+  EXPECT_EQ(choice.model, "");
+  EXPECT_THAT(choice.why, HasSubstr("no force at all is within the JND"));
+}
+
 TEST(Line, IsTheLeastThatALawHasToBeat) {
   const Law spring = Law::make("piecewise", std::vector{0.0, 0.4, 0.0, 2.0}, {{"segments", 1.0}});
   EXPECT_NEAR(line_rmse(Strokes(4000, 0.0, spring).series()), 0.0, 1e-12);

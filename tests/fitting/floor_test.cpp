@@ -109,6 +109,16 @@ TEST(Floor, GoesByTheSamplesThatCount) {
   EXPECT_NEAR(floor_of(std::span(&series, 1), {}).position_n, 0.05, 0.002);
 }
 
+TEST(Floor, IsNoHigherThanALawThatGoesOnWhereNoMapHasSeenAnything) {
+  Floor floor{.position_n = 0.5, .velocity_n = 0.4, .unlimited_n = 0.3, .folds = 5};
+  floor.lower_to(0.35);
+  EXPECT_EQ(floor.position_n, 0.35);
+  EXPECT_EQ(floor.velocity_n, 0.35);
+  EXPECT_EQ(floor.unlimited_n, 0.3);
+  floor.lower_to(std::nan(""));
+  EXPECT_EQ(floor.position_n, 0.35) << "a law that was not held out";
+}
+
 TEST(ErrorParts, HaveSquaresThatAddUp) {
   const Floor floor{
       .position_n = 0.5, .velocity_n = 0.4, .unlimited_n = 0.3, .noise_n = 0.1, .by_cycle = true, .folds = 5};

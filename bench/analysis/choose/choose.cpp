@@ -77,6 +77,7 @@ class LawSelection {
     choice_.effects = judge_effects(all, choice_.taken, choice_.jnd_n);
     search_.finish();
     if (choice_.taken) {
+      for (const Candidate& one : all) choice_.floor->lower_to(one.fitted_n);
       const Candidate& taken = all[*choice_.taken];
       choice_.blame = fitting::blame(taken.error_n, taken.fitted_n, *choice_.floor, choice_.jnd_n);
       fit_with_intervals(all[*choice_.taken]);
@@ -112,6 +113,11 @@ class LawSelection {
     choice_.force_rms_n = fitting::rms_of(view);
     choice_.floor = fitting::floor_of(std::span(&view, 1), options_.fit);
     choice_.jnd_n = options_.fit.jnd.at(choice_.force_rms_n);
+    if (choice_.force_rms_n <= choice_.jnd_n)
+      throw std::invalid_argument(
+          fmt::format("no force at all is within the JND of {:.3g} {} too, at a root mean square force of "
+                      "{:.3g} {}: there is nothing to choose by (--threshold sets another JND)",
+                      choice_.jnd_n, choice_.force_unit, choice_.force_rms_n, choice_.force_unit));
     const double duration_s = series.time_s.back() - series.time_s.front();
     const auto periods = static_cast<double>(std::max<std::size_t>(series.time_s.size() - 1, 1));
     path_ = ticks_at(1.0 / std::max(1e-6, duration_s / periods), series.force.size());

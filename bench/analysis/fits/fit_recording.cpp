@@ -273,7 +273,10 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
   const fitting::Series pool = fitted_view(sources.pool);
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = options.fit.jnd.at(fitting::rms_of(pool));
-  if (options.floor) fit.floor = fitting::floor_of(sources.views(), fit.settings);
+  if (options.floor) {
+    fit.floor = fitting::floor_of(sources.views(), fit.settings);
+    for (const FittedLaw& law : fit.laws) fit.floor->lower_to(law.result.cv_rmse);
+  }
   fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);
   return fit;
 }

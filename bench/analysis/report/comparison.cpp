@@ -117,8 +117,7 @@ Chart comparison_chart(const json& fits, const std::string& unit) {
     jnd.label = "what a person feels (JND)";
   }
   if (fits.contains("floor") && fits.at("floor").at("velocity").is_number())
-    chart.vertical.push_back(
-        {.at = fits.at("floor").at("velocity").get<double>(), .label = "best map of x, v"});
+    chart.vertical.push_back({.at = fits.at("floor").at("velocity").get<double>(), .label = "floor"});
   scale(chart);
   chart.y_range = {-0.6, rows + 1.2};
   chart.height_px = 110 + 24 * static_cast<int>(laws.size() + 2);

@@ -194,8 +194,8 @@ std::string fit_section(const schema::Recording& recording, std::size_t axis, co
         "<p class=\"soft\">Held out: each cycle (or blocks of time) predicted by a fit to the others. As "
         "rendered: by a loop, with its late velocity, its latency, and the rendering aids of laws that have "
         "branches; the choice goes by that. Outside JND: share of samples whose error a person could feel. "
-        "Errors are over the rows in contact unless all were asked for. Best map of x, v: no function of "
-        "penetration and velocity was found that errs by less on held-out data.</p>\n";
+        "Errors are over the rows in contact unless all were asked for. Floor: no map of penetration "
+        "and velocity and no law was found that errs by less on held-out data, as fitted.</p>\n";
     html += html_figure(draw(comparison_chart(fits, view.force_unit)));
     if (view.shown < view.traces.size())
       html +=

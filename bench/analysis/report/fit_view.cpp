@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "html/html.h"
 #include "recordings/axis_series.h"
 
 namespace kerf::bench {

@@ -63,9 +63,9 @@ void say_parameters(const RecordingFit& fit, const FittedLaw& law, Context& cont
 void say_floor(const RecordingFit& fit, Context& context) {
   if (!fit.floor || fit.floor->folds < 2) return;
   const auto of_law = [&](double error) { return fmt::format("{:.4f}", error); };
-  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "best map of x, +-", "", "", "", "",
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "floor of x, +-", "", "", "", "",
                           of_law(fit.floor->position_n)));
-  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "best map of x, v", "", "", "", "",
+  context.say(fmt::format("  {:17} {:>4} {:>9} {:>9} {:>7} {:>9}", "floor of x, v", "", "", "", "",
                           of_law(fit.floor->velocity_n)));
 }
 

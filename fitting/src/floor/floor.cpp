@@ -117,7 +117,8 @@ double error_of(const Points& points, const Fineness& fine, bool by_half) {
 /// sqrt(a) of e^2(n) = a + b/n, from the errors with all the other folds shown and with half of them.
 double with_any_number(double with_all, double with_half, std::size_t folds) {
   const auto all = static_cast<double>(folds - 1);
-  const auto half = static_cast<double>(folds / 2);
+  const std::size_t other = folds / 2;
+  const auto half = static_cast<double>(other);
   if (!(all > half)) return with_all;
   const double square = (all * with_all * with_all - half * with_half * with_half) / (all - half);
   return std::sqrt(std::clamp(square, 0.0, with_all * with_all));
@@ -127,7 +128,7 @@ double with_any_number(double with_all, double with_half, std::size_t folds) {
 double quantum_of(std::vector<double> force) {
   const std::size_t count = force.size();
   std::ranges::sort(force);
-  force.erase(std::ranges::unique(force).begin(), force.end());
+  force.erase(std::unique(force.begin(), force.end()), force.end());
   if (4 * force.size() > count || force.size() < 3) return 0.0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < force.size(); ++i) steps.push_back(force[i] - force[i - 1]);
@@ -191,6 +192,10 @@ Floor floor_of(std::span<const Series> recordings, const FitOptions& options) {
   return floor;
 }
 
+void Floor::lower_to(double error_n) noexcept {
+  for (double* level : {&position_n, &velocity_n, &unlimited_n}) *level = std::min(*level, error_n);
+}
+
 ErrorParts parts_of(double rendered_n, double fitted_n, const Floor& floor) {
   double left = squared(rendered_n);
   const auto take_down_to = [&](double level_n) {
@@ -225,8 +230,7 @@ std::string blame(double rendered_n, double fitted_n, const Floor& floor, double
         << all[0].first / jnd_n << ")";
   for (std::size_t i = 1; i < all.size() && all[i].first >= 0.1 * jnd_n; ++i)
     words << (i == 1 ? ", beside " : ", ") << all[i].second << " (" << all[i].first / jnd_n << ")";
-  words << "; no function of position and velocity was found that errs by less than "
-        << floor.velocity_n / jnd_n << " JND";
+  words << "; nothing that was tried errs by less than " << floor.velocity_n / jnd_n << " JND";
   return words.str();
 }
 

@@ -53,7 +53,7 @@ class Lines {
     const double end = grid_.places[to];
     if (!(end - begin >= least_gap)) return infinite;
     for (std::size_t branch = 0; branch < branches_; ++branch) {
-      if (until_[branch][to] - before_[branch][from] < grid_.fewest_points) return infinite;
+      if (!points_.branches[branch].supports(begin, end, grid_.fewest_points)) return infinite;
     }
     double sum = 0.0;
     for (std::size_t branch = 0; branch < branches_; ++branch) {

@@ -113,7 +113,7 @@ bool allowed(const Points& points, const std::vector<double>& knots, std::size_t
   }
   return std::all_of(points.branches.begin(), points.branches.end(), [&](const Branch& branch) {
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-      if (branch.between(knots[i], knots[i + 1]) < fewest_points) return false;
+      if (!branch.supports(knots[i], knots[i + 1], fewest_points)) return false;
     }
     return true;
   });

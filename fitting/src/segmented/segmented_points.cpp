@@ -12,6 +12,8 @@
 namespace kerf::fitting::segmented {
 namespace {
 
+constexpr double one_position = 1e-6;  ///< of the range: a line that rests on less says nothing
+
 constexpr std::size_t leaf_points = 32;
 
 void check(const Curve& curve) {
@@ -91,6 +93,13 @@ std::size_t Branch::between(double from, double to) const noexcept {
   std::size_t end = before(to);
   while (end < x_.size() && x_[end] == to) ++end;
   return end - before(from);
+}
+
+bool Branch::supports(double from, double to, std::size_t fewest) const noexcept {
+  const std::size_t count = between(from, to);
+  if (count < fewest || count == 0) return count >= fewest;
+  const std::size_t first = before(from);
+  return fewest < 2 || x_[first + count - 1] - x_[first] >= one_position;
 }
 
 Moments Branch::leaf(std::size_t first, std::size_t last) const noexcept {

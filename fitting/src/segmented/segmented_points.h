@@ -55,6 +55,9 @@ class Branch {
   [[nodiscard]] std::size_t before(double position) const noexcept;
   /// How many points lie from one position to another, both ends included.
   [[nodiscard]] std::size_t between(double from, double to) const noexcept;
+  /// Whether a line may rest on what lies from one position to another: so many points, and not all of them
+  /// at one position where it is more than one. An encoder visits the same positions again and again.
+  [[nodiscard]] bool supports(double from, double to, std::size_t fewest) const noexcept;
   [[nodiscard]] Moments range(std::size_t first, std::size_t last) const noexcept;
   /// Sum of squares about the polygon, point by point.
   [[nodiscard]] double error(const std::vector<double>& knots, const std::vector<double>& force) const;

@@ -300,7 +300,14 @@ export interface ChoiceFile {
   device: string | null;
   jnd: number;
   held_out_by: string;
-  choice: { law: string | null; serves: boolean; in_doubt?: boolean; as_good: string | null; why: string; blame?: string | null };
+  choice: {
+    law: string | null;
+    serves: boolean;
+    in_doubt?: boolean;
+    as_good: string | null;
+    why: string;
+    blame?: string | null;
+  };
   force_unit?: string; // missing in files of earlier versions
   effects: { effect: string; verdict: string; why: string }[];
   candidates: ChoiceCandidate[];

@@ -18,8 +18,7 @@ namespace kerf::fitting {
 /// of penetration and velocity of what that leaves (4 to 16 by 4 to 16 bins, velocities by their quantiles),
 /// where it pays. With n cycles shown, e^2(n) = a + b/n: b is what maps of few cycles know badly, and sqrt(a)
 /// = `unlimited_n` would be left of ever so many cycles; taken from all and from half of the training folds.
-/// A map is chosen by the folds that it is judged by, so that these floors are rather too low; a law with a
-/// memory may lie below them.
+/// A map is chosen by the folds that it is judged by, so that these floors are rather too low.
 struct Floor {
   double position_n = 0.0;
   double velocity_n = 0.0;   ///< no more than position_n
@@ -28,6 +27,9 @@ struct Floor {
   double quantum_n = 0.0;    ///< smallest step of the force; 0: none is seen
   bool by_cycle = false;     ///< else by blocks of time
   std::size_t folds = 0;     ///< 0: nothing can be held out, and only noise and quantum are known
+
+  /// A law that errs less on these folds than every map: it goes on where maps have seen nothing.
+  void lower_to(double error_n) noexcept;
 };
 
 /// @throws std::invalid_argument if the series cannot be fitted at all.

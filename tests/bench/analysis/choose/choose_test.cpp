@@ -258,6 +258,9 @@ TEST(Choose, RefusesWhatHasNoForceNoAxisOrNoFolds) {
   EXPECT_THAT(refusal(small()), HasSubstr("no force"));
   recording.force_measured.assign(recording.rows(), 0.0);
   EXPECT_THAT(refusal(small()), HasSubstr("zero throughout"));
+  for (std::size_t row = 0; row < recording.rows(); ++row)
+    recording.force_measured[row] = 0.004 * std::sin(static_cast<double>(row));
+  EXPECT_THAT(refusal(small()), HasSubstr("nothing to choose by")) << "a force of zero is within the JND too";
 }
 
 TEST(EffectsThatMatter, AreThoseOfTheLawThatIsKnown) {

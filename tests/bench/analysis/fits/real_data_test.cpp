@@ -9,6 +9,7 @@
 
 #include <kerf/fitting/fit.h>
 
+#include "fits/fit_recording.h"
 #include "fits/fit_series.h"
 #include "import/import.h"
 #include "laws/render.h"
@@ -223,6 +224,7 @@ TEST_F(RealGrasper, IsNotViscous) {
 
 // Whether a force that depends on the direction of motion (two straight lines closing, two opening) or one
 // that remembers where the punch was a moment ago foretells the cycles that were left out.
+// By all rows, and with the velocity in hindsight.
 TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
   const std::map<std::string, std::string> preferred{{"7_blank_slow_1819", "piecewise"},
                                                      {"8_blank_fast_1821", "kelvin"},
@@ -240,6 +242,23 @@ TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
     EXPECT_EQ(by_way < by_time ? "piecewise" : "kelvin", law) << name << ": " << by_way << " " << by_time;
     // Neither is good enough to be taken for the recording by a hand.
     EXPECT_GT(std::min(by_way, by_time), fitting::force_jnd.at(rms(series.force))) << name;
+  }
+}
+
+TEST_F(RealFit, OfAPunchBlamesTheSpreadFromCycleToCycle) {  // finding L4
+  for (const auto* name : {"7_blank_slow_1819", "8_blank_fast_1821", "9_meniscus_slow_1824",
+                           "11_meniscus_fast_1826", "15_skin_knee_lateral_slow_1900"}) {
+    const std::string file = std::string("meniscus/") + name + ".txt";
+    KERF_NEEDS_DATA(file);
+    auto punch = imported(file, "time=5[ms],position=4[deg],force=2[gf]");
+    punch.cycles = find_cycles(punch, {});
+    const RecordingFit fit = fit_recording(punch, {.models = {"hunt_crossley"}});
+    ASSERT_EQ(fit.laws.size(), 1U) << name;
+    EXPECT_THAT(fit.blame(fit.laws[0]), testing::HasSubstr("the spread from cycle to cycle is most to blame"))
+        << name;
+    EXPECT_LT(fit.recordings[0].counted, fit.recordings[0].samples / 2) << name << ": a tool put down";
+    // A sensor's steps of 7 mN are nothing beside it.
+    EXPECT_LT(fit.floor->noise_n, 0.01 * fit.floor->unlimited_n) << name;
   }
 }
 

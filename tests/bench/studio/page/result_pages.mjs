@@ -149,7 +149,10 @@ async function testChoice(page, studio) {
   expect((await page.textContent("section.choice h2")).endsWith(written.choice.law), "the law that was taken");
   expect((await page.textContent("section.choice")).includes(written.choice.why), "why it was taken");
   expectEqual(
-    await page.locator(".candidates td:nth-child(7)").filter({ hasText: /^taken$/ }).count(),
+    await page
+      .locator(".candidates td:nth-child(7)")
+      .filter({ hasText: /^taken$/ })
+      .count(),
     written.choice.serves ? 1 : 0,
     "a law is taken where it serves",
   );

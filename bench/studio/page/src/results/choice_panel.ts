@@ -75,11 +75,7 @@ export class ChoicePanel {
   private show(file: WorkspaceFile, of: ChoiceFile): void {
     const law = of.choice.law ? lawBeside(this.workspace, file, `${of.choice.law}.law.toml`) : undefined;
     const unit = of.force_unit ?? "N";
-    const head = element(
-      "div",
-      { class: "head" },
-      element("h2", {}, title(of)),
-    );
+    const head = element("div", { class: "head" }, element("h2", {}, title(of)));
     if (law) {
       const name = of.choice.law ?? law.name;
       head.append(
