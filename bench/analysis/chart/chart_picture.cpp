@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,8 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr double least_share_of_jnd = 1e-4;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double far_away = 10.0;     // times: what is no nearer would press all points into a corner
 constexpr double cheapest_us = 2e-3;  // below it a cost is what the clock can tell
 constexpr std::array law_colours{Colour::blue,   Colour::vermillion, Colour::green, Colour::purple,
                                  Colour::orange, Colour::sky,        Colour::grey,  Colour::yellow};
@@ -129,12 +132,15 @@ Chart chart_picture(const json& chart) {
                 .width_px = 1000,
                 .height_px = 620};
   Range errors{spots.jnd, spots.jnd};
-  Range costs{0.1, spots.tick_us};
+  Range costs{infinite, 0.0};
   for (const Spot& spot : spots.all) {
     errors = {std::min(errors.begin, spot.error), std::max(errors.end, spot.error)};
-    costs = {std::min(costs.begin, spot.cost_us), std::max(costs.end, spot.cost_us)};
+    costs = {std::min(costs.begin, spot.cost_us), std::max(costs.end, spot.rarely_us)};
   }
-  picture.x_range = {0.5 * errors.begin, 3.0 * errors.end};
+  const bool deadline_shown = 0.5 * spots.tick_us <= far_away * costs.end;
+  if (deadline_shown) costs.end = std::max(costs.end, spots.tick_us);
+  const bool narrow = errors.end < far_away * errors.begin;
+  picture.x_range = {(narrow ? 0.8 : 0.5) * errors.begin, (narrow ? 1.6 : 3.0) * errors.end};
   picture.y_range = {0.5 * costs.begin, 3.0 * costs.end};
   const auto has = [&](Stable stable) {
     return std::ranges::find(spots.all, stable, &Spot::stable) != spots.all.end();
@@ -151,9 +157,13 @@ Chart chart_picture(const json& chart) {
   add_marks(spots, Stable::no,
             {.label = "not stable", .colour = Colour::black, .mark = Mark::crosses, .width = 7.0}, picture);
   picture.vertical.push_back({.at = spots.jnd, .label = "JND", .label_after = true});
-  picture.horizontal.push_back(
-      {.at = spots.tick_us, .label = fmt::format("a tick at {:g} Hz", chart.at("rate_hz").get<double>())});
-  picture.horizontal.push_back({.at = 0.5 * spots.tick_us, .label = "half of it"});
+  const std::string tick = fmt::format("a tick at {:g} Hz", chart.at("rate_hz").get<double>());
+  if (deadline_shown) {
+    picture.horizontal.push_back({.at = spots.tick_us, .label = tick});
+    picture.horizontal.push_back({.at = 0.5 * spots.tick_us, .label = "half of it"});
+  } else {
+    picture.y_label += fmt::format("; {} has {:g}", tick, spots.tick_us);
+  }
   return picture;
 }
 

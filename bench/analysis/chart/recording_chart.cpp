@@ -45,6 +45,8 @@ FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options)
   fit.fit.law_options = plan.options;
   fit.fit.folds = options.folds;
   fit.fit.threads = options.threads;
+  fit.loop_rate_hz = options.rate_hz;
+  fit.floor = false;
   fit.fit.jnd = options.jnd;
   fit.fit.intervals = fitting::Intervals::white;
   return fit;
@@ -79,9 +81,10 @@ class RecordingChart {
 
   SpeedAccuracy run() {
     chart_.source = source_.name;
-    chart_.rate_hz = 1.0 / period_s_;
-    chart_.reference = options_.folds > 0 ? "held-out cycles, or blocks of time where there are none"
-                                          : "the recording itself, with nothing held out";
+    chart_.rate_hz = options_.rate_hz;
+    chart_.reference = options_.folds > 0
+                           ? "held-out cycles, or blocks of time where there are none, as rendered"
+                           : "the recording itself, with nothing held out, as rendered";
     const auto plans = fit_plans(options_.models);
     for (const FitPlan& plan : plans) {
       if (options_.stopped()) break;
@@ -110,17 +113,18 @@ class RecordingChart {
     if (fit.laws.empty()) return;
     const FittedLaw& fitted = fit.laws.front();
     chart_.jnd_n = fit.jnd_n;
-    const auto rendered_force = render(without_rendering_aids(fitted.file.law), series_);
-    ChartPoint point{.law = plan.model,
-                     .fidelity = plan.label,
-                     .parameters = fitted.result.free_parameters,
-                     .rate_hz = chart_.rate_hz,
-                     .cost = {},
-                     .error_n = options_.folds > 0 ? fitted.result.cv_rmse : fitted.result.rmse,
-                     .worst_n = difference(rendered_force, series_.force).largest_n,
-                     .axis = source_.recording->axes[source_.axis].name,
-                     .stability = {},
-                     .file = fitted.file};
+    const auto rendered_force = render(fitted.file.law, series_);
+    ChartPoint point{
+        .law = plan.model,
+        .fidelity = plan.label,
+        .parameters = fitted.result.free_parameters,
+        .rate_hz = chart_.rate_hz,
+        .cost = {},
+        .error_n = options_.folds > 0 ? fitted.result.held_out_rmse() : fitted.result.rendered.rmse,
+        .worst_n = difference(rendered_force, series_.force).largest_n,
+        .axis = source_.recording->axes[source_.axis].name,
+        .stability = {},
+        .file = fitted.file};
     if (!std::isfinite(point.error_n)) {
       chart_.notes.push_back(
           fmt::format("{} ({}) has no error on held-out data and is left out", plan.model, plan.label));
@@ -138,7 +142,7 @@ class RecordingChart {
       chart_.notes.push_back(fmt::format("{} ({}) in float: {}", plan.model, plan.label, error.what()));
       return;
     }
-    const auto in_single = render(without_rendering_aids(point.file.law), series_);
+    const auto in_single = render(point.file.law, series_);
     point.fidelity += ", float";
     point.error_n = std::hypot(point.error_n, difference(in_single, in_double).rms_n);
     finish(point, in_single);

@@ -47,17 +47,16 @@ void check(const ChartVerbArguments& arguments) {
   if (!arguments.scene.empty() && (!arguments.axis.empty() || arguments.no_folds)) {
     throw std::invalid_argument("--axis and --no-folds are for a recording, not for a scene");
   }
-  if (!arguments.recording.empty() && arguments.rate_hz > 0.0) {
-    throw std::invalid_argument("--rate is for a scene; a recording is charted at its own rate");
-  }
   for (const auto* name : names) {
     if (!arguments.output.empty()) require_output(fs::path(arguments.output) / name, arguments.force);
   }
 }
 
-SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, const ChartOptions& options) {
+SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, ChartOptions options) {
   const schema::Recording recording = read_whole_recording(arguments.recording);
   const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
+  const schema::Axis& axis = recording.axes[source.axis];
+  options.jnd = fitting::jnd_of(axis.force_unit, axis.lever);
   try {
     return chart_recording(source, options);
   } catch (const std::invalid_argument& error) {
@@ -151,7 +150,7 @@ void add_chart(CLI::App& app, Context& context) {
       .separated_by(',');
   verb.add_option("--axis", arguments->axis,
                   "Axis of the recording (default: that of its cycles, or the first)");
-  verb.add_option("--rate", arguments->rate_hz, "Rate of the loop for a scene (default: 1000) [Hz]")
+  verb.add_option("--rate", arguments->rate_hz, "Rate of the loop (default: 1000) [Hz]")
       .within(100.0, 10000.0);
   verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");
   verb.add_flag("--no-hold", arguments->no_hold,

@@ -50,8 +50,10 @@ std::string run_chart(Workspace& workspace, const ChartRequest& request, JobProg
   options.threads = usable_processors();
   options.stop = &progress.stop;
   options.done = &progress.done;
-  SpeedAccuracy chart =
-      chart_recording(charted(recording, request.recording.path.stem().string(), request.axis), options);
+  const FitSource source = charted(recording, request.recording.path.stem().string(), request.axis);
+  const schema::Axis& axis = recording.axes[source.axis];
+  options.jnd = fitting::jnd_of(axis.force_unit, axis.lever);
+  SpeedAccuracy chart = chart_recording(source, options);
   if (chart.stopped) throw std::runtime_error("stopped");
   chart.notes.emplace_back(
       "costs were measured beside a running studio, which makes their 99.9th percentiles larger than they "

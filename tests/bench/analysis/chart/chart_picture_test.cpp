@@ -40,7 +40,22 @@ TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
   EXPECT_EQ(curve(picture, "exponential").y[1], 1e-3 * chart["points"][5]["p50_ns"].get<double>());
   EXPECT_NE(curve(picture, "exponential").colour, curve(picture, "kelvin").colour);
   EXPECT_EQ(picture.vertical.at(0).at, chart["jnd_n"]);
-  EXPECT_NEAR(picture.horizontal.at(0).at, 5000.0, 1e-6);
+  EXPECT_TRUE(picture.horizontal.empty()) << "5 ms a tick would press points of 10 ns into a corner";
+  EXPECT_EQ(picture.y_label, "cost of a tick, median [us]; a tick at 200 Hz has 5000");
+}
+
+TEST(ChartPicture, ShowsTheDeadlineWhereALawComesNearIt) {
+  ordered_json chart = older_chart();
+  chart["points"][0]["p999_ns"] = 300e3;
+  const Chart picture = chart_picture(chart);
+  ASSERT_EQ(picture.horizontal.size(), 2U);
+  EXPECT_NEAR(picture.horizontal[0].at, 5000.0, 1e-6);
+  EXPECT_GT(picture.y_range.end, 5000.0);
+}
+
+TEST(ChartPicture, SpreadsItsPointsOverIt) {  // finding S23
+  const Chart picture = chart_picture(older_chart());
+  EXPECT_LT(picture.y_range.end / picture.y_range.begin, 1e3);
 }
 
 TEST(ChartPicture, LeadsTheFrontFromTheRightBorderDownItsPointsToTheUpper) {
