@@ -85,10 +85,10 @@ struct ScriptedPath {
                                         const ChartOptions& options);
 
 /// Every law that fits an axis of a recording, in every size: segments 1 to 12, tables of 2 to 256 points,
-/// arms 1 to 4, and each integrator. Errors are those on held-out cycles (blocks where there are none), over the
-/// rows in contact and as a loop at the chart's rate renders them (rendered_series.h): with the rendering aids
-/// that the cost has too. A law in single precision adds what its rounding does along the recording. Costs
-/// are those along the 4,000 rows of the recording with most contact.
+/// arms 1 to 4, and each integrator. Errors are those on held-out cycles (blocks where there are none), over
+/// the rows in contact and as a loop at the chart's rate renders them (rendered_series.h): with the rendering
+/// aids that the cost has too. A law in single precision adds what its rounding does along the recording.
+/// Costs are those along the 4,000 rows of the recording with most contact.
 /// @throws std::invalid_argument if no law can be fitted.
 [[nodiscard]] SpeedAccuracy chart_recording(const FitSource& source, const ChartOptions& options);
 

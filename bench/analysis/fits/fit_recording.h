@@ -23,7 +23,7 @@ struct FitRecordingOptions {
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   std::size_t segments = 5;                ///< of the piecewise law
   std::vector<std::string> law_options;    ///< NAME=VALUE, each for the laws that have it
-  Counted rows = Counted::contact;               ///< that count
+  Counted rows = Counted::contact;         ///< that count
   double loop_rate_hz = 1000.0;            ///< of the loop that errors as rendered are of
   bool floor = true;                       ///< also what is possible at all
   fitting::FitOptions fit;
@@ -75,9 +75,9 @@ struct RecordingFit {
   fitting::Choice choice;
   std::optional<fitting::Floor> floor;
   std::vector<std::string> warnings;
-  fitting::FitOptions settings;  ///< as asked for
-  Counted rows = Counted::contact;     ///< as asked for
-  double loop_rate_hz = 0.0;     ///< as asked for
+  fitting::FitOptions settings;     ///< as asked for
+  Counted rows = Counted::contact;  ///< as asked for
+  double loop_rate_hz = 0.0;        ///< as asked for
 
   [[nodiscard]] std::size_t samples() const;
   /// What is to blame for the error of a law, in one sentence; empty where nothing is.

@@ -14,8 +14,9 @@ namespace kerf::bench {
 /// from the law's own contact, without the rendering aids of laws with branches, as fits judge them.
 ///
 ///     time_s, smallest, largest       over time, in up to `columns` columns that keep the extremes
-///     rmse, worst, jnd_n              over the rows in contact (contact_rows.h), as in fits; the JND at their force
-///     penetration, mean, low, high    of the residual in 60 bins of penetration: mean and +- one standard
+///     rmse, worst, jnd_n              over the rows in contact (contact_rows.h), as in fits; the JND at
+///     their force penetration, mean, low, high    of the residual in 60 bins of penetration: mean and +- one
+///     standard
 ///                                     deviation; null where there are fewer than five rows
 ///     loop                            means of measured and law in the same bins, closing and opening apart
 ///

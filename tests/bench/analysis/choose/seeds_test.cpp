@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "choose/choose.h"
+#include "fits/contact_rows.h"
+#include "fits/fit_series.h"
+#include "fits/rendered_series.h"
 #include "known_cuts.h"
 #include "known_laws.h"
 
@@ -23,19 +26,40 @@ ChooseOptions quick() {
   return options;
 }
 
+/// Whether the known law itself, as a loop renders it, stays within the JND of what it made.
+bool can_be_rendered(const models::Law& law, const schema::Recording& recording) {
+  const fitting::Jnd jnd;
+  AxisSeries series = fit_series(recording, 0, contact_of(recording, 0));
+  (void)mark_contact(series, jnd.threshold);
+  const models::Law rendered =
+      models::Law::make(law.model(), law.values(), with_rendering_aids(law.options(), series));
+  AxisSeries left(series);
+  left.force = RenderedSeries(series, 1000.0).force(rendered);
+  for (std::size_t i = 0; i < left.force.size(); ++i) left.force[i] -= series.force[i];
+  return fitting::rms_of(fitted_view(left)) <= jnd.at(fitting::rms_of(fitted_view(series)));
+}
+
 TEST(ChooseOverSeeds, ExplainsAKnownLawByNoneThatIsRicher) {
   const auto known = test::known_laws();
   int wrong = 0;
+  int late = 0;
   std::string list;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     const test::KnownLaw& law = known[seed % known.size()];
-    const LawChoice choice = choose_law(cut_of(law.law, {.seed = seed}), quick(), go_on);
+    const schema::Recording cut = cut_of(law.law, {.seed = seed});
+    const LawChoice choice = choose_law(cut, quick(), go_on);
+    // A branch for each direction switches late: as rendered not even the law that made the data serves.
+    if (!choice.serves && !can_be_rendered(law.law, cut)) {
+      ++late;
+      continue;
+    }
     if (choice.serves && choice.candidates.at(*choice.taken).law.parameters <= law.parameters) continue;
     ++wrong;
     list += std::string(law.name) + ": " + choice.why + '\n';
   }
   RecordProperty("wrong", wrong);
   EXPECT_LE(wrong, 5) << list;
+  EXPECT_LE(late, 13) << "one of eight laws has two branches";
 }
 
 TEST(ChooseOverSeeds, ExplainsRelaxationByNoElasticLaw) {
