@@ -135,7 +135,8 @@ Chart chart_picture(const json& chart) {
   Range costs{infinite, 0.0};
   for (const Spot& spot : spots.all) {
     errors = {std::min(errors.begin, spot.error), std::max(errors.end, spot.error)};
-    costs = {std::min(costs.begin, spot.cost_us), std::max(costs.end, spot.rarely_us)};
+    costs = {std::min(costs.begin, spot.cost_us),
+             std::max(costs.end, spot.on_front ? spot.rarely_us : spot.cost_us)};
   }
   const bool deadline_shown = 0.5 * spots.tick_us <= far_away * costs.end;
   if (deadline_shown) costs.end = std::max(costs.end, spots.tick_us);

@@ -111,6 +111,21 @@ std::vector<Curve> curves_of(const Chart& chart) {
   return curves;
 }
 
+/// One number a decade is hardly any on a logarithmic axis of less than two: 1, 2 and 5 of each. None for a
+/// longer axis, or one whose range is not given.
+std::vector<NamedTick> ticks_of_few_decades(const Range& range) {
+  if (!(range.begin > 0.0 && range.begin < range.end && range.end < 100.0 * range.begin)) return {};
+  std::vector<NamedTick> ticks;
+  for (double decade = std::pow(10.0, std::floor(std::log10(range.begin))); decade <= range.end;
+       decade *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double at = factor * decade;
+      if (at >= range.begin && at <= range.end) ticks.push_back({.at = at, .name = fmt::format("{:g}", at)});
+    }
+  }
+  return ticks;
+}
+
 std::string ticks_of(char axis, const std::vector<NamedTick>& ticks) {
   if (ticks.empty()) return {};
   std::string script = fmt::format("set {}tics (", axis);
@@ -143,7 +158,11 @@ std::string script_of(const Chart& chart, const std::string& output) {
   const std::vector<Curve> curves = curves_of(chart);
   if (std::all_of(curves.begin(), curves.end(), [](const Curve& curve) { return curve.label.empty(); }))
     script += "unset key\nset rmargin 3\n";
-  script += ticks_of('x', chart.x_ticks) + ticks_of('y', chart.y_ticks);
+  const auto ticks = [](const std::vector<NamedTick>& given, bool logarithmic, const Range& range) {
+    return given.empty() && logarithmic ? ticks_of_few_decades(range) : given;
+  };
+  script += ticks_of('x', ticks(chart.x_ticks, chart.log_x, chart.x_range)) +
+            ticks_of('y', ticks(chart.y_ticks, chart.log_y, chart.y_range));
   for (const Band& band : chart.bands) {
     fmt::format_to(
         out,

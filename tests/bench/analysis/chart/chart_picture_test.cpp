@@ -46,7 +46,9 @@ TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
 
 TEST(ChartPicture, ShowsTheDeadlineWhereALawComesNearIt) {
   ordered_json chart = older_chart();
-  chart["points"][0]["p999_ns"] = 300e3;
+  chart["points"][0].update({{"p999_ns", 300e3}, {"on_front", false}});
+  EXPECT_TRUE(chart_picture(chart).horizontal.empty()) << "only the front's rare costs are drawn";
+  chart["points"][0]["on_front"] = true;
   const Chart picture = chart_picture(chart);
   ASSERT_EQ(picture.horizontal.size(), 2U);
   EXPECT_NEAR(picture.horizontal[0].at, 5000.0, 1e-6);

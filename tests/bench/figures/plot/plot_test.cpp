@@ -40,6 +40,15 @@ TEST(Plot, NamesTicksOnBothAxes) {
   EXPECT_THAT(svg, HasSubstr("subject 1"));
 }
 
+TEST(Plot, NumbersALogarithmicAxisOfOneDecadeByMoreThanItsEnds) {
+  const Chart narrow{.curves = {{.x = {1.3, 1.4}, .y = {1, 2}}}, .x_range = {0.15, 2.4}, .log_x = true};
+  const std::string svg = draw(narrow);
+  for (const auto* number : {"<text>0.2</text>", "<text>0.5</text>", "<text>1</text>", "<text>2</text>"})
+    EXPECT_THAT(svg, HasSubstr(number)) << number;
+  const Chart wide{.curves = {{.x = {1.3, 1.4}, .y = {1, 2}}}, .x_range = {0.15, 240.0}, .log_x = true};
+  EXPECT_THAT(draw(wide), AllOf(HasSubstr("<text>100</text>"), Not(HasSubstr("<text>0.5</text>"))));
+}
+
 TEST(Plot, DrawsRunsOfCellsOfOneColourAsOneRectangle) {
   Chart chart{.curves = {{.x = {0, 3}, .y = {0, 2}}},
               .cells = {.x_edges = {0, 1, 2, 3},
