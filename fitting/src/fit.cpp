@@ -103,6 +103,9 @@ void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, co
   if (share < noteworthy) return;
   std::ostringstream warning;
   warning << std::lround(100.0 * share) << " % of the samples pull, and this law only pushes";
+  const auto options = models::Law::options(result.model);
+  if (std::ranges::find(options, "bilateral", &models::OptionInfo::name) != options.end())
+    warning << "; with the option bilateral=true it pulls too";
   result.warnings.push_back(warning.str());
 }
 

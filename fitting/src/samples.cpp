@@ -139,6 +139,8 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     samples.force.insert(samples.force.end(), series.force.begin(), series.force.end());
     samples.counts.insert(samples.counts.end(), series.counts.begin(), series.counts.end());
     samples.counts.resize(samples.size(), 1);
+    samples.cycle.insert(samples.cycle.end(), series.cycle.begin(), series.cycle.end());
+    samples.cycle.resize(samples.size(), 0);
     samples.motion.reserve(samples.size());
     for (std::size_t i = 0; i < series.force.size(); ++i) {
       samples.motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
@@ -181,6 +183,7 @@ Samples thinned(const Samples& samples, std::size_t count) {
       few.period_s.push_back(std::abs(period_s - usual_s) < 1e-9 * usual_s ? usual_s : period_s);
       few.force.push_back(samples.force[i]);
       few.counts.push_back(samples.counts[i]);
+      few.cycle.push_back(samples.cycle[i]);
       few.fold.push_back(samples.fold[i]);
       period_s = 0.0;
     }

@@ -22,6 +22,7 @@ struct Samples {
   std::vector<double> period_s;  ///< time since the sample before
   std::vector<double> force;
   std::vector<std::uint8_t> counts;  ///< 0: a law only runs through it
+  std::vector<std::uint32_t> cycle;  ///< 0 for none
   std::vector<std::size_t> fold;     ///< held out in that fold of the cross-validation; no_fold: never
   std::vector<Run> runs;
   std::size_t folds = 0;

@@ -1,29 +1,74 @@
-"""How often the 95 % intervals cover the truth, over 500 simulated recordings a row."""
+"""How often the 95 % intervals hold what they should, over 2,000 simulated recordings a cell. A cell whose exact 99.9 %
+interval does not touch 93 to 97 % is repeated with ten times as many, drawn anew.
+"""
 
 import json
 import subprocess
 import tempfile
 
-TRIALS = 500
+from scipy.stats import beta
+
+TRIALS = 2000
+AGAIN = 10
 LEAST, MOST = 0.93, 0.97
+SECONDS = (2, 10)
+
+
+def exact(held, trials, level=0.999):
+    """Clopper and Pearson's interval of a share."""
+    tail = 0.5 * (1.0 - level)
+    lower = beta.ppf(tail, held, trials - held + 1) if held > 0 else 0.0
+    upper = beta.ppf(1.0 - tail, held + 1, trials - held) if held < trials else 1.0
+    return lower, upper
+
+
+def study(house, trials, *more):
+    with tempfile.TemporaryDirectory() as folder:
+        path = folder + "/coverage.json"
+        subprocess.run([str(house / "build/release/bin/kerf_coverage_study"), str(trials), path, *map(str, more)], check=True,
+                       capture_output=True)
+        with open(path) as file:
+            return json.load(file)
+
+
+def verdict(held, trials):
+    lower, upper = exact(held, trials)
+    return "low" if upper < LEAST else "high" if lower > MOST else "in"
+
+
+def cells_of(house, seconds):
+    """Cells by their number: rows of one study, those again that were too low."""
+    cells = {}
+    for row in study(house, TRIALS, seconds)["rows"]:
+        cells.setdefault(row["cell"], []).append(dict(row, trials=TRIALS))
+    for number, rows in cells.items():
+        if all(verdict(row["held"], TRIALS) != "low" for row in rows):
+            continue
+        again = study(house, AGAIN * TRIALS, seconds, TRIALS, number)["rows"]
+        cells[number] = [dict(row, trials=AGAIN * TRIALS) for row in again]
+    return list(cells.values())
+
+
+def told(row):
+    share = "%.1f" % (100.0 * row["held"] / row["trials"])
+    mark = {"low": " **low**", "high": " (high)", "in": ""}[verdict(row["held"], row["trials"])]
+    return "%s %s%s" % (row["parameter"].replace("_stiffness", ""), share, mark)
+
+
+def table(cells):
+    lines = ["**Coverage** of the 95 %% intervals [%%] over %d simulated recordings a cell, at 1 kHz, 0.02 N of noise, by the whole way of a "
+             "fit. \"Cycles\": strokes by a hand, each a cycle. \"On\": the law misfits, and the target is what it fits best "
+             "without noise. Low or high: the exact 99.9 %% interval of the share does not touch %.0f to %.0f %%; what was low was "
+             "repeated with ten times as many, and it is those that are shown." % (TRIALS, 100.0 * LEAST, 100.0 * MOST), "",
+             "| law and path | noise | recording | coverage |", "|---|---|---|---|"]
+    for rows in cells:
+        lines.append("| %s | %s | %.0f s | %s |" % (rows[0]["scenario"], rows[0]["noise"], rows[0]["duration_s"],
+                                                  ", ".join(told(row) for row in rows)))
+    verdicts = [verdict(row["held"], row["trials"]) for rows in cells for row in rows]
+    flicker = [verdict(row["held"], row["trials"]) for rows in cells for row in rows if row["noise"] == "pink"]
+    return lines + ["", "Of %d intervals %d are low, %d of them under flicker noise, and %d high." % (
+        len(verdicts), verdicts.count("low"), flicker.count("low"), verdicts.count("high"))]
 
 
 def part(house):
-    with tempfile.TemporaryDirectory() as folder:
-        path = folder + "/coverage.json"
-        subprocess.run([str(house / "build/release/bin/kerf_coverage_study"), str(TRIALS), path], check=True,
-                       capture_output=True)
-        with open(path) as file:
-            study = json.load(file)
-    table, outside = {}, 0
-    for row in study["rows"]:
-        key = (row["scenario"], row["noise"], row["duration_s"])
-        table.setdefault(key, []).append("%s %.1f %%" % (row["parameter"], 100.0 * row["coverage"]))
-        outside += not LEAST <= row["coverage"] <= MOST
-    lines = ["**Coverage of the 95 %% intervals** over %d simulated recordings a row, at 1 kHz. The share itself is known to "
-             "%.1f %% (one standard error)." % (TRIALS, 100.0 * (0.95 * 0.05 / TRIALS) ** 0.5), "",
-             "| law and path | noise | recording | coverage |", "|---|---|---|---|"]
-    for (scenario, noise, duration_s), cells in table.items():
-        lines.append("| %s | %s | %.0f s | %s |" % (scenario, noise, duration_s, ", ".join(cells)))
-    return "\n".join(lines + ["", "Outside %.0f to %.0f %%: %d of %d." % (
-        100.0 * LEAST, 100.0 * MOST, outside, len(study["rows"]))])
+    return "\n".join(table([cell for seconds in SECONDS for cell in cells_of(house, seconds)]))

@@ -4,26 +4,24 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <ceres/jet.h>
 
-#include <kerf/models/exponential.h>
+#include <kerf/fitting/fit.h>
 #include <kerf/models/kelvin.h>
+#include <kerf/models/law.h>
 
-#include "uncertainty/uncertainty.h"
-
-// Simulated recordings at 1 kHz with coloured noise, their least-squares fits, and whether the intervals
-// cover the truth. For the test of the intervals and for the study in fitting/benchmarks.
+// Simulated recordings at 1 kHz with coloured noise, their fits, and whether the intervals hold the truth.
+// For the test of the intervals and for the study in fitting/benchmarks.
 
 namespace kerf::test {
 
-inline constexpr double period_s = 1e-3;
+inline constexpr double tick_s = 1e-3;
 
 /// Makes noise of variance one: a recursive filter of white noise, past its transient.
 struct NoiseFilter {
@@ -32,14 +30,14 @@ struct NoiseFilter {
 
   static NoiseFilter first_order(double pole) { return {.denominator = {-pole, 0.0}}; }
   static NoiseFilter resonance(double frequency_hz, double damping) {
-    const double omega = 2.0 * std::numbers::pi * frequency_hz * period_s;
+    const double omega = 2.0 * std::numbers::pi * frequency_hz * tick_s;
     const double radius = std::exp(-damping * omega);
     return {.denominator = {-2.0 * radius * std::cos(omega * std::sqrt(1.0 - damping * damping)),
                             radius * radius}};
   }
   /// Second-order Butterworth low-pass, by the bilinear transform with its corner kept.
   static NoiseFilter butterworth(double corner_hz) {
-    const double w = std::tan(std::numbers::pi * corner_hz * period_s);
+    const double w = std::tan(std::numbers::pi * corner_hz * tick_s);
     const double norm = 1.0 / (1.0 + std::numbers::sqrt2 * w + w * w);
     return {.numerator = {1.0, 2.0, 1.0},
             .denominator = {2.0 * (w * w - 1.0) * norm, (1.0 - std::numbers::sqrt2 * w + w * w) * norm}};
@@ -113,7 +111,7 @@ inline Path ramp_and_hold(double duration_s, double depth_m) {
     if (u < 0.15) return depth_m * (u - 0.05) / 0.1;
     return u < 0.75 ? depth_m : depth_m * (0.85 - u) / 0.1;
   };
-  for (double t = 0.0; t < duration_s - 0.5 * period_s; t += period_s) {
+  for (double t = 0.0; t < duration_s - 0.5 * tick_s; t += tick_s) {
     path.push_back({.penetration = x(t), .velocity = (x(t + 1e-6) - x(t)) / 1e-6});
   }
   return path;
@@ -121,7 +119,7 @@ inline Path ramp_and_hold(double duration_s, double depth_m) {
 /// Smooth strokes of one second.
 inline Path strokes(double duration_s, double depth_m) {
   Path path;
-  for (double t = 0.0; t < duration_s - 0.5 * period_s; t += period_s) {
+  for (double t = 0.0; t < duration_s - 0.5 * tick_s; t += tick_s) {
     const double phase = 2.0 * std::numbers::pi * t;
     path.push_back({.penetration = 0.5 * depth_m * (1.0 - std::cos(phase)),
                     .velocity = std::numbers::pi * depth_m * std::sin(phase)});
@@ -143,7 +141,7 @@ Rendered render(const Law& law, const Path& path) {
   Rendered result{Eigen::MatrixXd(path.size(), 3), Eigen::VectorXd(path.size())};
   typename Law::State state;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    const Jet force = law.step(state, path[i], period_s);
+    const Jet force = law.step(state, path[i], tick_s);
     result.force[static_cast<Eigen::Index>(i)] = force.a;
     result.jacobian.row(static_cast<Eigen::Index>(i)) = force.v.transpose();
   }
@@ -158,69 +156,105 @@ inline Rendered render_kelvin(const Parameters& at, const Path& path) {
   const auto [k1, k2, b] = searched(at);
   return render(models::Kelvin<Jet>{exp(k1), exp(k2), exp(b)}, path);
 }
-inline Rendered render_exponential(const Parameters& at, const Path& path) {
-  const auto [alpha, beta, viscosity] = searched(at);
-  return render(models::Exponential<Jet>{exp(alpha), exp(beta), viscosity}, path);
-}
 
-/// What is simulated again and again.
+/// Strokes by a hand: none as long, as deep or as even as another, and always the same ones.
+struct HandStrokes {
+  Path path;
+  std::vector<std::uint32_t> cycle;
+
+  HandStrokes(double duration_s, double depth_m) {
+    std::mt19937_64 random(20'261'125);
+    std::uniform_real_distribution<double> about(0.8, 1.2);
+    const auto rows = static_cast<std::size_t>(std::lround(duration_s / tick_s));
+    for (std::uint32_t number = 1; path.size() < rows; ++number) {
+      const double depth = depth_m * about(random);
+      const auto length = static_cast<std::size_t>(std::lround(about(random) / tick_s));
+      const double skew = 2.0 * (about(random) - 1.0);
+      for (std::size_t i = 0; i < length && path.size() < rows; ++i) {
+        const double u = static_cast<double>(i) / static_cast<double>(length);
+        const double phase = 2.0 * std::numbers::pi * (u + skew * u * (1.0 - u));
+        const double speed =
+            2.0 * std::numbers::pi * (1.0 + skew * (1.0 - 2.0 * u)) / (tick_s * static_cast<double>(length));
+        path.push_back({.penetration = 0.5 * depth * (1.0 - std::cos(phase)),
+                        .velocity = 0.5 * depth * speed * std::sin(phase)});
+        cycle.push_back(number);
+      }
+    }
+  }
+};
+
+/// What is simulated again and again: a tissue, and the law that is fitted to it.
 struct Scenario {
   std::string name;
-  std::function<Rendered(const Parameters&, const Path&)> render;
-  Parameters truth;
-  std::vector<std::string> names;
+  std::string model;   ///< that is fitted
+  models::Law tissue;  ///< that is there, the same law or another
   Path path;
+  std::vector<std::uint32_t> cycle;  ///< empty: none are known
+  double quantum_n = 0.0;            ///< of the force sensor; 0: none
 };
 
-inline Scenario kelvin(const std::string& motion, const Path& path, double time_s) {
-  return {"kelvin, " + motion,
-          render_kelvin,
-          {std::log(8.0), std::log(7.0), std::log(7.0 * time_s)},
-          {"k1", "k2", "b"},
-          path};
-}
-inline Scenario exponential(const std::string& motion, const Path& path) {
-  return {"exponential, " + motion,
-          render_exponential,
-          {std::log(0.02), std::log(4.0), 0.5},
-          {"alpha", "beta", "B0"},
-          path};
+/// The forces that the sensor has of the tissue.
+inline std::vector<double> measured(const Scenario& scenario, const Eigen::VectorXd& noise) {
+  const std::vector<double> periods(scenario.path.size(), tick_s);
+  std::vector<double> force = scenario.tissue.along(scenario.path, periods);
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    if (noise.size() > 0) force[i] += noise[static_cast<Eigen::Index>(i)];
+    if (scenario.quantum_n > 0.0 && noise.size() > 0)
+      force[i] = scenario.quantum_n * std::round(force[i] / scenario.quantum_n);
+  }
+  return force;
 }
 
-/// What one trial gives: did the interval hold the truth, and the estimate's error over its standard error.
-struct Trial {
-  std::array<bool, 3> covered{};
-  std::array<double, 3> error{};
-  std::array<double, 3> deviation{};
-  std::array<double, 3> quantile{};
-  int order = 0;
-  int block = 0;
-};
+inline fitting::FitResult fitted(const Scenario& scenario, const std::vector<double>& force,
+                                 const models::Options& options = {}) {
+  std::vector<double> time_s;
+  std::vector<double> penetration;
+  std::vector<double> velocity;
+  for (const models::Motion& motion : scenario.path) {
+    time_s.push_back(tick_s * static_cast<double>(time_s.size()));
+    penetration.push_back(motion.penetration);
+    velocity.push_back(motion.velocity);
+  }
+  return fitting::fit(scenario.model,
+                      fitting::Series{.time_s = time_s,
+                                      .penetration = penetration,
+                                      .velocity = velocity,
+                                      .force = force,
+                                      .cycle = scenario.cycle},
+                      {.law_options = options, .folds = 0});
+}
 
-/// Gauss-Newton from the truth, which is near enough to the minimum.
-inline Trial run_trial(const Scenario& scenario, const Eigen::VectorXd& noise) {
-  const Eigen::VectorXd measured = scenario.render(scenario.truth, scenario.path).force + noise;
-  Parameters at = scenario.truth;
-  Rendered rendered;
-  for (int pass = 0; pass < 6; ++pass) {
-    rendered = scenario.render(at, scenario.path);
-    const Eigen::VectorXd left = measured - rendered.force;
-    const Eigen::Matrix3d normal = rendered.jacobian.transpose() * rendered.jacobian;
-    const Parameters step = normal.ldlt().solve(rendered.jacobian.transpose() * left);
-    if (pass > 0 && step.cwiseAbs().maxCoeff() < 1e-7) break;
-    at += step;
-  }
-  const auto result =
-      fitting::uncertainty_of({.jacobian = rendered.jacobian, .residuals = rendered.force - measured}, 0.95);
-  Trial trial{.order = result.noise_order, .block = result.rows_a_block};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    trial.error[k] = at[i] - scenario.truth[i];
-    trial.deviation[k] = std::sqrt(result.covariance(i, i));
-    trial.quantile[k] = result.quantile[k];
-    trial.covered[k] = std::abs(trial.error[k]) <= trial.quantile[k] * trial.deviation[k];
-  }
-  return trial;
+/// What the intervals should hold: the parameters that fit the tissue best where there is no noise, which are
+/// its own where the law is.
+inline std::vector<double> targets(const Scenario& scenario) {
+  std::vector<double> values;
+  for (const fitting::Estimate& estimate : fitted(scenario, measured(scenario, {})).parameters)
+    values.push_back(estimate.value);
+  return values;
+}
+
+/// The estimates of one trial, by the whole way of a fit.
+inline std::vector<fitting::Estimate> run_trial(const Scenario& scenario, const Eigen::VectorXd& noise) {
+  return fitted(scenario, measured(scenario, noise)).parameters;
+}
+
+inline bool holds(const fitting::Estimate& estimate, double target) {
+  return estimate.lower <= target && target <= estimate.upper;
+}
+
+inline models::Law kelvin(double time_s) {
+  return models::Law::make("kelvin", std::vector<double>{8.0, 7.0, 7.0 * time_s});
+}
+inline models::Law exponential() {
+  return models::Law::make("exponential", std::vector<double>{0.02, 4.0, 0.5});
+}
+/// Relaxes with two times, a tenth and three times as long as the one given.
+inline models::Law two_times(double time_s) {
+  return models::Law::make("maxwell", std::vector<double>{6.0, 6.0, 5.0, 0.1 * time_s, 3.0 * time_s});
+}
+/// Stiffens as a power of the depth, not as an exponential, and rubs.
+inline models::Law power() {
+  return models::Law::make("hunt_crossley", std::vector<double>{0.016, 0.005, 1.8});
 }
 
 }  // namespace kerf::test

@@ -25,10 +25,38 @@ const char* name_of(fitting::Loss loss) {
   return "squares";
 }
 
+json name_of(fitting::IntervalBy by) {
+  switch (by) {
+    case fitting::IntervalBy::none:
+      return nullptr;
+    case fitting::IntervalBy::held:
+      return "held";
+    case fitting::IntervalBy::wald:
+      return "wald";
+    case fitting::IntervalBy::profile:
+      return "profile";
+  }
+  return nullptr;
+}
+
+const char* name_of(fitting::CovarianceBy by) {
+  switch (by) {
+    case fitting::CovarianceBy::residuals:
+      return "residuals";
+    case fitting::CovarianceBy::cycles:
+      return "cycles";
+    case fitting::CovarianceBy::white:
+      return "white";
+  }
+  return "residuals";
+}
+
 json estimate_as_json(const fitting::Estimate& estimate, const LawFile& file, const std::string& interval) {
   return {{"value", estimate.value},
           {"std_error", json_number(estimate.std_error)},
           {interval, {json_number(estimate.lower), json_number(estimate.upper)}},
+          {"interval_by", name_of(estimate.by)},
+          {"p_zero", json_number(estimate.p_zero)},
           {"unit", models::unit_of(estimate.info.quantity, file.force_unit, file.position_unit)}};
 }
 
@@ -113,6 +141,7 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
               {"test_rmse_rendered", json_number(fit.rendered.test_rmse)},
               {"jnd_fraction", fit.jnd_fraction},
               {"correlation_time_samples", fit.correlation_time},
+              {"covariance_by", name_of(fit.covariance_by)},
               {"correlation", correlation_as_json(fit)},
               {"undetermined_arms", fit.undetermined_arms},
               {"converged", fit.converged},

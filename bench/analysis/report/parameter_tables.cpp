@@ -21,18 +21,21 @@ constexpr double log_profile_from =
     8.0;                           ///< ratio of a profile's ends from which it is drawn over a logarithm
 constexpr double widest = 1000.0;  ///< and how far from the best it is then followed
 
+std::string interval_text(const json& lower, const json& upper) {
+  if (lower.is_null() && upper.is_null()) return "undetermined";
+  if (lower.is_null()) return "below " + number_text(upper, "{:.6g}");
+  if (upper.is_null()) return "above " + number_text(lower, "{:.6g}");
+  return number_text(lower, "{:.6g}") + " to " + number_text(upper, "{:.6g}");
+}
+
 std::vector<std::string> parameter_row(const std::string& name, const json& parameter,
                                        const std::string& interval_name) {
   const json& interval = parameter.at(interval_name);
   const json& error = parameter.at("std_error");
   const bool held = error.is_number() && error.get<double>() == 0.0;
-  const auto end = [](const json& value) {
-    return value.is_null() ? std::string("undetermined") : number_text(value, "{:.6g}");
-  };
   return {name, number_text(parameter.at("value"), "{:.6g}"),
           held ? "held" : (error.is_null() ? "undetermined" : number_text(error, "{:.2g}")),
-          held ? "" : end(interval.at(0)) + " to " + end(interval.at(1)),
-          parameter.at("unit").get<std::string>()};
+          held ? "" : interval_text(interval.at(0), interval.at(1)), parameter.at("unit").get<std::string>()};
 }
 
 std::string table_of_parameters(const json& fit, double confidence) {

@@ -30,8 +30,11 @@ void say_comparison(const RecordingFit& fit, Context& context) {
 
 std::string interval_of(const fitting::Estimate& estimate) {
   if (estimate.std_error == 0.0) return "held";
-  if (!std::isfinite(estimate.std_error)) return "not determined by these data";
-  return fmt::format("{:.5g} to {:.5g}", estimate.lower, estimate.upper);
+  const bool above = std::isfinite(estimate.lower);
+  const bool below = std::isfinite(estimate.upper);
+  if (above && below) return fmt::format("{:.5g} to {:.5g}", estimate.lower, estimate.upper);
+  if (above) return fmt::format("above {:.5g}", estimate.lower);
+  return below ? fmt::format("below {:.5g}", estimate.upper) : "not determined by these data";
 }
 
 void say_parameters(const RecordingFit& fit, const FittedLaw& law, Context& context) {

@@ -12,7 +12,8 @@ namespace kerf::fitting {
 struct Linearisation {
   Eigen::MatrixXd jacobian;   ///< n x p, by the free parameters on their search scale, times sqrt(weight)
   Eigen::VectorXd residuals;  ///< n, likewise
-  std::vector<std::size_t> run_ends;  ///< rows [0, e0), [e0, e1), ...; empty for one run
+  std::vector<std::size_t> run_ends;    ///< rows [0, e0), [e0, e1), ...; empty for one run
+  std::vector<std::size_t> cycle_ends;  ///< rows [0, e0), [e0, e1), ... are the cycles; empty: none are known
   std::vector<double> scale;  ///< of each parameter, what counts as a change as large as itself: 1 on a
                               ///< logarithmic scale, a typical size on a linear one; empty for ones
 };

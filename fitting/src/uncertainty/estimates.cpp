@@ -3,37 +3,40 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "infinite.h"
 #include "tables.h"
+#include "uncertainty/arms.h"
+#include "uncertainty/limits.h"
+#include "uncertainty/linearise.h"
 #include "uncertainty/profile.h"
 #include "uncertainty/statistics.h"
-#include "uncertainty/uncertainty.h"
 
 namespace kerf::fitting {
 namespace {
 
-/// Half the width of an interval is quantile times deviation, on the scale of the search.
-struct Spread {
-  double deviation = 0.0;
-  double quantile = 0.0;
+/// What is known of one coordinate.
+struct Known {
+  double std_error = 0.0;  ///< on the search scale
+  Limits limits;
 };
 
-Estimate estimate_of(const models::ParameterInfo& info, double value, const Spread& spread) {
+/// A parameter that nobody searched.
+Known held_at(double value) { return {0.0, {.lower = value, .upper = value, .by = IntervalBy::held}}; }
+
+Estimate estimate_of(const models::ParameterInfo& info, double value, const Known& known) {
   const bool logarithmic = info.scale == models::Scale::logarithmic;
-  const double centre = to_search_scale(info, value);
-  const double half = spread.deviation > 0.0 ? spread.quantile * spread.deviation : 0.0;
-  Estimate estimate{.info = info,
-                    .value = value,
-                    .std_error = logarithmic ? value * spread.deviation : spread.deviation,
-                    .lower = from_search_scale(info, centre - half),
-                    .upper = from_search_scale(info, centre + half)};
-  if (std::isfinite(half)) {  // no further than the law itself
-    estimate.lower = std::max(estimate.lower, std::min(info.lower, value));
-    estimate.upper = std::min(estimate.upper, std::max(info.upper, value));
-  }
-  return estimate;
+  return {.info = info,
+          .value = value,
+          .std_error = logarithmic ? value * known.std_error : known.std_error,
+          .lower = known.limits.lower,
+          .upper = known.limits.upper,
+          .by = known.limits.by,
+          .p_zero = known.limits.p_zero};
 }
+
+constexpr double no_misfit_below = 3.0;  ///< samples of correlation time: nothing is left of a misfit
 
 bool at_bound(const models::ParameterInfo& info, double value) {
   const double margin = info.scale == models::Scale::logarithmic ? 1.001 : 1.0;
@@ -47,135 +50,22 @@ struct Unknown {
   std::string warning;
 };
 
-/// Parameters of an arm of a law, by their places; the first is its stiffness.
-using Arm = std::vector<std::size_t>;
-
-std::vector<Arm> arms_of(const Problem& problem) {
-  const auto& beginnings = problem.facts().arm;
-  std::vector<Arm> arms;
-  if (beginnings.empty()) return arms;
-  const std::string_view stiffness = *beginnings.begin();
-  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    if (!problem.parameters[i].name.starts_with(stiffness)) continue;
-    const std::string number = problem.parameters[i].name.substr(stiffness.size());
-    Arm arm;
-    for (const std::string_view beginning : beginnings) {
-      const auto found = std::ranges::find(problem.parameters, std::string(beginning) + number,
-                                           &models::ParameterInfo::name);
-      arm.push_back(static_cast<std::size_t>(found - problem.parameters.begin()));
-    }
-    arms.push_back(std::move(arm));
-  }
-  return arms;
+std::string number(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
 }
 
-/// Whether a law without this arm, the rest fitted anew, leaves no more than chance would have it: twice the
-/// logarithm of the ratio of the likelihoods, by as many samples as the residuals are worth, against
-/// chi-squared of the arm's two parameters. Where both misfit, their residuals are worth next to no samples:
-/// there it is the share that the arm explains that counts.
-constexpr double noticeable = 1.05;  // of the sum of squares
-bool does_without(const Arm& arm, const Problem& problem, const Samples& samples, const Weights& weights,
-                  const Solution& solution, const RobustLoss& loss, const FitResult& result,
-                  double confidence) {
-  Problem less(problem);
-  Values values(solution.values);
-  for (const std::size_t parameter : arm) less.free[parameter] = false;
-  for (auto& of_run : values) of_run[arm.front()] = problem.parameters[arm.front()].lower;
-  const Solution without = search(less, samples, weights, values, {.loss = loss});
-  const double rise = without.squares / std::max(solution.squares, std::numeric_limits<double>::min());
-  const double worth = static_cast<double>(result.samples) / std::max(1.0, result.correlation_time);
-  return rise <= noticeable && worth * std::log(rise) <= -2.0 * std::log(1.0 - confidence);
-}
-
-/// What counts as a change of a coordinate as large as itself.
-double scale_of(const models::ParameterInfo& info, double value, double force_rms, double column_rms) {
-  if (info.scale == models::Scale::logarithmic) return 1.0;
-  const double by_force = column_rms > 0.0 ? force_rms / column_rms : 1.0;
-  return std::max(std::abs(value), 1e-3 * by_force);
-}
-
-double rms(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
-}
-
-/// The rows that count, times the roots of their weights.
-Linearisation linearisation_of(const LawObjective& objective, const Eigen::VectorXd& at,
-                               const Samples& samples, const Weights& weights, const RobustLoss& loss) {
-  Linearisation all;
-  if (!objective.rows(at, all.residuals, all.jacobian)) all.jacobian.setZero();
-  Eigen::Index kept = 0;
-  for (const Run& run : samples.runs) {
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      if (!(weights[i] > 0.0)) continue;
-      const auto row = static_cast<Eigen::Index>(i);
-      const double residual = all.residuals[row] - samples.force[i];
-      const double root = std::sqrt(weights[i] * loss(weights[i] * residual * residual).slope);
-      all.residuals[kept] = root * residual;
-      for (Eigen::Index k = 0; k < all.jacobian.cols(); ++k)
-        all.jacobian(kept, k) = root * all.jacobian(row, k);
-      ++kept;
-    }
-    all.run_ends.push_back(static_cast<std::size_t>(kept));
-  }
-  if (kept < all.residuals.size()) {
-    all.residuals.conservativeResize(kept);
-    all.jacobian.conservativeResize(kept, Eigen::NoChange);
-  }
-  return all;
-}
-
-/// The values that the coordinates of a problem have.
-std::vector<double> searched_values(const Problem& problem, const Solution& solution) {
-  std::vector<double> values;
-  for (const auto& [parameter, run] : problem.all()) {
-    values.push_back(solution.values[run == Estimate::shared ? 0 : run][parameter]);
-  }
-  return values;
-}
-
-Uncertainty as_of_residuals(const LawObjective& objective, const Eigen::VectorXd& at, const Problem& problem,
-                            const Solution& solution, const Samples& samples, const Weights& weights,
-                            const RobustLoss& loss, double confidence) {
-  Linearisation linear = linearisation_of(objective, at, samples, weights, loss);
-  const double force_rms =
-      rms(Eigen::Map<const Eigen::VectorXd>(samples.force.data(), static_cast<Eigen::Index>(samples.size())));
-  const auto coordinates = problem.all();
-  const auto values = searched_values(problem, solution);
-  for (std::size_t k = 0; k < coordinates.size(); ++k) {
-    linear.scale.push_back(scale_of(problem.parameters[coordinates[k].parameter], values[k], force_rms,
-                                    rms(linear.jacobian.col(static_cast<Eigen::Index>(k)))));
-  }
-  return uncertainty_of(linear, confidence);
-}
-
-/// s^2 (J'J)^-1, from the search's own sums where it searched the same coordinates.
-Uncertainty as_of_white_noise(const LawObjective& objective, const Eigen::VectorXd& at,
-                              const Solution& solution, const Weights& weights, double confidence) {
-  const Eigen::Index p = at.size();
-  Sums sums{.squares = solution.squares, .score = {}, .normal = solution.normal};
-  bool known = sums.normal.cols() == p;
-  if (!known) known = objective.evaluate(at, sums);
-  const auto counted =
-      static_cast<double>(std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.0; }));
-  const double degrees_of_freedom = std::max(1.0, counted - static_cast<double>(p));
-  Uncertainty result;
-  result.covariance.setZero(p, p);
-  result.correlation = Eigen::MatrixXd::Identity(p, p);
-  for (Eigen::Index k = 0; k < p && known; ++k) {
-    result.covariance.col(k) =
-        sums.squares / degrees_of_freedom * solve_normal(sums.normal, Eigen::VectorXd::Unit(p, k));
-  }
-  const Eigen::VectorXd error = result.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  for (Eigen::Index k = 0; k < p; ++k) {
-    result.determined.push_back(known && sums.normal(k, k) > 0.0);
-    result.quantile.push_back(student_t(confidence, degrees_of_freedom));
-    for (Eigen::Index j = 0; j < p; ++j) {
-      if (j != k && error[j] * error[k] > 0.0)
-        result.correlation(j, k) = result.covariance(j, k) / (error[j] * error[k]);
-    }
-  }
-  result.effective_samples = counted;
-  return result;
+/// What the limits leave of a parameter of which little is known.
+std::string hardly_known(const std::string& name, const Limits& limits) {
+  const std::string only = "the data say of '" + name + "' only that it lies ";
+  const bool above = std::isfinite(limits.lower) && limits.lower != 0.0;
+  const bool below = std::isfinite(limits.upper);
+  if (above && below) return only + "between " + number(limits.lower) + " and " + number(limits.upper);
+  if (below) return only + "below " + number(limits.upper);
+  if (above) return only + "above " + number(limits.lower);
+  return "the data say nothing about '" + name + "'";
 }
 
 void estimate_tables(FitResult& result, const Problem& problem, const Samples& samples,
@@ -183,9 +73,15 @@ void estimate_tables(FitResult& result, const Problem& problem, const Samples& s
   const auto errors = table_errors(problem, samples, weights, solution.values[0]);
   std::size_t unknown = 0;
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    const Spread spread{errors[i].std_error, student_t(confidence, errors[i].degrees_of_freedom)};
-    unknown += std::isfinite(errors[i].std_error) ? 0 : 1;
-    result.parameters.push_back(estimate_of(problem.parameters[i], solution.values[0][i], spread));
+    const double value = solution.values[0][i];
+    Known known{.std_error = errors[i].std_error, .limits = {}};
+    if (std::isfinite(known.std_error)) {
+      const double half = known.std_error * student_t(confidence, errors[i].degrees_of_freedom);
+      known.limits = {.lower = value - half, .upper = value + half, .by = IntervalBy::wald};
+    } else {
+      ++unknown;
+    }
+    result.parameters.push_back(estimate_of(problem.parameters[i], value, known));
   }
   if (unknown > 0) {
     result.warnings.push_back(std::to_string(unknown) + " of " + std::to_string(errors.size()) +
@@ -199,6 +95,213 @@ void estimate_tables(FitResult& result, const Problem& problem, const Samples& s
   result.correlation_time = correlation_time(left);
 }
 
+/// The coordinates of a problem and what is known of each.
+struct KnownCoordinates {
+  std::vector<Problem::Coordinate> of;
+  std::vector<Known> known;
+
+  /// That of a parameter in a recording; none where it was not searched.
+  [[nodiscard]] const Known* find(std::size_t parameter, std::size_t run) const {
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      if (of[k].parameter == parameter && (of[k].run == Estimate::shared || of[k].run == run))
+        return &known[k];
+    }
+    return nullptr;
+  }
+};
+
+/// Estimates one after another, from the same samples by the same means.
+class Estimation {
+ public:
+  Estimation(FitResult& result, const Problem& problem, const Samples& samples, const Weights& weights,
+             const Solution& solution, const FitOptions& options, const RobustLoss& loss)
+      : result_(result),
+        problem_(problem),
+        samples_(samples),
+        weights_(weights),
+        solution_(solution),
+        options_(options),
+        loss_(loss) {}
+
+  void run() {
+    // What lies at the end of its range is held there: the others' intervals are those of the law without it.
+    Problem inner(problem_);
+    std::vector<Problem::Coordinate> at_bounds;
+    for (const auto& coordinate : problem_.all()) {
+      if (!at_bound(problem_.parameters[coordinate.parameter], value_of(coordinate))) continue;
+      inner.free[coordinate.parameter] = false;
+      at_bounds.push_back(coordinate);
+    }
+    if (inner.coordinates() > 0) estimate_within(inner);
+    for (const auto& coordinate : at_bounds) estimate_at_bound(inner, coordinate);
+    name_arms();
+    for (Unknown& unknown : unknowns_) result_.warnings.push_back(std::move(unknown.warning));
+    write();
+    if (const std::string_view note = problem_.facts().held_note; !note.empty())
+      result_.warnings.emplace_back(note);
+  }
+
+ private:
+  [[nodiscard]] double value_of(const Problem::Coordinate& c) const {
+    return solution_.values[c.run == Estimate::shared ? 0 : c.run][c.parameter];
+  }
+  [[nodiscard]] std::string name_of(const Problem::Coordinate& c) const {
+    const std::string& name = problem_.parameters[c.parameter].name;
+    return c.run == Estimate::shared ? name : name + " of recording " + std::to_string(c.run + 1);
+  }
+
+  void estimate_within(const Problem& inner) {
+    const LawObjective objective(inner, samples_, weights_, solution_.values, loss_);
+    const Eigen::VectorXd at = coordinates_of(inner, solution_.values);
+    std::vector<double> scale;
+    Uncertainty uncertainty;
+    if (options_.intervals == Intervals::white) {
+      uncertainty = as_of_white_noise(objective, at, solution_, weights_, options_.confidence);
+    } else {
+      const Linearisation linear = linearise(objective, inner, solution_, samples_, weights_, loss_);
+      scale = linear.scale;
+      uncertainty = uncertainty_of(linear, options_.confidence);
+    }
+    result_.covariance_by = options_.intervals == Intervals::white ? CovarianceBy::white
+                            : uncertainty.by_cycles                ? CovarianceBy::cycles
+                                                                   : CovarianceBy::residuals;
+    result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
+    Sums sums{.squares = solution_.squares, .score = {}, .normal = {}};
+    std::vector<Limits> limits;
+    if (objective.evaluate(at, sums)) {
+      Eigen::MatrixXd hessian = sums.normal;
+      if (result_.correlation_time > no_misfit_below && inner.facts().search == models::Search::descent) {
+        hessian = hessian_of(objective, at, sums);
+        take_curvature(uncertainty, sums, hessian);
+      }
+      limits = limits_of(inner, objective, at, sums, hessian, uncertainty, scale);
+    } else {
+      limits.resize(uncertainty.determined.size());
+    }
+    take(inner, uncertainty, limits);
+    if (options_.profile) {
+      result_.profiles =
+          profiles_of(inner, samples_, weights_, solution_.values, loss_, uncertainty, result_.searched);
+    }
+  }
+
+  void take(const Problem& inner, const Uncertainty& uncertainty, const std::vector<Limits>& limits) {
+    known_.of = inner.all();
+    std::vector<bool> logarithmic;
+    for (std::size_t k = 0; k < known_.of.size(); ++k) {
+      const auto diagonal = static_cast<Eigen::Index>(k);
+      known_.known.push_back({.std_error = uncertainty.determined[k]
+                                               ? std::sqrt(uncertainty.covariance(diagonal, diagonal))
+                                               : infinite,
+                              .limits = limits[k]});
+      result_.searched.push_back(name_of(known_.of[k]));
+      logarithmic.push_back(inner.parameters[known_.of[k].parameter].scale == models::Scale::logarithmic);
+    }
+    result_.correlation.assign(uncertainty.correlation.data(),
+                               uncertainty.correlation.data() + uncertainty.correlation.size());
+    for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable) {
+      std::vector<std::string> names;
+      for (const auto& [place, share] : unidentifiable.parts) names.push_back(result_.searched[place]);
+      std::string warning = names.size() == 1 ? hardly_known(names[0], limits[unidentifiable.parts[0].first])
+                                              : describe(unidentifiable, result_.searched, logarithmic);
+      unknowns_.push_back({std::move(names), std::move(warning)});
+    }
+    warn_of_zeros(inner);
+  }
+
+  /// A parameter that may as well be zero is said to be so, unless more than that is said of it.
+  void warn_of_zeros(const Problem& inner) {
+    if (inner.facts().search != models::Search::descent) return;
+    for (std::size_t k = 0; k < known_.of.size(); ++k) {
+      const double p = known_.known[k].limits.p_zero;
+      const auto said = [&](const Unknown& unknown) {
+        return std::ranges::find(unknown.names, result_.searched[k]) != unknown.names.end();
+      };
+      if (!(p > 1.0 - options_.confidence) || std::ranges::any_of(unknowns_, said)) continue;
+      unknowns_.push_back({{result_.searched[k]},
+                           "'" + result_.searched[k] + "' is not told from zero (p = " + number(p) + ")"});
+    }
+  }
+
+  /// A parameter at its lower bound, where that stands for none, has a limit above it.
+  void estimate_at_bound(const Problem& inner, const Problem::Coordinate& coordinate) {
+    const models::ParameterInfo& info = problem_.parameters[coordinate.parameter];
+    const std::string name = name_of(coordinate);
+    Known known{.std_error = infinite, .limits = {}};
+    std::string warning = "'" + name + "' lies at the bound of its range: no interval";
+    const bool at_zero = may_be_zero(info) && value_of(coordinate) < 0.5 * info.upper &&
+                         inner.facts().search == models::Search::descent &&
+                         options_.intervals == Intervals::correlated;
+    if (at_zero) {
+      Problem with(inner);
+      with.free[coordinate.parameter] = true;
+      known.limits = limits_of_zero(with, coordinate);
+      if (std::isfinite(known.limits.upper))
+        warning = "'" + name + "' is zero, as far as the data tell: below " + number(known.limits.upper);
+    }
+    known_.of.push_back(coordinate);
+    known_.known.push_back(known);
+    unknowns_.push_back({{name}, std::move(warning)});
+  }
+
+  [[nodiscard]] Limits limits_of_zero(const Problem& with, const Problem::Coordinate& coordinate) const {
+    const LawObjective objective(with, samples_, weights_, solution_.values, loss_);
+    const Eigen::VectorXd at = coordinates_of(with, solution_.values);
+    const auto all = with.all();
+    const auto held = std::ranges::find_if(all, [&](const Problem::Coordinate& c) {
+      return c.parameter == coordinate.parameter && c.run == coordinate.run;
+    });
+    Sums sums;
+    if (!objective.evaluate(at, sums)) return {};
+    const Uncertainty uncertainty =
+        uncertainty_of(linearise(objective, with, solution_, samples_, weights_, loss_), options_.confidence);
+    return limits_above_zero(with, objective, at, held - all.begin(), sums, uncertainty);
+  }
+
+  /// An arm of which little is known, and that is as well left away, is named as a whole.
+  void name_arms() {
+    const double worth = static_cast<double>(result_.samples) / std::max(1.0, result_.correlation_time);
+    for (const Arm& arm : arms_of(problem_)) {
+      const auto is_of_the_arm = [&](const Unknown& unknown) {
+        return std::ranges::any_of(arm, [&](std::size_t parameter) {
+          return std::ranges::find(unknown.names, problem_.parameters[parameter].name) != unknown.names.end();
+        });
+      };
+      if (std::ranges::none_of(unknowns_, is_of_the_arm) ||
+          !does_without(arm, problem_, samples_, weights_, solution_, loss_, worth, options_.confidence))
+        continue;
+      std::erase_if(unknowns_, is_of_the_arm);
+      ++result_.undetermined_arms;
+      result_.warnings.push_back("the arm of '" + problem_.parameters[arm.front()].name + "' and '" +
+                                 problem_.parameters[arm.back()].name +
+                                 "' is not determined: the data do not tell this law from one without it");
+    }
+  }
+
+  void write() {
+    for (std::size_t i = 0; i < problem_.parameters.size(); ++i) {
+      for (std::size_t run = 0; run < (problem_.own[i] ? problem_.runs : 1); ++run) {
+        const double value = solution_.values[run][i];
+        const Known* const known = known_.find(i, run);
+        Estimate estimate =
+            estimate_of(problem_.parameters[i], value, known != nullptr ? *known : held_at(value));
+        if (problem_.own[i]) estimate.recording = run;
+        (run == 0 ? result_.parameters : result_.others).push_back(std::move(estimate));
+      }
+    }
+  }
+
+  FitResult& result_;
+  const Problem& problem_;
+  const Samples& samples_;
+  const Weights& weights_;
+  const Solution& solution_;
+  const FitOptions& options_;
+  const RobustLoss& loss_;
+  KnownCoordinates known_;
+  std::vector<Unknown> unknowns_;
+};
+
 }  // namespace
 
 void estimate_parameters(FitResult& result, const Problem& problem, const Samples& samples,
@@ -206,90 +309,9 @@ void estimate_parameters(FitResult& result, const Problem& problem, const Sample
                          const RobustLoss& loss) {
   if (problem.facts().search == models::Search::tables) {
     estimate_tables(result, problem, samples, weights, solution, options.confidence);
-    return;
+  } else {
+    Estimation(result, problem, samples, weights, solution, options, loss).run();
   }
-  const auto value_of = [&](const Problem::Coordinate& c) {
-    return solution.values[c.run == Estimate::shared ? 0 : c.run][c.parameter];
-  };
-  // What lies at the end of its range is held there: the others' intervals are those of the law without it.
-  Problem inner(problem);
-  std::vector<Unknown> unknowns;
-  for (const auto& coordinate : problem.all()) {
-    const auto& info = problem.parameters[coordinate.parameter];
-    if (!at_bound(info, value_of(coordinate))) continue;
-    if (inner.free[coordinate.parameter])
-      unknowns.push_back({{info.name}, "'" + info.name + "' lies at the bound of its range: no interval"});
-    inner.free[coordinate.parameter] = false;
-  }
-  const LawObjective objective(inner, samples, weights, solution.values, loss);
-  const auto coordinates = inner.all();
-  std::vector<Spread> spreads(coordinates.size());
-  if (!coordinates.empty()) {
-    const Eigen::VectorXd at = coordinates_of(inner, solution.values);
-    const Uncertainty uncertainty =
-        options.intervals == Intervals::white
-            ? as_of_white_noise(objective, at, solution, weights, options.confidence)
-            : as_of_residuals(objective, at, inner, solution, samples, weights, loss, options.confidence);
-    std::vector<bool> logarithmic;
-    for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      const auto& info = problem.parameters[coordinates[k].parameter];
-      const auto diagonal = static_cast<Eigen::Index>(k);
-      spreads[k] = {
-          uncertainty.determined[k] ? std::sqrt(uncertainty.covariance(diagonal, diagonal)) : infinite,
-          uncertainty.quantile[k]};
-      std::string name = info.name;
-      if (coordinates[k].run != Estimate::shared)
-        name += " of recording " + std::to_string(coordinates[k].run + 1);
-      result.searched.push_back(name);
-      logarithmic.push_back(info.scale == models::Scale::logarithmic);
-    }
-    result.correlation.assign(uncertainty.correlation.data(),
-                              uncertainty.correlation.data() + uncertainty.correlation.size());
-    result.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples.size()));
-    for (const UnidentifiableDirection& unidentifiable : uncertainty.unidentifiable) {
-      std::vector<std::string> names;
-      for (const auto& [place, share] : unidentifiable.parts) names.push_back(result.searched[place]);
-      unknowns.push_back({std::move(names), describe(unidentifiable, result.searched, logarithmic)});
-    }
-    if (options.profile) {
-      result.profiles =
-          profiles_of(inner, samples, weights, solution.values, loss, uncertainty, result.searched);
-    }
-  }
-  for (const Arm& arm : arms_of(problem)) {
-    const auto is_of_the_arm = [&](const Unknown& unknown) {
-      return std::ranges::any_of(arm, [&](std::size_t parameter) {
-        return std::ranges::find(unknown.names, problem.parameters[parameter].name) != unknown.names.end();
-      });
-    };
-    if (std::ranges::none_of(unknowns, is_of_the_arm) ||
-        !does_without(arm, problem, samples, weights, solution, loss, result, options.confidence))
-      continue;
-    std::erase_if(unknowns, is_of_the_arm);
-    ++result.undetermined_arms;
-    result.warnings.push_back("the arm of '" + problem.parameters[arm.front()].name + "' and '" +
-                              problem.parameters[arm.back()].name +
-                              "' is not determined: the data do not tell this law from one without it");
-  }
-  for (Unknown& unknown : unknowns) result.warnings.push_back(std::move(unknown.warning));
-  const auto spread_of = [&](std::size_t parameter, std::size_t run) {
-    for (std::size_t k = 0; k < coordinates.size(); ++k) {
-      if (coordinates[k].parameter == parameter &&
-          (coordinates[k].run == Estimate::shared || coordinates[k].run == run)) {
-        return spreads[k];
-      }
-    }
-    return problem.free[parameter] ? Spread{infinite, 1.0} : Spread{};  // at its bound, or held
-  };
-  for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    for (std::size_t run = 0; run < (problem.own[i] ? problem.runs : 1); ++run) {
-      Estimate estimate = estimate_of(problem.parameters[i], solution.values[run][i], spread_of(i, run));
-      if (problem.own[i]) estimate.recording = run;
-      (run == 0 ? result.parameters : result.others).push_back(std::move(estimate));
-    }
-  }
-  if (const std::string_view note = problem.facts().held_note; !note.empty())
-    result.warnings.emplace_back(note);
 }
 
 }  // namespace kerf::fitting

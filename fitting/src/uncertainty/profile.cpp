@@ -4,48 +4,13 @@
 #include <cmath>
 
 #include "infinite.h"
+#include "uncertainty/ridge.h"
 
 namespace kerf::fitting {
 namespace {
 
 constexpr double step = 0.5;   ///< [standard errors]
 constexpr int max_steps = 20;  ///< outwards, doubling after the first few
-
-/// An objective with one coordinate held.
-class Held final : public Objective {
- public:
-  Held(const LawObjective& whole, Eigen::Index held, double value)
-      : whole_(whole), held_(held), value_(value) {}
-  [[nodiscard]] Eigen::Index size() const override { return whole_.size() - 1; }
-  [[nodiscard]] Eigen::VectorXd whole(const Eigen::VectorXd& at) const {
-    Eigen::VectorXd all(whole_.size());
-    all << at.head(held_), value_, at.tail(size() - held_);
-    return all;
-  }
-  [[nodiscard]] bool evaluate(const Eigen::VectorXd& at, Sums& sums) const override {
-    Sums all;
-    if (!whole_.evaluate(whole(at), all)) return false;
-    std::vector<Eigen::Index> rest;
-    for (Eigen::Index k = 0; k < whole_.size(); ++k) {
-      if (k != held_) rest.push_back(k);
-    }
-    sums.squares = all.squares;
-    sums.score = all.score(rest);
-    sums.normal = all.normal(rest, rest);
-    return true;
-  }
-
- private:
-  const LawObjective& whole_;
-  Eigen::Index held_;
-  double value_;
-};
-
-Eigen::VectorXd without(const Eigen::VectorXd& all, Eigen::Index k) {
-  Eigen::VectorXd rest(all.size() - 1);
-  rest << all.head(k), all.tail(all.size() - 1 - k);
-  return rest;
-}
 
 /// The first value outwards from the best where the deviation reaches a limit, between the two points around
 /// it.
@@ -86,19 +51,17 @@ std::vector<Profile> profiles_of(const Problem& problem, const Samples& samples,
     const double unit = error * error / std::max(inverse, 1e-300);  // S rises by this in one standard error
     const auto limit = uncertainty.quantile[index];
     std::vector<std::pair<double, double>> points{{at[k], 0.0}};
+    Ridge ridge(whole, bounds, at, k, sums.squares, unit);
     for (const double side : {-1.0, 1.0}) {
-      Eigen::VectorXd rest = without(at, k);
+      ridge.begin_anew();
       double away = 0.0;
-      for (int i = 0; i < max_steps && at.size() > 1; ++i) {
+      for (int i = 0; i < max_steps; ++i) {
         away += i < 8 ? step : step * std::ldexp(1.0, i - 8);
         const double value = at[k] + side * away * error;
         if (value < bounds.lower[k] || value > bounds.upper[k]) break;
-        const Held held(whole, k, value);
-        const Minimum minimum =
-            minimise(held, rest, {.lower = without(bounds.lower, k), .upper = without(bounds.upper, k)},
-                     {.iterations = 50, .function_tolerance = 1e-10});
-        rest = minimum.at;
-        const double deviation = side * std::sqrt(std::max(0.0, minimum.sums.squares - sums.squares) / unit);
+        const double deviation = side * ridge.deviation(value);
+        if (!std::isfinite(deviation)) break;
+        ridge.keep();
         points.emplace_back(value, deviation);
         if (std::abs(deviation) > 1.3 * limit) break;
       }

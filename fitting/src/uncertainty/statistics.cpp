@@ -49,4 +49,10 @@ double student_t(double confidence, double degrees_of_freedom) {
   return boost::math::quantile(distribution, 0.5 + 0.5 * confidence);
 }
 
+double two_sided_p(double deviation, double degrees_of_freedom) {
+  if (std::isinf(deviation)) return 0.0;
+  const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
+  return 2.0 * boost::math::cdf(boost::math::complement(distribution, std::abs(deviation)));
+}
+
 }  // namespace kerf::fitting

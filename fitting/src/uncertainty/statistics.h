@@ -12,4 +12,8 @@ namespace kerf::fitting {
 /// Two-sided quantile of Student's t: the interval is estimate +- t * standard error.
 [[nodiscard]] double student_t(double confidence, double degrees_of_freedom);
 
+/// How likely a deviation as large as this is, of either sign, by Student's t.
+/// @param deviation in standard errors
+[[nodiscard]] double two_sided_p(double deviation, double degrees_of_freedom);
+
 }  // namespace kerf::fitting

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 
 #include "infinite.h"
+#include "uncertainty/cycles.h"
 #include "uncertainty/noise.h"
 #include "uncertainty/statistics.h"
 
@@ -149,8 +150,11 @@ void check(const Linearisation& linearisation) {
   }
   if (linearisation.residuals.size() != n ||
       (!linearisation.scale.empty() && linearisation.scale.size() != p) ||
-      (!linearisation.run_ends.empty() && before != static_cast<std::size_t>(n))) {
-    throw std::invalid_argument("the residuals, their derivatives, the runs and the scale must fit together");
+      (!linearisation.run_ends.empty() && before != static_cast<std::size_t>(n)) ||
+      (!linearisation.cycle_ends.empty() && linearisation.cycle_ends.back() != static_cast<std::size_t>(n)) ||
+      !std::ranges::is_sorted(linearisation.cycle_ends)) {
+    throw std::invalid_argument(
+        "the residuals, their derivatives, the runs, the cycles and the scale must fit together");
   }
   for (const double scale : linearisation.scale) {
     if (!(scale > 0.0 && std::isfinite(scale))) throw std::invalid_argument("a scale must be above zero");
@@ -162,6 +166,7 @@ Uncertainty unknown(Index p) {
   const auto count = static_cast<std::size_t>(p);
   return {.covariance = Eigen::MatrixXd::Constant(p, p, std::numeric_limits<double>::quiet_NaN()),
           .correlation = Eigen::MatrixXd::Identity(p, p),
+          .degrees_of_freedom = std::vector<double>(count, 1.0),
           .quantile = std::vector<double>(count, 1.0),
           .determined = std::vector<bool>(count, false)};
 }
@@ -181,22 +186,12 @@ void mark_undetermined(Uncertainty& result) {
   }
 }
 
-Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
-  const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
-  const Eigen::VectorXd scale = (deviation.array() > 0.0).select(deviation.cwiseInverse(), 0.0);
-  Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
-  correlation.diagonal().setOnes();
-  return correlation;
-}
+/// Of an estimated variance whose own relative variance is `spread`. That too is an estimate, which is small
+/// where the variance is: to first order it is larger on average by as much again, twice.
+double freedom_of(double spread) { return 2.0 / (spread * (1.0 + 2.0 * spread)); }
 
-/// A quantile for an estimated variance whose own relative variance is `spread`. That too is an estimate,
-/// which is small where the variance is: to first order it is larger on average by as much again, twice.
-double quantile_of(double confidence, double spread) {
-  return student_t(confidence, 2.0 / (spread * (1.0 + 2.0 * spread)));
-}
-
-/// Sets the covariance and the quantiles.
-void propagate_into(Uncertainty& result, const Blocks& blocks, const Noise& noise, double confidence) {
+/// Sets the covariance and its degrees of freedom.
+void propagate_into(Uncertainty& result, const Blocks& blocks, const Noise& noise) {
   const Eigen::VectorXd length = blocks.basis.rowwise().norm();
   const Eigen::VectorXd inverse = (length.array() > 0.0).select(length.cwiseInverse(), 0.0);
   const Eigen::MatrixXd unit = inverse.asDiagonal() * blocks.basis;
@@ -206,11 +201,19 @@ void propagate_into(Uncertainty& result, const Blocks& blocks, const Noise& nois
       propagated.covariance + blocks.lost_variance * unit * blocks.lost * unit.transpose();
   result.covariance = length.asDiagonal() * covariance * length.asDiagonal();
   for (Index k = 0; k < length.size(); ++k) {
-    result.quantile.push_back(quantile_of(confidence, propagated.relative_variance[k]));
+    result.degrees_of_freedom.push_back(freedom_of(propagated.relative_variance[k]));
   }
 }
 
 }  // namespace
+
+Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd deviation = covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (deviation.array() > 0.0).select(deviation.cwiseInverse(), 0.0);
+  Eigen::MatrixXd correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+  correlation.diagonal().setOnes();
+  return correlation;
+}
 
 Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence) {
   check(linearisation);
@@ -226,7 +229,16 @@ Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence
   } else {
     const Blocks blocks = coarsen(linearisation, normal, basis.determined);
     const Noise noise = noise_of(blocks);
-    propagate_into(result, blocks, noise, confidence);
+    if (linearisation.cycle_ends.size() >= fewest_cycles) {
+      ByCycles by_cycles = covariance_by_cycles(linearisation, basis.determined);
+      result.covariance = std::move(by_cycles.covariance);
+      result.degrees_of_freedom = std::move(by_cycles.degrees_of_freedom);
+      result.by_cycles = true;
+    } else {
+      propagate_into(result, blocks, noise);
+    }
+    for (const double freedom : result.degrees_of_freedom)
+      result.quantile.push_back(student_t(confidence, freedom));
     result.determined.assign(basis.lost.begin(), basis.lost.end());
     result.determined.flip();
     result.correlation = correlation_of(result.covariance);

@@ -11,12 +11,14 @@ namespace kerf::fitting {
 
 /// How well least squares knows its parameters.
 struct Uncertainty {
-  Eigen::MatrixXd covariance;     ///< p x p; infinite variance and NaN covariances where not determined
-  Eigen::MatrixXd correlation;    ///< p x p; NaN off the diagonal where not determined
-  std::vector<double> quantile;   ///< half the width of the interval over the standard error
-  std::vector<bool> determined;   ///< by the rows at all; how well, the covariance says
-  double correlation_time = 1.0;  ///< of the residuals [rows]
+  Eigen::MatrixXd covariance;   ///< p x p; infinite variance and NaN covariances where not determined
+  Eigen::MatrixXd correlation;  ///< p x p; NaN off the diagonal where not determined
+  std::vector<double> degrees_of_freedom;  ///< of the estimated variances
+  std::vector<double> quantile;            ///< half the width of the interval over the standard error
+  std::vector<bool> determined;            ///< by the rows at all; how well, the covariance says
+  double correlation_time = 1.0;           ///< of the residuals [rows]
   double effective_samples = 0.0;
+  bool by_cycles = false;                               ///< the covariance is that of cycles.h
   int noise_order = 0;                                  ///< of the autoregression
   int rows_a_block = 1;                                 ///< of the time grid on which it stands
   std::vector<UnidentifiableDirection> unidentifiable;  ///< what the data cannot tell apart
@@ -33,13 +35,18 @@ struct Uncertainty {
 /// with 2 / var(log v) degrees of freedom (Satterthwaite), v the estimated variance: the estimates of the
 /// noise's coefficients vary by s^2 Gamma^-1 / n, and v with them by its derivatives.
 ///
-/// Taken for granted: noise of one strength throughout, independent of the parameters, and a law that fits.
-/// It does not see an error in the position itself (the steps of an encoder), which least squares takes for
-/// exact, nor noise slower than about four recordings: no recording shows that.
+/// Where there are eight cycles or more, each counts as one observation instead (cycles.h).
+///
+/// Taken for granted: noise of one strength throughout, independent of the parameters; without cycles, what a
+/// law misfits is taken for noise with a long memory, and intervals are then rather too wide. It does not see
+/// an error in the position itself (the steps of an encoder), which least squares takes for exact, nor noise
+/// slower than about four recordings: no recording shows that.
 ///
 /// What fewer rows than parameters, residuals that are not finite, or a parameter without effect leave open
 /// is told by infinite variances and by `determined`, never by a number.
 /// @throws std::invalid_argument if the sizes do not fit together or a scale is not above zero.
 [[nodiscard]] Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence);
+
+[[nodiscard]] Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance);
 
 }  // namespace kerf::fitting

@@ -47,7 +47,7 @@ enum class CountBy : std::uint8_t {
 
 /// What the intervals take the residuals for.
 enum class Intervals : std::uint8_t {
-  correlated,  ///< noise with a memory, estimated from them
+  correlated,  ///< noise with a memory, estimated from them; by whole cycles where there are eight or more
   white        ///< independent from sample to sample: s^2 (J'J)^-1, at no cost; too narrow at 1 kHz
 };
 
@@ -82,14 +82,29 @@ struct FitOptions {
   std::function<std::vector<double>(const models::Law& law, std::size_t recording)> render;
 };
 
+/// Where an interval comes from; none: the data set no limit on either side, or nothing was asked.
+enum class IntervalBy : std::uint8_t { none, held, wald, profile };
+
+/// What the covariance was made of.
+enum class CovarianceBy : std::uint8_t {
+  residuals,  ///< noise with a memory, estimated from them
+  cycles,     ///< each cycle as one observation
+  white       ///< as asked, s^2 (J'J)^-1
+};
+
 /// A parameter with its uncertainty. A parameter that was not searched (the ends of a piecewise law's knots)
-/// has a standard error of zero; one that the data do not determine has infinite ones.
+/// has a standard error of zero. A limit that the data do not set is infinite, and so is the standard error
+/// of a parameter that they do not determine.
 struct Estimate {
   models::ParameterInfo info;
   double value = 0.0;
   double std_error = 0.0;
   double lower = 0.0;  ///< confidence interval
   double upper = 0.0;
+  IntervalBy by = IntervalBy::none;
+  /// How likely an estimate as far from zero is, if there is nothing: of a parameter that may be zero; else
+  /// NaN.
+  double p_zero = std::numeric_limits<double>::quiet_NaN();
   std::size_t recording = shared;  ///< whose own it is, where recordings differ
 
   static constexpr std::size_t shared = static_cast<std::size_t>(-1);
@@ -131,9 +146,10 @@ struct FitResult {
   double cv_std_error = 0.0;       ///< of cv_rmse, by the spread from fold to fold [N]; NaN as that is
   std::vector<double> cv_folds;    ///< error on each fold that was held out [N]; empty as cv_rmse is NaN
   AsRendered rendered;
-  double test_rmse = 0.0;             ///< on the share that no fit saw [N]; NaN if none
-  double jnd_fraction = 0.0;          ///< share of samples whose error a person could feel
-  double correlation_time = 1.0;      ///< of the residuals, in samples; the intervals allow for it
+  double test_rmse = 0.0;         ///< on the share that no fit saw [N]; NaN if none
+  double jnd_fraction = 0.0;      ///< share of samples whose error a person could feel
+  double correlation_time = 1.0;  ///< of the residuals, in samples; the intervals allow for it
+  CovarianceBy covariance_by = CovarianceBy::residuals;
   std::vector<double> correlation;    ///< matrix of the searched parameters, row by row; empty for tables
   std::vector<std::string> searched;  ///< their names, in the order of that matrix
   std::vector<Profile> profiles;

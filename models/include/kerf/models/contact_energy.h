@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include <kerf/models/parameter.h>
+
 namespace kerf::models {
 
 /// Work of the force that a contact lets through, never below zero, over a travel along which the force of
@@ -64,6 +66,23 @@ auto contact_step(const Element& element, typename Element::State& state, double
     }
   }
   return element.bilateral_step(state, x, period_s);
+}
+
+/// Whether a viscoelastic element pulls as it pushes: a specimen that is gripped, glued or sewn, not touched.
+[[nodiscard]] inline OptionInfo bilateral_option() {
+  return {"bilateral", false,
+          "the element pulls as it pushes, on either side of its rest; else it is touched"};
+}
+
+/// One tick of a viscoelastic element [N]: of a contact, which is none before it and never pulls, or of the
+/// element itself.
+template <typename Element>
+auto element_step(const Element& element, typename Element::State& state, double penetration,
+                  double period_s) noexcept {
+  using T = decltype(element.bilateral_step(state, penetration, period_s));
+  if (element.bilateral) return element.bilateral_step(state, penetration, period_s);
+  const T force = contact_step(element, state, penetration > 0.0 ? penetration : 0.0, period_s);
+  return force < T(0) ? T(0) : force;
 }
 
 }  // namespace kerf::models

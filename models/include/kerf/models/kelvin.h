@@ -28,8 +28,9 @@ namespace kerf::models {
 /// so the result does not depend on the period and never goes unstable. The option `integrator` has two other
 /// steps (integrator.h), so that the bench can show what they cost: "semi_implicit", stable but of first
 /// order, and "euler", which diverges for T > 2 tau. Contact is unilateral: the force felt is never below
-/// zero while the arm keeps relaxing. The first tick takes the arm as relaxed. With `precision = "float"` the
-/// forces are single, and only the travel of a tick is still a difference of doubles.
+/// zero while the arm keeps relaxing; with the option `bilateral` it is that of the element, which pulls too.
+/// The first tick takes the arm as relaxed. With `precision = "float"` the forces are single, and only the
+/// travel of a tick is still a difference of doubles.
 ///
 /// Source: [FuzzyKelvin], fig. 2 and section 2.1; differs from the paper in that b, printed without a unit,
 /// is N·s/m.
@@ -51,6 +52,7 @@ struct Kelvin {
   T series_stiffness{};    ///< k2 [N/m], > 0
   T damping{};             ///< b [N·s/m], > 0
   Integrator integrator = Integrator::exact;
+  bool bilateral = false;  ///< pulls as it pushes
 
   struct State {
     T arm_force{0};
@@ -68,9 +70,12 @@ struct Kelvin {
             {"series_stiffness", Quantity::stiffness, 1e-9, 1e9, Scale::logarithmic, "k2, spring of the arm"},
             {"damping", Quantity::damping, 1e-9, 1e9, Scale::logarithmic, "b, dashpot of the arm"}};
   }
-  static std::vector<OptionInfo> options() { return {integrator_option(), precision_option()}; }
+  static std::vector<OptionInfo> options() {
+    return {bilateral_option(), integrator_option(), precision_option()};
+  }
   static Kelvin make(std::span<const T> values, const Options& given) {
-    return {values[0], values[1], values[2], integrator_of(OptionReader(name, options(), given))};
+    const OptionReader reader(name, options(), given);
+    return {values[0], values[1], values[2], integrator_of(reader), reader.flag("bilateral")};
   }
 
   /// Relaxation time tau = b / k2 [s].
@@ -103,10 +108,8 @@ struct Kelvin {
            series_stiffness * static_cast<Input<T>>(x - state.penetration);
   }
 
-  /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
-    return force < T(0) ? T(0) : force;
+    return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].

@@ -35,8 +35,9 @@ namespace kerf::models {
 ///
 /// `integrator` and `precision` as in Kelvin; forward Euler diverges where an arm has T > 2 tau_i.
 ///
-/// Contact is unilateral as in Kelvin: no force below zero, while the arms keep relaxing, and the first tick
-/// takes them as relaxed. Exact, it is passive at every period: springs and dashpots, all positive.
+/// Contact is unilateral as in Kelvin, unless `bilateral`: no force below zero, while the arms keep relaxing,
+/// and the first tick takes them as relaxed. Exact, it is passive at every period: springs and dashpots, all
+/// positive.
 ///
 /// Source: Maxwell's arms in parallel as in [Ferry1980], chapter 1; [FuzzyKelvin]
 /// uses one of them.
@@ -63,6 +64,7 @@ struct Maxwell {
   std::array<T, max_arms> stiffness{};        ///< k_i [N/m], > 0
   std::array<T, max_arms> relaxation_time{};  ///< tau_i [s], > 0
   Integrator integrator = Integrator::exact;
+  bool bilateral = false;  ///< pulls as it pushes
 
   struct State {
     std::array<T, max_arms> arm_force{};
@@ -76,6 +78,7 @@ struct Maxwell {
 
   static std::vector<OptionInfo> options() {
     return {{"arms", 2.0, "number of arms, each with a relaxation time of its own, 1 to 6"},
+            bilateral_option(),
             integrator_option(),
             precision_option()};
   }
@@ -96,7 +99,9 @@ struct Maxwell {
   static Maxwell make(std::span<const T> values, const Options& given) {
     Maxwell law;
     law.arms = arm_count(given);
-    law.integrator = integrator_of(OptionReader(name, options(), given));
+    const OptionReader reader(name, options(), given);
+    law.integrator = integrator_of(reader);
+    law.bilateral = reader.flag("bilateral");
     law.parallel_stiffness = values[0];
     for (std::size_t i = 0; i < law.arms; ++i) {
       law.stiffness[i] = values[1 + i];
@@ -148,10 +153,8 @@ struct Maxwell {
     return force;
   }
 
-  /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
-    return force < T(0) ? T(0) : force;
+    return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].

@@ -66,6 +66,7 @@ struct Springpot {
   T fractional_stiffness{};     ///< c [N/m], > 0
   T order{};                    ///< alpha [1]
   double reference_time = 1.0;  ///< T0 [s]
+  bool bilateral = false;       ///< pulls as it pushes
 
   /// The kernel's weights, which follow from c, alpha and T0.
   std::array<T, decays> weight{};  ///< [N/m] of each decay
@@ -89,7 +90,8 @@ struct Springpot {
   };
 
   static std::vector<OptionInfo> options() {
-    return {{"spring", true, "a spring beside the springpot"},
+    return {bilateral_option(),
+            {"spring", true, "a spring beside the springpot"},
             {"reference_time", 1.0, "T0, time at which the force is judged by c [s]"}};
   }
   static std::vector<ParameterInfo> parameters(const Options& given) {
@@ -112,6 +114,7 @@ struct Springpot {
     law.fractional_stiffness = values[first];
     law.order = values[first + 1];
     law.reference_time = reader.number("reference_time", 1e-9, 1e9);
+    law.bilateral = reader.flag("bilateral");
     law.weigh();
     return law;
   }
@@ -155,10 +158,8 @@ struct Springpot {
            ((sum[0] + sum[1]) + (sum[2] + sum[3]));
   }
 
-  /// Force of a contact: none before it, and never pulling.
   T step(State& state, const Motion& motion, double period_s) const noexcept {
-    const T force = contact_step(*this, state, motion.penetration > 0.0 ? motion.penetration : 0.0, period_s);
-    return force < T(0.0) ? T(0.0) : force;
+    return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].

@@ -1,0 +1,271 @@
+#include "uncertainty/limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "infinite.h"
+#include "uncertainty/ridge.h"
+#include "uncertainty/statistics.h"
+
+namespace kerf::fitting {
+namespace {
+
+using Eigen::Index;
+
+constexpr double short_half = 0.1;  ///< of an interval that is taken as it is
+constexpr double like_a_parabola = 0.1;
+constexpr double near_enough = 0.005;  ///< of a deviation, to the limit that it should reach
+constexpr double zero_beside = 1e-6;   ///< of the upper bound: a lower one this small stands for none
+
+/// A column of the inverse of second derivatives whose scales may be far apart.
+Eigen::VectorXd inverse_column(const Eigen::MatrixXd& hessian, Index k) {
+  const Eigen::VectorXd length = hessian.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd scale = (length.array() > 0.0).select(length.cwiseInverse(), 0.0);
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  return scale[k] * scale.cwiseProduct(solve_normal(scaled, Eigen::VectorXd::Unit(hessian.cols(), k)));
+}
+
+/// The rise of a sum of squares in one standard error of a coordinate: its variance over what it were if the
+/// residuals were white and of variance one.
+double unit_of_rise(const Uncertainty& uncertainty, const Eigen::MatrixXd& hessian, const Sums& sums,
+                    Index k) {
+  const double inverse = inverse_column(hessian, k)[k];
+  if (uncertainty.determined[static_cast<std::size_t>(k)] && inverse > 0.0) {
+    const double unit = uncertainty.covariance(k, k) / inverse;
+    if (std::isfinite(unit) && unit > 0.0) return unit;
+  }
+  return std::max(sums.squares / std::max(1.0, uncertainty.effective_samples), 1e-300);
+}
+
+/// The value, outwards from the best, where the deviation reaches the limit; none where it does not before
+/// the bound.
+std::optional<double> where_it_reaches(Ridge& ridge, double best, double step, double bound, double limit) {
+  constexpr int most_steps = 60;
+  ridge.begin_anew();
+  double inner = best;
+  double inner_miss = -limit;
+  double outer = best;
+  double outer_miss = 0.0;
+  for (int i = 0; true; ++i) {
+    outer = step < 0.0 ? std::max(best + step, bound) : std::min(best + step, bound);
+    outer_miss = ridge.deviation(outer) - limit;
+    if (outer_miss >= 0.0) break;
+    if (outer == bound || i == most_steps) return std::nullopt;
+    ridge.keep();
+    inner = outer;
+    inner_miss = outer_miss;
+    step *= 2.0;
+  }
+  // Halves while the outer end is far beyond, then regula falsi that halves what stays (Illinois).
+  constexpr double far_beyond = 4.0;
+  double inner_weight = inner_miss;
+  double outer_weight = outer_miss;
+  for (int i = 0; i < most_steps; ++i) {
+    if (outer_miss <= near_enough * limit || std::abs(outer - inner) < 1e-9 * (1.0 + std::abs(outer))) break;
+    const double share =
+        outer_miss <= far_beyond * limit ? inner_weight / (inner_weight - outer_weight) : 0.5;
+    const double between = inner + std::clamp(share, 0.02, 0.98) * (outer - inner);
+    const double miss = ridge.deviation(between) - limit;
+    if (miss < 0.0) {
+      ridge.keep();
+      inner = between;
+      inner_miss = inner_weight = miss;
+      outer_weight *= 0.5;
+      if (miss >= -near_enough * limit) return inner;
+    } else {
+      outer = between;
+      outer_miss = outer_weight = miss;
+      inner_weight *= 0.5;
+    }
+  }
+  return outer;
+}
+
+/// One coordinate and what is asked of it, on the search scale.
+struct Question {
+  const models::ParameterInfo& info;
+  Index k;
+  double best;
+  double half;   ///< of Wald's interval
+  double scale;  ///< of a change that counts
+  double quantile;
+  double degrees_of_freedom;
+  double unit;
+};
+
+bool is_like_a_parabola(const LawObjective& objective, const Eigen::VectorXd& at, const Sums& sums,
+                        const Eigen::MatrixXd& hessian, const Bounds& bounds, const Question& asked) {
+  const Eigen::VectorXd inverse = inverse_column(hessian, asked.k);
+  const Eigen::VectorXd direction = inverse / inverse[asked.k];
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::VectorXd end = at + side * asked.half * direction;
+    if ((end.array() < bounds.lower.array()).any() || (end.array() > bounds.upper.array()).any())
+      return false;
+    Sums there;
+    if (!objective.evaluate(end, there)) return false;
+    const double deviation = std::sqrt(std::max(0.0, there.squares - sums.squares) / asked.unit);
+    if (!(std::abs(deviation - asked.quantile) <= like_a_parabola * asked.quantile)) return false;
+  }
+  return true;
+}
+
+/// Where none is on the search scale; its deviation is asked there.
+double none_on_scale(const models::ParameterInfo& info) {
+  return info.scale == models::Scale::logarithmic ? std::log(info.lower) : 0.0;
+}
+bool is_one_sided(const models::ParameterInfo& info) {
+  return info.scale == models::Scale::logarithmic || info.lower == 0.0;
+}
+
+double p_of(double deviation, const Question& asked) {
+  if (std::isnan(deviation)) return deviation;
+  const double both = two_sided_p(deviation, asked.degrees_of_freedom);
+  return is_one_sided(asked.info) ? 0.5 * both : both;
+}
+
+Limits by_wald(const Question& asked) {
+  const double lower = from_search_scale(asked.info, asked.best - asked.half);
+  const double upper = from_search_scale(asked.info, asked.best + asked.half);
+  const double value = from_search_scale(asked.info, asked.best);
+  Limits limits{.lower = std::max(lower, std::min(asked.info.lower, value)),
+                .upper = std::min(upper, std::max(asked.info.upper, value)),
+                .by = IntervalBy::wald};
+  if (may_be_zero(asked.info) && asked.half > 0.0) {
+    const double in_errors = asked.info.scale == models::Scale::logarithmic
+                                 ? asked.quantile / asked.half
+                                 : std::abs(asked.best) * asked.quantile / asked.half;
+    limits.p_zero = p_of(in_errors, asked);
+  }
+  return limits;
+}
+
+/// The ends of the ranges that are none of nature's: to be without is an end like any other value.
+Bounds ends_of(const Problem& problem) {
+  Bounds ends = problem.bounds();
+  const auto coordinates = problem.all();
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    if (may_be_zero(problem.parameters[coordinates[k].parameter]))
+      ends.lower[static_cast<Index>(k)] = -infinite;
+  }
+  return ends;
+}
+
+Limits by_profile(Ridge ridge, const Bounds& bounds, const Bounds& ends, const Question& asked) {
+  const double step =
+      std::isfinite(asked.half) && asked.half > 0.0 ? std::min(0.5 * asked.half, asked.scale) : asked.scale;
+  Limits limits{.by = IntervalBy::profile};
+  const auto reached = [&](double way, double bound) {
+    const auto at = where_it_reaches(ridge, asked.best, way, bound, asked.quantile);
+    return at && !ridge.came_to_an_end(ends) ? at : std::nullopt;
+  };
+  double without_it = infinite;
+  if (may_be_zero(asked.info)) {
+    ridge.begin_anew();
+    without_it = ridge.deviation(none_on_scale(asked.info));
+    limits.p_zero = p_of(without_it, asked);
+  }
+  const bool down_to_none = is_one_sided(asked.info) && without_it <= (1.0 + near_enough) * asked.quantile;
+  const auto upper = reached(step, bounds.upper[asked.k]);
+  if (upper) limits.upper = from_search_scale(asked.info, *upper);
+  if (down_to_none) {
+    if (upper) limits.lower = 0.0;  // else nothing is known of it
+  } else if (const auto lower = reached(-step, bounds.lower[asked.k])) {
+    limits.lower = from_search_scale(asked.info, *lower);
+  }
+  if (std::isinf(limits.lower) && std::isinf(limits.upper)) limits.by = IntervalBy::none;
+  return limits;
+}
+
+}  // namespace
+
+bool may_be_zero(const models::ParameterInfo& info) {
+  if (info.scale == models::Scale::logarithmic)
+    return info.quantity != models::Quantity::time && info.lower <= zero_beside * info.upper;
+  return info.lower <= 0.0 && info.upper >= 0.0 && info.quantity != models::Quantity::position;
+}
+
+Eigen::MatrixXd hessian_of(const Objective& objective, const Eigen::VectorXd& at, const Sums& sums) {
+  constexpr double small = 1e-4;  // of the change that adds as much to the squares as there is
+  constexpr double least = 0.1;   // of J'J along any direction, that is still a minimum to speak of
+  constexpr double most = 10.0;
+  Eigen::MatrixXd hessian(at.size(), at.size());
+  Sums there;
+  for (Index k = 0; k < at.size(); ++k) {
+    if (!(sums.normal(k, k) > 0.0)) return sums.normal;
+    Eigen::VectorXd moved = at;
+    moved[k] += small * std::min(1.0, std::sqrt(sums.squares / sums.normal(k, k)));
+    if (!(moved[k] != at[k]) || !objective.evaluate(moved, there)) return sums.normal;
+    hessian.col(k) = (there.score - sums.score) / (moved[k] - at[k]);
+  }
+  hessian = 0.5 * (hessian + hessian.transpose()).eval();
+  const Eigen::VectorXd scale = sums.normal.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> factor(scale.asDiagonal() * sums.normal * scale.asDiagonal());
+  if (factor.info() != Eigen::Success || !hessian.allFinite()) return sums.normal;
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
+  const Eigen::MatrixXd half = factor.matrixL().solve(scaled);
+  const Eigen::MatrixXd relative = factor.matrixL().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(relative, Eigen::EigenvaluesOnly);
+  const auto& values = spectrum.eigenvalues();
+  return values.minCoeff() > least && values.maxCoeff() < most ? hessian : sums.normal;
+}
+
+void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::MatrixXd& hessian) {
+  if (!uncertainty.covariance.allFinite()) return;
+  Eigen::MatrixXd inverse(hessian.rows(), hessian.cols());
+  for (Index k = 0; k < hessian.cols(); ++k) inverse.col(k) = inverse_column(hessian, k);
+  const Eigen::MatrixXd change = inverse * sums.normal;
+  uncertainty.covariance = change * uncertainty.covariance * change.transpose();
+  uncertainty.correlation = correlation_of(uncertainty.covariance);
+}
+
+std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
+                              const Eigen::VectorXd& at, const Sums& sums, const Eigen::MatrixXd& hessian,
+                              const Uncertainty& uncertainty, const std::vector<double>& scale) {
+  const Bounds bounds = problem.bounds();
+  const auto coordinates = problem.all();
+  const Bounds ends = ends_of(problem);
+  const bool smooth = problem.facts().search == models::Search::descent;
+  std::vector<Limits> all;
+  for (Index k = 0; k < at.size(); ++k) {
+    const auto place = static_cast<std::size_t>(k);
+    const bool determined = uncertainty.determined[place];
+    const double error = determined ? std::sqrt(uncertainty.covariance(k, k)) : infinite;
+    const Question asked{.info = problem.parameters[coordinates[place].parameter],
+                         .k = k,
+                         .best = at[k],
+                         .half = uncertainty.quantile[place] * error,
+                         .scale = scale.empty() ? 1.0 : scale[place],
+                         .quantile = uncertainty.quantile[place],
+                         .degrees_of_freedom = uncertainty.degrees_of_freedom[place],
+                         .unit = unit_of_rise(uncertainty, hessian, sums, k)};
+    if (!smooth && !determined) {
+      all.emplace_back();
+    } else if (!smooth || asked.half <= short_half * asked.scale ||
+               (determined && is_like_a_parabola(objective, at, sums, hessian, bounds, asked))) {
+      all.push_back(by_wald(asked));
+    } else {
+      all.push_back(
+          by_profile(Ridge(objective, bounds, at, k, sums.squares, asked.unit), bounds, ends, asked));
+    }
+  }
+  return all;
+}
+
+Limits limits_above_zero(const Problem& problem, const LawObjective& objective, const Eigen::VectorXd& at,
+                         Index held, const Sums& sums, const Uncertainty& uncertainty) {
+  const Bounds bounds = problem.bounds();
+  const auto place = static_cast<std::size_t>(held);
+  const models::ParameterInfo& info = problem.parameters[problem.all()[place].parameter];
+  const double unit = unit_of_rise(uncertainty, sums.normal, sums, held);
+  Ridge ridge(objective, bounds, at, held, sums.squares, unit);
+  const double step = info.scale == models::Scale::logarithmic ? 1.0 : 1e-6 * info.upper;
+  const auto upper = where_it_reaches(ridge, at[held], step, bounds.upper[held], uncertainty.quantile[place]);
+  if (!upper || ridge.came_to_an_end(ends_of(problem))) return {};
+  return {.lower = 0.0, .upper = from_search_scale(info, *upper), .by = IntervalBy::profile, .p_zero = 0.5};
+}
+
+}  // namespace kerf::fitting

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "problem.h"
+#include "uncertainty/uncertainty.h"
+
+namespace kerf::fitting {
+
+/// Between which values a parameter lies.
+struct Limits {
+  double lower = -std::numeric_limits<double>::infinity();  ///< infinite: the data set no limit
+  double upper = std::numeric_limits<double>::infinity();
+  IntervalBy by = IntervalBy::none;
+  double p_zero = std::numeric_limits<double>::quiet_NaN();  ///< NaN: no question, or not answered
+};
+
+/// Whether the smallest value that a law accepts stands for none: a spring of 1e-9 N/m is no spring.
+[[nodiscard]] bool may_be_zero(const models::ParameterInfo& info);
+
+/// The second derivatives of half the sum of squares at its minimum, J^T J and what the residuals add to it
+/// where the law misfits, by differences of the score; J^T J itself where they are not to be had, or are not
+/// those of a minimum.
+[[nodiscard]] Eigen::MatrixXd hessian_of(const Objective& objective, const Eigen::VectorXd& at,
+                                         const Sums& sums);
+
+/// Puts the second derivatives in place of J^T J: the covariance of an estimate by a law that misfits is
+/// H^-1 (J^T Sigma J) H^-1. Source: [White1982].
+void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::MatrixXd& hessian);
+
+/// The interval of each coordinate, by the first rule that applies:
+///
+/// 1. Wald's, estimate +- quantile * standard error on the search scale, where half of it is no more than
+///    0.1, a tenth of the parameter on a logarithmic scale and of its scale on a linear one.
+/// 2. Wald's, where at both of its ends, the others following as if the sum of squares were a parabola, the
+///    root of its rise is within 10 % of what a parabola has.
+/// 3. The profile of the sum of squares: where the root of its rise, in standard errors, reaches the
+///    quantile; no limit on a side where it does not before the bound of the parameter, or only because
+///    another one came to the end of its range. A lower bound that stands for none (may_be_zero()) is then
+///    the limit, zero.
+///
+/// With each, where the parameter may be zero, how likely estimates as far from it are if it is: by the
+/// deviation of the best fit without it, one-sided where it cannot be negative [SelfLiang1987].
+/// Source: [BatesWatts1988], section 6.1 (profiles).
+[[nodiscard]] std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
+                                            const Eigen::VectorXd& at, const Sums& sums,
+                                            const Eigen::MatrixXd& hessian, const Uncertainty& uncertainty,
+                                            const std::vector<double>& scale);
+
+/// The limit of a coordinate that lies at its lower bound, which stands for none.
+[[nodiscard]] Limits limits_above_zero(const Problem& problem, const LawObjective& objective,
+                                       const Eigen::VectorXd& at, Eigen::Index held, const Sums& sums,
+                                       const Uncertainty& uncertainty);
+
+}  // namespace kerf::fitting

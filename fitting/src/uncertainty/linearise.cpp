@@ -1,0 +1,114 @@
+#include "uncertainty/linearise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "infinite.h"
+#include "uncertainty/statistics.h"
+
+namespace kerf::fitting {
+namespace {
+
+/// What counts as a change of a coordinate as large as itself: one that changes the forces by as much as
+/// there are, where it is near zero. Whether it is told from zero is another question (limits.h).
+double scale_of(const models::ParameterInfo& info, double value, double force_rms, double column_rms) {
+  if (info.scale == models::Scale::logarithmic) return 1.0;
+  return std::max(std::abs(value), column_rms > 0.0 ? force_rms / column_rms : 1.0);
+}
+
+double rms(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  return std::sqrt(values.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, values.size())));
+}
+
+/// The rows that count, times the roots of their weights.
+Linearisation rows_of(const LawObjective& objective, const Eigen::VectorXd& at, const Samples& samples,
+                      const Weights& weights, const RobustLoss& loss) {
+  Linearisation all;
+  if (!objective.rows(at, all.residuals, all.jacobian)) all.jacobian.setZero();
+  Eigen::Index kept = 0;
+  bool all_in_cycles = true;
+  for (const Run& run : samples.runs) {
+    std::uint32_t cycle = 0;
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      if (!(weights[i] > 0.0)) continue;
+      if (const std::uint32_t here = samples.cycle[i]; here > 0 && here != cycle) {
+        if (cycle > 0) all.cycle_ends.push_back(static_cast<std::size_t>(kept));
+        cycle = here;  // what lies between two cycles belongs to the first
+      }
+      const auto row = static_cast<Eigen::Index>(i);
+      const double residual = all.residuals[row] - samples.force[i];
+      const double root = std::sqrt(weights[i] * loss(weights[i] * residual * residual).slope);
+      all.residuals[kept] = root * residual;
+      for (Eigen::Index k = 0; k < all.jacobian.cols(); ++k)
+        all.jacobian(kept, k) = root * all.jacobian(row, k);
+      ++kept;
+    }
+    all.run_ends.push_back(static_cast<std::size_t>(kept));
+    all.cycle_ends.push_back(static_cast<std::size_t>(kept));
+    all_in_cycles = all_in_cycles && cycle > 0;
+  }
+  if (!all_in_cycles) all.cycle_ends.clear();
+  if (kept < all.residuals.size()) {
+    all.residuals.conservativeResize(kept);
+    all.jacobian.conservativeResize(kept, Eigen::NoChange);
+  }
+  return all;
+}
+
+/// The values that the coordinates of a problem have.
+std::vector<double> searched_values(const Problem& problem, const Solution& solution) {
+  std::vector<double> values;
+  for (const auto& [parameter, run] : problem.all()) {
+    values.push_back(solution.values[run == Estimate::shared ? 0 : run][parameter]);
+  }
+  return values;
+}
+
+}  // namespace
+
+Linearisation linearise(const LawObjective& objective, const Problem& problem, const Solution& solution,
+                        const Samples& samples, const Weights& weights, const RobustLoss& loss) {
+  Linearisation linear = rows_of(objective, coordinates_of(problem, solution.values), samples, weights, loss);
+  const double force_rms =
+      rms(Eigen::Map<const Eigen::VectorXd>(samples.force.data(), static_cast<Eigen::Index>(samples.size())));
+  const auto coordinates = problem.all();
+  const auto values = searched_values(problem, solution);
+  for (std::size_t k = 0; k < coordinates.size(); ++k) {
+    linear.scale.push_back(scale_of(problem.parameters[coordinates[k].parameter], values[k], force_rms,
+                                    rms(linear.jacobian.col(static_cast<Eigen::Index>(k)))));
+  }
+  return linear;
+}
+
+Uncertainty as_of_white_noise(const LawObjective& objective, const Eigen::VectorXd& at,
+                              const Solution& solution, const Weights& weights, double confidence) {
+  const Eigen::Index p = at.size();
+  Sums sums{.squares = solution.squares, .score = {}, .normal = solution.normal};
+  bool known = sums.normal.cols() == p;
+  if (!known) known = objective.evaluate(at, sums);
+  const auto counted =
+      static_cast<double>(std::count_if(weights.begin(), weights.end(), [](double w) { return w > 0.0; }));
+  const double degrees_of_freedom = std::max(1.0, counted - static_cast<double>(p));
+  Uncertainty result;
+  result.covariance.setZero(p, p);
+  result.correlation = Eigen::MatrixXd::Identity(p, p);
+  for (Eigen::Index k = 0; k < p && known; ++k) {
+    result.covariance.col(k) =
+        sums.squares / degrees_of_freedom * solve_normal(sums.normal, Eigen::VectorXd::Unit(p, k));
+  }
+  const Eigen::VectorXd error = result.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (Eigen::Index k = 0; k < p; ++k) {
+    result.determined.push_back(known && sums.normal(k, k) > 0.0);
+    result.degrees_of_freedom.push_back(degrees_of_freedom);
+    result.quantile.push_back(student_t(confidence, degrees_of_freedom));
+    for (Eigen::Index j = 0; j < p; ++j) {
+      if (j != k && error[j] * error[k] > 0.0)
+        result.correlation(j, k) = result.covariance(j, k) / (error[j] * error[k]);
+    }
+  }
+  result.effective_samples = counted;
+  return result;
+}
+
+}  // namespace kerf::fitting

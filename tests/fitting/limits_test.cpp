@@ -1,0 +1,147 @@
+#include "uncertainty/limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "fitting/coverage.h"
+#include "fitting/strokes.h"
+
+namespace kerf::fitting {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+const Estimate& estimate_of(const FitResult& fit, std::string_view name) {
+  const auto found =
+      std::ranges::find(fit.parameters, name, [](const Estimate& one) { return one.info.name; });
+  if (found == fit.parameters.end()) throw std::out_of_range(std::string(name));
+  return *found;
+}
+
+FitResult fitted(const std::string& model, const models::Law& tissue, const test::Path& path, double noise_n,
+                 std::uint64_t seed = 11) {
+  const test::Scenario scenario{"", model, tissue, path, {}};
+  const auto count = static_cast<Eigen::Index>(path.size());
+  return test::fitted(scenario, test::measured(scenario, test::Noise::white().draw(count, noise_n, seed)));
+}
+
+/// r_i = exp(a t_i) - y_i for y far from any exponential: half the second derivative of the sum of squares is
+/// sum t^2 e^(at) (2 e^(at) - y).
+class OneExponent final : public Objective {
+ public:
+  [[nodiscard]] Eigen::Index size() const override { return 1; }
+  [[nodiscard]] bool evaluate(const Eigen::VectorXd& at, Sums& sums) const override {
+    sums = {.squares = 0.0, .score = Eigen::VectorXd::Zero(1), .normal = Eigen::MatrixXd::Zero(1, 1)};
+    for (int i = 0; i < 50; ++i) {
+      const double f = std::exp(at[0] * t(i));
+      sums.squares += (f - y(i)) * (f - y(i));
+      sums.score[0] += t(i) * f * (f - y(i));
+      sums.normal(0, 0) += t(i) * t(i) * f * f;
+    }
+    return true;
+  }
+  [[nodiscard]] static double t(int i) { return 0.02 * i; }
+  [[nodiscard]] static double y(int i) { return 1.0 + 2.0 * std::sin(7.0 * t(i)); }
+  [[nodiscard]] static double second(double a) {
+    double sum = 0.0;
+    for (int i = 0; i < 50; ++i) {
+      const double f = std::exp(a * t(i));
+      sum += t(i) * t(i) * f * (2.0 * f - y(i));
+    }
+    return sum;
+  }
+};
+
+TEST(Hessian, OfALawThatMisfitsHasWhatTheResidualsAdd) {
+  const OneExponent objective;
+  const Bounds anywhere{Eigen::VectorXd::Constant(1, -10.0), Eigen::VectorXd::Constant(1, 10.0)};
+  const Minimum minimum = minimise(objective, Eigen::VectorXd::Constant(1, 0.3), anywhere);
+  Sums sums;
+  ASSERT_TRUE(objective.evaluate(minimum.at, sums));
+  const double exact = OneExponent::second(minimum.at[0]);
+  EXPECT_GT(std::abs(exact / sums.normal(0, 0) - 1.0), 0.1) << "the residuals add something";
+  EXPECT_NEAR(hessian_of(objective, minimum.at, sums)(0, 0), exact, 1e-3 * exact);
+}
+
+// A fluid has no spring beside its arm, and its interval says so.
+TEST(Limits, OfASpringThatIsNotThereBeginAtZero) {
+  const models::Law fluid =
+      models::Law::make("maxwell", std::vector<double>{1e-9, 50.0, 0.3}, {{"arms", 1.0}});
+  int included = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const FitResult fit = fitted("kelvin", fluid, test::ramp_and_hold(4.0, 0.1), 0.02, seed);
+    const Estimate& spring = estimate_of(fit, "parallel_stiffness");
+    EXPECT_LT(spring.upper, 0.2) << "of 50 N/m in the arm";
+    EXPECT_GT(spring.upper, 0.0);
+    EXPECT_NEAR(estimate_of(fit, "series_stiffness").value, 50.0, 1.0);
+    included += spring.lower == 0.0 && spring.p_zero > 0.025 ? 1 : 0;
+  }
+  EXPECT_GE(included, 17) << "one-sided, 97.5 % of them: fewer once in 3,000 times";
+}
+
+TEST(Limits, OfASpringThatIsThereDoNot) {
+  const FitResult fit = fitted("kelvin", test::kelvin(0.4), test::ramp_and_hold(4.0, 0.1), 0.02);
+  EXPECT_EQ(estimate_of(fit, "parallel_stiffness").by, IntervalBy::wald);
+  EXPECT_GT(estimate_of(fit, "parallel_stiffness").lower, 5.0);
+  EXPECT_LT(estimate_of(fit, "parallel_stiffness").p_zero, 1e-9);
+}
+
+TEST(Limits, OfWhatIsWellKnownAreWaldsAndTheProfilesToo) {
+  const models::Law law = models::Law::make("kelvin", std::vector<double>{8.0, 7.0, 3.0});
+  const test::Strokes strokes(6000, 0.02, law);
+  const FitResult fit = fitting::fit("kelvin", strokes.series(), {.folds = 0, .profile = true});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Estimate& estimate = fit.parameters[k];
+    EXPECT_EQ(estimate.by, IntervalBy::wald) << estimate.info.name;
+    EXPECT_NEAR(fit.profiles[k].lower, estimate.lower, 0.03 * (estimate.upper - estimate.lower));
+    EXPECT_NEAR(fit.profiles[k].upper, estimate.upper, 0.03 * (estimate.upper - estimate.lower));
+  }
+}
+
+TEST(Limits, OfWhatTheDataDoNotSetAreOpen) {
+  test::Path slow;
+  for (int i = 0; i < 4000; ++i) slow.push_back({.penetration = 2.5e-5 * i, .velocity = 0.025});
+  const FitResult fit = fitted("kelvin", test::kelvin(0.02), slow, 0.01);
+  EXPECT_TRUE(std::isinf(estimate_of(fit, "series_stiffness").upper)) << "a dashpot alone does as well";
+}
+
+// A knot whose force is near zero is as well known as its neighbours.
+TEST(Limits, OfAKnotNearZeroAreNoWarning) {
+  const models::Law line = models::Law::make("exponential", std::vector<double>{1e-4, 9.0, 0.0},
+                                             {{"thickness", 0.4}, {"zero_at_contact", true}});
+  const test::Strokes strokes(8000, 0.02, line);
+  const FitResult result =
+      fit("piecewise", strokes.series(), {.law_options = {{"segments", 3.0}}, .folds = 0});
+  EXPECT_LT(std::abs(estimate_of(result, "closing[0]").value), 0.02);
+  EXPECT_THAT(result.warnings, Not(Contains(HasSubstr("the data"))));
+}
+
+// Gripped, not touched.
+TEST(Bilateral, ElementPullsAndIsFoundAgain) {
+  const models::Options gripped{{"bilateral", true}};
+  const models::Law tissue = models::Law::make("kelvin", std::vector<double>{8.0, 7.0, 3.0}, gripped);
+  test::Path path;
+  for (int i = 0; i < 6000; ++i) {
+    const double phase = 4e-3 * i;
+    path.push_back({.penetration = 0.1 * std::sin(phase), .velocity = 0.4 * std::cos(phase)});
+  }
+  const test::Scenario scenario{"", "kelvin", tissue, path, {}};
+  const auto force = test::measured(scenario, test::Noise::white().draw(6000, 0.02, 3));
+  EXPECT_LT(*std::ranges::min_element(force), -0.5);
+  EXPECT_THAT(test::fitted(scenario, force).warnings, Contains(HasSubstr("bilateral=true")));
+  const FitResult result = test::fitted(scenario, force, gripped);
+  EXPECT_THAT(result.warnings, Not(Contains(HasSubstr("only pushes"))));
+  EXPECT_NEAR(result.rmse, 0.02, 1e-3);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_TRUE(test::holds(result.parameters[k], tissue.values()[k])) << result.parameters[k].info.name;
+}
+
+}  // namespace
+}  // namespace kerf::fitting
