@@ -1,23 +1,25 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
 
+#include <boost/math/quadrature/gauss.hpp>
+
 #include <kerf/psychophysics/posterior.h>
 
 #include "checks.h"
-#include "psychometric/shape.h"
+#include "psychometric/support.h"
 
 namespace kerf::psychophysics {
 namespace {
 
-constexpr std::size_t threshold_count = 121;
-constexpr std::size_t slope_count = 15;
-constexpr std::size_t lapse_count = 4;
+constexpr std::size_t threshold_count = 101;
+constexpr unsigned slope_count = 15;
+constexpr unsigned lapse_count = 7;
 constexpr double least_slope = 0.5;
 constexpr double largest_slope = 10.0;
-constexpr double beyond = 10.0;  ///< how far the thresholds go past the levels
+constexpr double beyond = 10.0;            ///< how far the thresholds go past the levels
+constexpr double at_the_end = 1.0 / 60.0;  ///< of the range of the thresholds
 
 void require_question(std::span<const Level> levels, const FitOptions& options) {
   require(!levels.empty(), "there are no answers: a threshold needs some");
@@ -32,104 +34,136 @@ void require_question(std::span<const Level> levels, const FitOptions& options) 
   }
 }
 
-std::vector<double> lapses_of(const FitOptions& options) {
-  if (options.lapse) return {*options.lapse};
-  std::vector<double> rates;
-  for (std::size_t i = 0; i < lapse_count; ++i)
-    rates.push_back(options.largest_lapse * static_cast<double>(i) / (lapse_count - 1.0));
-  return rates;
-}
-
-/// Steps of equal size on the axis of ln(threshold), with what they weigh.
-struct Marginal {
-  double first = 0.0;
-  double step = 0.0;
-  std::vector<double> weights = std::vector<double>(threshold_count, 0.0);
-
-  [[nodiscard]] double at(std::size_t place) const { return first + step * static_cast<double>(place); }
-
-  /// Every grid point stands for the step about it.
-  [[nodiscard]] double quantile(double share) const {
-    double below = 0.0;
-    for (std::size_t place = 0; place < threshold_count; ++place) {
-      if (below + weights[place] >= share && weights[place] > 0.0)
-        return at(place) + step * ((share - below) / weights[place] - 0.5);
-      below += weights[place];
+/// The answers of each level together: a staircase comes as a row a trial.
+std::vector<Cell> cells_of(std::span<const Level> levels) {
+  std::vector<Cell> rows;
+  for (const Level& level : levels)
+    rows.push_back({.at = std::log(level.intensity), .answers = level.answers});
+  std::ranges::sort(rows, {}, &Cell::at);
+  std::vector<Cell> cells;
+  for (const Cell& row : rows) {
+    if (cells.empty() || cells.back().at != row.at) {
+      cells.push_back(row);
+      continue;
     }
-    return at(threshold_count - 1) + 0.5 * step;
+    cells.back().answers.successes += row.answers.successes;
+    cells.back().answers.trials += row.answers.trials;
   }
-};
-
-/// log-likelihood of a curve whose criterion lies `shift` above its own threshold on the axis.
-struct CurveOnAxis {
-  double slope = 1.0;
-  double lapse = 0.0;
-  double shift = 0.0;
-};
-
-double log_likelihood(const std::vector<std::array<double, 3>>& rows, const CurveOnAxis& curve,
-                      double criterion_at, const FitOptions& options) {
-  constexpr double tiny = 1e-12;
-  double sum = 0.0;
-  for (const auto& [at, right, wrong] : rows) {
-    const double share = shape_at(options.shape, curve.slope * (at - criterion_at + curve.shift)).below;
-    const double psi = options.guess + (1.0 - options.guess - curve.lapse) * share;
-    if (right > 0.0) sum += right * std::log(std::max(psi, tiny));
-    if (wrong > 0.0) sum += wrong * std::log(std::max(1.0 - psi, tiny));
-  }
-  return sum;
+  return cells;
 }
 
-Marginal marginal_of(const std::vector<std::array<double, 3>>& rows, double criterion,
-                     const FitOptions& options) {
-  const auto [least, most] =
-      std::minmax_element(rows.begin(), rows.end(), [](const auto& a, const auto& b) { return a[0] < b[0]; });
-  Marginal marginal{.first = (*least)[0] - std::log(beyond)};
-  marginal.step = ((*most)[0] + std::log(beyond) - marginal.first) / (threshold_count - 1.0);
-  std::vector<std::vector<double>> logs(threshold_count);
-  double largest = -std::numeric_limits<double>::infinity();
-  for (const double lapse : lapses_of(options)) {
-    if (criterion <= options.guess || criterion >= 1.0 - lapse) continue;  // no such curve reaches it
-    const double share = (criterion - options.guess) / (1.0 - options.guess - lapse);
-    for (std::size_t i = 0; i < slope_count; ++i) {
-      CurveOnAxis curve{.lapse = lapse};
-      curve.slope =
-          least_slope * std::pow(largest_slope / least_slope, static_cast<double>(i) / (slope_count - 1.0));
-      curve.shift = shape_quantile(options.shape, share) / curve.slope;
-      for (std::size_t place = 0; place < threshold_count; ++place) {
-        logs[place].push_back(log_likelihood(rows, curve, marginal.at(place), options));
-        largest = std::max(largest, logs[place].back());
+/// The likelihood, with the range of the prior as its bounds.
+Problem problem_of(std::span<const Level> levels, const FitOptions& options) {
+  Problem problem{.shape = options.shape,
+                  .guess = options.guess,
+                  .criterion = options.criterion.value_or(options.guess + 0.5 * (1.0 - options.guess)),
+                  .cells = cells_of(levels)};
+  const double first_lapse = options.lapse.value_or(0.0);
+  require(problem.criterion > options.guess && problem.criterion < 1.0 - first_lapse,
+          "the criterion lies beyond what the curve reaches");
+  // Curves that do not reach the criterion have no threshold.
+  const double last_lapse = std::min(options.lapse.value_or(options.largest_lapse),
+                                     first_lapse + (1.0 - 1e-9) * (1.0 - problem.criterion - first_lapse));
+  problem.lower = {problem.cells.front().at - std::log(beyond), std::log(least_slope), first_lapse, 0.0};
+  problem.upper = {problem.cells.back().at + std::log(beyond), std::log(largest_slope), last_lapse, 0.0};
+  return problem;
+}
+
+struct Node {
+  double at = 0.0;
+  double weight = 1.0;
+};
+
+/// Of Gauss and Legendre between two ends; one where they are the same.
+template <unsigned count>
+std::vector<Node> nodes_between(double lower, double upper) {
+  using Rule = boost::math::quadrature::gauss<double, count>;
+  if (lower == upper) return {{.at = lower, .weight = 1.0}};
+  std::vector<Node> nodes;
+  const double centre = 0.5 * (lower + upper);
+  const double half = 0.5 * (upper - lower);
+  for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+    const double reach = half * Rule::abscissa()[i];
+    nodes.push_back({.at = centre + reach, .weight = Rule::weights()[i]});
+    if (reach > 0.0) nodes.push_back({.at = centre - reach, .weight = Rule::weights()[i]});
+  }
+  return nodes;
+}
+
+/// Density over ln(threshold) at equal steps, without its scale.
+class Marginal {
+ public:
+  Marginal(const Problem& problem, const Support& support)
+      : first_(support.lower[threshold_index]),
+        step_((support.upper[threshold_index] - first_) / (threshold_count - 1.0)),
+        density_(threshold_count, 0.0) {
+    const auto slopes = nodes_between<slope_count>(support.lower[slope_index], support.upper[slope_index]);
+    const auto lapses = nodes_between<lapse_count>(support.lower[lapse_index], support.upper[lapse_index]);
+    for (std::size_t place = 0; place < threshold_count; ++place) {
+      for (const Node& slope : slopes) {
+        for (const Node& lapse : lapses) {
+          const double log = log_likelihood(problem, {at(place), slope.at, lapse.at, 0.0});
+          density_[place] += slope.weight * lapse.weight * std::exp(log - support.largest);
+        }
       }
     }
+    for (std::size_t cell = 0; cell + 1 < threshold_count; ++cell) mass_.push_back(mass_of(cell));
+    for (const double mass : mass_) total_ += mass;
   }
-  require(std::isfinite(largest), "the criterion lies beyond what the curve reaches");
-  double total = 0.0;
-  for (std::size_t place = 0; place < threshold_count; ++place) {
-    for (const double log : logs[place]) marginal.weights[place] += std::exp(log - largest);
-    total += marginal.weights[place];
+
+  [[nodiscard]] double quantile(double share) const {
+    double missing = share * total_;
+    std::size_t cell = 0;
+    for (; cell + 1 < mass_.size() && mass_[cell] < missing; ++cell) missing -= mass_[cell];
+    if (!(mass_[cell] > 0.0)) return at(cell);
+    // Within a cell the density is a line.
+    const double part = missing / mass_[cell];
+    const double rise = density_[cell + 1] - density_[cell];
+    const double mean = 0.5 * (density_[cell + 1] + density_[cell]);
+    const double root = std::sqrt(density_[cell] * density_[cell] + 2.0 * rise * part * mean);
+    return at(cell) + step_ * 2.0 * part * mean / (density_[cell] + root);
   }
-  for (double& weight : marginal.weights) weight /= total;
-  return marginal;
-}
+
+ private:
+  [[nodiscard]] double at(std::size_t place) const { return first_ + step_ * static_cast<double>(place); }
+
+  /// Integral from one place to the next, of the cubic through four [steps].
+  [[nodiscard]] double mass_of(std::size_t cell) const {
+    const auto f = [&](std::size_t place) { return density_[place]; };
+    constexpr std::size_t last = threshold_count - 1;
+    double mass = 0.0;
+    if (cell == 0)
+      mass = 9.0 * f(0) + 19.0 * f(1) - 5.0 * f(2) + f(3);
+    else if (cell + 1 == last)
+      mass = 9.0 * f(last) + 19.0 * f(last - 1) - 5.0 * f(last - 2) + f(last - 3);
+    else
+      mass = 13.0 * (f(cell) + f(cell + 1)) - f(cell - 1) - f(cell + 2);
+    return std::max(0.0, mass / 24.0);
+  }
+
+  double first_;
+  double step_;
+  std::vector<double> density_;
+  std::vector<double> mass_;
+  double total_ = 0.0;
+};
 
 }  // namespace
 
 Threshold posterior_threshold(std::span<const Level> levels, const FitOptions& options) {
   require_question(levels, options);
-  std::vector<std::array<double, 3>> rows;
-  for (const Level& level : levels)
-    rows.push_back({std::log(level.intensity), static_cast<double>(level.answers.successes),
-                    static_cast<double>(level.answers.trials - level.answers.successes)});
-  const double criterion = options.criterion.value_or(options.guess + 0.5 * (1.0 - options.guess));
-  const Marginal marginal = marginal_of(rows, criterion, options);
+  const Problem problem = problem_of(levels, options);
+  const Marginal marginal(problem, support_of(problem, {false, false, options.lapse.has_value(), true}));
   const double tail = 0.5 * (1.0 - options.confidence);
   const double lower = marginal.quantile(tail);
   const double upper = marginal.quantile(1.0 - tail);
-  // Within two steps of its end it is the grid that ends the interval, and not the answers.
-  const bool open_below = lower < marginal.at(2);
-  const bool open_above = upper > marginal.at(threshold_count - 3);
+  // There it is the prior that ends the interval, and not the answers.
+  const double first = problem.lower[threshold_index];
+  const double last = problem.upper[threshold_index];
+  const bool open_below = lower < first + at_the_end * (last - first);
+  const bool open_above = upper > last - at_the_end * (last - first);
   return {.value = std::exp(marginal.quantile(0.5)),
-          .criterion = criterion,
+          .criterion = problem.criterion,
           .interval = {.lower = open_below ? 0.0 : std::exp(lower),
                        .upper = open_above ? std::numeric_limits<double>::infinity() : std::exp(upper)}};
 }
