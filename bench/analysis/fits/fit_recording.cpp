@@ -12,6 +12,7 @@
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
 #include "fits/rendered_series.h"
+#include "fits/row_doubts.h"
 #include "recordings/provenance.h"
 #include "signal/quantiles.h"
 
@@ -163,8 +164,9 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
                               .left_out = left_out,
                               .counted = counted,
                               .noise_n = source.noise_n});
-    if (left_out == 0) continue;
-    fit.warnings.push_back(fmt::format("{}{} rows are not finite and are left out", whose, left_out));
+    if (left_out > 0) fit.warnings.push_back(whose + rows_left_out(sources.series.back()));
+    for (const std::string& doubt : doubts_of(sources.series.back(), fit.settings))
+      fit.warnings.push_back(whose + doubt);
   }
   sources.pool = pooled(sources.series);
   return sources;

@@ -15,6 +15,7 @@
 #include "chart/speed_accuracy.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
+#include "fits/row_doubts.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "recordings/whole_recording.h"
@@ -57,8 +58,19 @@ SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, ChartOptio
   const FitSource source = charted(recording, fs::path(arguments.recording).stem().string(), arguments.axis);
   const schema::Axis& axis = recording.axes[source.axis];
   options.jnd = fitting::jnd_of(axis.force_unit, axis.lever);
+  fitting::FitOptions settings;
+  settings.folds = options.folds;
+  settings.jnd = options.jnd;
+  settings.force_unit = axis.force_unit;
   try {
-    return chart_recording(source, options);
+    const AxisSeries series = counted_series(source, Counted::contact, options.jnd);
+    if (const std::string nothing = nothing_felt(series, settings); !nothing.empty())
+      throw std::invalid_argument(nothing);
+    std::vector<std::string> doubts = doubts_of(series, settings);
+    if (series.left_out > 0) doubts.insert(doubts.begin(), rows_left_out(series));
+    SpeedAccuracy chart = chart_recording(source, options);
+    chart.notes.insert(chart.notes.begin(), doubts.begin(), doubts.end());
+    return chart;
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.recording, error.what()));
   }

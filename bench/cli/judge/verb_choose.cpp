@@ -16,6 +16,7 @@
 #include "choose/scene_cut.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
+#include "fits/row_doubts.h"
 #include "program/contact_arguments.h"
 #include "program/jnd_arguments.h"
 #include "program/verbs.h"
@@ -97,6 +98,15 @@ struct CutFile {
   fs::path name;
 };
 
+/// What is not the fault of any law.
+void warn_of_rows(const schema::Recording& recording, const ChooseOptions& choose) {
+  const FitSource source{.recording = &recording, .axis = choose.axis, .contact = *choose.contact};
+  const AxisSeries series = counted_series(source, choose.rows, choose.fit.jnd);
+  if (series.left_out > 0) warn(rows_left_out(series));
+  if (!nothing_felt(series, choose.fit).empty()) return;  // which is refused
+  for (const std::string& doubt : doubts_of(series, choose.fit)) warn(doubt);
+}
+
 void choose_for_recording(const ChooseVerbArguments& arguments, Context& context,
                           const schema::Recording& recording, const CutFile& file, Output& output,
                           const std::atomic<bool>& stop) {
@@ -110,6 +120,7 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
   options.choose.loop_rate_hz = arguments.loop.rate_hz;
   arguments.jnd.put_into(options.choose.fit, recording.axes[options.choose.axis]);
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
+  warn_of_rows(recording, options.choose);
   DeviceChoice made = choose_on_device(recording, file.at, std::move(options), stop);
   made.json["recording"] = file.name.string();
   finish(arguments, context, made.choice, made.json, file.at, output);

@@ -1,10 +1,13 @@
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
 #include <kerf/schema/recording_file.h>
 
 #include "files/whole_file.h"
@@ -49,6 +52,46 @@ nlohmann::ordered_json to_json(const schema::Recording& recording, const schema:
           {"phases", phases}};
 }
 
+/// Which stroke is the closing one is told by its work; where both cost the same it is a guess.
+void warn_of_a_guess(const schema::Recording& recording) {
+  const schema::Cycles& cycles = *recording.cycles;
+  const schema::Axis& axis = recording.axes[cycles.axis];
+  double difference = 0.0;
+  double places = 0.0;
+  for (std::size_t i = 0; i < cycles.grid.size(); ++i) {
+    const double at = cycles.closing_mean[i] - cycles.opening_mean[i];
+    if (!std::isfinite(at)) continue;
+    difference += at;
+    places += 1.0;
+  }
+  if (places == 0.0) return;
+  const double apart = std::abs(difference) / places;
+  if (apart > fitting::jnd_of(axis.force_unit, axis.lever).threshold) return;
+  warn(fmt::format(
+      "closing and opening differ by {:.2g} {}, which nobody feels: which of them is closing is a guess "
+      "(--closing says it)",
+      apart, axis.force_unit));
+}
+
+/// What a sensor gives that failed once would decide which stroke costs more work, and spoil the mean
+/// branches.
+void require_no_row_beyond_all(const schema::RecordedRows& rows, std::size_t axis, const std::string& name) {
+  constexpr std::uint64_t enough = 20;  // of which one has no business to be more than all others
+  const schema::Column column = force_column(rows);
+  if (rows.width(column) == 0 || rows.rows() < enough) return;
+  const BlockedValues force = axis_values(rows, column, axis);
+  double squares = 0.0;
+  std::uint64_t largest = 0;
+  for (std::uint64_t row = 0; row < rows.rows(); ++row) {
+    squares += force[row] * force[row];
+    if (std::abs(force[row]) > std::abs(force[largest])) largest = row;
+  }
+  if (!(2.0 * force[largest] * force[largest] > squares)) return;
+  throw std::invalid_argument(
+      fmt::format("{}: the force of row {}, {:g}, has more squares than all others together: leave it out",
+                  name, largest, force[largest]));
+}
+
 void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   const std::filesystem::path charts = arguments.charts;
   if (!arguments.charts.empty()) require_output(charts / "cycles.svg", true);
@@ -57,7 +100,9 @@ void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   SegmentOptions options = arguments.options;
   options.axis = find_axis(recording, arguments.axis);
   if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
+  require_no_row_beyond_all(rows, options.axis, arguments.recording);
   segment_recording(recording, rows, options, arguments.recording);
+  if (!options.closing_direction) warn_of_a_guess(recording);
   schema::write_recording(arguments.recording, recording, rows, schema::Existing::replace);
   if (!arguments.charts.empty()) {
     WholeFolder whole(charts, schema::Existing::replace);

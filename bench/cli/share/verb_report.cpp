@@ -1,10 +1,16 @@
+#include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/core.h>
 
+#include <kerf/schema/recording_file.h>
+
 #include "files/whole_file.h"
 #include "program/verbs.h"
+#include "recordings/axes.h"
+#include "recordings/axis_values.h"
 #include "report/page.h"
 
 namespace kerf::bench {
@@ -19,11 +25,28 @@ struct ReportVerbArguments {
   bool force = false;
 };
 
+/// A picture of nothing is none.
+void require_a_row(const ReportVerbArguments& arguments) {
+  const schema::RecordingFile rows(arguments.recording);
+  const std::size_t axis = find_cut_axis(rows.about(), arguments.axis);
+  const BlockedValues position = axis_values(rows, schema::Column::position, axis);
+  const schema::Column column = force_column(rows);
+  const bool forceful = rows.width(column) > 0;
+  const BlockedValues force = axis_values(rows, forceful ? column : schema::Column::position, axis);
+  for (std::uint64_t row = 0; row < rows.rows(); ++row) {
+    if (std::isfinite(position[row]) && std::isfinite(force[row])) return;
+  }
+  if (rows.rows() == 0) return;  // which is too few, and said so
+  throw std::invalid_argument(
+      fmt::format("{}: no row has a position and a force that are finite", arguments.recording));
+}
+
 void run_report(const ReportVerbArguments& arguments, Context& context) {
   require_output(arguments.output, arguments.force);
   ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
   if (!arguments.fits.empty()) input.fits = arguments.fits;
   if (!arguments.check.empty()) input.check = arguments.check;
+  require_a_row(arguments);
   write_whole_file(arguments.output, report_page(input), schema::existing_if(arguments.force));
   context.result = {{"report", arguments.output}};
   context.say(arguments.output);

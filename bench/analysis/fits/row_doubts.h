@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <kerf/fitting/fit.h>
+
+#include "fits/fit_recording.h"
+#include "recordings/axis_series.h"
+
+namespace kerf::bench {
+
+/// The rows that a fit goes by. @throws std::invalid_argument if none is finite.
+[[nodiscard]] AxisSeries counted_series(const FitSource& source, Counted rows, const fitting::Jnd& jnd);
+
+/// Where the root mean square force is within its JND: that no force at all does as well, so that nothing
+/// can be told by it. Else empty.
+[[nodiscard]] std::string nothing_felt(const AxisSeries& series, const fitting::FitOptions& settings);
+
+/// What the rows cannot say, whatever law is fitted to them, in a sentence each: a force that is not felt;
+/// one that does not change by what is felt; and where errors are held out, the next cycle, if there was only
+/// one.
+[[nodiscard]] std::vector<std::string> doubts_of(const AxisSeries& series,
+                                                 const fitting::FitOptions& settings);
+
+/// How many rows of a recording are not finite and are left out, in words; empty where none is.
+[[nodiscard]] std::string rows_left_out(const AxisSeries& series);
+
+}  // namespace kerf::bench

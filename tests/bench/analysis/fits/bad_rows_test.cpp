@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/schema/recording.h>
+#include <kerf/schema/recording_writer.h>
+
+#include "support/program.h"
+#include "support/recordings.h"
+
+// What every verb says of a recording that tells nothing, or less than it seems to.
+
+namespace kerf {
+namespace {
+
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+class BadRows : public testing::Test {
+ protected:
+  void keep(const schema::Recording& recording) { schema::write_recording(file_, recording); }
+  /// A punch whose force is another.
+  template <typename Force>
+  static schema::Recording with(Force&& force) {
+    schema::Recording recording = test::punch();
+    for (std::size_t i = 0; i < recording.force_measured.size(); ++i)
+      recording.force_measured[i] = force(i, recording.force_measured[i]);
+    return recording;
+  }
+  [[nodiscard]] Outcome fit() const {
+    return run_kerf({"fit", file_, "--models", "kelvin,friction", "-o", folder_ / "fits"});
+  }
+  [[nodiscard]] Outcome choose() const {
+    return run_kerf({"choose", file_, "--no-loop", "--most-segments", "1"});
+  }
+  [[nodiscard]] Outcome chart() const { return run_kerf({"chart", file_, "--laws", "kelvin", "--no-cold"}); }
+  [[nodiscard]] Outcome segment() const { return run_kerf({"segment", file_}); }
+  [[nodiscard]] Outcome report() const { return run_kerf({"report", file_, "-o", folder_ / "page.html"}); }
+
+  static void expect_refused(const Outcome& outcome, const std::string& why) {
+    EXPECT_EQ(outcome.exit_status, 2) << outcome.errors;
+    EXPECT_EQ(std::ranges::count(outcome.errors, '\n'), 1) << outcome.errors;
+    EXPECT_THAT(outcome.errors, HasSubstr(why));
+  }
+
+  const test::TemporaryFolder folder_;
+  const std::string file_ = folder_ / "r.h5";
+};
+
+double noise(std::size_t row) { return 0.01 * std::sin(12.9898 * static_cast<double>(row * row % 7919)); }
+
+TEST_F(BadRows, OfNoForceThatIsFeltAreNeitherChartedNorChosenBy) {
+  keep(with([](std::size_t row, double) { return noise(row); }));
+  expect_refused(chart(), "no force at all is within the JND of 0.05 N too");
+  expect_refused(choose(), "no force at all is within the JND of 0.05 N too");
+  const Outcome fitted = fit();
+  EXPECT_THAT(fitted.errors, HasSubstr("warning: no force at all is within the JND of 0.05 N too"));
+  EXPECT_THAT(fitted.output, Not(HasSubstr("choice: ")));
+}
+
+TEST_F(BadRows, OfAForceThatNeverChangesSayNothingOfTheMotion) {
+  keep(with([](std::size_t row, double) { return 2.5 + noise(row); }));
+  const std::string doubt = "warning: a force of 2.5 N that never changes is within the JND of 0.175 N too";
+  EXPECT_THAT(fit().errors, HasSubstr(doubt));
+  EXPECT_THAT(choose().errors, HasSubstr(doubt));
+  EXPECT_THAT(chart().errors, HasSubstr(doubt));
+  EXPECT_THAT(segment().errors, HasSubstr("which of them is closing is a guess"));
+}
+
+TEST_F(BadRows, OfOneForceThroughoutAreRefused) {
+  keep(with([](std::size_t, double) { return 2.5; }));
+  for (const Outcome& outcome : {fit(), choose(), chart()})
+    expect_refused(outcome, "the force is 2.5 throughout");
+}
+
+TEST_F(BadRows, OfOneCycleSayNothingOfTheNext) {
+  schema::Recording recording = test::punch({.seconds = 1.24});  // in and out again
+  keep(recording);
+  ASSERT_THAT(segment().output, HasSubstr("1 closings and 1 openings"));
+  const std::string doubt =
+      "warning: there is only one cycle: errors are held out by blocks of time within it";
+  EXPECT_THAT(fit().errors, HasSubstr(doubt));
+  EXPECT_THAT(choose().errors, HasSubstr(doubt));
+  EXPECT_THAT(chart().errors, HasSubstr(doubt));
+  keep(test::punch());
+  ASSERT_EQ(segment().exit_status, 0);
+  EXPECT_THAT(choose().errors, Not(HasSubstr("only one cycle")));
+}
+
+TEST_F(BadRows, ThatAreNotFiniteAreCounted) {
+  keep(with([](std::size_t row, double force) { return row >= 500 && row < 550 ? no_value : force; }));
+  for (const Outcome& outcome : {fit(), choose(), chart()})
+    EXPECT_THAT(outcome.errors, HasSubstr("warning: 50 rows are not finite and are left out"));
+  expect_refused(segment(), "row 500 is not finite");
+}
+
+TEST_F(BadRows, OfWhichNoneIsFiniteAreRefusedByEveryVerb) {
+  keep(with([](std::size_t, double) { return no_value; }));
+  expect_refused(fit(), "there are only 0 samples");
+  expect_refused(choose(), "the recording has no row that is finite");
+  expect_refused(chart(), "the recording has no row that is finite");
+  expect_refused(segment(), "row 0 is not finite");
+  expect_refused(report(), "no row has a position and a force that are finite");
+}
+
+TEST_F(BadRows, OfWhichOneIsBeyondAllOthersAreRefused) {
+  keep(with([](std::size_t row, double force) { return row == 1234 ? 1e9 : force; }));
+  for (const Outcome& outcome : {fit(), choose(), chart(), segment()})
+    expect_refused(outcome, "1234, 1e+09, has more squares than all others together: leave it out");
+}
+
+TEST_F(BadRows, OfWhichThereAreThreeAreTooFew) {
+  schema::Recording recording = test::punch({.seconds = 0.003});
+  recording.force_measured = {0.0, 0.5, 1.1};
+  keep(recording);
+  for (const Outcome& outcome : {fit(), choose(), chart()})
+    expect_refused(outcome, "there are only 3 samples");
+  expect_refused(segment(), "the recording is too short for a cycle");
+}
+
+}  // namespace
+}  // namespace kerf
