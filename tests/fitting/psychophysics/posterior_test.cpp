@@ -37,7 +37,7 @@ struct Dense {
   double lower, median, upper;
 };
 
-// The numbers are those of posterior_oracle.py beside this file (NumPy 1.24, SciPy 1.10), which says of what
+// The numbers are those of posterior.py beside this file (NumPy 1.24, SciPy 1.10), which says of what
 // grids. On 15 slopes and 4 lapse rates the upper end after the staircase was 4.9 % too far out, and that of
 // a criterion that some lapse rates do not reach 18 %.
 TEST(Posterior, EndsWhereThatOfADenseGridEnds) {

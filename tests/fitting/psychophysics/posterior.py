@@ -4,7 +4,7 @@ Trapezoids in ln(threshold), ln(slope) and the lapse rate over the whole prior (
 With half the steps the ends move by less than 1e-4; where some lapse rates do not reach the criterion, the last ones
 count most and the grid of lapses is the finer. A case of very many answers has a box of thresholds.
 
-    python3 posterior_oracle.py     # some minutes: lower end, median, upper end
+    python3 posterior.py     # some minutes: lower end, median, upper end
 """
 
 import numpy
