@@ -41,8 +41,9 @@ CUTS = [
     ("precontact", ["--models", "precontact"], fits_laws.Precontact, "width"),
     ("scissors_analytic", ["--models", "scissors_analytic"], fits_laws.ScissorsAnalytic, "pivot_torque"),
 ]
-PIECEWISE = [("piecewise, %d segments" % SEGMENTS, ["--models", "piecewise", "--segments", str(SEGMENTS), "--points-per-segment", "1",
-                                                    "--option", "loop=false"], None, "knot[1]")]
+PIECEWISE = [("piecewise, %d segments" % SEGMENTS,
+              ["--models", "piecewise", "--segments", str(SEGMENTS), "--points-per-segment", "1", "--option", "loop=false"],
+              None, "knot[1]")]
 ON_LIVER = ["--models", "exponential", "--option", "viscous=false", "--option", "offset=true", "--thickness", "0.001"]
 
 
@@ -61,7 +62,7 @@ def kerf_fit(program, recording, options, folder):
                           capture_output=True, text=True)
     seconds = time.perf_counter() - begin
     if done.returncode not in (0, 1) or not (folder / "fit.json").exists():
-        raise RuntimeError((done.stderr.strip().splitlines() or ["no word"])[-1])
+        raise RuntimeError((done.stderr.strip().splitlines() or ["no word"])[-1].split(": ")[-1])
     result = json.loads((folder / "fit.json").read_text())
     return result["fits"][0], result["recordings"][0]["contact"], seconds
 
@@ -77,7 +78,8 @@ def with_r(series, folder):
     words = subprocess.run(["Rscript", script, str(SEGMENTS - 1), str(path)], check=True, capture_output=True,
                            text=True).stdout.split()
     squares, seconds, lower, upper = (float(word.replace("NA", "nan")) for word in words)
-    return {"squares": squares, "seconds": seconds, "interval": (lower, upper) if lower == lower else None, "whose": "segmented", "by": "R"}
+    return {"squares": squares, "seconds": seconds, "interval": (lower, upper) if lower == lower else None,
+            "whose": "segmented", "by": "R"}
 
 
 def compare(program, recording, contact, entry, folder):
@@ -97,8 +99,9 @@ def compare(program, recording, contact, entry, folder):
         peer = fits_peers.with_interval(law, peer, shown)
     return {"n": fit["samples"], "kerf": squares_of(fit), "peer": peer["squares"], "shown": shown,
             "ends": fit["parameters"][shown]["ci95"], "value": fit["parameters"][shown]["value"],
-            "their_ends": peer["interval"], "whose": peer["whose"], "by": peer["by"], "search_s": statistics.median(s for s, _ in ours),
-            "program_s": statistics.median(s for _, s in ours), "peer_s": statistics.median(theirs), "converged": fit["converged"]}
+            "their_ends": peer["interval"], "whose": peer["whose"], "by": peer["by"], "converged": fit["converged"],
+            "search_s": statistics.median(s for s, _ in ours), "program_s": statistics.median(s for _, s in ours),
+            "peer_s": statistics.median(theirs)}
 
 
 def on_liver(program, source, folder):
@@ -126,7 +129,8 @@ def on_liver(program, source, folder):
         row["converged"] = row["converged"] and fit["converged"]
         difference = squares_of(fit) / peer["squares"] - 1.0
         if difference > row["worst"]:
-            row.update(worst=difference, ends=fit["parameters"]["exponent"]["ci95"], their_ends=peer["interval"], whose=peer["whose"])
+            row.update(worst=difference, ends=fit["parameters"]["exponent"]["ci95"], their_ends=peer["interval"],
+                       whose=peer["whose"])
     return len(sites), row
 
 
@@ -157,8 +161,8 @@ HEAD = """Each law on each data set (`scripts/fetch-data` names where they come 
 anew in NumPy, searched by SciPy's `least_squares` (variable projection, a scan or %d starts, a polish at tolerances of 1e-15), then
 lmfit's `leastsq` from a fifth beside that; the smaller sum of squares counts. R's `segmented` with 20 bootstrap restarts for
 piecewise. The difference is Kerf's sum over the peer's less one: above %.0e Kerf would be worse. Kerf's intervals allow for
-residuals with a memory, the peers' take them for white noise. Times are medians of %d turns (one where a peer took over %.0f s) on a machine that others used too: read the
-ratios. Kerf's search is what `fit.json` says, its program all of `kerf fit` with reading, intervals and files; the
+residuals with a memory, the peers' take them for white noise. Times are medians of %d turns (one where a peer took over %.0f s)
+on a machine that others used too: read the ratios. Kerf's search is what `fit.json` says, its program all of `kerf fit` with reading, intervals and files; the
 ratio is SciPy's search over the latter. pwlf is not packaged: a sine of 100 points took it 2.3 to 3.0 s with 6 segments and 78 to 90 s with 11."""
 
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <vector>
 
 namespace kerf::psychophysics {
 namespace {
