@@ -162,8 +162,9 @@ anew in NumPy, searched by SciPy's `least_squares` (variable projection, a scan 
 lmfit's `leastsq` from a fifth beside that; the smaller sum of squares counts. R's `segmented` with 20 bootstrap restarts for
 piecewise. The difference is Kerf's sum over the peer's less one: above %.0e Kerf would be worse. Kerf's intervals allow for
 residuals with a memory, the peers' take them for white noise. Times are medians of %d turns (one where a peer took over %.0f s)
-on a machine that others used too: read the ratios. Kerf's search is what `fit.json` says, its program all of `kerf fit` with reading, intervals and files; the
-ratio is SciPy's search over the latter. pwlf is not packaged: a sine of 100 points took it 2.3 to 3.0 s with 6 segments and 78 to 90 s with 11."""
+on a machine that others used too: read the ratios. Kerf's search is what `fit.json` says, its program all of `kerf fit` with
+reading, intervals and files; the ratio is SciPy's search over the latter. pwlf is not packaged: a sine of 100 points took it 2.3 to
+3.0 s with 6 segments and 78 to 90 s with 11."""
 
 
 def main():
