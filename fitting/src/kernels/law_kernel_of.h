@@ -1,13 +1,17 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <numeric>
 #include <stdexcept>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include <ceres/jet.h>
 
+#include "kernels/kept_ticks.h"
 #include "kernels/law_kernel.h"
+#include "kernels/normal_sums.h"
 
 namespace kerf::fitting {
 
@@ -72,37 +76,26 @@ class LawKernelOf final : public LawKernel {
       if (point.slope[i] != 0.0) values[i].v[used++] = point.slope[i];
     }
     const auto law = Law<Dual>::make(values, point.options);
-    typename Law<Dual>::State state;
-    std::array<double, N*(N + 1) / 2> normal{};
-    std::array<double, N> score{};
-    double squares = 0.0;
+    using State = typename Law<Dual>::State;
+    State state;
+    constexpr bool keeps_ticks = HoldsATick<State> || HoldsTwoTicks<State>;
+    std::conditional_t<keeps_ticks, KeptTicks<State>, std::monostate> ticks;
+    NormalSums<N> normal(loss);
+    typename NormalSums<N>::Row row = NormalSums<N>::Row::Zero();
     for (std::size_t i = 0; i < run.count; ++i) {
+      bool known = true;
+      if constexpr (keeps_ticks) known = ticks.recall(state, run.period_s[i]);
       const Dual f = law.step(state, run.motion[i], run.period_s[i]);
-      const double r = f.a - run.force[i];
-      double weight = run.weight[i];
-      if (loss.kind == Loss::squares) {
-        squares += weight * r * r;
-      } else {
-        const auto [rho, slope] = loss(weight * r * r);
-        squares += rho;
-        weight *= slope;
+      if constexpr (keeps_ticks) {
+        if (!known) ticks.keep(state, run.period_s[i]);
       }
-      std::size_t k = 0;
-      for (int a = 0; a < N; ++a) {
-        const double weighed = weight * f.v[a];
-        score[static_cast<std::size_t>(a)] += weighed * r;
-        for (int b = a; b < N; ++b) normal[k++] += weighed * f.v[b];
-      }
+      if (run.weight[i] == 0.0) continue;
+      row.template head<N>() = f.v;
+      normal.add(f.a - run.force[i], run.weight[i], row);
     }
-    sums.squares = squares;
-    sums.score = Eigen::Map<const Eigen::VectorXd>(score.data(), used);
-    sums.normal.resize(used, used);
-    std::size_t k = 0;
-    for (int a = 0; a < N; ++a) {
-      for (int b = a; b < N; ++b, ++k) {
-        if (b < used) sums.normal(a, b) = sums.normal(b, a) = normal[k];
-      }
-    }
+    std::vector<Eigen::Index> columns(static_cast<std::size_t>(used));
+    std::iota(columns.begin(), columns.end(), Eigen::Index{0});
+    normal.write(columns, sums);
     return true;
   }
 

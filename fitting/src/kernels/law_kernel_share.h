@@ -2,11 +2,12 @@
 
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include <kerf/models/registry.h>
 
-#include "kernels/law_kernel_of.h"
+#include "kernels/arms_kernel_of.h"
 
 namespace kerf::fitting {
 
@@ -21,7 +22,9 @@ struct KernelOf {
 template <template <typename> typename L>
 requires(L<double>::facts.search != models::Search::tables) struct KernelOf<L<double>> {
   static const LawKernel* get() {
-    static const LawKernelOf<L, L<double>::facts.searched_at_once> kernel;
+    constexpr int most = L<double>::facts.searched_at_once;
+    constexpr bool has_arms = L<double>::facts.scan.over == models::Scan::prony;
+    static const std::conditional_t<has_arms, ArmsKernelOf<L, most>, LawKernelOf<L, most>> kernel;
     return &kernel;
   }
 };

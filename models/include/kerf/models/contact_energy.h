@@ -7,6 +7,17 @@
 
 namespace kerf::models {
 
+/// Displacement of an element that a contact presses on [m]: none before it.
+[[nodiscard]] inline double pressed(double penetration) noexcept {
+  return penetration > 0.0 ? penetration : 0.0;
+}
+
+/// Force of a contact, which never pulls [N].
+template <typename T>
+[[nodiscard]] T pushing(const T& force) noexcept {
+  return force < T(0) ? T(0) : force;
+}
+
 /// Work of the force that a contact lets through, never below zero, over a travel along which the force of
 /// its element is linear [J].
 template <typename T, typename Travel>

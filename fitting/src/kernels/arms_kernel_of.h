@@ -1,0 +1,161 @@
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ceres/jet.h>
+
+#include <kerf/models/contact_energy.h>
+
+#include "kernels/kept_ticks.h"
+#include "kernels/law_kernel_of.h"
+#include "kernels/normal_sums.h"
+
+namespace kerf::fitting {
+
+/// LawKernel of a law of arms beside a spring, [spring, stiffness of each arm, time of each arm]. What an arm
+/// does depends on its own two parameters alone, and the element's force is the sum: each arm is the law
+/// itself with this one arm, on dual numbers of these two, and the first of them has the spring. So the work
+/// grows with the arms, and not with their square. Where something is held, all goes by LawKernelOf.
+template <template <typename> typename Law, int Most>
+class ArmsKernelOf final : public LawKernel {
+ public:
+  bool sums(const LawPoint& point, const RunView& run, const RobustLoss& loss, Sums& sums) const override {
+    bool done = false;
+    if (all_searched(point))
+      with_arms(point, [&]<std::size_t Arms>() { done = sums_of<Arms>(point, run, loss, sums); });
+    return done || whole_.sums(point, run, loss, sums);
+  }
+
+  bool rows(const LawPoint& point, const RunView& run, Eigen::Ref<Eigen::VectorXd> force,
+            Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
+    bool done = false;
+    if (all_searched(point))
+      with_arms(point, [&]<std::size_t Arms>() { done = rows_of<Arms>(point, run, force, jacobian); });
+    return done || whole_.rows(point, run, force, jacobian);
+  }
+
+ private:
+  static constexpr std::size_t most_arms = Law<double>::max_arms;
+
+  static bool all_searched(const LawPoint& point) {
+    return std::ranges::none_of(point.slope, [](double slope) { return slope == 0.0; });
+  }
+  template <typename Work>
+  static void with_arms(const LawPoint& point, const Work& work) {
+    const std::size_t arms = (point.values.size() - 1) / 2;
+    [&]<std::size_t... A>(std::index_sequence<A...>) {
+      ((arms == A + 1 ? work.template operator()<A + 1>() : void()), ...);
+    }
+    (std::make_index_sequence<most_arms>{});
+  }
+
+  /// The law with one of the arms.
+  template <int Width>
+  struct Arm {
+    using Dual = ceres::Jet<double, Width>;
+    Law<Dual> law;
+    typename Law<Dual>::State state;
+    KeptTicks<typename Law<Dual>::State> ticks;
+
+    Arm(const LawPoint& point, std::size_t which, std::size_t arms)
+        : law(Law<Dual>::make(values(point, which, arms), options(point))) {}
+
+    static std::vector<Dual> values(const LawPoint& point, std::size_t which, std::size_t arms) {
+      std::vector<Dual> values{Dual(0.0), Dual(point.values[1 + which], 0),
+                               Dual(point.values[1 + arms + which], 1)};
+      values[1].v[0] = point.slope[1 + which];
+      values[2].v[1] = point.slope[1 + arms + which];
+      if constexpr (Width > 2) {
+        values[0] = Dual(point.values[0], 2);
+        values[0].v[2] = point.slope[0];
+      }
+      return values;
+    }
+    static models::Options options(const LawPoint& point) {
+      models::Options one(point.options);
+      one[std::string(Law<double>::facts.size.option)] = 1.0;
+      return one;
+    }
+    Dual step(double x, double period_s) noexcept {
+      const bool known = ticks.recall(state, period_s);
+      const Dual force = law.bilateral_step(state, x, period_s);
+      if (!known) ticks.keep(state, period_s);
+      return force;
+    }
+  };
+
+  /// Columns as the arms have them: those of the first, the spring, a place that is free, and the others.
+  template <std::size_t Arms>
+  static std::array<Eigen::Index, 2 * Arms + 1> columns() {
+    std::array<Eigen::Index, 2 * Arms + 1> at{2};
+    for (std::size_t arm = 0; arm < Arms; ++arm) {
+      at[1 + arm] = static_cast<Eigen::Index>(2 * arm + (arm > 0 ? 2 : 0));
+      at[1 + Arms + arm] = at[1 + arm] + 1;
+    }
+    return at;
+  }
+
+  /// Calls `add(i, force, row)` for each sample that counts.
+  template <std::size_t Arms, typename Counts, typename Add>
+  [[gnu::always_inline]] static void pass(const LawPoint& point, const RunView& run, const Counts& counts,
+                                          const Add& add) {
+    using Row = typename NormalSums<2 * static_cast<int>(Arms) + 2>::Row;
+    Arm<4> first(point, 0, Arms);
+    std::vector<Arm<2>> others;
+    others.reserve(Arms - 1);
+    for (std::size_t arm = 1; arm < Arms; ++arm) others.emplace_back(point, arm, Arms);
+    Row row;
+    for (std::size_t i = 0; i < run.count; ++i) {
+      const double x = models::pressed(run.motion[i].penetration);
+      const auto begin = first.step(x, run.period_s[i]);
+      double force = begin.a;
+      row.template head<4>() = begin.v;
+      for (std::size_t arm = 1; arm < Arms; ++arm) {
+        const auto more = others[arm - 1].step(x, run.period_s[i]);
+        force += more.a;
+        row.template segment<2>(static_cast<Eigen::Index>(2 * arm + 2)) = more.v;
+      }
+      if (!counts(i)) continue;
+      const double felt = models::pushing(force);
+      if (felt != force) row.setZero();
+      add(i, felt, row);
+    }
+  }
+
+  template <std::size_t Arms>
+  [[gnu::flatten]] static bool sums_of(const LawPoint& point, const RunView& run, const RobustLoss& loss,
+                                       Sums& sums) {
+    NormalSums<2 * static_cast<int>(Arms) + 2> normal(loss);
+    pass<Arms>(
+        point, run, [&](std::size_t i) { return run.weight[i] != 0.0; },
+        [&](std::size_t i, double force, const auto& row) {
+          normal.add(force - run.force[i], run.weight[i], row);
+        });
+    normal.write(columns<Arms>(), sums);
+    return true;
+  }
+
+  template <std::size_t Arms>
+  [[gnu::flatten]] static bool rows_of(const LawPoint& point, const RunView& run,
+                                       Eigen::Ref<Eigen::VectorXd> forces,
+                                       Eigen::Ref<Eigen::MatrixXd> jacobian) {
+    const auto at = columns<Arms>();
+    pass<Arms>(
+        point, run, [](std::size_t) { return true; },
+        [&](std::size_t i, double force, const auto& row) {
+          const auto sample = static_cast<Eigen::Index>(i);
+          forces[sample] = force;
+          for (std::size_t k = 0; k < at.size(); ++k)
+            jacobian(sample, static_cast<Eigen::Index>(k)) = row[at[k]];
+        });
+    return true;
+  }
+
+  LawKernelOf<Law, Most> whole_;
+};
+
+}  // namespace kerf::fitting
