@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -149,9 +153,9 @@ class LawSelection {
                                       .fit = std::move(settings)});
   }
 
-  void fit_one(Candidate& candidate) const {
+  void fit_one(Candidate& candidate, std::size_t threads) const {
     fitting::FitOptions settings = options_.fit;
-    settings.threads = 1;
+    settings.threads = threads;
     settings.intervals = fitting::Intervals::white;  // those of the law that is taken follow
     settings.profile = false;
     settings.segmented_memory = memory_;
@@ -173,13 +177,39 @@ class LawSelection {
     candidate.within_jnd = result.can_be_chosen() && candidate.error_n <= choice_.jnd_n;
   }
 
+  /// Of laws that find the same segments all but one wait for it: the richest of them comes before all
+  /// others, and its folds are shared out among the threads.
+  [[nodiscard]] std::vector<std::size_t> first_of_segments(std::span<const Candidate> candidates) const {
+    std::vector<std::size_t> first;
+    std::set<std::vector<std::string>> known;
+    for (std::size_t i = candidates.size(); memory_ && i-- > 0;) {
+      const CandidateLaw& law = candidates[i].law;
+      const models::LawFacts& facts = models::law_facts(law.model);
+      if (facts.search != models::Search::segments) continue;
+      std::vector<std::string> options{law.model};
+      std::ranges::remove_copy_if(law.law_options, std::back_inserter(options),
+                                  [&](const std::string& option) {
+                                    return option.starts_with(fmt::format("{}=", facts.size.option));
+                                  });
+      if (known.insert(std::move(options)).second) first.push_back(i);
+    }
+    return first;
+  }
+
   /// The richest first: they take longest.
   void fit_all(std::span<Candidate> candidates) const {
-    for_each_index(candidates.size(), options_.threads, [&](std::size_t i) {
+    const auto fit = [&](std::size_t i, std::size_t threads) {
       if (stop_) return;
-      fit_one(candidates[candidates.size() - 1 - i]);
+      fit_one(candidates[i], threads);
       if (options_.done != nullptr) ++*options_.done;
-    });
+    };
+    const std::vector<std::size_t> first = first_of_segments(candidates);
+    for (const std::size_t i : first) fit(i, options_.threads);
+    std::vector<std::size_t> rest;
+    for (std::size_t i = candidates.size(); i-- > 0;) {
+      if (std::ranges::find(first, i) == first.end()) rest.push_back(i);
+    }
+    for_each_index(rest.size(), options_.threads, [&](std::size_t i) { fit(rest[i], 1); });
     search_.end_if_stopped();
   }
 

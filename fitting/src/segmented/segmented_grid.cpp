@@ -1,6 +1,7 @@
 #include "segmented/segmented_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -16,16 +17,36 @@ namespace {
 constexpr std::size_t single_beam = 512;
 constexpr double rounding = 1e-13;  ///< of the whole sum of squares: below it paths count as equal
 
-/// The lines between any two places, worked out when first asked for.
+/// Where a knot may be: its first place and its last.
+struct Window {
+  std::size_t first, last;
+  [[nodiscard]] std::size_t size() const noexcept { return last < first ? 0 : last - first + 1; }
+};
+
+/// The lines between any two places that a segment may join, worked out when first asked for.
 class Lines {
  public:
   Lines(const Points& points, const Grid& grid)
-      : points_(points),
-        grid_(grid),
-        size_(grid.places.size()),
-        branches_(points.branches.size()),
-        lines_(std::make_unique_for_overwrite<Line[]>(size_ * size_ * branches_)),
-        error_(size_ * size_, -1.0) {
+      : points_(points), grid_(grid), branches_(points.branches.size()) {
+    const std::size_t end = grid.places.size() - 1;
+    if (grid.windows.empty()) {
+      const Window all{0, end};
+      layers_.push_back({.from = all, .to = all});
+    } else {
+      Window from{0, 0};
+      for (const auto& [first, last] : grid.windows) {
+        layers_.push_back({.from = from, .to = {first, last}});
+        from = {first, last};
+      }
+      layers_.push_back({.from = from, .to = {end, end}});
+    }
+    std::size_t count = 0;
+    for (Layer& layer : layers_) {
+      layer.begin = count;
+      count += layer.from.size() * layer.to.size();
+    }
+    lines_ = std::make_unique_for_overwrite<Line[]>(count * branches_);
+    error_.assign(count, -1.0);
     for (const Branch& branch : points.branches) {
       auto& before = before_.emplace_back();
       auto& until = until_.emplace_back();
@@ -36,38 +57,55 @@ class Lines {
     }
   }
 
-  /// Error of the best line or lines; infinite where a segment has too few points.
-  double error(std::size_t from, std::size_t to) {
-    double& error = error_[from * size_ + to];
-    if (error < 0.0) error = prepare(from, to);
+  /// Error of the best line or lines of a segment, counted from 1; infinite where that has too few points.
+  double error(std::size_t segment, std::size_t from, std::size_t to) {
+    const std::size_t at = index(segment, from, to);
+    double& error = error_[at];
+    if (error < 0.0) error = prepare(from, to, &lines_[at * branches_]);
     return error;
   }
   /// One a branch; after error() was found finite.
-  [[nodiscard]] const Line* lines(std::size_t from, std::size_t to) const {
-    return &lines_[(from * size_ + to) * branches_];
+  [[nodiscard]] const Line* lines(std::size_t segment, std::size_t from, std::size_t to) const {
+    return &lines_[index(segment, from, to) * branches_];
+  }
+  /// Error of one segment over all.
+  [[nodiscard]] double error_of_one() const {
+    std::array<Line, 2> lines;
+    return prepare(0, grid_.places.size() - 1, lines.data());
   }
 
  private:
-  double prepare(std::size_t from, std::size_t to) {
+  struct Layer {
+    Window from, to;
+    std::size_t begin = 0;  ///< of its lines
+  };
+
+  [[nodiscard]] std::size_t index(std::size_t segment, std::size_t from, std::size_t to) const {
+    const Layer& layer = layers_[layers_.size() == 1 ? 0 : segment - 1];
+    return layer.begin + (from - layer.from.first) * layer.to.size() + (to - layer.to.first);
+  }
+  [[nodiscard]] double prepare(std::size_t from, std::size_t to, Line* lines) const {
     const double begin = grid_.places[from];
     const double end = grid_.places[to];
     if (!(end - begin >= least_gap)) return infinite;
     for (std::size_t branch = 0; branch < branches_; ++branch) {
-      if (!points_.branches[branch].supports(begin, end, grid_.fewest_points)) return infinite;
+      const std::size_t first = before_[branch][from];
+      const std::size_t last = std::max(first, until_[branch][to]);
+      if (!points_.branches[branch].supports(first, last, grid_.fewest_points)) return infinite;
     }
     double sum = 0.0;
     for (std::size_t branch = 0; branch < branches_; ++branch) {
-      Line& line = lines_[(from * size_ + to) * branches_ + branch];
-      line = line_between(points_.branches[branch].range(before_[branch][from], before_[branch][to]), begin,
-                          end);
-      sum += line.error;
+      lines[branch] = line_between(points_.branches[branch].range(before_[branch][from], before_[branch][to]),
+                                   begin, end);
+      sum += lines[branch].error;
     }
     return sum;
   }
 
   const Points& points_;
   const Grid& grid_;
-  std::size_t size_, branches_;
+  std::size_t branches_;
+  std::vector<Layer> layers_;                             ///< one a segment; without windows one for all
   std::vector<std::vector<std::size_t>> before_, until_;  ///< points before and up to each place
   std::unique_ptr<Line[]> lines_;  ///< one a branch for each pair of places, set when prepared
   std::vector<double> error_;
@@ -83,7 +121,7 @@ class Search {
         layers_(grid.max_segments + 1, std::vector<std::vector<Path>>(grid.places.size())),
         lost_(grid.max_segments + 1, infinite),
         slack_(rounding * points.weight) {
-    reachable_.assign(grid.max_segments + 1, lines_.error(0, end_));
+    reachable_.assign(grid.max_segments + 1, lines_.error_of_one());
     for (std::size_t s = 1; s < std::min(reachable_.size(), grid.reachable.size()); ++s) {
       reachable_[s] = std::min(reachable_[s], grid.reachable[s]);
     }
@@ -107,9 +145,9 @@ class Search {
  private:
   [[nodiscard]] bool windowed() const { return !grid_.windows.empty(); }
   /// Where the knot after s segments may be.
-  [[nodiscard]] std::pair<std::size_t, std::size_t> window(std::size_t s) const {
+  [[nodiscard]] Window window(std::size_t s) const {
     if (s == 0) return {0, 0};
-    return windowed() ? grid_.windows[s - 1] : std::pair<std::size_t, std::size_t>{1, end_ - 1};
+    return windowed() ? Window{grid_.windows[s - 1].first, grid_.windows[s - 1].second} : Window{1, end_ - 1};
   }
 
   /// rest_[r][place]: least error of what comes after a place in r segments that need not join.
@@ -120,11 +158,12 @@ class Search {
     for (std::size_t r = 1; r < most; ++r) {
       const auto [first, last] = window(windowed() ? most - r : 1);
       const auto [next_first, next_last] =
-          r == 1 ? std::pair{end_, end_} : window(windowed() ? most - r + 1 : 1);
+          r == 1 ? Window{end_, end_} : window(windowed() ? most - r + 1 : 1);
       for (std::size_t place = first; place <= last; ++place) {
         for (std::size_t next = std::max(next_first, place + 1); next <= next_last; ++next) {
           if (rest_[r - 1][next] == infinite) continue;
-          rest_[r][place] = std::min(rest_[r][place], lines_.error(place, next) + rest_[r - 1][next]);
+          rest_[r][place] =
+              std::min(rest_[r][place], lines_.error(most - r + 1, place, next) + rest_[r - 1][next]);
         }
       }
     }
@@ -148,9 +187,9 @@ class Search {
     for (std::size_t from = first; from <= last && from < place; ++from) {
       const auto& paths = layers_[s - 1][from];
       if (paths.empty()) continue;
-      const double error = lines_.error(from, place);
+      const double error = lines_.error(s, from, place);
       for (std::uint32_t i = 0; i < paths.size() && paths[i].least + error < most; ++i) {
-        Path path = prolonged(paths[i], lines_.lines(from, place), branches_);
+        Path path = prolonged(paths[i], lines_.lines(s, from, place), branches_);
         if (!(path.least < most)) continue;
         path.place = static_cast<std::uint32_t>(from);
         path.parent = i;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "segmented/segmented_line.h"
-
 namespace kerf::fitting::segmented {
 namespace {
 
@@ -45,12 +43,10 @@ struct Fit {
   Fit(const Branch& branch, const std::vector<double>& knots) {
     const std::size_t segments = knots.size() - 1;
     normal.size = knots.size();
-    std::size_t first = 0;
     for (std::size_t i = 0; i < segments; ++i) {
-      const std::size_t last = branch.before(knots[i + 1]);
-      moments[i] = branch.range(first, last);
-      lines[i] = line_between(moments[i], knots[i], knots[i + 1]);
-      first = last;
+      const Branch::Stretch& stretch = branch.stretch(knots[i], knots[i + 1]);
+      moments[i] = stretch.moments;
+      lines[i] = stretch.line;
       const Line& line = lines[i];
       normal.diagonal[i] += line.near;
       normal.diagonal[i + 1] += line.far;
@@ -113,7 +109,8 @@ bool allowed(const Points& points, const std::vector<double>& knots, std::size_t
   }
   return std::all_of(points.branches.begin(), points.branches.end(), [&](const Branch& branch) {
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-      if (!branch.supports(knots[i], knots[i + 1], fewest_points)) return false;
+      const Branch::Stretch& stretch = branch.stretch(knots[i], knots[i + 1]);
+      if (!branch.supports(stretch.first, stretch.last, fewest_points)) return false;
     }
     return true;
   });

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "segmented/segmented_points.h"
+#include "segmented/segmented_moments.h"
 
 namespace kerf::fitting::segmented {
 
@@ -15,10 +15,10 @@ constexpr double least_gap = 1e-9;
 ///
 /// with the best line from p0 to q0.
 struct Line {
-  double near, cross, far;
-  double determinant;  ///< near far - cross^2, without the cancellation
-  double p0, q0;
-  double error;
+  double near = 0.0, cross = 0.0, far = 0.0;
+  double determinant = 0.0;  ///< near far - cross^2, without the cancellation
+  double p0 = 0.0, q0 = 0.0;
+  double error = 0.0;
 };
 
 [[nodiscard]] inline Line line_between(const Moments& points, double from, double to) noexcept {

@@ -1,6 +1,7 @@
 #include "segmented/segmented_paths.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -136,11 +137,31 @@ std::vector<Piece> envelope(const std::vector<Path>& paths, std::size_t first, s
   return pieces;
 }
 
-/// Whether `better` is nowhere above `path` where that is below the ceiling; may miss it, never errs.
-bool dominates(const Path& better, const Path& path, double ceiling) {
+/// A path and where it is below the ceiling, on one branch while it is at its best on the other.
+struct Reached {
+  const Path& path;
+  std::array<Interval, 2> reach;
+};
+
+/// Whether one path is clearly above another where that is at its best, so that it cannot be nowhere above
+/// it.
+bool above(const Path& one, const Path& path) {
+  constexpr double clearly = 1e-9;
+  double there = one.least;
+  for (std::size_t branch = 0; branch < 2; ++branch) {
+    const double away = path.best[branch] - one.best[branch];
+    there += one.curvature[branch] * away * away;
+  }
+  return there > path.least + clearly * (std::abs(path.least) + std::abs(there));
+}
+
+/// Whether `better` is nowhere above a path where that is below the ceiling; may miss it, never errs.
+bool dominates(const Path& better, const Reached& reached) {
+  const Path& path = reached.path;
+  if (above(better, path)) return false;
   double margin = path.least - better.least;
   for (std::size_t branch = 0; branch < 2; ++branch) {
-    const Interval reach = below(path, branch, ceiling);
+    const Interval& reach = reached.reach[branch];
     if (reach.to == infinite) {
       if (better.curvature[branch] > 0.0) return false;
       continue;
@@ -163,31 +184,16 @@ bool dominates(const Path& better, const Path& path, double ceiling) {
   return margin >= 0.0;
 }
 
+/// The places of paths in the order of their least errors.
+struct Place {
+  double least;
+  std::size_t path;
+};
+bool before(const Place& a, const Place& b) { return a.least < b.least; }
+
 }  // namespace
 
-Path prolonged(const Path& path, const Line* lines, std::size_t branches) noexcept {
-  Path longer;
-  longer.least = path.least;
-  for (std::size_t branch = 0; branch < branches; ++branch) {
-    const Line& line = lines[branch];
-    const double a = path.curvature[branch];
-    const double miss = path.best[branch] - line.p0;
-    const double scaled = line.far * a + line.determinant;  // the new curvature times (near + a)
-    const double both = line.near + a;
-    longer.least += line.error;
-    longer.best[branch] = line.q0;
-    if (scaled > 0.0 && both > 0.0) {
-      longer.curvature[branch] = scaled / both;
-      longer.best[branch] -= line.cross * a * miss / scaled;
-      longer.least += a * miss * miss * (line.determinant / scaled);
-    } else {
-      longer.curvature[branch] = both > 0.0 ? 0.0 : line.far;
-    }
-  }
-  return longer;
-}
-
-std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::size_t most, double& lost) {
+std::vector<Path> lower_envelope(std::vector<Path>& paths, double ceiling, std::size_t most, double& lost) {
   lost = infinite;
   if (paths.size() > most * crowd) {
     const auto first_lost = paths.begin() + static_cast<std::ptrdiff_t>(most * crowd);
@@ -212,14 +218,20 @@ std::vector<Path> lower_envelope(std::vector<Path> paths, double ceiling, std::s
   return lowest;
 }
 
-std::vector<Path> undominated(std::vector<Path> paths, double ceiling, std::size_t most, double& lost) {
-  std::sort(paths.begin(), paths.end(), lower);
+std::vector<Path> undominated(const std::vector<Path>& paths, double ceiling, std::size_t most,
+                              double& lost) {
+  std::vector<Place> order;
+  order.reserve(paths.size());
+  for (std::size_t i = 0; i < paths.size(); ++i) order.push_back({paths[i].least, i});
+  std::sort(order.begin(), order.end(), before);
   lost = infinite;
   std::vector<Path> kept;
-  for (const Path& path : paths) {
+  for (const Place& place : order) {
+    const Path& path = paths[place.path];
     if (!(path.least < ceiling)) break;
-    const bool useless = std::any_of(kept.begin(), kept.end(),
-                                     [&](const Path& other) { return dominates(other, path, ceiling); });
+    const Reached reached{path, {below(path, 0, ceiling), below(path, 1, ceiling)}};
+    const bool useless =
+        std::any_of(kept.begin(), kept.end(), [&](const Path& other) { return dominates(other, reached); });
     if (useless) continue;
     if (kept.size() == most) {
       lost = path.least;

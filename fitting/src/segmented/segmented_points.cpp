@@ -8,13 +8,18 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace kerf::fitting::segmented {
 namespace {
 
 constexpr double one_position = 1e-6;  ///< of the range: a line that rests on less says nothing
 
+constexpr int stretch_bits = 10;  ///< of the number of stretches between knots that are kept
 constexpr std::size_t leaf_points = 32;
+/// With more, a search asks for fewer stretches than there are points, and their parts are summed when asked
+/// for.
+constexpr std::size_t most_parts_kept = 100'000;
 
 void check(const Curve& curve) {
   const std::size_t size = curve.position.size();
@@ -78,6 +83,27 @@ Branch::Branch(std::vector<Point> points) {
     tree_[node] = tree_[2 * node];
     tree_[node].join(tree_[2 * node + 1]);
   }
+
+  kept_.resize(std::size_t{1} << stretch_bits);
+  if (x_.size() > most_parts_kept) return;
+  std::vector<Moments> heads, tails;
+  heads.reserve(x_.size() + 1);
+  tails.reserve(x_.size() + 1);
+  for (std::size_t at = 0; at <= x_.size(); ++at) {
+    heads.push_back(head(at));
+    tails.push_back(tail(at));
+  }
+  heads_ = std::move(heads);
+  tails_ = std::move(tails);
+}
+
+/// Of the points from the beginning of a leaf to before a point of it, and of those from there to its end.
+Moments Branch::head(std::size_t last) const noexcept {
+  return heads_.empty() ? leaf(last / leaf_points * leaf_points, last) : heads_[last];
+}
+Moments Branch::tail(std::size_t first) const noexcept {
+  const std::size_t end = (first + leaf_points - 1) / leaf_points * leaf_points;
+  return tails_.empty() ? leaf(first, std::min(end, x_.size())) : tails_[first];
 }
 
 std::size_t Branch::before(double position) const noexcept {
@@ -95,11 +121,24 @@ std::size_t Branch::between(double from, double to) const noexcept {
   return end - before(from);
 }
 
-bool Branch::supports(double from, double to, std::size_t fewest) const noexcept {
-  const std::size_t count = between(from, to);
+bool Branch::supports(std::size_t first, std::size_t last, std::size_t fewest) const noexcept {
+  const std::size_t count = last - first;
   if (count < fewest || count == 0) return count >= fewest;
-  const std::size_t first = before(from);
-  return fewest < 2 || x_[first + count - 1] - x_[first] >= one_position;
+  return fewest < 2 || x_[last - 1] - x_[first] >= one_position;
+}
+
+const Branch::Stretch& Branch::stretch(double from, double to) const noexcept {
+  const std::uint64_t mixed = (std::bit_cast<std::uint64_t>(from) * 0x9E3779B97F4A7C15U) ^
+                              (std::bit_cast<std::uint64_t>(to) * 0xC2B2AE3D27D4EB4FU);
+  Stretch& kept = kept_[static_cast<std::size_t>((mixed * 0x9E3779B97F4A7C15U) >> (64 - stretch_bits))];
+  if (kept.from == from && kept.to == to) return kept;
+  kept.from = from;
+  kept.to = to;
+  kept.first = before(from);
+  kept.last = kept.first + between(from, to);
+  kept.moments = range(kept.first, std::max(kept.first, before(to)));
+  kept.line = line_between(kept.moments, from, to);
+  return kept;
 }
 
 Moments Branch::leaf(std::size_t first, std::size_t last) const noexcept {
@@ -128,8 +167,8 @@ Moments Branch::range(std::size_t first, std::size_t last) const noexcept {
   std::size_t left = (first + leaf_points - 1) / leaf_points;
   std::size_t right = last / leaf_points;
   if (left >= right) return first < last ? leaf(first, last) : Moments{};
-  Moments sums = leaf(first, left * leaf_points);
-  Moments end = leaf(right * leaf_points, last);
+  Moments sums = tail(first);
+  Moments end = head(last);
   for (left += leaves_, right += leaves_; left < right; left /= 2, right /= 2) {
     if (left % 2 == 1) sums.join(tree_[left++]);
     if (right % 2 == 1) {

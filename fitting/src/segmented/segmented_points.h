@@ -2,46 +2,21 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "kerf/fitting/segmented.h"
+#include "segmented/segmented_line.h"
 
 namespace kerf::fitting::segmented {
 
 /// @throws std::invalid_argument that says what is wrong with a segmented fit.
 [[noreturn]] void refuse(const std::string& what);
 
-/// Weighted moments of points about their own mean: nothing large is ever subtracted from something large.
-struct Moments {
-  double weight = 0.0;
-  double x = 0.0;  ///< mean
-  double y = 0.0;  ///< mean
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-
-  /// Joined with those of other points [Chan1983].
-  void join(const Moments& other) noexcept {
-    if (other.weight == 0.0) return;
-    if (weight == 0.0) {
-      *this = other;
-      return;
-    }
-    const double both = weight + other.weight;
-    const double share = other.weight / both;
-    const double dx = other.x - x;
-    const double dy = other.y - y;
-    const double lever = weight * share;
-    xx += other.xx + lever * dx * dx;
-    xy += other.xy + lever * dx * dy;
-    yy += other.yy + lever * dy * dy;
-    x += share * dx;
-    y += share * dy;
-    weight = both;
-  }
-};
-
 /// The points of one branch, sorted, in scaled coordinates: positions from 0 to 1 over all branches, forces
-/// about zero with a spread of one. A tree over stretches of them gives the moments of any range.
+/// about zero with a spread of one. A tree over stretches of them gives the moments of any range. What was
+/// asked for between two knots is kept, for they change one at a time: not for several threads at once.
 class Branch {
  public:
   struct Point {
@@ -55,20 +30,34 @@ class Branch {
   [[nodiscard]] std::size_t before(double position) const noexcept;
   /// How many points lie from one position to another, both ends included.
   [[nodiscard]] std::size_t between(double from, double to) const noexcept;
-  /// Whether a line may rest on what lies from one position to another: so many points, and not all of them
-  /// at one position where it is more than one. An encoder visits the same positions again and again.
-  [[nodiscard]] bool supports(double from, double to, std::size_t fewest) const noexcept;
+  /// Whether a line may rest on points [first, last): so many, and not all of them at one position where it
+  /// is more than one. An encoder visits the same positions again and again.
+  [[nodiscard]] bool supports(std::size_t first, std::size_t last, std::size_t fewest) const noexcept;
   [[nodiscard]] Moments range(std::size_t first, std::size_t last) const noexcept;
+
+  /// What lies between two knots.
+  struct Stretch {
+    double from = std::numeric_limits<double>::quiet_NaN();
+    double to = from;
+    std::size_t first = 0, last = 0;  ///< the points there, both ends included
+    Moments moments;                  ///< of those from `from` to before `to`
+    Line line;
+  };
+  [[nodiscard]] const Stretch& stretch(double from, double to) const noexcept;
   /// Sum of squares about the polygon, point by point.
   [[nodiscard]] double error(const std::vector<double>& knots, const std::vector<double>& force) const;
 
  private:
   [[nodiscard]] Moments leaf(std::size_t first, std::size_t last) const noexcept;
+  [[nodiscard]] Moments head(std::size_t last) const noexcept;
+  [[nodiscard]] Moments tail(std::size_t first) const noexcept;
 
   std::vector<double> x_, y_, weight_;  ///< no weights if all are 1
   std::vector<Moments> tree_;           ///< node i over nodes 2i and 2i + 1
   std::size_t leaves_ = 0;
-  std::vector<std::uint32_t> index_;  ///< points before each of equal stretches of the position
+  std::vector<Moments> heads_, tails_;  ///< of the leaf of each point: what is before it, and the rest
+  std::vector<std::uint32_t> index_;    ///< points before each of equal stretches of the position
+  mutable std::vector<Stretch> kept_;
 };
 
 /// A curve that was checked, sorted and scaled.
