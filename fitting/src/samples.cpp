@@ -7,6 +7,8 @@
 
 #include <boost/math/statistics/univariate_statistics.hpp>
 
+#include "training/trained_memory.h"
+
 namespace kerf::fitting {
 namespace {
 
@@ -128,6 +130,7 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     refuse("the share that is held back for a test must be from 0 to 0.9");
   }
   Samples samples;
+  samples.trained = std::make_shared<TrainedMemory>();
   for (const Series& series : recordings) {
     check_columns(series);
     const Run run{

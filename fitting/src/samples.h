@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct Run {
   std::size_t end = 0;
   double noise_n = 0.0;  ///< 0: not known
 };
+
+class TrainedMemory;
 
 /// A checked copy of the recordings in the form in which residuals are computed.
 struct Samples {
@@ -31,6 +34,8 @@ struct Samples {
   double median_period_s = 0.0;
   double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
+  std::shared_ptr<TrainedMemory>
+      trained{};  ///< of the one fit that these are checked for; none: nothing is kept
 
   static constexpr std::size_t no_fold = static_cast<std::size_t>(-1);
   static constexpr std::size_t test = static_cast<std::size_t>(-2);  ///< a fold that no fit sees

@@ -68,5 +68,89 @@ TEST(Kernel, SumsWhatItsRowsSayHoweverManyParametersAreSearched) {
   }
 }
 
+/// A tool that goes in and out, faster than some arms recover, with stamps of whole milliseconds.
+Stroke jittering_stroke() {
+  Stroke stroke;
+  for (std::size_t i = 0; i < stroke.period_s.size(); ++i) {
+    stroke.period_s[i] = 1e-3 * static_cast<double>(2 + (i * i) % 3);
+    stroke.motion[i].penetration -= 0.2;
+    if (i % 7 == 0) stroke.weight[i] = 0.0;
+  }
+  return stroke;
+}
+
+/// Values of a law and how it is looked at.
+struct Looked {
+  std::vector<double> values, slope;
+  models::Options options;
+  [[nodiscard]] LawPoint point() const { return {.values = values, .slope = slope, .options = options}; }
+};
+
+Looked arms(std::size_t count) {
+  Looked law{.values = {2.0}, .slope = {}, .options = {{"arms", static_cast<double>(count)}}};
+  for (std::size_t i = 0; i < count; ++i) law.values.push_back(1.0 + 3.0 * static_cast<double>(i));
+  for (std::size_t i = 0; i < count; ++i) law.values.push_back(0.004 * std::pow(3.0, i));
+  law.slope = law.values;
+  return law;
+}
+
+void expect_sums_of_rows(const LawKernel& kernel, const Looked& law, const Stroke& stroke, double tolerance) {
+  const auto count = static_cast<Eigen::Index>(stroke.motion.size());
+  Eigen::VectorXd force(count);
+  Eigen::MatrixXd jacobian(count, static_cast<Eigen::Index>(law.values.size()));
+  ASSERT_TRUE(kernel.rows(law.point(), stroke.view(), force, jacobian));
+  Sums sums;
+  ASSERT_TRUE(kernel.sums(law.point(), stroke.view(), {}, sums));
+  const Eigen::Map<const Eigen::VectorXd> measured(stroke.force.data(), count);
+  const Eigen::Map<const Eigen::VectorXd> weight(stroke.weight.data(), count);
+  const Eigen::VectorXd residual = force - measured;
+  const Eigen::MatrixXd normal = jacobian.transpose() * weight.asDiagonal() * jacobian;
+  const Eigen::VectorXd score = jacobian.transpose() * weight.asDiagonal() * residual;
+  EXPECT_NEAR(sums.squares, residual.dot(weight.cwiseProduct(residual)), tolerance * sums.squares);
+  EXPECT_LT((sums.score - score).norm(), tolerance * score.norm());
+  EXPECT_LT((sums.normal - normal).norm(), tolerance * normal.norm());
+}
+
+// The rows of these take what follows from a period anew each time, and sums recall it.
+TEST(Kernel, RecallsWhatALawDerivedFromPeriodsThatComeBack) {
+  const Stroke stroke = jittering_stroke();
+  for (const char* integrator : {"exact", "semi_implicit", "euler"}) {
+    const Looked kelvin{.values = {5.0, 8.0, 0.05},
+                        .slope = {5.0, 8.0, 0.05},
+                        .options = {{"integrator", std::string(integrator)}}};
+    expect_sums_of_rows(kernel_of("kelvin"), kelvin, stroke, 1e-13);
+  }
+  const Looked springpot{.values = {2.0, 1.0, 0.3}, .slope = {2.0, 1.0, 1.0}, .options = {}};
+  expect_sums_of_rows(kernel_of("springpot"), springpot, stroke, 1e-13);
+}
+
+// Where a parameter is held, all arms go through the law at once; where none is, each goes alone.
+TEST(Kernel, TakesArmsOneByOneForWhatTheyAreTogether) {
+  const Stroke stroke = jittering_stroke();
+  const LawKernel& kernel = kernel_of("maxwell");
+  for (const char* integrator : {"exact", "semi_implicit", "euler"}) {
+    for (std::size_t count = 1; count <= 6; ++count) {
+      Looked law = arms(count);
+      law.options["integrator"] = std::string(integrator);
+      expect_sums_of_rows(kernel, law, stroke, 1e-13);
+      Sums apart, together;
+      ASSERT_TRUE(kernel.sums(law.point(), stroke.view(), {}, apart));
+      law.slope[0] = 0.0;
+      ASSERT_TRUE(kernel.sums(law.point(), stroke.view(), {}, together));
+      const Eigen::Index others = 2 * static_cast<Eigen::Index>(count);
+      EXPECT_NEAR(apart.squares, together.squares, 1e-13 * apart.squares) << count;
+      EXPECT_LT((apart.score.tail(others) - together.score).norm(), 1e-13 * together.score.norm()) << count;
+      EXPECT_LT((apart.normal.bottomRightCorner(others, others) - together.normal).norm(),
+                1e-13 * together.normal.norm())
+          << count;
+      law.slope[0] = law.values[0];
+      law.slope[1] = 0.0;
+      ASSERT_TRUE(kernel.sums(law.point(), stroke.view(), {}, together));
+      EXPECT_NEAR(apart.score[0], together.score[0], 1e-13 * apart.score.norm()) << count;
+      EXPECT_NEAR(apart.normal(0, 0), together.normal(0, 0), 1e-13 * apart.normal.norm()) << count;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace kerf::fitting

@@ -6,13 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include <ceres/jet.h>
-
 #include <kerf/models/contact_energy.h>
 
 #include "kernels/kept_ticks.h"
 #include "kernels/law_kernel_of.h"
 #include "kernels/normal_sums.h"
+#include "kernels/short_dual.h"
 
 namespace kerf::fitting {
 
@@ -56,23 +55,22 @@ class ArmsKernelOf final : public LawKernel {
   /// The law with one of the arms.
   template <int Width>
   struct Arm {
-    using Dual = ceres::Jet<double, Width>;
+    using Dual = ShortDual<Width>;
     Law<Dual> law;
-    typename Law<Dual>::State state;
-    KeptTicks<typename Law<Dual>::State> ticks;
+    typename Law<Dual>::State state{};
+    KeptTicks<typename Law<Dual>::State> ticks{};
 
     Arm(const LawPoint& point, std::size_t which, std::size_t arms)
         : law(Law<Dual>::make(values(point, which, arms), options(point))) {}
 
     static std::vector<Dual> values(const LawPoint& point, std::size_t which, std::size_t arms) {
-      std::vector<Dual> values{Dual(0.0), Dual(point.values[1 + which], 0),
-                               Dual(point.values[1 + arms + which], 1)};
-      values[1].v[0] = point.slope[1 + which];
-      values[2].v[1] = point.slope[1 + arms + which];
-      if constexpr (Width > 2) {
-        values[0] = Dual(point.values[0], 2);
-        values[0].v[2] = point.slope[0];
-      }
+      const auto searched = [&](std::size_t parameter, int column) {
+        Dual value(point.values[parameter]);
+        value.v[column] = point.slope[parameter];
+        return value;
+      };
+      std::vector<Dual> values{Dual(0.0), searched(1 + which, 0), searched(1 + arms + which, 1)};
+      if constexpr (Width > 2) values[0] = searched(0, 2);
       return values;
     }
     static models::Options options(const LawPoint& point) {
@@ -106,19 +104,23 @@ class ArmsKernelOf final : public LawKernel {
                                           const Add& add) {
     using Row = typename NormalSums<2 * static_cast<int>(Arms) + 2>::Row;
     Arm<4> first(point, 0, Arms);
-    std::vector<Arm<2>> others;
-    others.reserve(Arms - 1);
-    for (std::size_t arm = 1; arm < Arms; ++arm) others.emplace_back(point, arm, Arms);
+    auto others = [&]<std::size_t... A>(std::index_sequence<A...>) {
+      return std::array<Arm<2>, Arms - 1>{Arm<2>(point, A + 1, Arms)...};
+    }
+    (std::make_index_sequence<Arms - 1>{});
     Row row;
     for (std::size_t i = 0; i < run.count; ++i) {
       const double x = models::pressed(run.motion[i].penetration);
-      const auto begin = first.step(x, run.period_s[i]);
+      const double period_s = run.period_s[i];
+      const auto begin = first.step(x, period_s);
       double force = begin.a;
-      row.template head<4>() = begin.v;
-      for (std::size_t arm = 1; arm < Arms; ++arm) {
-        const auto more = others[arm - 1].step(x, run.period_s[i]);
+      for (int k = 0; k < 4; ++k) row[k] = begin.v[k];
+      for (std::size_t arm = 0; arm + 1 < Arms; ++arm) {
+        const auto more = others[arm].step(x, period_s);
         force += more.a;
-        row.template segment<2>(static_cast<Eigen::Index>(2 * arm + 2)) = more.v;
+        const auto at = static_cast<Eigen::Index>(2 * arm + 4);
+        row[at] = more.v[0];
+        row[at + 1] = more.v[1];
       }
       if (!counts(i)) continue;
       const double felt = models::pushing(force);

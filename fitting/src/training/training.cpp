@@ -11,6 +11,7 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "training/held_out.h"
+#include "training/trained_memory.h"
 #include "uncertainty/statistics.h"
 
 namespace kerf::fitting {
@@ -124,17 +125,24 @@ bool pays(const Size& larger, const Size& smaller) {
   return bic_of(larger, independent) < bic_of(smaller, independent);
 }
 
-Size tried(std::string_view model, const FitOptions& sized, const Samples& samples, const Weights& seen,
-           double function_tolerance) {
-  Size size{.law = train_sized(model, sized, samples, seen, function_tolerance)};
+/// A law of a given size, found once: nested folds ask again.
+Trained train_once(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
+                   const Weights& seen, double function_tolerance) {
+  const auto train = [&] { return train_sized(model, sized, samples, seen, function_tolerance); };
+  return samples.trained ? samples.trained->once(seen, count, function_tolerance, train) : train();
+}
+
+Size tried(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
+           const Weights& seen, double function_tolerance) {
+  Size size{.law = train_once(model, sized, count, samples, seen, function_tolerance)};
   if (size.law.solution.values.empty()) return size;
   const auto left = of_those(residuals_of(size.law.problem, size.law.solution.values, samples), seen);
   size.count = left.size();
   size.mean_square = std::pow(rms_of(left), 2);
   size.law.correlation_time = correlation_time(left);
-  size.errors =
-      held_out([&](const Weights& fewer) { return train_sized(model, sized, samples, fewer, of_a_fold); },
-               samples, seen, sized.threads);
+  size.errors = held_out(
+      [&](const Weights& fewer) { return train_once(model, sized, count, samples, fewer, of_a_fold); },
+      samples, seen, sized.threads);
   return size;
 }
 
@@ -148,7 +156,7 @@ Trained train_growing(std::string_view model, const FitOptions& options, const S
   for (std::size_t count = facts.first; count <= facts.last && failures < failures_borne; ++count) {
     FitOptions sized(options);
     sized.law_options[std::string(facts.option)] = static_cast<double>(count);
-    Size next = tried(model, sized, samples, seen, function_tolerance);
+    Size next = tried(model, sized, count, samples, seen, function_tolerance);
     if (next.law.solution.values.empty()) return best ? best->law : next.law;
     const bool white = next.law.correlation_time < white_below;
     const bool better = !best || pays(next, *best);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "training/training.h"
+
+namespace kerf::fitting {
+
+/// Laws of one model that were trained on the same samples, by which of them they were shown. Nested folds
+/// ask for the same twice: all but the first and then the second, and all but the second and then the first;
+/// all but one to judge a size, and again where that fold is held out of everything. Several threads may ask
+/// at once; those that ask for the same wait for the one that came first.
+class TrainedMemory {
+ public:
+  /// What `train` gives for these weights, a size of the law and a tolerance, from where it was first asked
+  /// for.
+  [[nodiscard]] Trained once(const Weights& seen, std::size_t size, double function_tolerance,
+                             const std::function<Trained()>& train);
+
+ private:
+  /// Where a column changes, and to what: weights are the same over whole stretches.
+  using Changes = std::vector<std::pair<std::size_t, double>>;
+  static Changes changes_of(const Weights& weights);
+
+  struct Entry {
+    Changes seen;
+    std::size_t size;
+    double function_tolerance;
+    std::once_flag once{};
+    Trained law{};  ///< without its weights
+    Changes weights{};
+
+    Entry(Changes of, std::size_t parts, double tolerance)
+        : seen(std::move(of)), size(parts), function_tolerance(tolerance) {}
+  };
+
+  std::mutex mutex_;
+  std::list<Entry> entries_;
+};
+
+}  // namespace kerf::fitting
