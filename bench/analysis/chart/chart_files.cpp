@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "chart/chart_picture.h"
+#include "chart/fronts.h"
 #include "files/json_file.h"
 #include "files/json_number.h"
 #include "files/whole_file.h"
@@ -29,6 +30,29 @@ std::vector<const ChartPoint*> front_of(const SpeedAccuracy& chart) {
   return front;
 }
 
+std::vector<const ChartPoint*> cold_front_of(const SpeedAccuracy& chart) {
+  std::vector<const ChartPoint*> front;
+  for (const ChartPoint& point : chart.points) {
+    if (point.on_cold_front) front.push_back(&point);
+  }
+  std::ranges::sort(front, {},
+                    [&](const ChartPoint* point) { return cold_tail_ns(*point, chart.cold_tail); });
+  return front;
+}
+
+json tail_name(ColdTail tail) {
+  if (tail == ColdTail::none) return nullptr;
+  return tail == ColdTail::p999 ? "p99.9" : "p99";
+}
+
+json to_json(const ColdCost& empty) {
+  if (empty.ticks == 0) return nullptr;
+  return {{"p50_ns", json_number(empty.p50_ns)},
+          {"p99_ns", json_number(empty.p99_ns)},
+          {"p999_ns", json_number(empty.p999_ns)},
+          {"ticks", empty.ticks}};
+}
+
 std::string point_name(const ChartPoint& point) { return point.law + ", " + point.fidelity; }
 
 std::string cost_text(double nanoseconds) {
@@ -45,8 +69,10 @@ std::vector<std::string> row_of(const ChartPoint& point) {
           fmt::format("{}", point.parameters),
           cost_text(point.cost.p50_ns),
           cost_text(point.cost.p999_ns),
-          cost_text(point.cost.cold_p50_ns),
-          cost_text(point.cost.cold_p999_ns),
+          cost_text(point.cost.cold.p50_ns),
+          cost_text(point.cost.cold.p99_ns),
+          cost_text(point.cost.cold.p999_ns),
+          fmt::format("{}", point.cost.cold.ticks),
           fmt::format("{:.3g}", point.error_n),
           fmt::format("{:.3g}", point.error_jnd),
           fmt::format("{:.3g}", point.worst_n),
@@ -54,9 +80,10 @@ std::vector<std::string> row_of(const ChartPoint& point) {
           stable_text(point.stability)};
 }
 
-const std::vector<std::string> head{
-    "law",       "fidelity",    "parameters", "p50 [us]", "p99.9 [us]", "cold p50 [us]", "cold p99.9 [us]",
-    "error [N]", "error [JND]", "worst [N]",  "axis",     "stable"};
+const std::vector<std::string> head{"law",        "fidelity",      "parameters",    "p50 [us]",
+                                    "p99.9 [us]", "cold p50 [us]", "cold p99 [us]", "cold p99.9 [us]",
+                                    "cold ticks", "error [N]",     "error [JND]",   "worst [N]",
+                                    "axis",       "stable"};
 
 }  // namespace
 
@@ -66,8 +93,11 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"rate_hz", chart.rate_hz},
               {"jnd_n", json_number(chart.jnd_n)},
               {"compared_in", chart.one_axis ? "N" : "JND"},
+              {"cold_tail", tail_name(chart.cold_tail)},
+              {"empty_cold_tick", to_json(chart.empty_tick)},
               {"points", json::array()},
               {"front", json::array()},
+              {"cold_front", json::array()},
               {"notes", chart.notes}};
   const std::vector<std::string> files = point_file_names(chart);
   auto file = files.begin();
@@ -80,8 +110,10 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"rate_hz", point.rate_hz},
                                 {"p50_ns", json_number(point.cost.p50_ns)},
                                 {"p999_ns", json_number(point.cost.p999_ns)},
-                                {"cold_p50_ns", json_number(point.cost.cold_p50_ns)},
-                                {"cold_p999_ns", json_number(point.cost.cold_p999_ns)},
+                                {"cold_p50_ns", json_number(point.cost.cold.p50_ns)},
+                                {"cold_p99_ns", json_number(point.cost.cold.p99_ns)},
+                                {"cold_p999_ns", json_number(point.cost.cold.p999_ns)},
+                                {"cold_ticks", point.cost.cold.ticks},
                                 {"error_n", json_number(point.error_n)},
                                 {"error_jnd", json_number(point.error_jnd)},
                                 {"worst_n", json_number(point.worst_n)},
@@ -89,27 +121,30 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"stable", to_json(point.stability.stable)},
                                 {"why_not_stable", is_unstable ? point.stability.why : ""},
                                 {"why_not_judged", why_not_judged(point.stability)},
-                                {"on_front", point.on_front}});
+                                {"on_front", point.on_front},
+                                {"on_cold_front", point.on_cold_front}});
   }
   for (const ChartPoint* point : front_of(chart)) result["front"].push_back(point_name(*point));
+  for (const ChartPoint* point : cold_front_of(chart)) result["cold_front"].push_back(point_name(*point));
   return result;
 }
 
 std::string chart_csv(const SpeedAccuracy& chart) {
   std::string csv =
-      "law,fidelity,parameters,rate_hz,p50_ns,p999_ns,cold_p50_ns,cold_p999_ns,error_n,error_jnd,worst_n,"
-      "axis,"
-      "stable,on_front\n";
+      "law,fidelity,parameters,rate_hz,p50_ns,p999_ns,cold_p50_ns,cold_p99_ns,cold_p999_ns,cold_ticks,error_"
+      "n,"
+      "error_jnd,worst_n,axis,stable,on_front,on_cold_front\n";
   for (const ChartPoint& point : chart.points) {
     const Stable stable = point.stability.stable;
-    csv += fmt::format("{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.6g},{:.6g},{:.6g},{},{},{}\n", point.law,
-                       csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
-                       point.cost.p999_ns, point.cost.cold_p50_ns, point.cost.cold_p999_ns, point.error_n,
-                       point.error_jnd, point.worst_n, csv_quoted(point.axis),
-                       stable == Stable::not_judged ? name_of(stable)
-                       : stable == Stable::yes      ? "1"
-                                                    : "0",
-                       point.on_front ? 1 : 0);
+    csv += fmt::format(
+        "{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", point.law,
+        csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns, point.cost.p999_ns,
+        point.cost.cold.p50_ns, point.cost.cold.p99_ns, point.cost.cold.p999_ns, point.cost.cold.ticks,
+        point.error_n, point.error_jnd, point.worst_n, csv_quoted(point.axis),
+        stable == Stable::not_judged ? name_of(stable)
+        : stable == Stable::yes      ? "1"
+                                     : "0",
+        point.on_front ? 1 : 0, point.on_cold_front ? 1 : 0);
   }
   return csv;
 }
@@ -154,6 +189,12 @@ std::string chart_page(const SpeedAccuracy& chart) {
   const auto front = front_of(chart);
   for (const ChartPoint* point : front) rows.push_back(row_of(*point));
   body += html_table(rows);
+  if (chart.cold_tail != ColdTail::none) {
+    body += fmt::format("<h2>The front by cold {}</h2>\n", tail_name(chart.cold_tail).get<std::string>());
+    rows.resize(1);
+    for (const ChartPoint* point : cold_front_of(chart)) rows.push_back(row_of(*point));
+    body += html_table(rows);
+  }
   const auto enough = std::find_if(front.begin(), front.end(),
                                    [](const ChartPoint* point) { return point->error_jnd <= 1.0; });
   body +=
@@ -163,10 +204,10 @@ std::string chart_page(const SpeedAccuracy& chart) {
                         escaped(point_name(**enough)), cost_text((*enough)->cost.p50_ns), (*enough)->error_n,
                         (*enough)->stability.stable == Stable::yes ? "" : "; its stability was not judged");
   body +=
-      "<p class=\"soft\">Costs are medians and 99.9th percentiles of single ticks, with warm caches and with "
-      "caches that were flushed before each tick. Costs within 15 % and 3 ns of each other, and errors "
-      "within 2 "
-      "%, count as equal on the front; it then takes the fewest parameters.</p>\n<h2>All points</h2>\n";
+      "<p class=\"soft\">Costs are percentiles of single ticks, with warm caches and with caches that were "
+      "flushed before each tick. A percentile is told where ten ticks lie beyond it. Costs within 15 % and "
+      "3 ns of each other, and errors within 2 %, count as equal on a front; it then takes the fewest "
+      "parameters.</p>\n<h2>All points</h2>\n";
   rows.resize(1);
   for (const ChartPoint& point : chart.points) rows.push_back(row_of(point));
   body += html_table(rows);

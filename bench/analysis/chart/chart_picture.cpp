@@ -35,17 +35,25 @@ struct Spot {
   double error = 0.0;
   double p50_ns = 0.0;
   double cost_us = 0.0;  ///< as it is drawn
-  double rarely_us = 0.0;
+  double cold_us = 0.0;  ///< by the cold tail; not finite where nobody measured it
   Stable stable = Stable::not_judged;
   bool on_front = false;
+  bool on_cold_front = false;
 };
+
+std::string text_or_empty(const json& chart, const char* name) {
+  const auto found = chart.find(name);
+  return found != chart.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
 
 /// A chart's points, errors in N where one axis is judged, else in JNDs.
 struct Spots {
   explicit Spots(const json& chart)
       : unit(chart.at("compared_in").get<std::string>()),
         jnd(unit == "N" ? number_from(chart.at("jnd_n")) : 1.0),
-        tick_us(1e6 / chart.at("rate_hz").get<double>()) {
+        tick_us(1e6 / chart.at("rate_hz").get<double>()),
+        cold_tail(text_or_empty(chart, "cold_tail")) {
+    const std::string cold_key = cold_tail == "p99" ? "cold_p99_ns" : "cold_p999_ns";
     const double most = 1e3 * jnd;
     for (const json& point : chart.at("points")) {
       const double error = number_from(point.at(unit == "N" ? "error_n" : "error_jnd"));
@@ -58,14 +66,19 @@ struct Spots {
                      .error = std::clamp(std::isfinite(error) ? error : most, least_share_of_jnd * jnd, most),
                      .p50_ns = p50_ns,
                      .cost_us = cost_us,
-                     .rarely_us = std::max(cost_us, 1e-3 * number_from(point.at("p999_ns"))),
+                     .cold_us = cold_tail.empty() || !point.contains(cold_key)
+                                    ? infinite
+                                    : 1e-3 * number_from(point.at(cold_key)),
                      .stable = stable_from(point.at("stable")),
-                     .on_front = point.at("on_front").get<bool>()});
+                     .on_front = point.at("on_front").get<bool>(),
+                     .on_cold_front = point.value("on_cold_front", false)});
     }
   }
   std::string unit;
   double jnd;
   double tick_us;
+  std::string
+      cold_tail;  ///< "p99.9", "p99"; empty: not measured, or by an earlier version from too few ticks
   std::vector<Spot> all;
 };
 
@@ -86,29 +99,56 @@ void add_laws(const Spots& spots, Chart& picture) {
   picture.curves.insert(picture.curves.end(), laws.begin(), laws.end());
 }
 
-void add_front(const Spots& spots, Chart& picture) {
-  std::vector<Spot> front;
-  std::ranges::copy_if(spots.all, std::back_inserter(front), &Spot::on_front);
-  std::ranges::sort(front, {}, &Spot::p50_ns);
-  if (front.empty()) return;
-  Curve stairs{.label = "front", .colour = Colour::black, .width = 2.0};
-  Curve rare{.label = "p99.9, front", .colour = Colour::black, .mark = Mark::circles, .width = 4.0};
+/// The stairs of a front, from the right border down its points to the upper.
+Curve stairs_of(std::vector<Spot> front, double Spot::*cost, const Chart& picture) {
+  std::ranges::sort(front, {}, cost);
+  Curve stairs;
   double right = picture.x_range.end;
   for (const Spot& spot : front) {
     for (const double x : {right, spot.error}) {
       stairs.x.push_back(x);
-      stairs.y.push_back(spot.cost_us);
+      stairs.y.push_back(spot.*cost);
     }
     right = spot.error;
-    rare.x.push_back(right);
-    rare.y.push_back(spot.rarely_us);
-    const bool near_left = std::log(right / picture.x_range.begin) <
-                           0.45 * std::log(picture.x_range.end / picture.x_range.begin);
-    picture.labels.push_back({.x = right, .y = spot.cost_us, .text = spot.name, .left = !near_left});
   }
   stairs.x.push_back(right);
   stairs.y.push_back(picture.y_range.end);
-  picture.curves.insert(picture.curves.begin(), {stairs, rare});
+  return stairs;
+}
+
+void add_label(const Spot& spot, double y, Chart& picture) {
+  const bool near_left = std::log(spot.error / picture.x_range.begin) <
+                         0.45 * std::log(picture.x_range.end / picture.x_range.begin);
+  picture.labels.push_back({.x = spot.error, .y = y, .text = spot.name, .left = !near_left});
+}
+
+void add_front(const Spots& spots, Chart& picture) {
+  std::vector<Spot> front;
+  std::ranges::copy_if(spots.all, std::back_inserter(front), &Spot::on_front);
+  if (front.empty()) return;
+  std::ranges::sort(front, {}, &Spot::p50_ns);
+  Curve stairs = stairs_of(front, &Spot::cost_us, picture);
+  stairs.label = "front, median";
+  stairs.width = 2.0;
+  for (const Spot& spot : front) add_label(spot, spot.cost_us, picture);
+  picture.curves.insert(picture.curves.begin(), std::move(stairs));
+}
+
+void add_cold_front(const Spots& spots, Chart& picture) {
+  std::vector<Spot> front;
+  std::ranges::copy_if(spots.all, std::back_inserter(front), &Spot::on_cold_front);
+  if (front.empty()) return;
+  Curve stairs = stairs_of(front, &Spot::cold_us, picture);
+  stairs.label = fmt::format("front, cold {}", spots.cold_tail);
+  stairs.width = 1.5;
+  stairs.dashed = true;
+  Curve places{.label = {}, .colour = Colour::black, .mark = Mark::points, .width = 2.5};
+  for (const Spot& spot : front) {
+    places.x.push_back(spot.error);
+    places.y.push_back(spot.cold_us);
+    add_label(spot, spot.cold_us, picture);
+  }
+  picture.curves.insert(picture.curves.begin() + 1, {stairs, places});
 }
 
 void add_marks(const Spots& spots, Stable stable, Curve marks, Chart& picture) {
@@ -126,7 +166,7 @@ Chart chart_picture(const json& chart) {
   const Spots spots(chart);
   Chart picture{.title = fmt::format("Cost of a tick over error: {}", chart.at("source").get<std::string>()),
                 .x_label = fmt::format("error, root mean square [{}]", spots.unit),
-                .y_label = "cost of a tick, median [us]",
+                .y_label = "cost of a tick [us]",
                 .log_x = true,
                 .log_y = true,
                 .width_px = 1000,
@@ -136,7 +176,7 @@ Chart chart_picture(const json& chart) {
   for (const Spot& spot : spots.all) {
     errors = {std::min(errors.begin, spot.error), std::max(errors.end, spot.error)};
     costs = {std::min(costs.begin, spot.cost_us),
-             std::max(costs.end, spot.on_front ? spot.rarely_us : spot.cost_us)};
+             std::max({costs.end, spot.cost_us, spot.on_cold_front ? spot.cold_us : 0.0})};
   }
   const bool deadline_shown = 0.5 * spots.tick_us <= far_away * costs.end;
   if (deadline_shown) costs.end = std::max(costs.end, spots.tick_us);
@@ -155,6 +195,7 @@ Chart chart_picture(const json& chart) {
   }
   add_laws(spots, picture);
   add_front(spots, picture);
+  add_cold_front(spots, picture);
   add_marks(spots, Stable::no,
             {.label = "not stable", .colour = Colour::black, .mark = Mark::crosses, .width = 7.0}, picture);
   picture.vertical.push_back({.at = spots.jnd, .label = "JND", .label_after = true});

@@ -6,6 +6,7 @@
 
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
+#include "chart/fronts.h"
 #include "chart/speed_accuracy.h"
 #include "recordings/axes.h"
 #include "recordings/axis_series.h"
@@ -15,7 +16,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_timed_ticks = 4000;
-constexpr double runaway = 10.0;  // times the largest force recorded
+constexpr std::size_t recording_timed_from = 700;  // of the chart's steps
+constexpr double runaway = 10.0;                   // times the largest force recorded
 
 /// The stretch of a recording that laws are timed along: that with most contact.
 SampledMotion timed_stretch(const AxisSeries& series, const FitSource& source, double period_s) {
@@ -89,16 +91,16 @@ class RecordingChart {
     for (const FitPlan& plan : plans) {
       if (options_.stopped()) break;
       add(plan);
-      if (options_.done != nullptr) *options_.done += 900 / plans.size();
+      if (options_.done != nullptr) *options_.done += recording_timed_from / plans.size();
     }
     if (!options_.stopped() && chart_.points.empty()) refuse();
     if (!options_.stopped()) time();
-    if (options_.stopped()) {
+    if (chart_.stopped || options_.stopped()) {
       chart_.stopped = true;
       chart_.points.clear();
       return chart_;
     }
-    mark_front(chart_.points, chart_.rate_hz);
+    mark_fronts(chart_);
     if (options_.done != nullptr) *options_.done = chart_steps;
     return chart_;
   }
@@ -171,10 +173,7 @@ class RecordingChart {
     for (const ChartPoint& point : chart_.points) {
       laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, {0}), .path = &stretch});
     }
-    TickCostOptions timing = options_.timing;
-    timing.stop = options_.stop;
-    const auto costs = tick_costs(laws, timing);
-    for (std::size_t i = 0; i < costs.size(); ++i) chart_.points[i].cost = costs[i];
+    chart_.stopped = !measure_costs(chart_, laws, options_, recording_timed_from);
   }
 
   [[noreturn]] void refuse() const {

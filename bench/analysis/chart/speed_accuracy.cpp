@@ -9,7 +9,7 @@
 
 #include "chart/fidelities.h"
 #include "chart/fit_plan.h"
-#include "chart/pareto_front.h"
+#include "chart/fronts.h"
 #include "chart/reference_forces.h"
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
@@ -19,7 +19,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_fit_samples = 4000;
-constexpr double shown_from_jnd = 1e-3;
+constexpr std::size_t scene_timed_from = 300;  // of the chart's steps
 
 /// The motion along the path, by rate, each made once.
 class Motions {
@@ -86,7 +86,8 @@ void add_aids(LawFile& file, const SampledMotion& path, std::size_t axis) {
 /// The other laws, as fitted to the reference of this one.
 void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions& options,
                 SpeedAccuracy& chart) {
-  for (const FitPlan& plan : fit_plans(options.models)) {
+  const auto plans = fit_plans(options.models);
+  for (const FitPlan& plan : plans) {
     if (options.stopped()) return;
     const bool fits = units_fit(models::law_info(plan.model), law.position_unit, law.force_unit);
     if (plan.model == law.law.model() || !fits) continue;
@@ -101,7 +102,7 @@ void add_fitted(const LawFile& law, const AxisSeries& series, const ChartOptions
     } catch (const std::invalid_argument& error) {
       chart.notes.push_back(fmt::format("{} ({}) was not fitted: {}", plan.model, plan.label, error.what()));
     }
-    if (options.done != nullptr) *options.done += 5;
+    if (options.done != nullptr) *options.done += scene_timed_from / plans.size();
   }
 }
 
@@ -112,14 +113,7 @@ void time_points(const std::vector<std::size_t>& axes, Motions& motions, const C
     laws.push_back({.rendering = LawRendering(point.file.law, point.file.contact, axes),
                     .path = &motions.at(point.rate_hz)});
   }
-  TickCostOptions timing = options.timing;
-  timing.stop = options.stop;
-  const auto costs = tick_costs(laws, timing);
-  if (costs.empty()) {
-    chart.stopped = true;
-    return;
-  }
-  for (std::size_t i = 0; i < costs.size(); ++i) chart.points[i].cost = costs[i];
+  chart.stopped = !measure_costs(chart, laws, options, scene_timed_from);
 }
 
 }  // namespace
@@ -129,20 +123,6 @@ void judge_stability(ChartPoint& point, const ChartOptions& options) {
       options.stability
           ? options.stability(point.file, point.rate_hz)
           : not_judged("no hand pressed and held it; its forces along the path do not run away");
-}
-
-void mark_front(std::vector<ChartPoint>& points, double rate_hz) {
-  std::vector<ParetoEntry> entries;
-  for (ChartPoint& point : points) {
-    point.on_front = false;
-    entries.push_back({.cost_ns = point.cost.p50_ns,
-                       .error = point.error_jnd,
-                       .parameters = point.parameters,
-                       .name = point.law,
-                       .competes = point.stability.stable != Stable::no && point.rate_hz == rate_hz});
-  }
-  for (const std::size_t place : pareto_front(entries, {.error_floor = shown_from_jnd}))
-    points[place].on_front = true;
 }
 
 ScriptedPath scripted_path(const Scene& scene) {
@@ -194,7 +174,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
     chart.points.clear();
     return chart;
   }
-  mark_front(chart.points, options.rate_hz);
+  mark_fronts(chart);
   if (options.done != nullptr) *options.done = chart_steps;
   if (chart.one_axis) return chart;
   const auto worst = std::max_element(chart.points.begin(), chart.points.end(),

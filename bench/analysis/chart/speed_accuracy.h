@@ -1,19 +1,23 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <kerf/fitting/fit.h>
 
-#include "chart/tick_cost.h"
+#include "chart/cost/tick_cost.h"
 #include "fits/fit_recording.h"
 #include "laws/law_file.h"
 #include "scene/scene.h"
 #include "stability/stability_verdict.h"
 
 namespace kerf::bench {
+
+/// By which percentile of cold ticks the second front goes: the largest that enough ticks were taken for.
+enum class ColdTail : std::uint8_t { none, p99, p999 };
 
 /// A law at one fidelity: what a tick costs, and how far its force is from the reference.
 struct ChartPoint {
@@ -27,7 +31,8 @@ struct ChartPoint {
   double worst_n = 0.0;    ///< the largest, on that axis [N]
   std::string axis;
   StabilityVerdict stability;
-  bool on_front = false;
+  bool on_front = false;       ///< by median cost
+  bool on_cold_front = false;  ///< by the cold tail
   LawFile file;
 };
 
@@ -39,6 +44,8 @@ struct SpeedAccuracy {
   double jnd_n = 0.0;    ///< of the axis, or of the worst axis of the cheapest point where there are several
   bool one_axis = true;  ///< errors in N are comparable; else only those in JNDs
   std::vector<ChartPoint> points;
+  ColdTail cold_tail = ColdTail::none;
+  ColdCost empty_tick;  ///< what the machine itself adds to a cold tick; no ticks if nobody looked
   std::vector<std::string> notes;
   bool stopped = false;  ///< before it was done; there are no points then
 };
@@ -52,7 +59,8 @@ struct ChartOptions {
   /// Judges the closed loop with this law at this rate. Empty: nobody does, and only what it renders along
   /// the path is looked at.
   std::function<StabilityVerdict(const LawFile&, double rate_hz)> stability;
-  TickCostOptions timing;
+  /// cold_ticks: of points near a front; others have ticks_for_p99 at most.
+  TickCostOptions timing{.cold_ticks = ticks_for_p999, .told = {}};
   const std::atomic<bool>* stop = nullptr;
   std::atomic<std::size_t>* done = nullptr;  ///< counts up to chart_steps
 
@@ -100,9 +108,5 @@ struct ScriptedPath {
 
 /// Judges a point whose forces along the path were none that run away.
 void judge_stability(ChartPoint& point, const ChartOptions& options);
-
-/// Marks the points of the front (pareto_front.h), costs p50 and warm, errors in JNDs, those under a
-/// thousandth of a JND alike.
-void mark_front(std::vector<ChartPoint>& points, double rate_hz);
 
 }  // namespace kerf::bench

@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-#include "chart/tick_cost.h"
+#include "chart/cost/tick_cost.h"
 #include "fits/fit_series.h"
 #include "recordings/axis_series.h"
 #include "threads/for_each_index.h"

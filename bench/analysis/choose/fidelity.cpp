@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "chart/tick_cost.h"
+#include "chart/cost/tick_cost.h"
 #include "laws/placement.h"
 #include "laws/render.h"
 

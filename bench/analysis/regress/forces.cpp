@@ -1,6 +1,6 @@
 #include "regress/forces.h"
 
-#include "chart/tick_cost.h"
+#include "chart/cost/tick_cost.h"
 #include "laws/placement.h"
 #include "laws/render.h"
 

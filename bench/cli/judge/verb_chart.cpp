@@ -34,6 +34,7 @@ struct ChartVerbArguments {
   std::vector<std::string> laws;
   double rate_hz = 0.0;  ///< 0: not given
   bool no_folds = false;
+  std::size_t cold_ticks = ticks_for_p999;
   bool no_cold = false;
   bool no_hold = false;
   bool force = false;
@@ -96,19 +97,28 @@ std::string_view mark_of(Stable stable) {
   return stable == Stable::no ? "x" : "?";
 }
 
+std::string microseconds(double nanoseconds) {
+  return std::isfinite(nanoseconds) ? fmt::format("{:.3f}", 1e-3 * nanoseconds) : "-";
+}
+
 void say_chart(const SpeedAccuracy& chart, Context& context) {
   context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
-  context.say(fmt::format("  {:2} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>10} {:>9}", "", "law", "fidelity",
-                          "par.", "p50 us", "p99.9 us", "cold us", "error N", "JND"));
+  context.say(fmt::format("  {:3} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9}", "", "law",
+                          "fidelity", "par.", "p50 us", "p99.9 us", "cold p99", "cold p99.9", "error N",
+                          "JND"));
   for (const ChartPoint& point : chart.points) {
-    const double cold_us = 1e-3 * point.cost.cold_p50_ns;
-    const std::string cold = std::isfinite(cold_us) ? fmt::format("{:.3f}", cold_us) : "-";
-    context.say(fmt::format("  {:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:10.3g} {:9.3g}",
-                            point.on_front ? "*" : "", mark_of(point.stability.stable), point.law,
-                            point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns,
-                            1e-3 * point.cost.p999_ns, cold, point.error_n, point.error_jnd));
+    context.say(fmt::format("  {:1}{:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:>11} {:10.3g} {:9.3g}",
+                            point.on_front ? "*" : "", point.on_cold_front ? "c" : "",
+                            mark_of(point.stability.stable), point.law, point.fidelity, point.parameters,
+                            1e-3 * point.cost.p50_ns, 1e-3 * point.cost.p999_ns,
+                            microseconds(point.cost.cold.p99_ns), microseconds(point.cost.cold.p999_ns),
+                            point.error_n, point.error_jnd));
   }
-  context.say("  * on the front, x not stable, ? stability not judged");
+  context.say("  * on the front, c on the front by cold tail, x not stable, ? stability not judged");
+  if (chart.empty_tick.ticks > 0)
+    context.say(fmt::format("  cold ticks without any law: p99 {} us, p99.9 {} us, of {}",
+                            microseconds(chart.empty_tick.p99_ns), microseconds(chart.empty_tick.p999_ns),
+                            chart.empty_tick.ticks));
 }
 
 void run_chart(const ChartVerbArguments& arguments, Context& context) {
@@ -123,7 +133,7 @@ void run_chart(const ChartVerbArguments& arguments, Context& context) {
     options.stop = &signals.requested();
     options.done = &progress.done;
     if (arguments.no_folds) options.folds = 0;
-    if (arguments.no_cold) options.timing.cold_ticks = 0;
+    options.timing.cold_ticks = arguments.no_cold ? 0 : arguments.cold_ticks;
     chart =
         arguments.scene.empty() ? chart_of_recording(arguments, options) : chart_of_scene(arguments, options);
   }
@@ -167,7 +177,11 @@ void add_chart(CLI::App& app, Context& context) {
   verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");
   verb.add_flag("--no-hold", arguments->no_hold,
                 "Do not look for limit cycles when the scene's hand presses a law and holds");
-  verb.add_flag("--no-cold", arguments->no_cold, "Leave out the costs with cold caches");
+  verb.add_option("--cold-ticks", arguments->cold_ticks,
+                  "Ticks with cold caches, of each point near a front; others have 1000 at most; 0 for none")
+      .within(0, 1'000'000)
+      .with_default();
+  verb.add_flag("--no-cold", arguments->no_cold, "As --cold-ticks 0");
   verb.add_option("-o,--output", arguments->output,
                   "Folder for chart.svg, .csv, .json, .html, and points/ with the law of each point");
   verb.add_flag("--force", arguments->force, "Replace existing files");

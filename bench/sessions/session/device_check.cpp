@@ -10,7 +10,7 @@
 
 #include <kerf/drivers/device.h>
 
-#include "chart/tick_cost.h"
+#include "chart/cost/tick_cost.h"
 #include "laws/placement.h"
 #include "protocol/samples.h"
 #include "run/run.h"

@@ -260,7 +260,9 @@ export interface ChartPoint {
   p50_ns: number | null;
   p999_ns: number | null;
   cold_p50_ns: number | null;
+  cold_p99_ns?: number | null; // missing in files of earlier versions
   cold_p999_ns: number | null;
+  cold_ticks?: number; // missing in files of earlier versions, whose cold_p999_ns is the largest of 128
   error_n: number | null;
   error_jnd: number | null;
   worst_n: number | null;
@@ -269,6 +271,7 @@ export interface ChartPoint {
   why_not_stable: string;
   why_not_judged?: string; // missing in files of earlier versions
   on_front: boolean;
+  on_cold_front?: boolean; // missing in files of earlier versions
 }
 export interface ChartFile {
   source: string;

@@ -33,7 +33,7 @@ TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
   EXPECT_EQ(picture.x_label, "error, root mean square [N]");
   std::vector<std::string> labels;
   for (const Curve& one : picture.curves) labels.push_back(one.label);
-  EXPECT_THAT(labels, ElementsAre("front", "p99.9, front", "kelvin", "exponential"));
+  EXPECT_THAT(labels, ElementsAre("front, median", "kelvin", "exponential"));
   EXPECT_THAT(curve(picture, "kelvin").of, ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(curve(picture, "exponential").of, ElementsAre(4, 5));
   EXPECT_EQ(curve(picture, "exponential").x[1], chart["points"][5]["error_n"]);
@@ -41,14 +41,15 @@ TEST(ChartPicture, IsMadeOfWhatAnEarlierVersionWrote) {
   EXPECT_NE(curve(picture, "exponential").colour, curve(picture, "kelvin").colour);
   EXPECT_EQ(picture.vertical.at(0).at, chart["jnd_n"]);
   EXPECT_TRUE(picture.horizontal.empty()) << "5 ms a tick would press points of 10 ns into a corner";
-  EXPECT_EQ(picture.y_label, "cost of a tick, median [us]; a tick at 200 Hz has 5000");
+  EXPECT_EQ(picture.y_label, "cost of a tick [us]; a tick at 200 Hz has 5000");
 }
 
 TEST(ChartPicture, ShowsTheDeadlineWhereALawComesNearIt) {
   ordered_json chart = older_chart();
-  chart["points"][0].update({{"p999_ns", 300e3}, {"on_front", false}});
-  EXPECT_TRUE(chart_picture(chart).horizontal.empty()) << "only the front's rare costs are drawn";
-  chart["points"][0]["on_front"] = true;
+  chart["cold_tail"] = "p99.9";
+  chart["points"][0].update({{"cold_p999_ns", 300e3}, {"on_cold_front", false}});
+  EXPECT_TRUE(chart_picture(chart).horizontal.empty()) << "only the front's cold costs are drawn";
+  chart["points"][0]["on_cold_front"] = true;
   const Chart picture = chart_picture(chart);
   ASSERT_EQ(picture.horizontal.size(), 2U);
   EXPECT_NEAR(picture.horizontal[0].at, 5000.0, 1e-6);
@@ -68,11 +69,24 @@ TEST(ChartPicture, LeadsTheFrontFromTheRightBorderDownItsPointsToTheUpper) {
   const double accurate = chart["points"][0]["error_n"];
   const double cheap = chart["points"][4]["error_n"];
   const double dear_us = 1e-3 * chart["points"][0]["p50_ns"].get<double>();
-  EXPECT_THAT(curve(picture, "front").x, ElementsAre(picture.x_range.end, cheap, cheap, accurate, accurate));
-  EXPECT_THAT(curve(picture, "front").y, ElementsAre(0.005, 0.005, dear_us, dear_us, picture.y_range.end));
+  EXPECT_THAT(curve(picture, "front, median").x,
+              ElementsAre(picture.x_range.end, cheap, cheap, accurate, accurate));
+  EXPECT_THAT(curve(picture, "front, median").y,
+              ElementsAre(0.005, 0.005, dear_us, dear_us, picture.y_range.end));
   EXPECT_EQ(picture.labels.at(0).text, "exponential, as fitted");
   EXPECT_TRUE(picture.labels.at(0).left) << "it stands at the right";
   EXPECT_FALSE(picture.labels.at(1).left);
+}
+
+TEST(ChartPicture, LeadsTheColdFrontByTheTailThatWasMeasured) {
+  ordered_json chart = older_chart();
+  chart["cold_tail"] = "p99";
+  chart["points"][1].update({{"cold_p99_ns", 700.0}, {"on_cold_front", true}});
+  const Chart picture = chart_picture(chart);
+  EXPECT_TRUE(curve(picture, "front, cold p99").dashed);
+  EXPECT_THAT(curve(picture, "front, cold p99").y, ElementsAre(0.7, 0.7, picture.y_range.end));
+  EXPECT_EQ(picture.labels.back().text, "kelvin, exact, float");
+  EXPECT_EQ(picture.labels.back().y, 0.7);
 }
 
 TEST(ChartPicture, MarksApartWhatIsNotStableAndWhatNobodyJudged) {

@@ -11,6 +11,11 @@ import { byName, lawBeside, recordingsFor, resultName, stabilityInWords, stableW
 
 const microseconds = (ns: number | null): string => (ns === null ? "–" : (1e-3 * ns).toFixed(3));
 
+/** Of enough ticks; earlier versions wrote the largest of 128. */
+const coldTail = (point: ChartPoint): number | null => (point.cold_ticks === undefined ? null : point.cold_p999_ns);
+const fronts = (point: ChartPoint): string =>
+  [point.on_front ? "median" : "", point.on_cold_front ? "cold" : ""].filter(Boolean).join(", ");
+
 function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => void): HTMLElement {
   const columns = [
     {
@@ -34,6 +39,11 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
       key: (point: ChartPoint) => point.p999_ns ?? 0,
     },
     {
+      head: "cold p99.9 [µs]",
+      text: (point: ChartPoint) => microseconds(coldTail(point)),
+      key: (point: ChartPoint) => coldTail(point) ?? Infinity,
+    },
+    {
       head: "error [N]",
       text: (point: ChartPoint) => plain(point.error_n),
       key: (point: ChartPoint) => point.error_n ?? Infinity,
@@ -50,8 +60,8 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
     },
     {
       head: "front",
-      text: (point: ChartPoint) => (point.on_front ? "yes" : ""),
-      key: (point: ChartPoint) => (point.on_front ? "a" : "b"),
+      text: fronts,
+      key: (point: ChartPoint) => fronts(point) || "none",
     },
   ];
   return new SortableTable("Every point", columns, points, open).root;
