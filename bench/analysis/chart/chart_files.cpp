@@ -75,6 +75,7 @@ std::vector<std::string> row_of(const ChartPoint& point) {
           fmt::format("{}", point.cost.cold.ticks),
           fmt::format("{:.3g}", point.error_n),
           fmt::format("{:.3g}", point.error_jnd),
+          fmt::format("{:.1f}", 100.0 * point.jnd_fraction),
           fmt::format("{:.3g}", point.worst_n),
           point.axis,
           stable_text(point.stability)};
@@ -82,8 +83,8 @@ std::vector<std::string> row_of(const ChartPoint& point) {
 
 const std::vector<std::string> head{"law",        "fidelity",      "parameters",    "p50 [us]",
                                     "p99.9 [us]", "cold p50 [us]", "cold p99 [us]", "cold p99.9 [us]",
-                                    "cold ticks", "error [N]",     "error [JND]",   "worst [N]",
-                                    "axis",       "stable"};
+                                    "cold ticks", "error [N]",     "error [JND]",   "outside [%]",
+                                    "worst [N]",  "axis",          "stable"};
 
 }  // namespace
 
@@ -92,6 +93,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"reference", chart.reference},
               {"rate_hz", chart.rate_hz},
               {"jnd_n", json_number(chart.jnd_n)},
+              {"jnd_fraction_limit", jnd_fraction_limit},
               {"compared_in", chart.one_axis ? "N" : "JND"},
               {"cold_tail", tail_name(chart.cold_tail)},
               {"empty_cold_tick", to_json(chart.empty_tick)},
@@ -116,6 +118,8 @@ json chart_as_json(const SpeedAccuracy& chart) {
                                 {"cold_ticks", point.cost.cold.ticks},
                                 {"error_n", json_number(point.error_n)},
                                 {"error_jnd", json_number(point.error_jnd)},
+                                {"jnd_fraction", json_number(point.jnd_fraction)},
+                                {"within_jnd", within_jnd(point)},
                                 {"worst_n", json_number(point.worst_n)},
                                 {"axis", point.axis},
                                 {"stable", to_json(point.stability.stable)},
@@ -133,14 +137,15 @@ std::string chart_csv(const SpeedAccuracy& chart) {
   std::string csv =
       "law,fidelity,parameters,rate_hz,p50_ns,p999_ns,cold_p50_ns,cold_p99_ns,cold_p999_ns,cold_ticks,error_"
       "n,"
-      "error_jnd,worst_n,axis,stable,on_front,on_cold_front\n";
+      "error_jnd,jnd_fraction,worst_n,axis,stable,on_front,on_cold_front\n";
   for (const ChartPoint& point : chart.points) {
     const Stable stable = point.stability.stable;
     csv += fmt::format(
-        "{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.6g},{:.6g},{:.6g},{},{},{},{}\n", point.law,
-        csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns, point.cost.p999_ns,
-        point.cost.cold.p50_ns, point.cost.cold.p99_ns, point.cost.cold.p999_ns, point.cost.cold.ticks,
-        point.error_n, point.error_jnd, point.worst_n, csv_quoted(point.axis),
+        "{},{},{},{:g},{:.4g},{:.4g},{:.4g},{:.4g},{:.4g},{},{:.6g},{:.6g},{:.4g},{:.6g},{},{},{},{}\n",
+        point.law, csv_quoted(point.fidelity), point.parameters, point.rate_hz, point.cost.p50_ns,
+        point.cost.p999_ns, point.cost.cold.p50_ns, point.cost.cold.p99_ns, point.cost.cold.p999_ns,
+        point.cost.cold.ticks, point.error_n, point.error_jnd, point.jnd_fraction, point.worst_n,
+        csv_quoted(point.axis),
         stable == Stable::not_judged ? name_of(stable)
         : stable == Stable::yes      ? "1"
                                      : "0",
@@ -195,8 +200,8 @@ std::string chart_page(const SpeedAccuracy& chart) {
     for (const ChartPoint* point : cold_front_of(chart)) rows.push_back(row_of(*point));
     body += html_table(rows);
   }
-  const auto enough = std::find_if(front.begin(), front.end(),
-                                   [](const ChartPoint* point) { return point->error_jnd <= 1.0; });
+  const auto enough =
+      std::find_if(front.begin(), front.end(), [](const ChartPoint* point) { return within_jnd(*point); });
   body +=
       enough == front.end()
           ? std::string("<p class=\"answer bad\">No stable point is within the JND.</p>\n")
@@ -205,9 +210,10 @@ std::string chart_page(const SpeedAccuracy& chart) {
                         (*enough)->stability.stable == Stable::yes ? "" : "; its stability was not judged");
   body +=
       "<p class=\"soft\">Costs are percentiles of single ticks, with warm caches and with caches that were "
-      "flushed before each tick. A percentile is told where ten ticks lie beyond it. Costs within 15 % and "
-      "3 ns of each other, and errors within 2 %, count as equal on a front; it then takes the fewest "
-      "parameters.</p>\n<h2>All points</h2>\n";
+      "flushed before each tick. A percentile is told where ten ticks lie beyond it. Within the JND is what "
+      "errs by no more than a JND, root mean square, and is outside it at no more than 5 % of the ticks in "
+      "contact. Costs within 15 % and 3 ns of each other count as equal on a front, and so do errors whose "
+      "difference nobody could feel; it then takes the fewest parameters.</p>\n<h2>All points</h2>\n";
   rows.resize(1);
   for (const ChartPoint& point : chart.points) rows.push_back(row_of(point));
   body += html_table(rows);

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "files/json_number.h"
+#include "plot/label_places.h"
 #include "stability/stability_verdict.h"
 
 namespace kerf::bench {
@@ -21,6 +22,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 constexpr double least_share_of_jnd = 1e-4;
+constexpr double unknown_share = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double far_away = 10.0;     // times: what is no nearer would press all points into a corner
 constexpr double cheapest_us = 2e-3;  // below it a cost is what the clock can tell
@@ -36,6 +38,7 @@ struct Spot {
   double p50_ns = 0.0;
   double cost_us = 0.0;  ///< as it is drawn
   double cold_us = 0.0;  ///< by the cold tail; not finite where nobody measured it
+  double outside = 0.0;  ///< share of ticks outside the JND; NaN: not known
   Stable stable = Stable::not_judged;
   bool on_front = false;
   bool on_cold_front = false;
@@ -52,7 +55,8 @@ struct Spots {
       : unit(chart.at("compared_in").get<std::string>()),
         jnd(unit == "N" ? number_from(chart.at("jnd_n")) : 1.0),
         tick_us(1e6 / chart.at("rate_hz").get<double>()),
-        cold_tail(text_or_empty(chart, "cold_tail")) {
+        cold_tail(text_or_empty(chart, "cold_tail")),
+        limit(chart.value("jnd_fraction_limit", 1.0)) {
     const std::string cold_key = cold_tail == "p99" ? "cold_p99_ns" : "cold_p999_ns";
     const double most = 1e3 * jnd;
     for (const json& point : chart.at("points")) {
@@ -60,18 +64,19 @@ struct Spots {
       const double p50_ns = number_from(point.at("p50_ns"));
       const double cost_us = std::max(1e-3 * p50_ns, cheapest_us);
       const auto law = point.at("law").get<std::string>();
-      all.push_back({.of = all.size(),
-                     .law = law,
-                     .name = law + ", " + point.at("fidelity").get<std::string>(),
-                     .error = std::clamp(std::isfinite(error) ? error : most, least_share_of_jnd * jnd, most),
-                     .p50_ns = p50_ns,
-                     .cost_us = cost_us,
-                     .cold_us = cold_tail.empty() || !point.contains(cold_key)
-                                    ? infinite
-                                    : 1e-3 * number_from(point.at(cold_key)),
-                     .stable = stable_from(point.at("stable")),
-                     .on_front = point.at("on_front").get<bool>(),
-                     .on_cold_front = point.value("on_cold_front", false)});
+      all.push_back(
+          {.of = all.size(),
+           .law = law,
+           .name = law + ", " + point.at("fidelity").get<std::string>(),
+           .error = std::clamp(std::isfinite(error) ? error : most, least_share_of_jnd * jnd, most),
+           .p50_ns = p50_ns,
+           .cost_us = cost_us,
+           .cold_us = cold_tail.empty() || !point.contains(cold_key) ? infinite
+                                                                     : 1e-3 * number_from(point.at(cold_key)),
+           .outside = point.contains("jnd_fraction") ? number_from(point["jnd_fraction"]) : unknown_share,
+           .stable = stable_from(point.at("stable")),
+           .on_front = point.at("on_front").get<bool>(),
+           .on_cold_front = point.value("on_cold_front", false)});
     }
   }
   std::string unit;
@@ -79,24 +84,44 @@ struct Spots {
   double tick_us;
   std::string
       cold_tail;  ///< "p99.9", "p99"; empty: not measured, or by an earlier version from too few ticks
+  double limit;   ///< of the share of ticks outside the JND, of points within it
   std::vector<Spot> all;
 };
 
+/// What hollow marks mean, where there are any.
+std::string hollow_in_words(const Spots& spots) {
+  const bool any =
+      std::ranges::any_of(spots.all, [&](const Spot& spot) { return spot.outside > spots.limit; });
+  return any ? fmt::format("; hollow: over {:.2g} % of ticks outside the JND", 100.0 * spots.limit) : "";
+}
+
+/// A colour a law; hollow marks where too many ticks are outside the JND.
 void add_laws(const Spots& spots, Chart& picture) {
-  std::vector<Curve> laws;
+  struct Law {
+    std::string name;
+    Curve filled, hollow;
+  };
+  std::vector<Law> laws;
   for (const Spot& spot : spots.all) {
-    auto at = std::ranges::find(laws, spot.law, &Curve::label);
+    auto at = std::ranges::find(laws, spot.law, &Law::name);
     if (at == laws.end()) {
-      at = laws.insert(at, {.label = spot.law,
-                            .colour = law_colours[laws.size() % law_colours.size()],
-                            .mark = laws.size() < law_colours.size() ? Mark::points : Mark::circles,
-                            .width = 4.0});
+      const Curve marks{.colour = law_colours[laws.size() % law_colours.size()],
+                        .mark = Mark::points,
+                        .width = laws.size() < law_colours.size() ? 4.0 : 2.5};
+      at = laws.insert(at, {.name = spot.law, .filled = marks, .hollow = marks});
+      at->hollow.mark = Mark::circles;
     }
-    at->x.push_back(spot.error);
-    at->y.push_back(spot.cost_us);
-    at->of.push_back(spot.of);
+    Curve& curve = spot.outside > spots.limit ? at->hollow : at->filled;
+    curve.x.push_back(spot.error);
+    curve.y.push_back(spot.cost_us);
+    curve.of.push_back(spot.of);
   }
-  picture.curves.insert(picture.curves.end(), laws.begin(), laws.end());
+  for (Law& law : laws) {
+    (law.filled.x.empty() ? law.hollow : law.filled).label = law.name;
+    for (Curve* curve : {&law.filled, &law.hollow}) {
+      if (!curve->x.empty()) picture.curves.push_back(std::move(*curve));
+    }
+  }
 }
 
 /// The stairs of a front, from the right border down its points to the upper.
@@ -119,7 +144,9 @@ Curve stairs_of(std::vector<Spot> front, double Spot::*cost, const Chart& pictur
 void add_label(const Spot& spot, double y, Chart& picture) {
   const bool near_left = std::log(spot.error / picture.x_range.begin) <
                          0.45 * std::log(picture.x_range.end / picture.x_range.begin);
-  picture.labels.push_back({.x = spot.error, .y = y, .text = spot.name, .left = !near_left});
+  std::string text = spot.name;
+  if (std::isfinite(spot.outside)) text += fmt::format(", {:.2g} % outside", 100.0 * spot.outside);
+  picture.labels.push_back({.x = spot.error, .y = y, .text = text, .left = !near_left});
 }
 
 void add_front(const Spots& spots, Chart& picture) {
@@ -146,7 +173,7 @@ void add_cold_front(const Spots& spots, Chart& picture) {
   for (const Spot& spot : front) {
     places.x.push_back(spot.error);
     places.y.push_back(spot.cold_us);
-    add_label(spot, spot.cold_us, picture);
+    if (!spot.on_front) add_label(spot, spot.cold_us, picture);
   }
   picture.curves.insert(picture.curves.begin() + 1, {stairs, places});
 }
@@ -165,7 +192,7 @@ void add_marks(const Spots& spots, Stable stable, Curve marks, Chart& picture) {
 Chart chart_picture(const json& chart) {
   const Spots spots(chart);
   Chart picture{.title = fmt::format("Cost of a tick over error: {}", chart.at("source").get<std::string>()),
-                .x_label = fmt::format("error, root mean square [{}]", spots.unit),
+                .x_label = fmt::format("error, root mean square [{}]{}", spots.unit, hollow_in_words(spots)),
                 .y_label = "cost of a tick [us]",
                 .log_x = true,
                 .log_y = true,
@@ -206,6 +233,7 @@ Chart chart_picture(const json& chart) {
   } else {
     picture.y_label += fmt::format("; {} has {:g}", tick, spots.tick_us);
   }
+  place_labels(picture);
   return picture;
 }
 

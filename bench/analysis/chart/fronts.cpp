@@ -12,7 +12,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double shown_from_jnd = 1e-3;
 constexpr double near_factor = 1.5;  // of the least cost at an error
 constexpr std::size_t most_near = 16;
 constexpr double screening_share = 0.5;  // of the progress
@@ -21,32 +20,36 @@ bool can_compete(const ChartPoint& point, double rate_hz) {
   return point.stability.stable != Stable::no && point.rate_hz == rate_hz;
 }
 
-double counted_error(const ChartPoint& point) { return std::max(point.error_jnd, shown_from_jnd); }
+/// A point that is within the JND by its root mean square alone counts as one that errs by a whole JND.
+double counted_error(const ChartPoint& point) {
+  return within_jnd(point) ? point.error_jnd : std::max(point.error_jnd, 1.0);
+}
 
 using CostOf = std::function<double(const ChartPoint&)>;
 
-/// How many times a point's cost is the least of those that err as little; infinite if it is not known.
-double times_the_least(const ChartPoint& point, const std::vector<ChartPoint>& points, double rate_hz,
-                       const CostOf& cost) {
+/// How many times a point's cost is the least of those that are as good; infinite if it is not known.
+double times_the_least(const ChartPoint& point, const SpeedAccuracy& chart, const CostOf& cost) {
   double least = std::numeric_limits<double>::infinity();
-  for (const ChartPoint& other : points) {
-    if (!can_compete(other, rate_hz) || counted_error(other) > counted_error(point)) continue;
+  for (const ChartPoint& other : chart.points) {
+    if (!can_compete(other, chart.rate_hz) || !as_good_as(other, point, chart.jnd_n)) continue;
     if (std::isfinite(cost(other))) least = std::min(least, cost(other));
   }
   return std::isfinite(cost(point)) ? cost(point) / std::max(least, 1.0)
                                     : std::numeric_limits<double>::infinity();
 }
 
-std::vector<std::size_t> front_by(const std::vector<ChartPoint>& points, double rate_hz, const CostOf& cost) {
+std::vector<std::size_t> front_by(const SpeedAccuracy& chart, const CostOf& cost) {
   std::vector<ParetoEntry> entries;
-  for (const ChartPoint& point : points) {
+  for (const ChartPoint& point : chart.points) {
     entries.push_back({.cost_ns = cost(point),
-                       .error = point.error_jnd,
+                       .error = counted_error(point),
                        .parameters = point.parameters,
                        .name = point.law,
-                       .competes = can_compete(point, rate_hz)});
+                       .competes = can_compete(point, chart.rate_hz)});
   }
-  return pareto_front(entries, {.error_floor = shown_from_jnd});
+  return pareto_front(entries, [&](std::size_t one, std::size_t other) {
+    return as_good_as(chart.points[one], chart.points[other], chart.jnd_n);
+  });
 }
 
 ColdTail measured_tail(const std::vector<ChartPoint>& points) {
@@ -60,12 +63,22 @@ ColdTail measured_tail(const std::vector<ChartPoint>& points) {
 
 }  // namespace
 
+bool as_good_as(const ChartPoint& point, const ChartPoint& best, double jnd_n) {
+  if (within_jnd(best) && !within_jnd(point)) return false;
+  const auto has_folds = [](const ChartPoint& it) {
+    return it.fit != nullptr && std::isfinite(it.fit->held_out_rmse());
+  };
+  if (has_folds(point) && has_folds(best)) return fitting::as_good_as(*point.fit, *best.fit, jnd_n);
+  return fitting::left_out(counted_error(point), counted_error(best)) <= 1.0;
+}
+
 double cold_tail_ns(const ChartPoint& point, ColdTail tail) {
   if (tail == ColdTail::none) return std::numeric_limits<double>::quiet_NaN();
   return tail == ColdTail::p999 ? point.cost.cold.p999_ns : point.cost.cold.p99_ns;
 }
 
-std::vector<std::size_t> near_fronts(const std::vector<ChartPoint>& points, double rate_hz) {
+std::vector<std::size_t> near_fronts(const SpeedAccuracy& chart) {
+  const std::vector<ChartPoint>& points = chart.points;
   struct Near {
     double times = 0.0;
     std::size_t place = 0;
@@ -73,11 +86,14 @@ std::vector<std::size_t> near_fronts(const std::vector<ChartPoint>& points, doub
   std::vector<Near> near;
   for (std::size_t place = 0; place < points.size(); ++place) {
     const ChartPoint& point = points[place];
-    if (!can_compete(point, rate_hz) || !std::isfinite(point.error_jnd)) continue;
-    const auto times = [&](const CostOf& cost) { return times_the_least(point, points, rate_hz, cost); };
+    if (!can_compete(point, chart.rate_hz) || !std::isfinite(point.error_jnd)) continue;
+    const auto times = [&](const CostOf& cost) { return times_the_least(point, chart, cost); };
     const double typical = times([](const ChartPoint& it) { return it.cost.p50_ns; });
     const double cold = times([](const ChartPoint& it) { return it.cost.cold.p99_ns; });
     near.push_back({std::min(typical, cold), place});
+  }
+  for (const std::size_t place : front_by(chart, [](const ChartPoint& it) { return it.cost.p50_ns; })) {
+    for (Near& it : near) it.times = it.place == place ? 0.0 : it.times;
   }
   std::erase_if(near, [](const Near& it) { return it.times > near_factor; });
   std::ranges::stable_sort(near, {}, &Near::times);
@@ -103,7 +119,7 @@ bool measure_costs(SpeedAccuracy& chart, std::span<const TimedLaw> laws, const C
   if (costs.empty() && !laws.empty()) return false;
   for (std::size_t i = 0; i < costs.size(); ++i) chart.points[i].cost = costs[i];
   if (asked <= ticks_for_p99) return true;
-  const std::vector<std::size_t> near = near_fronts(chart.points, chart.rate_hz);
+  const std::vector<std::size_t> near = near_fronts(chart);
   std::vector<TimedLaw> again;
   for (const std::size_t place : near) again.push_back(laws[place]);
   const ColdCosts cold = cold_costs(again, {.ticks = asked, .stop = options.stop, .told = [&](double share) {
@@ -124,11 +140,9 @@ void mark_fronts(SpeedAccuracy& chart) {
   chart.cold_tail = measured_tail(chart.points);
   for (ChartPoint& point : chart.points) point.on_front = point.on_cold_front = false;
   const auto typical = [](const ChartPoint& point) { return point.cost.p50_ns; };
-  for (const std::size_t place : front_by(chart.points, chart.rate_hz, typical))
-    chart.points[place].on_front = true;
+  for (const std::size_t place : front_by(chart, typical)) chart.points[place].on_front = true;
   const auto tail = [&](const ChartPoint& point) { return cold_tail_ns(point, chart.cold_tail); };
-  for (const std::size_t place : front_by(chart.points, chart.rate_hz, tail))
-    chart.points[place].on_cold_front = true;
+  for (const std::size_t place : front_by(chart, tail)) chart.points[place].on_cold_front = true;
 }
 
 }  // namespace kerf::bench

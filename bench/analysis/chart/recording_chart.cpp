@@ -8,6 +8,8 @@
 #include "chart/fit_plan.h"
 #include "chart/fronts.h"
 #include "chart/speed_accuracy.h"
+#include "fits/contact_rows.h"
+#include "fits/rendered_series.h"
 #include "recordings/axes.h"
 #include "recordings/axis_series.h"
 #include "signal/quantiles.h"
@@ -70,13 +72,21 @@ Difference difference(const std::vector<double>& a, const std::vector<double>& b
   return result;
 }
 
+/// The force to be charted, row by row, with the rows in contact marked.
+AxisSeries charted_series(const FitSource& source, const fitting::Jnd& jnd) {
+  AxisSeries series = fit_series(*source.recording, source.axis, source.contact);
+  if (series.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
+  mark_contact(series, jnd.threshold);
+  return series;
+}
+
 class RecordingChart {
  public:
   RecordingChart(const FitSource& source, const ChartOptions& options)
       : source_(source),
         options_(options),
-        series_(fit_series(*source.recording, source.axis, source.contact)) {
-    if (series_.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
+        series_(charted_series(source, options.jnd)),
+        in_the_loop_(series_, options.rate_hz) {
     period_s_ = median_period(series_.time_s);
     for (const double force : series_.force) peak_n_ = std::max(peak_n_, std::abs(force));
   }
@@ -126,7 +136,9 @@ class RecordingChart {
         .worst_n = difference(rendered_force, series_.force).largest_n,
         .axis = source_.recording->axes[source_.axis].name,
         .stability = {},
-        .file = fitted.file};
+        .file = fitted.file,
+        .fit = std::make_shared<fitting::FitResult>(fitted.result)};
+    point.jnd_fraction = share_outside(fitted.file.law);
     if (!std::isfinite(point.error_n)) {
       chart_.notes.push_back(
           fmt::format("{} ({}) has no error on held-out data and is left out", plan.model, plan.label));
@@ -135,6 +147,19 @@ class RecordingChart {
     finish(point, rendered_force);
     const bool first = chart_.points.size() == 1 || chart_.points[chart_.points.size() - 2].law != plan.model;
     if (has_float(plan.model) && first) add_single(plan, point, rendered_force);
+  }
+
+  /// Share of the rows in contact where the error of the law, as a loop renders it, could be felt.
+  [[nodiscard]] double share_outside(const models::Law& law) const {
+    const std::vector<double> force = in_the_loop_.force(law);
+    double rows = 0.0;
+    double felt = 0.0;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+      if (!series_.counts.empty() && series_.counts[i] == 0) continue;
+      rows += 1.0;
+      if (!(std::abs(force[i] - series_.force[i]) <= options_.jnd.at(series_.force[i]))) felt += 1.0;
+    }
+    return felt / std::max(rows, 1.0);
   }
 
   void add_single(const FitPlan& plan, ChartPoint point, const std::vector<double>& in_double) {
@@ -146,6 +171,7 @@ class RecordingChart {
     }
     const auto in_single = render(point.file.law, series_);
     point.fidelity += ", float";
+    point.jnd_fraction = share_outside(point.file.law);
     point.error_n = std::hypot(point.error_n, difference(in_single, in_double).rms_n);
     finish(point, in_single);
   }
@@ -184,6 +210,7 @@ class RecordingChart {
   const FitSource& source_;
   const ChartOptions& options_;
   AxisSeries series_;
+  RenderedSeries in_the_loop_;
   double period_s_ = 0.0;
   double peak_n_ = 0.0;
   SpeedAccuracy chart_;

@@ -16,7 +16,7 @@ constexpr double scene_runaway = 10.0;  // times the largest force of the refere
 
 ReferenceForces::ReferenceForces(const Fidelity& reference, const ScriptedPath& path,
                                  std::vector<std::size_t> axes, const fitting::Jnd& jnd)
-    : axes_(std::move(axes)), rate_hz_(reference.rate_hz) {
+    : axes_(std::move(axes)), jnd_(jnd), rate_hz_(reference.rate_hz) {
   RenderedMotion forces = render(reference.law, axes_, path.at(rate_hz_));
   if (forces.faults > 0) {
     throw std::invalid_argument(
@@ -69,21 +69,28 @@ double ReferenceForces::jnd_of(const std::string& axis) const {
 void ReferenceForces::compare(const RenderedMotion& forces, ChartPoint& point) const {
   double largest_n = 0.0;
   point.error_jnd = -1.0;
+  point.jnd_fraction = 0.0;
   for (std::size_t place = 0; place < about_.size(); ++place) {
     double squares = 0.0;
     double worst = 0.0;
+    std::size_t felt = 0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < forces.force.size(); ++i) {
       const double time_s = static_cast<double>(i) / point.rate_hz;
       const double newtons = forces.force[i][about_[place].axis] / about_[place].lever_m;
       largest_n = std::max(largest_n, std::abs(newtons));
       if (!pushes(time_s)) continue;
-      const double error = newtons - force_n(place, time_s);
+      const double wanted = force_n(place, time_s);
+      const double error = newtons - wanted;
+      if (!(std::abs(error) <= jnd_.at(wanted))) ++felt;
       squares += error * error;
       worst = std::max(worst, std::abs(error));
       ++count;
     }
     const double error_n = count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+    if (count > 0)
+      point.jnd_fraction =
+          std::max(point.jnd_fraction, static_cast<double>(felt) / static_cast<double>(count));
     if (error_n / about_[place].jnd_n <= point.error_jnd) continue;
     point.error_n = error_n;
     point.error_jnd = error_n / about_[place].jnd_n;

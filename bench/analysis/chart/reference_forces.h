@@ -41,6 +41,7 @@ class ReferenceForces {
   std::vector<Axis> about_;
   std::vector<std::size_t> axes_;
   std::vector<drivers::Axes> reference_;
+  fitting::Jnd jnd_;
   double rate_hz_ = 0.0;
   double peak_n_ = 0.0;
 };

@@ -118,6 +118,10 @@ void time_points(const std::vector<std::size_t>& axes, Motions& motions, const C
 
 }  // namespace
 
+bool within_jnd(const ChartPoint& point) noexcept {
+  return point.error_jnd <= 1.0 && point.jnd_fraction <= jnd_fraction_limit;
+}
+
 void judge_stability(ChartPoint& point, const ChartOptions& options) {
   point.stability =
       options.stability

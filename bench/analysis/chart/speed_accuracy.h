@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,12 +31,22 @@ struct ChartPoint {
   double error_n = 0.0;    ///< root mean square, on the axis that is worst in JNDs [N]
   double error_jnd = 0.0;  ///< the same in JNDs
   double worst_n = 0.0;    ///< the largest, on that axis [N]
+  /// Share of ticks in contact whose error a person could feel, by the JND of the force of then; on the axis
+  /// with the largest share. NaN: nobody looked.
+  double jnd_fraction = std::numeric_limits<double>::quiet_NaN();
   std::string axis;
   StabilityVerdict stability;
   bool on_front = false;       ///< by median cost
   bool on_cold_front = false;  ///< by the cold tail
   LawFile file;
+  std::shared_ptr<const fitting::FitResult> fit{};  ///< to a recording, with its errors fold by fold
 };
+
+/// The largest share of ticks outside the JND that a point within the JND may have.
+inline constexpr double jnd_fraction_limit = 0.05;
+
+/// Within the JND: its root mean square is, and so are all ticks but a share of jnd_fraction_limit.
+[[nodiscard]] bool within_jnd(const ChartPoint& point) noexcept;
 
 /// Cost against error, for all laws and fidelities.
 struct SpeedAccuracy {

@@ -103,16 +103,16 @@ std::string microseconds(double nanoseconds) {
 
 void say_chart(const SpeedAccuracy& chart, Context& context) {
   context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
-  context.say(fmt::format("  {:3} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9}", "", "law",
+  context.say(fmt::format("  {:3} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9} {:>8}", "", "law",
                           "fidelity", "par.", "p50 us", "p99.9 us", "cold p99", "cold p99.9", "error N",
-                          "JND"));
+                          "JND", "outside%"));
   for (const ChartPoint& point : chart.points) {
-    context.say(fmt::format("  {:1}{:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:>11} {:10.3g} {:9.3g}",
-                            point.on_front ? "*" : "", point.on_cold_front ? "c" : "",
-                            mark_of(point.stability.stable), point.law, point.fidelity, point.parameters,
-                            1e-3 * point.cost.p50_ns, 1e-3 * point.cost.p999_ns,
-                            microseconds(point.cost.cold.p99_ns), microseconds(point.cost.cold.p999_ns),
-                            point.error_n, point.error_jnd));
+    context.say(fmt::format(
+        "  {:1}{:1}{:1} {:16} {:32} {:4} {:9.3f} {:9.3f} {:>9} {:>11} {:10.3g} {:9.3g} {:8.1f}",
+        point.on_front ? "*" : "", point.on_cold_front ? "c" : "", mark_of(point.stability.stable), point.law,
+        point.fidelity, point.parameters, 1e-3 * point.cost.p50_ns, 1e-3 * point.cost.p999_ns,
+        microseconds(point.cost.cold.p99_ns), microseconds(point.cost.cold.p999_ns), point.error_n,
+        point.error_jnd, 100.0 * point.jnd_fraction));
   }
   context.say("  * on the front, c on the front by cold tail, x not stable, ? stability not judged");
   if (chart.empty_tick.ticks > 0)

@@ -40,8 +40,12 @@ json as_json(const Marker& marker) {
 }
 
 json as_json(const PointLabel& label) {
-  return {
-      {"x", json_number(label.x)}, {"y", json_number(label.y)}, {"text", label.text}, {"left", label.left}};
+  return {{"x", json_number(label.x)},
+          {"y", json_number(label.y)},
+          {"text", label.text},
+          {"left", label.left},
+          {"text_x", json_number(label.text_x)},
+          {"text_y", json_number(label.text_y)}};
 }
 
 json as_json(const NamedTick& tick) { return {{"at", json_number(tick.at)}, {"name", tick.name}}; }

@@ -148,7 +148,11 @@ std::string script_of(const Chart& chart, const std::string& output) {
       "1 dt 1\n"
       "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\nset offsets graph 0, 0, "
       "0.05, 0.05\n";
-  if (chart.legend_below) script += "set key outside below center horizontal\n";
+  if (chart.legend_below) {
+    script += "set key outside below center horizontal\n";
+    // An empty line of its own keeps the legend from the label above it.
+    fmt::format_to(out, "set xlabel {}.\"\\n \"\n", gnuplot_text(chart.x_label));
+  }
   if (chart.log_x) script += "set logscale x\n";
   if (chart.log_y) script += "set logscale y\n";
   if (chart.log_x || chart.log_y) script += "set offsets 0, 0, 0, 0\n";
@@ -187,6 +191,15 @@ std::string script_of(const Chart& chart, const std::string& output) {
                    gnuplot_text(marker.label), marker.at, hex(Colour::grey));
   }
   for (const PointLabel& label : chart.labels) {
+    if (std::isfinite(label.text_x)) {
+      fmt::format_to(out,
+                     "set arrow from first {}, first {} to first {}, first {} nohead lc rgb '{}' lw 0.7\n",
+                     label.x, label.y, label.text_x, label.text_y, hex(Colour::grey));
+      fmt::format_to(out, "set label {} at first {}, first {} {} front font 'DejaVu Sans,11'\n",
+                     gnuplot_text(label.text), label.text_x, label.text_y,
+                     label.left ? "right offset -0.3,0" : "left offset 0.3,0");
+      continue;
+    }
     fmt::format_to(out, "set label {} at first {}, first {} {} front font 'DejaVu Sans,11'\n",
                    gnuplot_text(label.text), label.x, label.y,
                    label.left ? "right offset -0.6,-0.6" : "left offset 0.6,0.6");

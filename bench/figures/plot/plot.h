@@ -66,12 +66,15 @@ struct NamedTick {
   std::string name;
 };
 
-/// A text beside a point, above and right of it, or below and left.
+/// A text beside a point, above and right of it, or below and left; or at a place of its own, with a thin
+/// line from the point.
 struct PointLabel {
   double x = 0.0;
   double y = 0.0;
   std::string text;
   bool left = false;
+  double text_x = std::numeric_limits<double>::quiet_NaN();  ///< where it begins, or ends if it is left; NaN:
+  double text_y = std::numeric_limits<double>::quiet_NaN();  ///< beside the point
 };
 
 /// A range of an axis; empty while begin is not less than end.

@@ -265,6 +265,8 @@ export interface ChartPoint {
   cold_ticks?: number; // missing in files of earlier versions, whose cold_p999_ns is the largest of 128
   error_n: number | null;
   error_jnd: number | null;
+  jnd_fraction?: number | null; // missing in files of earlier versions, as the next
+  within_jnd?: boolean;
   worst_n: number | null;
   axis: string;
   stable: boolean | null; // null: nobody judged it

@@ -84,9 +84,24 @@ TEST(ChartPicture, LeadsTheColdFrontByTheTailThatWasMeasured) {
   chart["points"][1].update({{"cold_p99_ns", 700.0}, {"on_cold_front", true}});
   const Chart picture = chart_picture(chart);
   EXPECT_TRUE(curve(picture, "front, cold p99").dashed);
-  EXPECT_THAT(curve(picture, "front, cold p99").y, ElementsAre(0.7, 0.7, picture.y_range.end));
+  EXPECT_THAT(curve(picture, "front, cold p99").y,
+              ElementsAre(1e-3 * 700.0, 1e-3 * 700.0, picture.y_range.end));
   EXPECT_EQ(picture.labels.back().text, "kelvin, exact, float");
-  EXPECT_EQ(picture.labels.back().y, 0.7);
+  EXPECT_EQ(picture.labels.back().y, 1e-3 * 700.0);
+}
+
+TEST(ChartPicture, IsHollowWhereTooManyTicksAreOutsideTheJnd) {
+  ordered_json chart = older_chart();
+  chart["jnd_fraction_limit"] = 0.05;
+  chart["points"][0]["jnd_fraction"] = 0.06;
+  chart["points"][1]["jnd_fraction"] = 0.04;
+  chart["points"][4]["jnd_fraction"] = 0.3;
+  chart["points"][5]["jnd_fraction"] = 0.3;
+  const Chart picture = chart_picture(chart);
+  EXPECT_THAT(curve(picture, "kelvin").of, ElementsAre(1, 2, 3));
+  EXPECT_EQ(curve(picture, "exponential").mark, Mark::circles) << "all of it";
+  EXPECT_EQ(picture.labels.at(0).text, "kelvin, exact, 6 % outside");
+  EXPECT_EQ(picture.x_label, "error, root mean square [N]; hollow: over 5 % of ticks outside the JND");
 }
 
 TEST(ChartPicture, MarksApartWhatIsNotStableAndWhatNobodyJudged) {

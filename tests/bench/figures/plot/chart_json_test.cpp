@@ -45,7 +45,8 @@ TEST(ChartJson, SaysAllThatIsDrawn) {
               "kind": [1, 0]},
     "vertical": [{"at": 0.1, "label": "JND", "label_after": true}],
     "horizontal": [{"at": null, "label": "nowhere", "label_after": false}],
-    "labels": [{"x": 1.0, "y": 2.0, "text": "kelvin, exact", "left": true}],
+    "labels": [{"x": 1.0, "y": 2.0, "text": "kelvin, exact", "left": true,
+                "text_x": null, "text_y": null}],
     "x_ticks": [{"at": 1.0, "name": "one"}], "y_ticks": [],
     "x_range": [0.1, 10.0], "y_range": null, "log_x": true, "log_y": false})"));
 }

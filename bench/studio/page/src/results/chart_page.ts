@@ -54,6 +54,11 @@ function tableOf(points: readonly ChartPoint[], open: (point: ChartPoint) => voi
       key: (point: ChartPoint) => point.error_jnd ?? Infinity,
     },
     {
+      head: "outside [%]",
+      text: (point: ChartPoint) => (point.jnd_fraction == null ? "–" : (100 * point.jnd_fraction).toFixed(1)),
+      key: (point: ChartPoint) => point.jnd_fraction ?? Infinity,
+    },
+    {
       head: "stable",
       text: stabilityInWords,
       key: (point: ChartPoint) => stableWord(point.stable),

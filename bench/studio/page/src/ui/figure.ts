@@ -1,6 +1,6 @@
 import "./figure.css";
 
-import type { Figure, FigureCurve, FigureMarker } from "./figure_description";
+import type { Figure, FigureCurve, FigureLabel, FigureMarker } from "./figure_description";
 import { drawn, element } from "./dom";
 import { crossPath, markPath } from "./marks";
 import { XyPlot } from "./xy_plot";
@@ -96,8 +96,17 @@ export class FigurePlot {
         if (this.within(x, "x") && this.within(y, "y")) this.over.append(mark(curve, plot.x(x), plot.y(y)));
       });
     }
-    for (const { x, y, text, left } of figure.labels)
-      this.over.append(note(text, plot.x(x) + (left ? -9 : 9), plot.y(y) + (left ? 20 : -9), left));
+    for (const it of figure.labels) this.over.append(...this.label(it));
+  }
+
+  private label({ x, y, text, left, text_x, text_y }: FigureLabel): SVGElement[] {
+    const [from_x, from_y] = [this.plot.x(x), this.plot.y(y)];
+    if (!finite(text_x) || !finite(text_y)) return [note(text, from_x + (left ? -9 : 9), from_y + (left ? 20 : -9), left)];
+    const [to_x, to_y] = [this.plot.x(text_x), this.plot.y(text_y)];
+    return [
+      drawn("line", { class: "leader", x1: from_x, y1: from_y, x2: to_x, y2: to_y }),
+      note(text, to_x + (left ? -3 : 3), to_y + 4, left),
+    ];
   }
 
   private within(value: number | null | undefined, axis: "x" | "y"): value is number {

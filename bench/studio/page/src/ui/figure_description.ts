@@ -23,6 +23,14 @@ export interface FigureMarker {
   label: string;
   label_after: boolean; // right of a vertical line instead of left
 }
+export interface FigureLabel {
+  x: number;
+  y: number;
+  text: string;
+  left: boolean;
+  text_x: number | null; // where the text begins, or ends if it is left; null: beside the point
+  text_y: number | null;
+}
 /** What the server sends of chart_to_json() in bench/figures/plot. */
 export interface Figure {
   x_label: string;
@@ -31,7 +39,7 @@ export interface Figure {
   cells: FigureCells;
   vertical: FigureMarker[];
   horizontal: FigureMarker[];
-  labels: { x: number; y: number; text: string; left: boolean }[];
+  labels: FigureLabel[];
   x_range: [number, number] | null; // null: what the curves need
   y_range: [number, number] | null;
   log_x: boolean;
