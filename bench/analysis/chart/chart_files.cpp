@@ -53,6 +53,19 @@ json to_json(const ColdCost& empty) {
           {"ticks", empty.ticks}};
 }
 
+json to_json(const Convergence& convergence) {
+  if (convergence.refinements.empty()) return nullptr;
+  json refinements = json::array();
+  for (const Refinement& one : convergence.refinements)
+    refinements.push_back(
+        {{"fidelity", one.label}, {"factor", one.factor}, {"error_jnd", json_number(one.error_jnd)}});
+  return {{"refinements", refinements},
+          {"converges", convergence.known ? json(convergence.converges) : json(nullptr)},
+          {"order", json_number(convergence.order)},
+          {"estimate_jnd", json_number(convergence.estimate_jnd)},
+          {"expected_third_jnd", json_number(convergence.expected_jnd)}};
+}
+
 std::string point_name(const ChartPoint& point) { return point.law + ", " + point.fidelity; }
 
 std::string cost_text(double nanoseconds) {
@@ -91,6 +104,7 @@ const std::vector<std::string> head{"law",        "fidelity",      "parameters",
 json chart_as_json(const SpeedAccuracy& chart) {
   json result{{"source", chart.source},
               {"reference", chart.reference},
+              {"reference_error", to_json(chart.convergence)},
               {"rate_hz", chart.rate_hz},
               {"jnd_n", json_number(chart.jnd_n)},
               {"jnd_fraction_limit", jnd_fraction_limit},
@@ -189,6 +203,8 @@ std::string chart_page(const SpeedAccuracy& chart) {
   std::string body = fmt::format("<h1>Speed against accuracy: {}</h1>\n", escaped(chart.source));
   body += fmt::format("<p class=\"soft\">Errors towards {}. A tick is {:.4g} us; the JND is {:.3g} N.</p>\n",
                       escaped(chart.reference), 1e6 / chart.rate_hz, chart.jnd_n);
+  if (!chart.convergence.refinements.empty())
+    body += "<p class=\"soft\">" + escaped(convergence_in_words(chart.convergence)) + "</p>\n";
   body += html_figure(draw(chart_picture(chart_as_json(chart)))) + "<h2>The front</h2>\n";
   std::vector<std::vector<std::string>> rows{head};
   const auto front = front_of(chart);

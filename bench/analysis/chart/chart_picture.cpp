@@ -207,6 +207,14 @@ Chart chart_picture(const json& chart) {
   }
   const bool deadline_shown = 0.5 * spots.tick_us <= far_away * costs.end;
   if (deadline_shown) costs.end = std::max(costs.end, spots.tick_us);
+  const auto reference = chart.find("reference_error");
+  const bool refined = reference != chart.end() && reference->is_object();
+  const double own_error = refined ? spots.jnd * number_from(reference->at("estimate_jnd")) : infinite;
+  if (std::isfinite(own_error)) {
+    errors = {std::min(errors.begin, own_error), std::max(errors.end, own_error)};
+    picture.vertical.push_back({.at = own_error, .label = "the reference's own error"});
+  }
+  if (refined && reference->at("converges") == false) picture.title += "; its reference has not converged";
   const bool narrow = errors.end < far_away * errors.begin;
   picture.x_range = {(narrow ? 0.8 : 0.5) * errors.begin, (narrow ? 1.6 : 3.0) * errors.end};
   picture.y_range = {0.5 * costs.begin, 3.0 * costs.end};

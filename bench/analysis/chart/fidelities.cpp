@@ -83,13 +83,14 @@ void lattice(const LawFile& law, double rate_hz, Fidelities& to) {
   };
   to.reference = {label(law), law, rate_hz};
   double finest = 1.0;
-  for (const double factor : {0.5, 1.0, 2.0, 3.0}) {
+  for (const double factor : {0.5, 1.0, 2.0, 3.0, 4.0}) {
     const auto file = relaid(law, factor);
     if (!file) {
       to.notes.push_back(fmt::format("{} with {:g} times the nodes a side has too {} nodes and is left out",
                                      law.law.model(), factor, factor < 1.0 ? "few" : "many"));
       continue;
     }
+    if (factor >= 1.0) to.refinements.push_back({factor, {label(*file), *file, rate_hz}});
     if (factor > finest) {
       to.reference = {label(*file), *file, rate_hz};
       finest = factor;

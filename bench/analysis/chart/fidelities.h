@@ -14,11 +14,18 @@ struct Fidelity {
   double rate_hz = 0.0;  ///< of the loop that renders it
 };
 
+/// A fidelity with more or fewer elements than the law has as given.
+struct RefinedLaw {
+  double factor = 1.0;  ///< times the elements a side
+  Fidelity fidelity;
+};
+
 /// The ways to compute one law, and the one that all of them are judged by.
 struct Fidelities {
   std::vector<Fidelity> all;
   Fidelity reference;
-  std::vector<std::string> notes;  ///< what could not be made, and why
+  std::vector<RefinedLaw> refinements{};  ///< from the law as given to the reference, by factor; empty: exact
+  std::vector<std::string> notes;         ///< what could not be made, and why
 };
 
 /// How many times the loop's rate the reference is computed at, where a law depends on the rate at all.
@@ -28,7 +35,7 @@ inline constexpr double reference_rate_factor = 16.0;
 ///
 ///     strips       paper and strips, 1 to 64 a polygon, and exact; judged by exact
 ///     nodes        half the nodes, as given, twice the nodes a side, and the sub-steps of its stiffest
-///                  spring, half and a quarter of them; judged by three times the nodes
+///                  spring, half and a quarter of them; judged by four times the nodes
 ///     integrators  exact, semi-implicit and Euler; the latter two also at 250, 500, 1000 and 4000 Hz;
 ///                  judged by exact at 16 times the rate
 ///     segments     as given, and with 1 to 12 segments by least squares; judged by itself

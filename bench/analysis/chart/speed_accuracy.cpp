@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -116,6 +117,19 @@ void time_points(const std::vector<std::size_t>& axes, Motions& motions, const C
   chart.stopped = !measure_costs(chart, laws, options, scene_timed_from);
 }
 
+/// How far the refinements of a law are from the reference, which is the last of them.
+Convergence convergence_along(const Fidelities& fidelities, const ReferenceForces& reference,
+                              Motions& motions, const ChartOptions& options) {
+  std::vector<Refinement> refinements;
+  for (const auto& [factor, fidelity] : fidelities.refinements) {
+    if (options.stopped()) return {};
+    ChartPoint point = point_of(fidelity);
+    reference.compare(render(fidelity.law, reference.axes(), motions.at(fidelity.rate_hz)), point);
+    refinements.push_back({fidelity.label, factor, point.error_jnd});
+  }
+  return convergence_of(std::move(refinements));
+}
+
 }  // namespace
 
 bool within_jnd(const ChartPoint& point) noexcept {
@@ -158,6 +172,7 @@ SpeedAccuracy chart_scene(const LawFile& law, const ScriptedPath& path, const Ch
                       .points = {},
                       .notes = fidelities.notes};
   Motions motions(path);
+  chart.convergence = convergence_along(fidelities, reference, motions, options);
   for (const Fidelity& fidelity : fidelities.all) chart.points.push_back(point_of(fidelity));
   if (!law.law.is_spatial()) {
     const AxisSeries series = reference_series(law, reference, motions.at(options.rate_hz));

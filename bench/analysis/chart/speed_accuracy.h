@@ -10,6 +10,7 @@
 
 #include <kerf/fitting/fit.h>
 
+#include "chart/convergence.h"
 #include "chart/cost/tick_cost.h"
 #include "fits/fit_recording.h"
 #include "laws/law_file.h"
@@ -50,8 +51,9 @@ inline constexpr double jnd_fraction_limit = 0.05;
 
 /// Cost against error, for all laws and fidelities.
 struct SpeedAccuracy {
-  std::string source;     ///< name of the recording or scene
-  std::string reference;  ///< in words, what errors are towards
+  std::string source;         ///< name of the recording or scene
+  std::string reference;      ///< in words, what errors are towards
+  Convergence convergence{};  ///< of the reference, where it is a finer mesh; no refinements else
   double rate_hz = 0.0;
   double jnd_n = 0.0;    ///< of the axis, or of the worst axis of the cheapest point where there are several
   bool one_axis = true;  ///< errors in N are comparable; else only those in JNDs

@@ -103,6 +103,7 @@ std::string microseconds(double nanoseconds) {
 
 void say_chart(const SpeedAccuracy& chart, Context& context) {
   context.say(fmt::format("errors towards {}; JND {:.3g} N", chart.reference, chart.jnd_n));
+  if (!chart.convergence.refinements.empty()) context.say(convergence_in_words(chart.convergence));
   context.say(fmt::format("  {:3} {:16} {:32} {:>4} {:>9} {:>9} {:>9} {:>11} {:>10} {:>9} {:>8}", "", "law",
                           "fidelity", "par.", "p50 us", "p99.9 us", "cold p99", "cold p99.9", "error N",
                           "JND", "outside%"));

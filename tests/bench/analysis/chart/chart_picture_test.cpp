@@ -135,6 +135,15 @@ TEST(ChartPicture, KeepsWithinItsBordersWhatIsUnknownOrTooSmall) {
   EXPECT_EQ(picture.x_range.end, 3000.0);
 }
 
+TEST(ChartPicture, SaysHowFarTheReferenceItselfErrs) {
+  ordered_json chart = older_chart();
+  chart["reference_error"] = {{"converges", true}, {"estimate_jnd", 0.5}};
+  EXPECT_EQ(chart_picture(chart).vertical.at(0).at, 0.5 * chart["jnd_n"].get<double>());
+  chart["reference_error"] = {{"converges", false}, {"estimate_jnd", nullptr}};
+  EXPECT_EQ(chart_picture(chart).vertical.size(), 1U);
+  EXPECT_EQ(chart_picture(chart).title, "Cost of a tick over error: cut; its reference has not converged");
+}
+
 TEST(ChartPicture, RefusesWhatIsNoChart) {
   ordered_json chart = older_chart();
   chart["points"][2].erase("p50_ns");
