@@ -107,7 +107,7 @@ TimedTicks::TimedTicks(const TimedLaw& timed)
 }
 
 std::uint64_t TimedTicks::time(std::size_t i) noexcept {
-  const models::SpatialMotion& sample = path_->sample[i];
+  const models::SpatialMotion sample = path_->sample[i];  // near at hand, as what a device has just told
   const double period_s = path_->period_s[i];
   const std::uint64_t begin = stamp();
   const Command command = rendering_(sample, period_s);
