@@ -11,7 +11,7 @@
 #include <kerf/fitting/floor.h>
 #include <kerf/schema/recording.h>
 
-#include "fits/contact_rows.h"
+#include "recordings/contact_rows.h"
 #include "laws/law_file.h"
 #include "laws/render.h"
 

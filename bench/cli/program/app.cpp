@@ -40,7 +40,7 @@ std::vector<Group> groups() {
           {"devices", {add_devices}},
           {"record", {add_record, add_import, add_repair, add_prepare, add_segment}},
           {"look",
-           {add_info, add_validate,
+           {add_info, add_inspect, add_validate,
 #ifdef KERF_STUDIO
             add_studio
 #endif

@@ -17,6 +17,7 @@
 #include "import/text_table.h"
 #include "import/time_order.h"
 #include "recordings/provenance.h"
+#include "recordings/row_figures.h"
 #include "signal/quantiles.h"
 #include "signal/signal.h"
 

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "recordings/row_figures.h"
 #include "signal/signal.h"
 
 namespace kerf::bench {

@@ -4,9 +4,6 @@
 
 namespace kerf::bench {
 
-/// Two rows that are further apart than this many median periods have a gap between them.
-inline constexpr double gap_in_periods = 2.5;
-
 /// Resamples a recording to a uniform rate by linear interpolation, after a zero-phase low-pass at 0.4 of the
 /// new rate where that is lower than the old one. Rows that would fall into a gap are left out, so that a gap
 /// stays a gap; every row gets `flag_resampled`. `period_s` is the median period of the recording as it is.

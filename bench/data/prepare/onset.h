@@ -6,18 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "recordings/row_span.h"
+
 namespace kerf::bench {
 
 /// A stretch of time [s].
 struct TimeSpan {
   double begin_s = 0.0;
   double end_s = 0.0;
-};
-
-/// Rows [begin, end).
-struct RowSpan {
-  std::size_t begin = 0;
-  std::size_t end = 0;
 };
 
 /// What contacts are found in: the force along one direction, or several components whose vector counts.

@@ -11,9 +11,6 @@ namespace {
 using schema::Column;
 using schema::Row;
 
-/// A step of the time that is so many times the median is a gap.
-constexpr double far_longer = 2.5;
-
 constexpr std::uint64_t block_rows = 65536;
 
 using Axes = std::array<double, schema::max_axes>;
@@ -79,7 +76,7 @@ void add_time_facts(const schema::RecordedRows& rows, RowFigures& figures) {
     for (std::size_t i = 0; i < time.size(); ++i) {
       figures.times_not_finite += std::isfinite(time[i]) ? 0 : 1;
       if (first + i > 0) {
-        const bool is_long = time[i] - before_s > far_longer * figures.period_s;
+        const bool is_long = time[i] - before_s > gap_in_periods * figures.period_s;
         figures.gaps += jumps(ticks[i], tick_before) || is_long ? 1 : 0;
         figures.repeated += time[i] == before_s ? 1 : 0;
         figures.backward += time[i] < before_s ? 1 : 0;
@@ -178,7 +175,7 @@ void RowTally::add_time(const Row& row) {
 RowFigures RowTally::figures() const {
   RowFigures figures = so_far_;
   figures.period_s = figures.rows < 2 ? 0.0 : steps_.median();
-  const double limit_s = far_longer * figures.period_s;
+  const double limit_s = gap_in_periods * figures.period_s;
   figures.gaps = jumps_ + steps_.above(limit_s) - steps_over_missing_ticks_.above(limit_s);
   return figures;
 }

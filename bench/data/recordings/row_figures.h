@@ -16,6 +16,9 @@
 
 namespace kerf::bench {
 
+/// Two rows that are further apart than this many median periods have a gap between them.
+inline constexpr double gap_in_periods = 2.5;
+
 /// Smallest and largest finite value, and how many are not finite.
 struct ValueRange {
   double min = std::numeric_limits<double>::infinity();

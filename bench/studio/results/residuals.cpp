@@ -10,7 +10,7 @@
 
 #include <kerf/fitting/jnd.h>
 
-#include "fits/contact_rows.h"
+#include "recordings/contact_rows.h"
 #include "fits/fit_series.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"

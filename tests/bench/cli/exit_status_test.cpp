@@ -33,7 +33,7 @@ using Words = std::vector<std::string>;
 // Verbs that read no file: what they need is in the program, or on the USB.
 const std::set<Words> without_input{{"devices"}, {"laws"}, {"reproduce"}, {"session", "key"}};
 // Verbs that write no file, or one only where it was named as their input.
-const std::set<Words> without_output{{"devices"},  {"laws"},   {"info"},
+const std::set<Words> without_output{{"devices"},  {"laws"},   {"info"},          {"inspect"},
                                      {"validate"}, {"studio"}, {"session", "run"}};
 
 const std::vector<Words> with_input{
@@ -49,6 +49,7 @@ const std::vector<Words> with_input{
     {"segment", "INPUT"},
     {"info", "INPUT"},
     {"info", "--follow", "INPUT"},
+    {"inspect", "INPUT"},
     {"validate", "INPUT"},
     {"studio", "FOLDER/k.law.toml"},
     {"studio", "FOLDER/nowhere"},

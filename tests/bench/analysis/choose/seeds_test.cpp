@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "choose/choose.h"
-#include "fits/contact_rows.h"
+#include "recordings/contact_rows.h"
 #include "fits/fit_series.h"
 #include "fits/rendered_series.h"
 #include "known_cuts.h"

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+namespace kerf::bench {
+
+/// Of normal noise: its standard deviation over the median of its sizes.
+inline constexpr double deviation_of_mad = 1.4826;
+
+/// Calls `look` with |x(i-1) - 2 x(i) + x(i+1)| of every row i between two others that `counts`, in order;
+/// what is not finite is passed over.
+template <typename Values, typename Counts, typename Look>
+void each_second_difference(const Values& values, const Counts& counts, const Look& look) {
+  for (std::size_t i = 1; i + 1 < values.size(); ++i) {
+    if (!counts(i)) continue;
+    const double size = std::abs(values[i + 1] - 2.0 * values[i] + values[i - 1]);
+    if (std::isfinite(size)) look(size);
+  }
+}
+
+/// Standard deviation of white noise from row to row whose second differences have that median size: their
+/// variance is six times its. Of a motion that is sampled finely they have next to nothing.
+[[nodiscard]] inline double noise_of_second_differences(double median_size) {
+  return deviation_of_mad * median_size / std::sqrt(6.0);
+}
+
+}  // namespace kerf::bench
