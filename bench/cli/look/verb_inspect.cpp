@@ -36,14 +36,14 @@ void run_inspect(const InspectVerbArguments& arguments, Context& context) {
 void add_inspect(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<InspectVerbArguments>();
   Verb verb =
-      add_verb(app, context, "inspect", "Say what a recording is worth: sensor, sampling, contact",
+      add_verb(app, context, "inspect", "Say what a recording is worth: sensor, sampling, contact, cycles",
                "kerf inspect cut.h5\n\n"
                "Of every signal quantum, noise, exact zeros, clipping, single rows that stand out, drift "
                "while\n"
                "nothing is touched; of the time its true rate, jitter and gaps; rows in contact and idle "
                "ones;\n"
-               "the lag of the force. The recording stays as it is. docs/inspecting.md says how each is "
-               "found.",
+               "the lag of the force; of every cycle times, peak and work, and what is wrong with it.\n"
+               "The recording stays as it is. docs/inspecting.md says how each is found.",
                [arguments, &context] { run_inspect(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "The recording").required();
   verb.add_option("--axis", arguments->axis,

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "recordings/axis_values.h"
+#include "segment/segment.h"
 
 namespace kerf::bench {
 namespace {
@@ -36,12 +37,11 @@ void add_noise_by_contact(InspectedSignal& signal, const BlockedValues& values, 
     signal.noise_idle = noise_of(values, signal.facts.quantum, {.spans = contact.spans});
 }
 
-InspectedSignal inspected(InspectedSignal signal, const BlockedValues& values, const Beside& beside,
-                          bool tells_contact) {
+InspectedSignal inspected(InspectedSignal signal, const BlockedValues& values, const Beside& beside) {
   signal.facts = signal_facts(values);
   signal.ends =
       ends_of_range(values, signal.facts.least, signal.facts.most, beside.position, beside.position_noise);
-  if (tells_contact && beside.contact) add_noise_by_contact(signal, values, *beside.contact);
+  if (signal.tells_contact && beside.contact) add_noise_by_contact(signal, values, *beside.contact);
   if (signal.is_force && beside.contact && !signal.is_blind_at_zero())
     signal.drift = drift_of(beside.time_s, values, beside.contact->spans);
   const double noise = signal.facts.noise.value_or(0.0);
@@ -62,16 +62,17 @@ void add_columns(Inspection& inspection, const schema::RecordedRows& rows, const
           inspected({.name = axes.size() == 1 ? name : fmt::format("{}.{}", name, axes[axis].name),
                      .unit = is_force ? axes[axis].force_unit : axes[axis].position_unit,
                      .is_force = is_force,
+                     .tells_contact = tells,
                      .facts = {},
                      .ends = {}},
-                    axis_values(rows, column, axis), beside, tells));
+                    axis_values(rows, column, axis), beside));
     }
   }
   for (std::size_t i = 0; i < rows.about().channels.size(); ++i) {
     const schema::Channel& channel = rows.about().channels[i];
     inspection.signals.push_back(
         inspected({.name = channel.name, .unit = channel.unit, .facts = {}, .ends = {}},
-                  channel_values(rows, i), beside, false));
+                  channel_values(rows, i), beside));
   }
 }
 
@@ -84,6 +85,34 @@ double mean_step(const BlockedValues& time_s, const ContactRows& contact) {
     steps += span.end - 1 - span.begin;
   }
   return steps > 0 ? seconds / static_cast<double>(steps) : 0.0;
+}
+
+/// What the force by which contact is told says of cycles.
+CycleContext context_of(const Inspection& inspection) {
+  CycleContext context{.contact = *inspection.contact, .period_s = inspection.sampling.period_s};
+  for (const InspectedSignal& signal : inspection.signals) {
+    if (!signal.tells_contact) continue;
+    if (signal.ends.least.is_clipped == true) context.clipped_low = signal.ends.least.value;
+    if (signal.ends.most.is_clipped == true) context.clipped_high = signal.ends.most.value;
+  }
+  return context;
+}
+
+InspectedCycles inspected_cycles(const Inspection& inspection, const schema::RecordedRows& rows) {
+  InspectedCycles inspected{.why_none = {}, .cycles = {}};
+  const auto& stored = rows.about().cycles;
+  inspected.are_stored = stored && stored->axis == inspection.options.axis;
+  try {
+    const schema::Cycles cycles =
+        inspected.are_stored ? *stored : find_cycles(rows, {.axis = inspection.options.axis});
+    if (!inspection.contact) throw std::invalid_argument("without a force nothing is known of cycles");
+    inspected.cycles = flag_cycles(cycle_facts(rows, cycles, context_of(inspection)),
+                                   inspection.contact->least, inspection.force_unit);
+    if (inspected.cycles.empty()) inspected.why_none = "the recording holds none";
+  } catch (const std::invalid_argument& none) {
+    inspected.why_none = none.what();
+  }
+  return inspected;
 }
 
 using Lines = std::vector<std::string>;
@@ -166,6 +195,18 @@ void warn_of_contact(const Inspection& inspection, Lines& lines) {
   }
 }
 
+void warn_of_cycles(const std::vector<FlaggedCycle>& cycles, Lines& lines) {
+  const auto good = std::ranges::count_if(cycles, &FlaggedCycle::is_good);
+  const auto flagged = static_cast<std::ptrdiff_t>(cycles.size()) - good;
+  if (flagged == 0) return;
+  std::string line = fmt::format("{} of {} cycles are flagged", flagged, cycles.size());
+  constexpr std::size_t fits_a_line = 60;
+  const std::string others = good_cycles(cycles);
+  if (good > 0 && others.size() <= fits_a_line)
+    line += fmt::format("; 'kerf prepare --cycles {}' keeps the others", others);
+  lines.push_back(line);
+}
+
 }  // namespace
 
 Inspection inspect(const schema::RecordedRows& rows, const InspectOptions& options) {
@@ -191,6 +232,7 @@ Inspection inspect(const schema::RecordedRows& rows, const InspectOptions& optio
   if (inspection.contact)
     inspection.lag =
         lag_between(position, force, inspection.contact->spans, mean_step(time_s, *inspection.contact));
+  inspection.cycles = inspected_cycles(inspection, rows);
   return inspection;
 }
 
@@ -201,6 +243,7 @@ std::vector<std::string> warnings_of(const Inspection& inspection) {
     warn_of_the_end(signal, signal.ends.most, "largest", lines);
   }
   for (const InspectedSignal& signal : inspection.signals) warn_of_a_dead_zone(signal, lines);
+  warn_of_cycles(inspection.cycles.cycles, lines);
   warn_of_contact(inspection, lines);
   for (const InspectedSignal& signal : inspection.signals) {
     if (signal.facts.not_finite > 0)

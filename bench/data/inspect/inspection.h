@@ -8,6 +8,7 @@
 #include <kerf/schema/recorded_rows.h>
 
 #include "inspect/clipping.h"
+#include "inspect/cycle_flags.h"
 #include "inspect/drift.h"
 #include "inspect/lag.h"
 #include "inspect/sampling.h"
@@ -26,6 +27,7 @@ struct InspectedSignal {
   std::string name;  ///< as `kerf info` has it: "position", "force_measured.theta", a channel's
   std::string unit;
   bool is_force = false;
+  bool tells_contact = false;  ///< the force along the axis that is asked for
   SignalFacts facts;
   EndsOfRange ends;
   std::optional<double> noise_idle;     ///< of the force by which contact is told; unknown in a dead zone
@@ -33,6 +35,13 @@ struct InspectedSignal {
   std::optional<Drift> drift;           ///< of forces; unknown in a dead zone
 
   [[nodiscard]] bool is_blind_at_zero() const { return is_force && facts.is_blind_at_zero(); }
+};
+
+/// The cycles of the axis.
+struct InspectedCycles {
+  bool are_stored = false;  ///< in the recording; else found now, as `kerf segment` does
+  std::string why_none;     ///< empty where there are any
+  std::vector<FlaggedCycle> cycles;
 };
 
 /// What a recording is worth, before any law is fitted to it.
@@ -46,6 +55,7 @@ struct Inspection {
   std::vector<InspectedSignal> signals;  ///< positions, forces (measured where there is a sensor), channels
   std::optional<ContactRows> contact;    ///< unknown without a force
   std::optional<Lag> lag;                ///< of the force after the position
+  InspectedCycles cycles;
 };
 
 /// Goes through all rows several times, some at a time. @throws std::invalid_argument if there is no such

@@ -1,5 +1,7 @@
 #include "inspect/inspection_text.h"
 
+#include <cmath>
+
 #include <fmt/core.h>
 
 #include "files/json_number.h"
@@ -94,8 +96,68 @@ ordered_json as_json(const std::optional<Lag>& lag) {
           {"rows", lag->rows}};
 }
 
+ordered_json as_json(const FlaggedCycle& cycle) {
+  const CycleFacts& facts = cycle.facts;
+  ordered_json flags = ordered_json::array();
+  for (const CycleFlag& flag : cycle.flags)
+    flags.push_back({{"kind", name_of(flag.fault)}, {"reason", flag.reason}});
+  ordered_json farthest;
+  if (cycle.farthest)
+    farthest = {{"quantity", cycle.farthest->quantity}, {"distance", cycle.farthest->distance}};
+  return {{"number", facts.number},
+          {"first_row", facts.rows.begin},
+          {"rows", facts.rows.end - facts.rows.begin},
+          {"begin_s", facts.begin_s},
+          {"duration_s", facts.duration_s},
+          {"wait_s", facts.wait_s},
+          {"closing_s", facts.closing_s},
+          {"hold_s", facts.hold_s},
+          {"idle_hold_s", facts.idle_hold_s},
+          {"opening_s", json_number(facts.opening_s)},
+          {"peak", json_number(facts.peak)},
+          {"closing_work", json_number(facts.closing_work)},
+          {"work", json_number(facts.work)},
+          {"clipped_rows", facts.clipped_rows},
+          {"gaps", facts.gaps},
+          {"farthest", farthest},
+          {"good", cycle.is_good()},
+          {"flags", flags}};
+}
+
+ordered_json as_json(const InspectedCycles& inspected) {
+  if (inspected.cycles.empty()) return nullptr;
+  ordered_json list = ordered_json::array();
+  for (const FlaggedCycle& cycle : inspected.cycles) list.push_back(as_json(cycle));
+  return {{"stored", inspected.are_stored}, {"good", good_cycles(inspected.cycles)}, {"list", list}};
+}
+
 std::string number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? fmt::format("{:.4g}", *value + 0.0) : "-";
+}
+
+std::string seconds(const std::optional<double>& value) {
+  return value ? fmt::format("{:.2f}", *value) : "-";
+}
+
+void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>& lines) {
+  lines.emplace_back();
+  if (inspected.cycles.empty()) {
+    lines.push_back("cycles      none: " + inspected.why_none);
+    return;
+  }
+  lines.push_back(fmt::format(
+      "cycles      {} {}", inspected.cycles.size(),
+      inspected.are_stored ? "that are stored in the recording" : "found now; 'kerf segment' stores them"));
+  lines.push_back(fmt::format("{:>5}{:>10}{:>8}{:>9}{:>8}{:>9}{:>10}{:>11}  {}", "cycle", "begin s", "wait",
+                              "closing", "hold", "opening", "peak", "work J", "flags"));
+  for (const FlaggedCycle& cycle : inspected.cycles) {
+    const CycleFacts& facts = cycle.facts;
+    std::string flags;
+    for (const CycleFlag& flag : cycle.flags) flags += (flags.empty() ? "" : "; ") + flag.reason;
+    lines.push_back(fmt::format("{:>5}{:>10.3f}{:>8.2f}{:>9.2f}{:>8.2f}{:>9}{:>10}{:>11}  {}", facts.number,
+                                facts.begin_s, facts.wait_s, facts.closing_s, facts.hold_s,
+                                seconds(facts.opening_s), number(facts.peak), number(facts.work), flags));
+  }
 }
 
 std::string clipped(const EndsOfRange& ends) {
@@ -149,6 +211,7 @@ ordered_json inspection_as_json(const Inspection& inspection) {
           {"signals", signals},
           {"contact", as_json(inspection.contact, inspection.options.felt)},
           {"lag", as_json(inspection.lag)},
+          {"cycles", as_json(inspection.cycles)},
           {"warnings", warnings_of(inspection)}};
 }
 
@@ -167,6 +230,7 @@ std::vector<std::string> inspection_lines(const Inspection& inspection) {
                                 number(facts.noise), share, clipped(signal.ends),
                                 facts.outliers ? std::to_string(*facts.outliers) : "-", number(drift)));
   }
+  add_cycle_lines(inspection.cycles, lines);
   return lines;
 }
 
