@@ -16,6 +16,7 @@
 #include "import/resample.h"
 #include "import/text_table.h"
 #include "import/time_order.h"
+#include "import/unit_doubts.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
 #include "signal/quantiles.h"
@@ -281,6 +282,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
     imported.warnings.push_back(
         fmt::format("the rate is {:.4g} Hz; is the unit of time right?", 1.0 / period_s));
   }
+  for (std::string& doubt : unit_doubts(imported)) imported.warnings.push_back(std::move(doubt));
   if (options.resample_hz > 0.0) resample(recording, options.resample_hz, period_s);
 
   const std::string derived = recording.header.velocity_derived;

@@ -1,0 +1,103 @@
+#include "import/unit_doubts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+constexpr double largest_force_n = 200.0;
+constexpr double largest_torque_nm = 20.0;
+constexpr double longest_way_m = 2.0;
+constexpr double widest_way_rad = 2.0 * std::numbers::pi;
+constexpr double longest_s = 4.0 * 3600.0;
+constexpr double slowest_hz = 5.0;
+
+std::optional<Unit> unit_of_heading(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  try {
+    return parse_unit(text);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;  // counts, or what is none of ours
+  }
+}
+
+bool are_the_same(const Unit& a, const Unit& b) {
+  constexpr double rounding = 1e-9;
+  return a.si == b.si && std::abs(a.factor - b.factor) <= rounding * std::abs(b.factor);
+}
+
+std::string unit_text_of(const Imported& imported, const std::string& channel) {
+  const auto found = std::ranges::find(imported.columns, channel, &MappedColumn::channel);
+  return found == imported.columns.end() ? std::string() : found->unit_text;
+}
+
+struct Range {
+  double least = 0.0;
+  double most = 0.0;
+};
+Range range_of_finite(const std::vector<double>& values) {
+  std::optional<Range> range;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    if (!range) range = Range{.least = value, .most = value};
+    range->least = std::min(range->least, value);
+    range->most = std::max(range->most, value);
+  }
+  return range.value_or(Range{});
+}
+
+void doubt_force(const Imported& imported, const char* channel, const std::vector<double>& values,
+                 std::vector<std::string>& doubts) {
+  const std::string& unit = imported.recording.axes[0].force_unit;
+  const auto [least, most] = range_of_finite(values);
+  const double largest = std::max(std::abs(least), std::abs(most));
+  if (largest <= (unit == "N" ? largest_force_n : largest_torque_nm)) return;
+  doubts.push_back(fmt::format("{} reaches {:.4g} {} with its column in {}; is that unit right?", channel,
+                               largest, unit, unit_text_of(imported, channel)));
+}
+
+void doubt_position(const Imported& imported, std::vector<std::string>& doubts) {
+  const std::string& unit = imported.recording.axes[0].position_unit;
+  const auto [least, most] = range_of_finite(imported.recording.position);
+  if (most - least <= (unit == "m" ? longest_way_m : widest_way_rad)) return;
+  doubts.push_back(fmt::format("position goes over {:.4g} {} with its column in {}; is that unit right?",
+                               most - least, unit, unit_text_of(imported, "position")));
+}
+
+void doubt_time(const Imported& imported, std::vector<std::string>& doubts) {
+  const std::vector<double>& time_s = imported.recording.time;
+  const std::string unit = unit_text_of(imported, "time");
+  const double span_s = time_s.empty() ? 0.0 : time_s.back() - time_s.front();
+  const double rate_hz = span_s > 0.0 ? static_cast<double>(time_s.size() - 1) / span_s : 0.0;
+  if (unit.empty() || span_s < longest_s || rate_hz >= slowest_hz) return;
+  doubts.push_back(
+      fmt::format("the recording takes {:.1f} hours at {:.3g} Hz with its time in {}; is that unit right?",
+                  span_s / 3600.0, rate_hz, unit));
+}
+
+}  // namespace
+
+std::vector<std::string> unit_doubts(const Imported& imported) {
+  std::vector<std::string> doubts;
+  for (const MappedColumn& column : imported.columns) {
+    const TextColumn& heading = imported.layout.columns[column.index];
+    const auto said = unit_of_heading(heading.unit);
+    if (column.unit_from_file || column.unit.si == "1" || !said || are_the_same(*said, column.unit)) continue;
+    doubts.push_back(
+        fmt::format("column {} '{}' is in {} as the file says, and mapped to {} in {}; which is right?",
+                    column.index + 1, heading.heading, heading.unit, column.channel, column.unit_text));
+  }
+  doubt_time(imported, doubts);
+  doubt_position(imported, doubts);
+  doubt_force(imported, "force_measured", imported.recording.force_measured, doubts);
+  doubt_force(imported, "force_commanded", imported.recording.force_commanded, doubts);
+  return doubts;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+
+namespace kerf::bench {
+
+/// Where the units of an import are in doubt, a sentence each that names what was mapped: a column whose
+/// heading has another unit than the map gives it, and what no hand and no tool of this field does: a force
+/// beyond 200 N, a torque beyond 20 N·m, a way of more than 2 m or a whole turn, four hours and more at less
+/// than 5 rows a second. Raw numbers
+/// ("counts" in the heading, "1" in the map) are not doubted.
+[[nodiscard]] std::vector<std::string> unit_doubts(const Imported& imported);
+
+}  // namespace kerf::bench
