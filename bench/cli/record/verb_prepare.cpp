@@ -4,12 +4,17 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include <kerf/fitting/jnd.h>
+#include <kerf/schema/recording_file.h>
+
 #include "files/disk_room.h"
 #include "files/whole_file.h"
+#include "inspect/inspection.h"
 #include "prepare/prepare_file.h"
 #include "prepare/prepared_text.h"
 #include "prepare/rows.h"
@@ -18,6 +23,9 @@
 
 namespace kerf::bench {
 namespace {
+
+/// The word for the cycles that `kerf inspect` does not flag.
+constexpr const char* good = "good";
 
 struct PrepareVerbArguments {
   std::string recording;
@@ -38,7 +46,7 @@ PrepareOptions options_of(const PrepareVerbArguments& arguments) {
   PrepareOptions options = arguments.options;
   WeightOptions& weight = options.weight_options;
   if (!arguments.free.empty()) options.contact.free = parse_spans(arguments.free);
-  if (!arguments.cycles.empty()) options.cycles = parse_cycles(arguments.cycles);
+  if (!arguments.cycles.empty() && arguments.cycles != good) options.cycles = parse_cycles(arguments.cycles);
   if (!arguments.filter.empty()) options.filter = parse_filter(arguments.filter, arguments.causal);
   if (!arguments.labels.empty()) options.labels = parse_labels(arguments.labels);
   if (!arguments.filter_chart.empty() || options.filter_position || arguments.causal) {
@@ -56,8 +64,37 @@ PrepareOptions options_of(const PrepareVerbArguments& arguments) {
   return options;
 }
 
+/// The cycles of a recording as `kerf inspect` sees them. @throws std::invalid_argument if none is without a
+/// flag.
+std::vector<FlaggedCycle> flagged_cycles(const std::string& file) {
+  const schema::RecordingFile rows(file);
+  const auto& stored = rows.about().cycles;
+  if (!stored)
+    throw std::invalid_argument(fmt::format("{}: it has no cycles; run 'kerf segment' first", file));
+  if (stored->axis >= rows.about().dimensions())
+    throw std::invalid_argument(fmt::format("{}: its cycles are of an axis that it does not have", file));
+  const schema::Axis& axis = rows.about().axes[stored->axis];
+  Inspection inspection =
+      inspect(rows, {.axis = stored->axis, .felt = fitting::jnd_of(axis.force_unit, axis.lever).threshold});
+  if (good_cycles(inspection.cycles.cycles).empty()) {
+    throw std::invalid_argument(
+        fmt::format("{}: none of its cycles is without a flag; 'kerf inspect' says why", file));
+  }
+  return std::move(inspection.cycles.cycles);
+}
+
+void say_left_out(const std::vector<FlaggedCycle>& cycles, Context& context) {
+  context.result["cycles_left_out"] = nlohmann::ordered_json::array();
+  for (const FlaggedCycle& cycle : cycles) {
+    if (cycle.is_good()) continue;
+    context.result["cycles_left_out"].push_back(
+        {{"number", cycle.facts.number}, {"reason", reasons_of(cycle)}});
+    context.say(fmt::format("cycle {} left out: {}", cycle.facts.number, reasons_of(cycle)));
+  }
+}
+
 void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
-  const PrepareOptions options = options_of(arguments);
+  PrepareOptions options = options_of(arguments);
   std::error_code absent;
   if (std::filesystem::equivalent(arguments.recording, arguments.output, absent)) {
     throw std::invalid_argument(
@@ -67,6 +104,11 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
   const auto bytes = std::filesystem::file_size(arguments.recording, absent);
   if (!absent) require_disk(arguments.output, bytes, "as many rows as there are");
   if (!arguments.filter_chart.empty()) require_output(arguments.filter_chart, arguments.force);
+  std::vector<FlaggedCycle> cycles;
+  if (arguments.cycles == good) {
+    cycles = flagged_cycles(arguments.recording);
+    options.cycles = parse_cycles(good_cycles(cycles));
+  }
   const Prepared prepared = prepare_file(arguments.recording, options);
   if (!arguments.filter_chart.empty())
     write_whole_file(arguments.filter_chart, filter_response_svg(*prepared.filter),
@@ -75,6 +117,7 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
   context.result = prepared_as_json(prepared);
   for (const std::string& warning : prepared.warnings) warn(warning);
   for (const std::string& line : prepared_lines(prepared)) context.say(line);
+  if (arguments.cycles == good) say_left_out(cycles, context);
   context.say(
       fmt::format("{}: {} of {} rows", arguments.output, prepared.recording.rows(), prepared.rows_before));
 }
@@ -144,7 +187,9 @@ void add_prepare(CLI::App& app, Context& context) {
   add_filter_options(verb, *arguments);
   verb.add_option("--from", options.from_s, "Keep rows from this time on [s]");
   verb.add_option("--to", options.to_s, "Keep rows up to this time [s]");
-  verb.add_option("--cycles", arguments->cycles, "Keep these cycles, 2-8,10; they are numbered anew");
+  verb.add_option(
+      "--cycles", arguments->cycles,
+      "Keep these cycles, 2-8,10, or good: those that 'kerf inspect' does not flag; they are numbered anew");
   verb.add_flag("--force", arguments->force, "Replace an existing output");
 }
 

@@ -111,6 +111,12 @@ std::vector<FlaggedCycle> flag_cycles(std::vector<CycleFacts> cycles, double lea
   return flagged;
 }
 
+std::string reasons_of(const FlaggedCycle& cycle) {
+  std::string reasons;
+  for (const CycleFlag& flag : cycle.flags) reasons += (reasons.empty() ? "" : "; ") + flag.reason;
+  return reasons;
+}
+
 std::string good_cycles(std::span<const FlaggedCycle> cycles) {
   std::string text;
   for (std::size_t i = 0; i < cycles.size(); ++i) {

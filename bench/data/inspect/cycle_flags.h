@@ -56,6 +56,9 @@ struct FlaggedCycle {
 [[nodiscard]] std::vector<FlaggedCycle> flag_cycles(std::vector<CycleFacts> cycles, double least_felt,
                                                     std::string_view force_unit);
 
+/// Why a cycle is flagged, all reasons in one line.
+[[nodiscard]] std::string reasons_of(const FlaggedCycle& cycle);
+
 /// "1-4,6": numbers of the cycles without a flag, as `kerf prepare --cycles` takes them.
 [[nodiscard]] std::string good_cycles(std::span<const FlaggedCycle> cycles);
 

@@ -202,8 +202,9 @@ void warn_of_cycles(const std::vector<FlaggedCycle>& cycles, Lines& lines) {
   std::string line = fmt::format("{} of {} cycles are flagged", flagged, cycles.size());
   constexpr std::size_t fits_a_line = 60;
   const std::string others = good_cycles(cycles);
-  if (good > 0 && others.size() <= fits_a_line)
-    line += fmt::format("; 'kerf prepare --cycles {}' keeps the others", others);
+  if (good > 0)
+    line += fmt::format("; 'kerf prepare --cycles {}' keeps the others",
+                        others.size() <= fits_a_line ? others : "good");
   lines.push_back(line);
 }
 

@@ -152,11 +152,10 @@ void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>&
                               "closing", "hold", "opening", "peak", "work J", "flags"));
   for (const FlaggedCycle& cycle : inspected.cycles) {
     const CycleFacts& facts = cycle.facts;
-    std::string flags;
-    for (const CycleFlag& flag : cycle.flags) flags += (flags.empty() ? "" : "; ") + flag.reason;
     lines.push_back(fmt::format("{:>5}{:>10.3f}{:>8.2f}{:>9.2f}{:>8.2f}{:>9}{:>10}{:>11}  {}", facts.number,
                                 facts.begin_s, facts.wait_s, facts.closing_s, facts.hold_s,
-                                seconds(facts.opening_s), number(facts.peak), number(facts.work), flags));
+                                seconds(facts.opening_s), number(facts.peak), number(facts.work),
+                                reasons_of(cycle)));
   }
 }
 

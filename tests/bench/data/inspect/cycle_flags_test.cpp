@@ -10,11 +10,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "import/import.h"
 #include "inspect/inspection.h"
 #include "segment/segment.h"
 #include "support/measured_data.h"
+#include "support/program.h"
 
 namespace kerf::bench {
 namespace {
@@ -173,6 +175,35 @@ TEST(CycleFlags, TakeTheCyclesThatAreStored) {
   EXPECT_EQ(inspection.cycles.cycles[0].facts.number, 7U);
   recording.cycles->phases[0].end = 1'000'000;
   EXPECT_THROW((void)inspect(schema::RowsInMemory(recording), {}), schema::FormatError);
+}
+
+TEST(CycleFlags, ChooseTheRowsOfAPreparedRecording) {
+  Closings closings;
+  closings.put_down = true;
+  closings.last_hold_s = 12.0;
+  closings.peaks[3] = 0.01;
+  schema::Recording recording = closings.made();
+  recording.header = schema::new_header("kerf test");
+  const test::TemporaryFolder folder;
+  const std::string file = (folder / "r.h5").string();
+  const std::string output = (folder / "out.h5").string();
+  schema::write_recording(file, recording);
+  const std::vector<std::string> prepare{"prepare", file, "--cycles", "good", "-o", output, "--json"};
+  const auto refused = test::run_kerf(prepare);
+  EXPECT_EQ(refused.exit_status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("it has no cycles; run 'kerf segment' first"));
+  recording.cycles = find_cycles(recording, {});
+  schema::write_recording(file, recording);
+  const auto outcome = test::run_kerf(prepare);
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  const auto left_out = nlohmann::json::parse(outcome.output).at("cycles_left_out");
+  ASSERT_EQ(left_out.size(), 2U);
+  EXPECT_EQ(left_out[0]["number"], 4);
+  EXPECT_EQ(left_out[1]["number"], 10);
+  EXPECT_THAT(left_out[1]["reason"].get<std::string>(), HasSubstr("the tool was put down"));
+  const schema::Recording kept = schema::read_recording(output);
+  EXPECT_EQ(kept.cycles->closing.size(), 8U);
+  EXPECT_LT(kept.rows(), 8U * 1'800U) << "the twelve seconds are gone";
 }
 
 // Findings L2 and L3, cycle by cycle; seen by eye in plots of position and force.
