@@ -8,7 +8,7 @@
 #include "chart/fit_plan.h"
 #include "chart/fronts.h"
 #include "chart/speed_accuracy.h"
-#include "fits/contact_rows.h"
+#include "recordings/contact_rows.h"
 #include "fits/rendered_series.h"
 #include "recordings/axes.h"
 #include "recordings/axis_series.h"

@@ -109,8 +109,10 @@ class ArmsKernelOf final : public LawKernel {
     }
     (std::make_index_sequence<Arms - 1>{});
     Row row;
+    const bool bilateral = first.law.bilateral;
     for (std::size_t i = 0; i < run.count; ++i) {
-      const double x = models::pressed(run.motion[i].penetration);
+      const double moved = run.motion[i].penetration;
+      const double x = bilateral ? moved : models::pressed(moved);
       const double period_s = run.period_s[i];
       const auto begin = first.step(x, period_s);
       double force = begin.a;
@@ -123,7 +125,7 @@ class ArmsKernelOf final : public LawKernel {
         row[at + 1] = more.v[1];
       }
       if (!counts(i)) continue;
-      const double felt = models::pushing(force);
+      const double felt = bilateral ? force : models::pushing(force);
       if (felt != force) row.setZero();
       add(i, felt, row);
     }

@@ -92,8 +92,7 @@ auto element_step(const Element& element, typename Element::State& state, double
                   double period_s) noexcept {
   using T = decltype(element.bilateral_step(state, penetration, period_s));
   if (element.bilateral) return element.bilateral_step(state, penetration, period_s);
-  const T force = contact_step(element, state, penetration > 0.0 ? penetration : 0.0, period_s);
-  return force < T(0) ? T(0) : force;
+  return pushing(T(contact_step(element, state, pressed(penetration), period_s)));
 }
 
 }  // namespace kerf::models
