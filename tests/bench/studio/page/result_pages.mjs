@@ -113,7 +113,7 @@ async function testChart(page, studio) {
   const { points } = await jsonIn(studio, "short.chart/chart.json");
   expectEqual(await page.locator("g.point").count(), points.length, "points");
   const texts = await expectAsInPrint(page, studio, "short.chart/chart.svg");
-  for (const it of ["kelvin", "front", "JND"]) expect(texts.includes(it), `${it} is named`);
+  for (const it of ["kelvin", "front, median", "JND"]) expect(texts.includes(it), `${it} is named`);
   expect(
     texts.some((it) => it.includes("a tick at 1000 Hz")),
     "the deadline of the loop is named",
