@@ -91,10 +91,10 @@ std::string_view name_of(CycleFault fault) noexcept {
   return names.at(static_cast<std::size_t>(fault));
 }
 
-std::vector<FlaggedCycle> flag_cycles(std::vector<CycleFacts> cycles, double least_felt,
+std::vector<FlaggedCycle> flag_cycles(std::span<const CycleFacts> cycles, double least_felt,
                                       std::string_view force_unit) {
   std::vector<FlaggedCycle> flagged;
-  for (CycleFacts& facts : cycles) flagged.push_back({.facts = facts, .flags = {}, .farthest = {}});
+  for (const CycleFacts& facts : cycles) flagged.push_back({.facts = facts, .flags = {}, .farthest = {}});
   if (flagged.empty()) return flagged;
   const double usual_hold_s = usual(flagged, [](const CycleFacts& facts) { return facts.hold_s; });
   const double usual_peak = usual(flagged, [](const CycleFacts& facts) { return facts.peak; });

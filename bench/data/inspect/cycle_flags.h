@@ -53,7 +53,7 @@ struct FlaggedCycle {
 /// Usual is the median of all cycles. With fewer than six cycles without a flag no distance is known. Of
 /// cycles that differ at random, normally in logarithms, 1.6 % are beyond by one quantity where there are
 /// six, 0.9 % of ten and 0.4 % of twenty (4,000 draws each).
-[[nodiscard]] std::vector<FlaggedCycle> flag_cycles(std::vector<CycleFacts> cycles, double least_felt,
+[[nodiscard]] std::vector<FlaggedCycle> flag_cycles(std::span<const CycleFacts> cycles, double least_felt,
                                                     std::string_view force_unit);
 
 /// Why a cycle is flagged, all reasons in one line.

@@ -122,7 +122,7 @@ void find_outliers(SignalFacts& facts, const BlockedValues& values, double noise
     const double over_next = values[row] - values[row + 1];
     if (!(over_last * over_next > 0.0)) continue;
     const double height = std::min(std::abs(over_last), std::abs(over_next));
-    if (!(height > stands_out * noise)) continue;
+    if (!(height > stands_out * noise) || !std::isfinite(height)) continue;
     ++*facts.outliers;
     largest.push_back({.row = row, .value = values[row], .height = height});
     std::ranges::push_heap(largest, higher);

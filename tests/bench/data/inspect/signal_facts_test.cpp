@@ -1,6 +1,7 @@
 #include "inspect/signal_facts.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -128,6 +129,9 @@ TEST(SignalFacts, KeepTheLargestOfManyRowsThatStandOut) {
   ASSERT_EQ(facts.largest_outliers.size(), SignalFacts::most_outliers);
   EXPECT_EQ(facts.largest_outliers.front().row, 2'990U);
   EXPECT_EQ(facts.largest_outliers.back().row, 2'800U);
+  values[500] = std::numeric_limits<double>::infinity();
+  find_outliers(facts = {}, blocked(values), 1e-3);
+  EXPECT_EQ(facts.outliers, 298U) << "what is not finite is counted elsewhere";
   find_outliers(facts = {}, blocked(values), 0.0);
   EXPECT_EQ(facts.outliers, std::nullopt) << "without a noise nobody knows";
 }
