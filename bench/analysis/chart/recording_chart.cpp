@@ -8,10 +8,10 @@
 #include "chart/fit_plan.h"
 #include "chart/fronts.h"
 #include "chart/speed_accuracy.h"
-#include "recordings/contact_rows.h"
 #include "fits/rendered_series.h"
 #include "recordings/axes.h"
 #include "recordings/axis_series.h"
+#include "recordings/contact_rows.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {

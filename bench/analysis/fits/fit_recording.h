@@ -11,9 +11,9 @@
 #include <kerf/fitting/floor.h>
 #include <kerf/schema/recording.h>
 
-#include "recordings/contact_rows.h"
 #include "laws/law_file.h"
 #include "laws/render.h"
+#include "recordings/contact_rows.h"
 
 namespace kerf::bench {
 

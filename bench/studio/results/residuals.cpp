@@ -10,10 +10,10 @@
 
 #include <kerf/fitting/jnd.h>
 
-#include "recordings/contact_rows.h"
 #include "fits/fit_series.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
+#include "recordings/contact_rows.h"
 
 namespace kerf::bench {
 namespace {

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "choose/choose.h"
-#include "recordings/contact_rows.h"
 #include "fits/fit_series.h"
 #include "fits/rendered_series.h"
 #include "known_cuts.h"
 #include "known_laws.h"
+#include "recordings/contact_rows.h"
 
 // What a choice makes of recordings whose law is known, over many of them.
 
