@@ -101,7 +101,8 @@ export class FigurePlot {
 
   private label({ x, y, text, left, text_x, text_y }: FigureLabel): SVGElement[] {
     const [from_x, from_y] = [this.plot.x(x), this.plot.y(y)];
-    if (!finite(text_x) || !finite(text_y)) return [note(text, from_x + (left ? -9 : 9), from_y + (left ? 20 : -9), left)];
+    if (!finite(text_x) || !finite(text_y))
+      return [note(text, from_x + (left ? -9 : 9), from_y + (left ? 20 : -9), left)];
     const [to_x, to_y] = [this.plot.x(text_x), this.plot.y(text_y)];
     return [
       drawn("line", { class: "leader", x1: from_x, y1: from_y, x2: to_x, y2: to_y }),
