@@ -128,7 +128,7 @@ async function testChart(page, studio) {
   );
   const all = `The stability of ${points.length} of ${points.length} points was not judged.`;
   expect((await page.textContent("main")).includes(all), all);
-  const verdicts = await page.locator("table tr td:nth-child(7)").allTextContents();
+  const verdicts = await page.locator("table tr td:nth-child(9)").allTextContents();
   expect(verdicts.length >= points.length && verdicts.every((it) => it.startsWith("not judged: ")), verdicts.join());
   await page.keyboard.press("Enter");
   await until("its law is open", async () =>
