@@ -30,9 +30,9 @@ using CostOf = std::function<double(const ChartPoint&)>;
 /// How many times a point's cost is the least of those that are as good; infinite if it is not known.
 double times_the_least(const ChartPoint& point, const SpeedAccuracy& chart, const CostOf& cost) {
   double least = std::numeric_limits<double>::infinity();
-  for (const ChartPoint& other : chart.points) {
-    if (!can_compete(other, chart.rate_hz) || !as_good_as(other, point, chart.jnd_n)) continue;
-    if (std::isfinite(cost(other))) least = std::min(least, cost(other));
+  for (const ChartPoint& rival : chart.points) {
+    if (!can_compete(rival, chart.rate_hz) || !as_good_as(rival, point, chart.jnd_n)) continue;
+    if (std::isfinite(cost(rival))) least = std::min(least, cost(rival));
   }
   return std::isfinite(cost(point)) ? cost(point) / std::max(least, 1.0)
                                     : std::numeric_limits<double>::infinity();
