@@ -28,14 +28,13 @@ double counted_error(const ChartPoint& point) {
 using CostOf = std::function<double(const ChartPoint&)>;
 
 /// How many times a point's cost is the least of those that are as good; infinite if it is not known.
-double times_the_least(const ChartPoint& point, const SpeedAccuracy& chart, const CostOf& cost) {
+double times_the_least(const ChartPoint& of, const SpeedAccuracy& chart, const CostOf& cost) {
   double least = std::numeric_limits<double>::infinity();
   for (const ChartPoint& rival : chart.points) {
-    if (!can_compete(rival, chart.rate_hz) || !as_good_as(rival, point, chart.jnd_n)) continue;
+    if (!can_compete(rival, chart.rate_hz) || !as_good_as(rival, of, chart.jnd_n)) continue;
     if (std::isfinite(cost(rival))) least = std::min(least, cost(rival));
   }
-  return std::isfinite(cost(point)) ? cost(point) / std::max(least, 1.0)
-                                    : std::numeric_limits<double>::infinity();
+  return std::isfinite(cost(of)) ? cost(of) / std::max(least, 1.0) : std::numeric_limits<double>::infinity();
 }
 
 std::vector<std::size_t> front_by(const SpeedAccuracy& chart, const CostOf& cost) {
