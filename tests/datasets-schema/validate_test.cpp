@@ -55,6 +55,19 @@ TEST(Validate, FindsNothingInWhatTheWriterWrites) {
               IsEmpty());
 }
 
+TEST(Validate, NamesAFlagOfACycleThatIsNotThere) {
+  auto recording = test::sample_recording();
+  const std::uint32_t last = recording.cycles->phases.back().cycle;
+  recording.cycle_flags = {.created = "2026-01-31T12:00:00Z",
+                           .software = "kerf test",
+                           .flags = {{.cycle = last, .fault = "by_hand", .reason = "slipped"}}};
+  EXPECT_THAT(violations_of(recording), IsEmpty());
+  recording.cycle_flags->flags.push_back({.cycle = last + 1, .fault = "outlier", .reason = "far"});
+  EXPECT_THAT(
+      violations_of(recording),
+      ElementsAre(violation("/cycle_flags/flags", "cycle " + std::to_string(last + 1), "a cycle from 1")));
+}
+
 TEST(Validate, NamesAMissingDataset) {
   EXPECT_THAT(violations_after([](hid_t file) { test::remove_link(file, "/samples/velocity"); }),
               ElementsAre(violation("/samples/velocity", "nothing", "a dataset of float64")));

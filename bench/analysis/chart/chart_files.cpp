@@ -115,6 +115,12 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"front", json::array()},
               {"cold_front", json::array()},
               {"notes", chart.notes}};
+  if (chart.cycles) {
+    result["cycles"] = in_words(*chart.cycles);
+    result["cycles_left_out"] = json::array();
+    for (const LeftOutCycle& cycle : chart.cycles_left_out)
+      result["cycles_left_out"].push_back({{"number", cycle.number}, {"reason", cycle.reason}});
+  }
   const std::vector<std::string> files = point_file_names(chart);
   auto file = files.begin();
   for (const ChartPoint& point : chart.points) {

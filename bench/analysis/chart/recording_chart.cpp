@@ -9,9 +9,10 @@
 #include "chart/fronts.h"
 #include "chart/speed_accuracy.h"
 #include "fits/rendered_series.h"
+#include "fits/row_doubts.h"
+#include "inspect/counted_rows.h"
 #include "recordings/axes.h"
 #include "recordings/axis_series.h"
-#include "recordings/contact_rows.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -46,6 +47,7 @@ SampledMotion timed_stretch(const AxisSeries& series, const FitSource& source, d
 
 FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options) {
   FitRecordingOptions fit{.models = {plan.model}};
+  fit.rows = options.rows;
   fit.fit.law_options = plan.options;
   fit.fit.folds = options.folds;
   fit.fit.threads = options.threads;
@@ -72,21 +74,30 @@ Difference difference(const std::vector<double>& a, const std::vector<double>& b
   return result;
 }
 
-/// The force to be charted, row by row, with the rows in contact marked.
-AxisSeries charted_series(const FitSource& source, const fitting::Jnd& jnd) {
-  AxisSeries series = fit_series(*source.recording, source.axis, source.contact);
-  if (series.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
-  mark_contact(series, jnd.threshold);
-  return series;
+/// The force to be charted, row by row, with the rows marked that count.
+CountedSeries charted_series(const FitSource& source, const ChartOptions& options) {
+  CountedSeries made = counted_series(source, options.rows, options.jnd);
+  if (made.series.time_s.size() < 2) throw std::invalid_argument("a recording of one row cannot be charted");
+  return made;
 }
 
 class RecordingChart {
  public:
   RecordingChart(const FitSource& source, const ChartOptions& options)
+      : RecordingChart(source, options, charted_series(source, options)) {}
+
+  RecordingChart(const FitSource& source, const ChartOptions& options, CountedSeries made)
       : source_(source),
         options_(options),
-        series_(charted_series(source, options.jnd)),
+        series_(std::move(made.series)),
         in_the_loop_(series_, options.rate_hz) {
+    options_.rows.cycles = made.counted.none_is_good ? CycleChoice{.by = CycleChoice::By::all}
+                                                     : settled(options.rows.cycles, *source.recording,
+                                                               source.axis, options.jnd.threshold);
+    chart_.cycles = options.rows.cycles;
+    if (std::string left_out = cycles_left_out(made.counted); !left_out.empty())
+      chart_.notes.push_back(std::move(left_out));
+    chart_.cycles_left_out = std::move(made.counted.left_out);
     period_s_ = median_period(series_.time_s);
     for (const double force : series_.force) peak_n_ = std::max(peak_n_, std::abs(force));
   }
@@ -208,7 +219,7 @@ class RecordingChart {
   }
 
   const FitSource& source_;
-  const ChartOptions& options_;
+  ChartOptions options_;  ///< with the cycles by number
   AxisSeries series_;
   RenderedSeries in_the_loop_;
   double period_s_ = 0.0;

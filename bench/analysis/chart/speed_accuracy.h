@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,8 @@ struct SpeedAccuracy {
   std::vector<ChartPoint> points;
   ColdTail cold_tail = ColdTail::none;
   ColdCost empty_tick;  ///< what the machine itself adds to a cold tick; no ticks if nobody looked
+  std::optional<CycleChoice> cycles;  ///< of a recording, as asked for
+  std::vector<LeftOutCycle> cycles_left_out;
   std::vector<std::string> notes;
   bool stopped = false;  ///< before it was done; there are no points then
 };
@@ -68,6 +71,7 @@ struct ChartOptions {
   double rate_hz = 1000.0;
   std::vector<std::string> models;  ///< laws to fit; empty: those that say something of any axis
   fitting::Jnd jnd;
+  RowChoice rows{};  ///< of a recording, that count
   std::size_t folds = 5;
   std::size_t threads = 1;
   /// Judges the closed loop with this law at this rate. Empty: nobody does, and only what it renders along

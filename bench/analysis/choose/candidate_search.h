@@ -75,6 +75,8 @@ struct LawChoice {
   std::string blame;  ///< what is to blame where the law that is named is not within the JND
   std::vector<EffectVerdict> effects;
   std::vector<std::string> warnings;
+  RowChoice rows;  ///< as asked for
+  std::vector<LeftOutCycle> cycles_left_out;
   models::Contact contact;
   fitting::FitOptions settings;
 };

@@ -89,6 +89,9 @@ json choice_as_json(const LawChoice& choice) {
   const auto name_at = [&](const std::optional<std::size_t>& place) {
     return place ? json(choice.candidates.at(*place).law.name) : json(nullptr);
   };
+  json left_out = json::array();
+  for (const LeftOutCycle& cycle : choice.cycles_left_out)
+    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
   return {
       {"jnd", choice.jnd_n},
       {"force_rms", choice.force_rms_n},
@@ -97,6 +100,8 @@ json choice_as_json(const LawChoice& choice) {
       {"threshold", choice.settings.jnd.threshold},
       {"jnd_source", choice.settings.jnd_source},
       {"held_out_by", choice.held_out},
+      {"cycles", in_words(choice.rows.cycles)},
+      {"cycles_left_out", left_out},
       {"choice",
        {{"law", name_at(choice.taken)},
         {"serves", choice.serves},
@@ -140,7 +145,7 @@ void write_choice(LawChoice& choice, const json& json, const std::filesystem::pa
   for (const auto& place : {choice.taken, choice.as_good}) {
     if (!place) continue;
     Candidate& law = choice.candidates.at(*place);
-    if (!recording.empty()) law.file->fit.recording_sha256 = sha256_of(recording);
+    if (!recording.empty()) name_recording(law.file->fit, recording);
     write_law_file(folder / (law.law.name + ".law.toml"), *law.file);
   }
   write_whole_file(folder / "choose.csv", choice_csv(choice));

@@ -24,14 +24,6 @@ namespace {
 constexpr std::size_t timing_rounds = 9;
 constexpr double timing_s = 0.05;  // a law, at most
 
-std::size_t cycles_in(const schema::Recording& recording, std::size_t axis) {
-  if (!recording.cycles || recording.cycles->axis != axis) return 0;
-  std::size_t most = 0;
-  for (const schema::PhaseSpan& phase : recording.cycles->phases)
-    most = std::max<std::size_t>(most, phase.cycle);
-  return most;
-}
-
 /// A choice while it is made.
 class LawSelection {
  public:
@@ -51,9 +43,8 @@ class LawSelection {
       memory_ = fitting::remember_segments(options.candidates.max_segments, options.fit.points_per_segment);
     AxisSeries series = fit_series(recording, options.axis, choice_.contact);
     if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
-    if (options.rows == Counted::contact) count_contact(series);
+    const std::size_t cycles = count_rows(series);
     measure(series);
-    const std::size_t cycles = cycles_in(recording, options.axis);
     describe_folds(cycles);
     const schema::Axis& axis = recording.axes[options.axis];
     for (CandidateLaw& law : candidates_for(axis, cycles > 0, options.candidates)) {
@@ -104,12 +95,24 @@ class LawSelection {
     }
   }
 
-  void count_contact(AxisSeries& series) {
-    const std::size_t counted = mark_contact(series, options_.fit.jnd.threshold);
-    if (2 * counted >= series.force.size()) return;
-    choice_.warnings.push_back(
-        fmt::format("{} of {} rows are out of contact and do not count (--rows all takes all)",
-                    series.force.size() - counted, series.force.size()));
+  /// Marks the rows that count; returns how many cycles do.
+  std::size_t count_rows(AxisSeries& series) {
+    const double felt = options_.fit.jnd.threshold;
+    const CountedRows counted = mark_counted(series, recording_, options_.axis, options_.rows, felt);
+    rows_ = {.rows = options_.rows.rows,
+             .cycles = counted.none_is_good ? CycleChoice{.by = CycleChoice::By::all}
+                                            : settled(options_.rows.cycles, recording_, options_.axis, felt)};
+    choice_.rows = options_.rows;
+    choice_.cycles_left_out = counted.left_out;
+    const std::size_t rows = series.force.size();
+    if (2 * counted.contact < rows) {
+      choice_.warnings.push_back(
+          fmt::format("{} of {} rows are out of contact and do not count (--rows all takes all)",
+                      rows - counted.contact, rows));
+    }
+    if (std::string left_out = cycles_left_out(counted); !left_out.empty())
+      choice_.warnings.push_back(std::move(left_out));
+    return counted.cycles - counted.left_out.size();
   }
 
   void measure(const AxisSeries& series) {
@@ -147,7 +150,7 @@ class LawSelection {
                                       .axis = options_.axis,
                                       .contact = choice_.contact,
                                       .law_options = law.law_options,
-                                      .rows = options_.rows,
+                                      .rows = rows_,
                                       .loop_rate_hz = options_.loop_rate_hz,
                                       .floor = false,
                                       .fit = std::move(settings)});
@@ -234,6 +237,7 @@ class LawSelection {
   const std::atomic<bool>& stop_;
   LawChoice choice_;
   CandidateSearch search_;
+  RowChoice rows_;      ///< with its cycles by number
   SampledMotion path_;  ///< the recording, as penetration on one axis
   std::shared_ptr<fitting::SegmentedMemory> memory_;
 };

@@ -16,9 +16,9 @@ struct ChooseOptions {
   std::size_t axis = 0;
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   CandidateOptions candidates;
-  fitting::FitOptions fit;          ///< JND and folds
-  Counted rows = Counted::contact;  ///< that count
-  double loop_rate_hz = 1000.0;     ///< of the loop that errors are of
+  fitting::FitOptions fit;       ///< JND and folds
+  RowChoice rows{};              ///< that count
+  double loop_rate_hz = 1000.0;  ///< of the loop that errors are of
   std::size_t threads = 1;  ///< among which the candidates are shared out; the choice does not depend on it
   std::atomic<std::size_t>* done = nullptr;  ///< counts the candidates that were fitted
   std::atomic<std::size_t>* of = nullptr;    ///< becomes the number of candidates

@@ -118,6 +118,7 @@ LawFile law_file_of(const fitting::BladeFit& fit, const schema::Recording& recor
                .std_errors = {},
                .fit = {.recording_uuid = recording.header.uuid,
                        .recording_sha256 = {},
+                       .recording_content = {},
                        .rmse_n = std::hypot(fit.rmse[0], fit.rmse[1], fit.rmse[2]),
                        .date = schema::new_header("").created,
                        .software = software()}};

@@ -54,13 +54,17 @@ void refuse_to_replace_fits(const FitRecordingOptions& options, const std::files
 void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
                 const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  std::vector<std::string> sha256;
-  for (const auto& file : files) sha256.push_back(sha256_of(file));
+  std::vector<FitProvenance> named(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    name_recording(named[i], files[i]);
+    fit.recordings.at(i).content_sha256 = named[i].recording_content;
+  }
   for (FittedLaw& law : fit.laws) {
     const auto names = law_file_names(fit, law);
     for (std::size_t i = 0; i < names.size(); ++i) {
       LawFile& file = i == 0 ? law.file : law.others[i - 1];
-      file.fit.recording_sha256 = sha256.at(i);
+      file.fit.recording_sha256 = named.at(i).recording_sha256;
+      file.fit.recording_content = named.at(i).recording_content;
       write_law_file(folder / names[i], file);
     }
   }

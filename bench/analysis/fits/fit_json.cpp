@@ -157,19 +157,26 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
 }
 
 json recording_as_json(const FittedRecording& recording) {
-  return {{"name", recording.name},
-          {"uuid", recording.uuid},
-          {"axis", recording.axis},
-          {"contact", {{"position", recording.contact.position}, {"direction", recording.contact.direction}}},
-          {"samples", recording.samples},
-          {"left_out", recording.left_out},
-          {"counted", recording.counted},
-          {"noise", recording.noise_n > 0.0 ? json(recording.noise_n) : json(nullptr)}};
+  json left_out = json::array();
+  for (const LeftOutCycle& cycle : recording.cycles_left_out)
+    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
+  return {
+      {"name", recording.name},
+      {"uuid", recording.uuid},
+      {"content_sha256", recording.content_sha256.empty() ? json(nullptr) : json(recording.content_sha256)},
+      {"axis", recording.axis},
+      {"contact", {{"position", recording.contact.position}, {"direction", recording.contact.direction}}},
+      {"samples", recording.samples},
+      {"left_out", recording.left_out},
+      {"counted", recording.counted},
+      {"cycles_left_out", left_out},
+      {"noise", recording.noise_n > 0.0 ? json(recording.noise_n) : json(nullptr)}};
 }
 
 json settings_as_json(const RecordingFit& fit) {
   const fitting::FitOptions& settings = fit.settings;
-  return {{"rows", fit.rows == Counted::all ? "all" : "contact"},
+  return {{"rows", fit.rows.rows == Counted::all ? "all" : "contact"},
+          {"cycles", in_words(fit.rows.cycles)},
           {"loop_rate_hz", fit.loop_rate_hz},
           {"folds", settings.folds},
           {"test_share", settings.test_share},

@@ -57,6 +57,7 @@ LawFile file_of(const fitting::FitResult& result, const Sources& sources, std::s
           .std_errors = std::move(std_errors),
           .fit = {.recording_uuid = source.recording->header.uuid,
                   .recording_sha256 = {},
+                  .recording_content = {},
                   .rmse_n = result.rmse,
                   .date = schema::new_header("").created,
                   .software = software()}};
@@ -135,16 +136,19 @@ fitting::FitOptions options_for(const std::string& model, const FitRecordingOpti
 }
 
 /// Which rows count, and what is to be known of it.
-std::size_t mark_rows(AxisSeries& series, const std::string& whose, RecordingFit& fit) {
+CountedRows mark_rows(AxisSeries& series, const FitSource& source, const std::string& whose,
+                      RecordingFit& fit) {
   const std::size_t rows = series.force.size();
-  if (fit.rows == Counted::all) return rows;
-  const std::size_t counted = mark_contact(series, fit.settings.jnd.threshold);
-  if (2 * counted < rows) {
+  CountedRows counted =
+      mark_counted(series, *source.recording, source.axis, fit.rows, fit.settings.jnd.threshold);
+  if (2 * counted.contact < rows) {
     fit.warnings.push_back(
         fmt::format("{}{} of {} rows are out of contact: laws are fitted to and judged by the other {} alone "
                     "(--rows all takes all)",
-                    whose, rows - counted, rows, counted));
+                    whose, rows - counted.contact, rows, counted.contact));
   }
+  if (const std::string left_out = cycles_left_out(counted); !left_out.empty())
+    fit.warnings.push_back(whose + left_out);
   return counted;
 }
 
@@ -154,7 +158,7 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
     sources.series.push_back(fit_series(*source.recording, source.axis, source.contact));
     const std::size_t left_out = sources.series.back().left_out;
     const std::string whose = all.size() > 1 ? source.name + ": " : "";
-    const std::size_t counted = mark_rows(sources.series.back(), whose, fit);
+    CountedRows counted = mark_rows(sources.series.back(), source, whose, fit);
     sources.rendered.emplace_back(sources.series.back(), fit.loop_rate_hz);
     fit.recordings.push_back({.name = source.name,
                               .uuid = source.recording->header.uuid,
@@ -162,7 +166,8 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
                               .contact = source.contact,
                               .samples = source.recording->rows(),
                               .left_out = left_out,
-                              .counted = counted,
+                              .counted = counted.rows,
+                              .cycles_left_out = std::move(counted.left_out),
                               .noise_n = source.noise_n});
     if (left_out > 0) fit.warnings.push_back(whose + rows_left_out(sources.series.back()));
     for (const std::string& doubt : doubts_of(sources.series.back(), fit.settings))

@@ -11,9 +11,9 @@
 #include <kerf/fitting/floor.h>
 #include <kerf/schema/recording.h>
 
+#include "inspect/counted_rows.h"
 #include "laws/law_file.h"
 #include "laws/render.h"
-#include "recordings/contact_rows.h"
 
 namespace kerf::bench {
 
@@ -23,7 +23,7 @@ struct FitRecordingOptions {
   std::optional<models::Contact> contact;  ///< by default contact_of() the recording
   std::size_t segments = 5;                ///< of the piecewise law
   std::vector<std::string> law_options;    ///< NAME=VALUE, each for the laws that have it
-  Counted rows = Counted::contact;         ///< that count
+  RowChoice rows{};                        ///< that count
   double loop_rate_hz = 1000.0;            ///< of the loop that errors as rendered are of
   bool floor = true;                       ///< also what is possible at all
   fitting::FitOptions fit;
@@ -51,11 +51,13 @@ struct FittedLaw {
 struct FittedRecording {
   std::string name;
   std::string uuid;
+  std::string content_sha256{};  ///< of what was sampled; empty until the fits are written
   std::string axis;
   models::Contact contact;
   std::size_t samples = 0;
   std::size_t left_out = 0;  ///< rows that are not finite
   std::size_t counted = 0;   ///< rows that count
+  std::vector<LeftOutCycle> cycles_left_out;
   double noise_n = 0.0;
 };
 
@@ -75,9 +77,9 @@ struct RecordingFit {
   fitting::Choice choice;
   std::optional<fitting::Floor> floor;
   std::vector<std::string> warnings;
-  fitting::FitOptions settings;     ///< as asked for
-  Counted rows = Counted::contact;  ///< as asked for
-  double loop_rate_hz = 0.0;        ///< as asked for
+  fitting::FitOptions settings;  ///< as asked for
+  RowChoice rows;                ///< as asked for
+  double loop_rate_hz = 0.0;     ///< as asked for
 
   [[nodiscard]] std::size_t samples() const;
   /// What is to blame for the error of a law, in one sentence; empty where nothing is.

@@ -38,11 +38,11 @@ std::string nothing_changes(const AxisSeries& series, const fitting::FitOptions&
 
 }  // namespace
 
-AxisSeries counted_series(const FitSource& source, Counted rows, const fitting::Jnd& jnd) {
-  AxisSeries series = fit_series(*source.recording, source.axis, source.contact);
-  if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
-  if (rows == Counted::contact) mark_contact(series, jnd.threshold);
-  return series;
+CountedSeries counted_series(const FitSource& source, const RowChoice& choice, const fitting::Jnd& jnd) {
+  CountedSeries made{.series = fit_series(*source.recording, source.axis, source.contact), .counted = {}};
+  if (made.series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
+  made.counted = mark_counted(made.series, *source.recording, source.axis, choice, jnd.threshold);
+  return made;
 }
 
 std::string nothing_felt(const AxisSeries& series, const fitting::FitOptions& settings) {

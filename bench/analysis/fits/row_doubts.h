@@ -6,12 +6,20 @@
 #include <kerf/fitting/fit.h>
 
 #include "fits/fit_recording.h"
+#include "inspect/counted_rows.h"
 #include "recordings/axis_series.h"
 
 namespace kerf::bench {
 
-/// The rows that a fit goes by. @throws std::invalid_argument if none is finite.
-[[nodiscard]] AxisSeries counted_series(const FitSource& source, Counted rows, const fitting::Jnd& jnd);
+/// The rows of a recording, with those marked that a fit goes by.
+struct CountedSeries {
+  AxisSeries series;
+  CountedRows counted;
+};
+
+/// @throws std::invalid_argument if none is finite.
+[[nodiscard]] CountedSeries counted_series(const FitSource& source, const RowChoice& choice,
+                                           const fitting::Jnd& jnd);
 
 /// Where the root mean square force is within its JND: that no force at all does as well, so that nothing
 /// can be told by it. Else empty.

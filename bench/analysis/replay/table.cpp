@@ -11,7 +11,9 @@ namespace kerf::bench {
 
 FittedLaw table_of(const schema::Recording& recording, const std::string& name, const std::string& axis,
                    const std::optional<models::Contact>& contact) {
-  FitRecordingOptions options{.models = {"recording"}, .rows = Counted::all, .floor = false};
+  FitRecordingOptions options{.models = {"recording"},
+                              .rows = {.rows = Counted::all, .cycles = {.by = CycleChoice::By::all}},
+                              .floor = false};
   options.axis = axis.empty() && recording.cycles ? recording.cycles->axis : find_axis(recording, axis);
   options.contact = contact ? *contact : contact_of(recording, options.axis);
   RecordingFit fit = fit_recording(recording, options);

@@ -115,6 +115,11 @@ void add_data_options(Verb& verb, FitArguments& arguments) {
   verb.add_option("--rows", arguments.rows, "Rows that laws are fitted to and judged by")
       .one_of({"contact", "all"})
       .with_default();
+  verb.add_option(
+          "--cycles", arguments.cycles,
+          "Cycles that laws are fitted to and judged by: good (without a flag of 'kerf inspect'), all, or "
+          "a list: 2-8,10")
+      .with_default();
   verb.add_option("--rate", arguments.options.loop_rate_hz,
                   "Rate of the loop that errors as rendered are of [Hz]")
       .within(100.0, 10000.0)
@@ -209,7 +214,8 @@ FitRecordingOptions options_of(const FitArguments& arguments, const FitSource& s
   options.fit.breakpoints = breakpoints_of(arguments, source);
   options.fit.loss = loss_of(arguments.loss);
   if (arguments.no_folds) options.fit.folds = 0;
-  options.rows = arguments.rows == "all" ? Counted::all : Counted::contact;
+  options.rows = {.rows = arguments.rows == "all" ? Counted::all : Counted::contact,
+                  .cycles = parse_cycle_choice(arguments.cycles)};
   arguments.jnd.put_into(options.fit, source.recording->axes[source.axis]);
   options.law_options = law_options_of(arguments);
   return options;

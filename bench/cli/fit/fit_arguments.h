@@ -26,6 +26,7 @@ struct FitArguments {
   std::vector<double> noise;
   JndArguments jnd;
   std::string rows = "contact";
+  std::string cycles = "good";
 
   std::string segments = "5";
   std::vector<std::string> breakpoints;

@@ -67,7 +67,7 @@ void run_blade(const BladeVerbArguments& arguments, Context& context) {
         fit.phases.releases.spread_n, 100.0 * fit.phases.agreement));
   }
   if (arguments.output.empty()) return;
-  all.file.fit.recording_sha256 = sha256_of(std::filesystem::path(arguments.recording));
+  name_recording(all.file.fit, arguments.recording);
   write_law_file(arguments.output, all.file, schema::existing_if(arguments.force));
   context.say(fmt::format("{}: law 'blade'", arguments.output));
 }

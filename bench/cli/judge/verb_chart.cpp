@@ -31,6 +31,7 @@ struct ChartVerbArguments {
   std::string scene;
   std::string output;
   std::string axis;
+  std::string cycles = "good";
   std::vector<std::string> laws;
   double rate_hz = 0.0;  ///< 0: not given
   bool no_folds = false;
@@ -64,7 +65,8 @@ SpeedAccuracy chart_of_recording(const ChartVerbArguments& arguments, ChartOptio
   settings.jnd = options.jnd;
   settings.force_unit = axis.force_unit;
   try {
-    const AxisSeries series = counted_series(source, Counted::contact, options.jnd);
+    options.rows.cycles = parse_cycle_choice(arguments.cycles);
+    const AxisSeries series = counted_series(source, options.rows, options.jnd).series;
     if (const std::string nothing = nothing_felt(series, settings); !nothing.empty())
       throw std::invalid_argument(nothing);
     std::vector<std::string> doubts = doubts_of(series, settings);
@@ -173,6 +175,11 @@ void add_chart(CLI::App& app, Context& context) {
       .separated_by(',');
   verb.add_option("--axis", arguments->axis,
                   "Axis of the recording (default: that of its cycles, or the first)");
+  verb.add_option(
+          "--cycles", arguments->cycles,
+          "Cycles of the recording to fit and judge by: good (without a flag of 'kerf inspect'), all, or a "
+          "list: 2-8,10")
+      .with_default();
   verb.add_option("--rate", arguments->rate_hz, "Rate of the loop (default: 1000) [Hz]")
       .within(100.0, 10000.0);
   verb.add_flag("--no-folds", arguments->no_folds, "Errors on the recording itself, with nothing held out");

@@ -42,6 +42,7 @@ struct ChooseVerbArguments {
   ChooseOptions choose;
   JndArguments jnd;
   std::string rows = "contact";
+  std::string cycles = "good";
 };
 
 std::string deadline_in_short(const std::optional<Deadline>& deadline) {
@@ -101,7 +102,7 @@ struct CutFile {
 /// What is not the fault of any law.
 void warn_of_rows(const schema::Recording& recording, const ChooseOptions& choose) {
   const FitSource source{.recording = &recording, .axis = choose.axis, .contact = *choose.contact};
-  const AxisSeries series = counted_series(source, choose.rows, choose.fit.jnd);
+  const AxisSeries series = counted_series(source, choose.rows, choose.fit.jnd).series;
   if (series.left_out > 0) warn(rows_left_out(series));
   if (!nothing_felt(series, choose.fit).empty()) return;  // which is refused
   for (const std::string& doubt : doubts_of(series, choose.fit)) warn(doubt);
@@ -116,7 +117,8 @@ void choose_for_recording(const ChooseVerbArguments& arguments, Context& context
                               .begins = say_begins};
   options.choose.axis = find_cut_axis(recording, arguments.axis);
   options.choose.contact = arguments.contact.over(contact_of(recording, options.choose.axis));
-  options.choose.rows = arguments.rows == "all" ? Counted::all : Counted::contact;
+  options.choose.rows = {.rows = arguments.rows == "all" ? Counted::all : Counted::contact,
+                         .cycles = parse_cycle_choice(arguments.cycles)};
   options.choose.loop_rate_hz = arguments.loop.rate_hz;
   arguments.jnd.put_into(options.choose.fit, recording.axes[options.choose.axis]);
   options.choose.threads = std::max(1U, std::thread::hardware_concurrency());
@@ -225,6 +227,11 @@ void add_choose(CLI::App& app, Context& context) {
       .with_default();
   verb.add_option("--rows", arguments->rows, "Rows that laws are fitted to and judged by")
       .one_of({"contact", "all"})
+      .with_default();
+  verb.add_option(
+          "--cycles", arguments->cycles,
+          "Cycles that laws are fitted to and judged by: good (without a flag of 'kerf inspect'), all, or "
+          "a list: 2-8,10")
       .with_default();
   add_jnd_options(verb, arguments->jnd);
   verb.add_option("--record-seconds", arguments->record_s,

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -12,6 +14,7 @@
 
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
+#include "inspect/flagged_cycles.h"
 #include "program/verbs.h"
 #include "recordings/axes.h"
 #include "recordings/axis_values.h"
@@ -92,6 +95,25 @@ void require_no_row_beyond_all(const schema::RecordedRows& rows, std::size_t axi
                   name, largest, force[largest]));
 }
 
+/// Looks at the cycles that were found, and keeps what is wrong with them beside them.
+std::vector<FlaggedCycle> flag_and_store(schema::Recording& recording, const schema::RecordedRows& rows) {
+  const schema::Axis& axis = recording.axes[recording.cycles->axis];
+  const double felt = fitting::jnd_of(axis.force_unit, axis.lever).threshold;
+  std::vector<FlaggedCycle> cycles = flagged_cycles(rows, *recording.cycles, felt);
+  recording.cycle_flags = stored_flags(cycles, felt);
+  return cycles;
+}
+
+/// Flags that a person set or took away are of cycles that are no more.
+void warn_of_what_was_said(const schema::Recording& recording, const std::string& name) {
+  if (!recording.cycle_flags) return;
+  const auto said = std::ranges::count_if(recording.cycle_flags->flags, [](const schema::CycleFlag& flag) {
+    return flag.fault == "by_hand" || flag.fault == "accepted";
+  });
+  if (said > 0)
+    warn(fmt::format("{}: what was said by hand of its cycles, {} remarks, is gone with them", name, said));
+}
+
 void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   const std::filesystem::path charts = arguments.charts;
   if (!arguments.charts.empty()) require_output(charts / "cycles.svg", true);
@@ -101,8 +123,10 @@ void run_segment(const SegmentVerbArguments& arguments, Context& context) {
   options.axis = find_axis(recording, arguments.axis);
   if (!arguments.closing.empty()) options.closing_direction = arguments.closing == "increasing" ? 1.0 : -1.0;
   require_no_row_beyond_all(rows, options.axis, arguments.recording);
+  warn_of_what_was_said(recording, arguments.recording);
   segment_recording(recording, rows, options, arguments.recording);
   if (!options.closing_direction) warn_of_a_guess(recording);
+  const std::vector<FlaggedCycle> cycles = flag_and_store(recording, rows);
   schema::write_recording(arguments.recording, recording, rows, schema::Existing::replace);
   if (!arguments.charts.empty()) {
     WholeFolder whole(charts, schema::Existing::replace);
@@ -115,6 +139,12 @@ void run_segment(const SegmentVerbArguments& arguments, Context& context) {
       "{}: {} closings and {} openings; closing {}", arguments.recording,
       context.result["closings"].get<int>(), context.result["openings"].get<int>(),
       recording.cycles->closing_direction > 0.0 ? "increases the position" : "decreases the position"));
+  context.result["flagged"] = nlohmann::ordered_json::array();
+  for (const FlaggedCycle& cycle : cycles) {
+    if (cycle.is_good()) continue;
+    context.result["flagged"].push_back({{"cycle", cycle.facts.number}, {"reason", reasons_of(cycle)}});
+    context.say(fmt::format("cycle {} is flagged: {}", cycle.facts.number, reasons_of(cycle)));
+  }
 }
 
 }  // namespace

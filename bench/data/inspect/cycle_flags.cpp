@@ -86,15 +86,15 @@ void flag_by_itself(FlaggedCycle& cycle, double usual_hold_s, double usual_peak,
 }  // namespace
 
 std::string_view name_of(CycleFault fault) noexcept {
-  constexpr std::array<std::string_view, 5> names{"put_down", "under_force", "clipped", "interrupted",
-                                                  "outlier"};
+  constexpr std::array<std::string_view, 6> names{"put_down",    "under_force", "clipped",
+                                                  "interrupted", "outlier",     "by_hand"};
   return names.at(static_cast<std::size_t>(fault));
 }
 
 std::vector<FlaggedCycle> flag_cycles(std::span<const CycleFacts> cycles, double least_felt,
                                       std::string_view force_unit) {
   std::vector<FlaggedCycle> flagged;
-  for (const CycleFacts& facts : cycles) flagged.push_back({.facts = facts, .flags = {}, .farthest = {}});
+  for (const CycleFacts& facts : cycles) flagged.push_back({.facts = facts});
   if (flagged.empty()) return flagged;
   const double usual_hold_s = usual(flagged, [](const CycleFacts& facts) { return facts.hold_s; });
   const double usual_peak = usual(flagged, [](const CycleFacts& facts) { return facts.peak; });

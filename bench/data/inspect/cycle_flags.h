@@ -12,9 +12,9 @@
 namespace kerf::bench {
 
 /// Why a cycle may not be taken for one like the others.
-enum class CycleFault : std::uint8_t { put_down, under_force, clipped, interrupted, outlier };
+enum class CycleFault : std::uint8_t { put_down, under_force, clipped, interrupted, outlier, by_hand };
 
-/// "put_down", as JSON has it.
+/// "put_down", as JSON and recordings have it.
 [[nodiscard]] std::string_view name_of(CycleFault fault) noexcept;
 
 struct CycleFlag {
@@ -31,11 +31,12 @@ struct CycleDistance {
 
 struct FlaggedCycle {
   CycleFacts facts;
-  std::vector<CycleFlag> flags;
+  std::vector<CycleFlag> flags{};
   std::optional<CycleDistance>
-      farthest;  ///< of closing time, peak and closing work; unknown among too few cycles
+      farthest{};  ///< of closing time, peak and closing work; unknown among too few cycles
+  std::optional<std::string> accepted{};  ///< why a person takes it all the same
 
-  [[nodiscard]] bool is_good() const noexcept { return flags.empty(); }
+  [[nodiscard]] bool is_good() const noexcept { return flags.empty() || accepted.has_value(); }
 };
 
 /// Flags each cycle by what is wrong with it, beside the others of its recording:

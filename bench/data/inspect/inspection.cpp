@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "inspect/flagged_cycles.h"
 #include "recordings/axis_values.h"
 #include "segment/segment.h"
 
@@ -108,6 +109,8 @@ InspectedCycles inspected_cycles(const Inspection& inspection, const schema::Rec
     if (!inspection.contact) throw std::invalid_argument("without a force nothing is known of cycles");
     inspected.cycles = flag_cycles(cycle_facts(rows, cycles, context_of(inspection)),
                                    inspection.contact->least, inspection.force_unit);
+    if (inspected.are_stored && rows.about().cycle_flags)
+      add_what_was_said(inspected.cycles, *rows.about().cycle_flags);
     if (inspected.cycles.empty()) inspected.why_none = "the recording holds none";
   } catch (const std::invalid_argument& none) {
     inspected.why_none = none.what();

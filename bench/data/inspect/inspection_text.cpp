@@ -121,6 +121,7 @@ ordered_json as_json(const FlaggedCycle& cycle) {
           {"gaps", facts.gaps},
           {"farthest", farthest},
           {"good", cycle.is_good()},
+          {"accepted", cycle.accepted ? ordered_json(*cycle.accepted) : ordered_json(nullptr)},
           {"flags", flags}};
 }
 
@@ -139,6 +140,13 @@ std::string seconds(const std::optional<double>& value) {
   return value ? fmt::format("{:.2f}", *value) : "-";
 }
 
+std::string remarks_on(const FlaggedCycle& cycle) {
+  const std::string reasons = reasons_of(cycle);
+  return cycle.accepted
+             ? fmt::format("{}{}accepted: {}", reasons, reasons.empty() ? "" : "; ", *cycle.accepted)
+             : reasons;
+}
+
 void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>& lines) {
   lines.emplace_back();
   if (inspected.cycles.empty()) {
@@ -155,7 +163,7 @@ void add_cycle_lines(const InspectedCycles& inspected, std::vector<std::string>&
     lines.push_back(fmt::format("{:>5}{:>10.3f}{:>8.2f}{:>9.2f}{:>8.2f}{:>9}{:>10}{:>11}  {}", facts.number,
                                 facts.begin_s, facts.wait_s, facts.closing_s, facts.hold_s,
                                 seconds(facts.opening_s), number(facts.peak), number(facts.work),
-                                reasons_of(cycle)));
+                                remarks_on(cycle)));
   }
 }
 

@@ -110,6 +110,11 @@ void keep_cycles(schema::Recording& recording, const std::vector<std::uint32_t>&
               rows.begin() + static_cast<std::ptrdiff_t>(phase.end), true);
   }
   std::erase_if(cycles.phases, [](const schema::PhaseSpan& phase) { return phase.cycle == 0; });
+  if (recording.cycle_flags) {
+    auto& flags = recording.cycle_flags->flags;
+    for (schema::CycleFlag& flag : flags) flag.cycle = place(flag.cycle);
+    std::erase_if(flags, [](const schema::CycleFlag& flag) { return flag.cycle == 0; });
+  }
   for (auto* branches : {&cycles.closing, &cycles.opening}) {
     std::vector<std::vector<double>> kept;
     for (const std::uint32_t cycle : chosen) kept.push_back((*branches)[cycle - 1]);

@@ -20,7 +20,8 @@ void keep_rows(schema::Recording& recording, const std::vector<bool>& keep);
 /// Rows where time, position, velocity and the forces are finite, in every axis that has any finite value.
 [[nodiscard]] std::vector<bool> finite_rows(const schema::Recording& recording);
 
-/// Keeps the rows of these cycles alone and numbers the cycles anew from 1, with their branches and means.
+/// Keeps the rows of these cycles alone and numbers the cycles anew from 1, with their branches, means and
+/// flags.
 /// @throws std::invalid_argument if the recording was not segmented, or a cycle is not there.
 void keep_cycles(schema::Recording& recording, const std::vector<std::uint32_t>& cycles);
 

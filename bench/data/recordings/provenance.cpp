@@ -2,13 +2,109 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <type_traits>
+#include <vector>
 
 #include <fmt/format.h>
 #include <sodium.h>
 
+#include <kerf/schema/recording_file.h>
+
 #include "files/mapped_file.h"
 
 namespace kerf::bench {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "values are hashed as they lie in memory");
+
+constexpr std::uint64_t rows_at_once = 65536;
+
+class Digest {
+ public:
+  Digest() { crypto_hash_sha256_init(&state_); }
+
+  void add(std::string_view text) {
+    bytes(text.data(), text.size());
+    constexpr char end = '\0';
+    bytes(&end, 1);
+  }
+  template <typename T>
+  requires std::is_arithmetic_v<T>
+  void add(std::span<const T> values) { bytes(values.data(), values.size_bytes()); }
+  void add(double value) { add(std::span<const double>(&value, 1)); }
+
+  [[nodiscard]] std::string hexadecimal() {
+    std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
+    crypto_hash_sha256_final(&state_, digest.data());
+    return fmt::format("{:02x}", fmt::join(digest, ""));
+  }
+
+ private:
+  void bytes(const void* data, std::size_t size) {
+    crypto_hash_sha256_update(&state_, static_cast<const unsigned char*>(data), size);
+  }
+
+  crypto_hash_sha256_state state_{};
+};
+
+/// Adds `width` values a row of some rows at a time; `read(first, rows, values)`.
+template <typename T, typename Read>
+void add_rows(Digest& digest, std::uint64_t rows, std::size_t width, const Read& read) {
+  std::vector<T> values;
+  for (std::uint64_t first = 0; first < rows; first += rows_at_once) {
+    const std::uint64_t now = std::min(rows_at_once, rows - first);
+    values.resize(now * width);
+    read(first, now, std::span<T>(values));
+    digest.add(std::span<const T>(values));
+  }
+}
+
+void add_column(Digest& digest, const schema::RecordedRows& rows, schema::Column column,
+                std::string_view path) {
+  const std::size_t width = rows.width(column);
+  if (width == 0) return;
+  digest.add(path);
+  if (column < schema::Column::wake_latency) {
+    add_rows<double>(digest, rows.rows(), width, [&](auto first, auto now, std::span<double> values) {
+      rows.read(column, first, now, values);
+    });
+    return;
+  }
+  std::vector<double> wide;  // kept as float32
+  add_rows<float>(digest, rows.rows(), width, [&](auto first, auto now, std::span<float> values) {
+    wide.resize(values.size());
+    rows.read(column, first, now, wide);
+    std::ranges::transform(wide, values.begin(), [](double value) { return static_cast<float>(value); });
+  });
+}
+
+void add_axes(Digest& digest, const std::vector<schema::Axis>& axes) {
+  digest.add(static_cast<double>(axes.size()));
+  for (const schema::Axis& axis : axes) {
+    for (const auto& text : {axis.name, axis.position_unit, axis.force_unit}) digest.add(text);
+    digest.add(axis.lever);
+  }
+}
+
+void add_channels(Digest& digest, const schema::RecordedRows& rows) {
+  const auto& channels = rows.about().channels;
+  std::vector<std::size_t> order(channels.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return channels[i].name; });
+  for (const std::size_t i : order) {
+    digest.add(channels[i].name);
+    digest.add(channels[i].unit);
+    add_rows<double>(digest, rows.rows(), 1, [&](auto first, auto, std::span<double> values) {
+      rows.read_channel(i, first, values);
+    });
+  }
+}
+
+}  // namespace
 
 void add_history(schema::Header& header, std::string_view step) {
   std::string line(step);
@@ -21,6 +117,38 @@ std::string sha256_of(std::string_view content) {
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
   crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(content.data()), content.size());
   return fmt::format("{:02x}", fmt::join(digest, ""));
+}
+
+std::string content_sha256_of(const schema::RecordedRows& rows) {
+  using schema::Column;
+  Digest digest;
+  digest.add("kerf.samples 1");
+  add_axes(digest, rows.about().axes);
+  add_column(digest, rows, Column::time, "time");
+  digest.add("tick");
+  add_rows<std::uint64_t>(digest, rows.rows(), 1, [&](auto first, auto, std::span<std::uint64_t> values) {
+    rows.read_ticks(first, values);
+  });
+  add_column(digest, rows, Column::position, "position");
+  add_column(digest, rows, Column::velocity, "velocity");
+  add_column(digest, rows, Column::force_commanded, "force_commanded");
+  add_column(digest, rows, Column::force_measured, "force_measured");
+  add_column(digest, rows, Column::wake_latency, "wake_latency");
+  add_column(digest, rows, Column::read_time, "read_time");
+  add_column(digest, rows, Column::compute_time, "compute_time");
+  add_column(digest, rows, Column::write_time, "write_time");
+  if (rows.has_flags()) {
+    digest.add("flags");
+    add_rows<std::uint32_t>(digest, rows.rows(), 1, [&](auto first, auto, std::span<std::uint32_t> values) {
+      rows.read_flags(first, values);
+    });
+  }
+  add_channels(digest, rows);
+  return digest.hexadecimal();
+}
+
+std::string content_sha256_of(const std::filesystem::path& file) {
+  return content_sha256_of(schema::RecordingFile(file));
 }
 
 std::string sha256_of(const std::filesystem::path& file) { return sha256_of(MappedFile(file).text()); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -118,6 +119,13 @@ void add_cycles(nlohmann::ordered_json& summary, const schema::Recording& record
                        {"filter_corner_hz", cycles.filter_corner_hz},
                        {"phases", cycles.phases.size()},
                        {"grid_points", cycles.grid.size()}};
+  if (!recording.cycle_flags) return;
+  std::set<std::uint32_t> flagged;
+  std::set<std::uint32_t> accepted;
+  for (const schema::CycleFlag& flag : recording.cycle_flags->flags)
+    (flag.fault == "accepted" ? accepted : flagged).insert(flag.cycle);
+  std::erase_if(flagged, [&](std::uint32_t cycle) { return accepted.contains(cycle); });
+  summary["cycles"]["flagged"] = flagged;
 }
 
 }  // namespace
@@ -163,8 +171,11 @@ std::string summary_table(const nlohmann::ordered_json& summary) {
   line("events", std::to_string(summary["events"].get<std::size_t>()));
   if (summary.contains("cycles")) {
     const auto& cycles = summary["cycles"];
-    line("cycles",
-         fmt::format("{} along {}", cycles["count"].get<std::size_t>(), cycles["axis"].get<std::string>()));
+    line(
+        "cycles",
+        fmt::format(
+            "{} along {}{}", cycles["count"].get<std::size_t>(), cycles["axis"].get<std::string>(),
+            cycles.contains("flagged") ? fmt::format(", {} of them flagged", cycles["flagged"].size()) : ""));
   }
   if (summary.contains("history")) {
     for (const auto& step : summary["history"]) line("history", step.get<std::string>());

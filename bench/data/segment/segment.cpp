@@ -272,6 +272,7 @@ void segment_recording(schema::Recording& recording, const schema::RecordedRows&
                        const SegmentOptions& options, const std::string& name) {
   try {
     recording.cycles = find_cycles(rows, options);
+    recording.cycle_flags.reset();  // which were of other cycles
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{}: {}", name, error.what()));
   }

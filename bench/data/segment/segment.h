@@ -39,8 +39,9 @@ struct SegmentOptions {
 [[nodiscard]] schema::Cycles find_cycles(const schema::RecordedRows& rows, const SegmentOptions& options);
 [[nodiscard]] schema::Cycles find_cycles(const schema::Recording& recording, const SegmentOptions& options);
 
-/// Finds the cycles in the rows of a recording, keeps them in what it says of itself and adds a line to its
-/// history; `name` stands for it in messages. @throws as find_cycles() does.
+/// Finds the cycles in the rows of a recording, keeps them in what it says of itself, without the flags of
+/// earlier ones, and adds a line to its history; `name` stands for it in messages. @throws as find_cycles()
+/// does.
 void segment_recording(schema::Recording& recording, const schema::RecordedRows& rows,
                        const SegmentOptions& options, const std::string& name);
 

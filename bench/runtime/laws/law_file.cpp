@@ -15,6 +15,7 @@
 #include "files/named_file.h"
 #include "files/whole_file.h"
 #include "laws/law_toml.h"
+#include "recordings/provenance.h"
 #include "units/units.h"
 
 namespace kerf::bench {
@@ -66,9 +67,10 @@ FitProvenance read_provenance(const Place& place, const toml::table& root) {
   FitProvenance fit;
   if (root.get("fit") == nullptr) return fit;
   const toml::table& table = place.table(root, "fit");
-  place.allow_only(table, {"recording", "sha256", "rmse", "date", "software"}, "[fit]");
+  place.allow_only(table, {"recording", "sha256", "content", "rmse", "date", "software"}, "[fit]");
   fit.recording_uuid = place.text(table, "recording", "");
   fit.recording_sha256 = place.text(table, "sha256", "");
+  fit.recording_content = place.text(table, "content", "");
   fit.date = place.text(table, "date", "");
   fit.software = place.text(table, "software", "");
   if (const toml::node* rmse = table.get("rmse")) {
@@ -244,13 +246,19 @@ std::string to_toml(const LawFile& file) {
       text += fmt::format("{} = {}\n", name, option_text(value));
   }
   if (!file.fit.recording_uuid.empty()) {
-    text += fmt::format(
-        "\n[fit]\nrecording = {}\nsha256 = {}\nrmse = {{ value = {}, unit = \"N\" }}\ndate = {}\nsoftware = "
-        "{}\n",
-        toml_text(file.fit.recording_uuid), toml_text(file.fit.recording_sha256),
-        toml_number(file.fit.rmse_n), toml_text(file.fit.date), toml_text(file.fit.software));
+    text += fmt::format("\n[fit]\nrecording = {}\nsha256 = {}\n", toml_text(file.fit.recording_uuid),
+                        toml_text(file.fit.recording_sha256));
+    if (!file.fit.recording_content.empty())
+      text += fmt::format("content = {}\n", toml_text(file.fit.recording_content));
+    text += fmt::format("rmse = {{ value = {}, unit = \"N\" }}\ndate = {}\nsoftware = {}\n",
+                        toml_number(file.fit.rmse_n), toml_text(file.fit.date), toml_text(file.fit.software));
   }
   return text;
+}
+
+void name_recording(FitProvenance& fit, const std::filesystem::path& recording) {
+  fit.recording_sha256 = sha256_of(recording);
+  fit.recording_content = content_sha256_of(recording);
 }
 
 void write_law_file(const std::filesystem::path& file, const LawFile& law, schema::Existing existing) {

@@ -12,11 +12,15 @@ namespace kerf::bench {
 /// How a law came about, kept in its file.
 struct FitProvenance {
   std::string recording_uuid;
-  std::string recording_sha256;
+  std::string recording_sha256;   ///< of the file
+  std::string recording_content;  ///< SHA-256 of what was sampled: content_sha256_of()
   double rmse_n = 0.0;
   std::string date;      ///< ISO 8601, UTC
   std::string software;  ///< kerf::software()
 };
+
+/// Says which file a law was fitted to, and which samples.
+void name_recording(FitProvenance& fit, const std::filesystem::path& recording);
 
 /// A law with everything that it takes to render it on an axis: `NAME.law.toml`.
 struct LawFile {

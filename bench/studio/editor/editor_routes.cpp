@@ -75,7 +75,10 @@ HttpResponse saved(Workspace& workspace, const KeptCurve& kept, const nlohmann::
   const bool replace = flag_in(asked, "replace", false);
   const auto path = workspace.new_file(text_in(asked, "name"), ".law.toml", replace);
   CurveSource source = kept.source;
-  source.recording_sha256 = sha256_of(kept.file.path);
+  FitProvenance named;
+  name_recording(named, kept.file.path);
+  source.recording_sha256 = std::move(named.recording_sha256);
+  source.recording_content = std::move(named.recording_content);
   write_law_file(path, drawn_law(kept.curve, knots, source), schema::existing_if(replace));
   return json_response({{"id", workspace.id_of(path)},
                         {"name", path.filename().string()},

@@ -208,6 +208,7 @@ LawFile drawn_law(const EditorCurve& curve, const Knots& knots, const CurveSourc
           .std_errors = {},
           .fit = {.recording_uuid = source.recording_uuid,
                   .recording_sha256 = source.recording_sha256,
+                  .recording_content = source.recording_content,
                   .rmse_n = error.rmse_n,
                   .date = schema::new_header("").created,
                   .software = software()}};

@@ -55,6 +55,7 @@ struct LawError {
 struct CurveSource {
   std::string recording_uuid;
   std::string recording_sha256;
+  std::string recording_content{};
   models::Options rendering_aids;  ///< of a law with two branches: with_rendering_aids()
 };
 

@@ -11,9 +11,9 @@
 #include <kerf/fitting/jnd.h>
 
 #include "fits/fit_series.h"
+#include "inspect/counted_rows.h"
 #include "laws/render.h"
 #include "recordings/axis_series.h"
-#include "recordings/contact_rows.h"
 
 namespace kerf::bench {
 namespace {
@@ -118,7 +118,7 @@ json residuals_of(const schema::Recording& recording, std::size_t axis, const La
   AxisSeries series = fit_series(recording, axis, law.contact);
   if (series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
   const fitting::Jnd jnd = fitting::jnd_of(about.force_unit, about.lever);
-  const std::size_t counted = mark_contact(series, jnd.threshold);
+  const std::size_t counted = mark_counted(series, recording, axis, {}, jnd.threshold).rows;
   const std::vector<double> force = render(without_rendering_aids(law.law), series);
   std::vector<double> residual;
   double squares = 0.0;

@@ -32,8 +32,12 @@ auto fields(Is<Cycles> auto& x) {
   return std::tie(x.axis, x.closing_direction, x.contact_position, x.filter_corner_hz, x.phases, x.grid,
                   x.closing, x.opening, x.closing_mean, x.opening_mean);
 }
+auto fields(Is<CycleFlag> auto& x) { return std::tie(x.cycle, x.fault, x.reason); }
+auto fields(Is<CycleFlags> auto& x) { return std::tie(x.created, x.software, x.felt, x.flags); }
 /// Rows are asked for apart.
-auto fields(Is<Recording> auto& x) { return std::tie(x.header, x.axes, x.channels, x.events, x.cycles); }
+auto fields(Is<Recording> auto& x) {
+  return std::tie(x.header, x.axes, x.channels, x.events, x.cycles, x.cycle_flags);
+}
 auto fields(Is<in_process::RecordingFacts> auto& x) {
   return std::tie(x.about, x.rows, x.is_live, x.first_time_s, x.last_time_s, x.period_s, x.widths);
 }

@@ -32,6 +32,8 @@ constexpr std::array group_table{
     Group{"/scene", optional, true,
           "What was simulated or cut, with any further numbers and texts as attributes"},
     Group{"/cycles", optional, false, "What `kerf segment` found"},
+    Group{"/cycle_flags", optional, false,
+          "What is wrong with cycles, as `kerf segment` found it and as a person said since"},
 };
 
 const std::array attribute_table{
@@ -81,6 +83,13 @@ const std::array attribute_table{
               std::span(phase_values)},
     Attribute{"/cycles/phases", "flag_meanings", "text", "", required, "Their meanings in the same order",
               std::string_view("opening open_to_close closing close_to_open")},
+    Attribute{"/cycle_flags", "created", "text", "", required, "When it was looked at: ISO 8601, UTC",
+              &CycleFlags::created},
+    Attribute{"/cycle_flags", "software", "text", "", required, "By what, `kerf 0.1.0`",
+              &CycleFlags::software},
+    Attribute{"/cycle_flags", "felt", "float64", "", required,
+              "Force beyond which contact was told, in the unit of the force of the cycles' axis",
+              &CycleFlags::felt},
 };
 
 const std::array dataset_table{
@@ -168,6 +177,16 @@ const std::array dataset_table{
             "Mean over the cycles",
             &Cycles::opening_mean,
             {}},
+    Dataset{
+        "/cycle_flags/flags",
+        "{cycle uint32, fault text, reason text}",
+        "K",
+        Units::one,
+        required,
+        "One thing that is said of a cycle: `put_down`, `under_force`, `clipped`, `interrupted`, `outlier`, "
+        "`by_hand`, or `accepted` (it is good whatever else is said of it), and why",
+        {},
+        {}},
 };
 
 std::vector<std::string> per_axis(std::span<const Axis> axes, std::string Axis::*unit,

@@ -36,7 +36,8 @@ using RowMember = std::variant<std::monostate, std::array<double, max_axes> Row:
 struct Dataset {
   std::string_view path;
   std::string_view type;   ///< as h5::type_name() says it
-  std::string_view shape;  ///< one letter a dimension: N rows, D axes, E events, P phases, C cycles, G grid
+  std::string_view shape;  ///< one letter a dimension: N rows, D axes, E events, P phases, C cycles, G grid,
+                           ///< K flags of cycles
   Units units;
   bool required;  ///< in its group
   std::string_view description;
@@ -47,7 +48,7 @@ struct Dataset {
 /// What an attribute holds: the same in every file, or a member.
 using Value = std::variant<std::string_view, std::span<const std::uint32_t>, std::span<const std::uint8_t>,
                            std::string Header::*, std::string Axis::*, double Axis::*, double Cycles::*,
-                           std::size_t Cycles::*>;
+                           std::size_t Cycles::*, std::string CycleFlags::*, double CycleFlags::*>;
 
 struct Attribute {
   std::string_view object;
@@ -74,6 +75,7 @@ struct Group {
 inline constexpr std::string_view samples = "/samples";
 inline constexpr std::string_view channels = "/samples/channels";
 inline constexpr std::string_view cycles = "/cycles";
+inline constexpr std::string_view cycle_flags = "/cycle_flags";
 
 /// The group that a path stands in: "/samples" of "/samples/time", "/" of "/events".
 [[nodiscard]] std::string_view parent(std::string_view path);

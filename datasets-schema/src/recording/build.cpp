@@ -34,22 +34,25 @@ void write_attribute(hid_t object, const layout::Attribute& rule, const Sources&
     h5::write_attribute(object, name, h5::native<T>(), extent, values.data());
   };
   std::visit(
-      Overloaded{[&](std::string_view text) { h5::write_attribute(object, name, std::string(text)); },
-                 [&](std::span<const std::uint32_t> values) { list(values); },
-                 [&](std::span<const std::uint8_t> values) { list(values); },
-                 [&](std::string Header::*text) {
-                   if (rule.required || !(from.header.*text).empty()) {
-                     h5::write_attribute(object, name, from.header.*text);
-                   }
-                 },
-                 [&](std::string Axis::*text) { h5::write_attribute(object, name, gather(from.axes, text)); },
-                 [&](double Axis::*number) {
-                   const auto numbers = gather(from.axes, number);
-                   const auto known = [](double value) { return !std::isnan(value); };
-                   if (rule.required || std::ranges::any_of(numbers, known)) list(numbers);
-                 },
-                 [&](double Cycles::*number) { one(from.cycles->*number); },
-                 [&](std::size_t Cycles::*number) { one(std::uint64_t{from.cycles->*number}); }},
+      Overloaded{
+          [&](std::string_view text) { h5::write_attribute(object, name, std::string(text)); },
+          [&](std::span<const std::uint32_t> values) { list(values); },
+          [&](std::span<const std::uint8_t> values) { list(values); },
+          [&](std::string Header::*text) {
+            if (rule.required || !(from.header.*text).empty()) {
+              h5::write_attribute(object, name, from.header.*text);
+            }
+          },
+          [&](std::string Axis::*text) { h5::write_attribute(object, name, gather(from.axes, text)); },
+          [&](double Axis::*number) {
+            const auto numbers = gather(from.axes, number);
+            const auto known = [](double value) { return !std::isnan(value); };
+            if (rule.required || std::ranges::any_of(numbers, known)) list(numbers);
+          },
+          [&](double Cycles::*number) { one(from.cycles->*number); },
+          [&](std::size_t Cycles::*number) { one(std::uint64_t{from.cycles->*number}); },
+          [&](std::string CycleFlags::*text) { h5::write_attribute(object, name, from.cycle_flags->*text); },
+          [&](double CycleFlags::*number) { one(from.cycle_flags->*number); }},
       rule.value);
 }
 
@@ -159,37 +162,87 @@ h5::Handle make_channel(hid_t file, const Channel& channel, const h5::DatasetOpt
   return dataset;
 }
 
-h5::Handle event_type(const EventRoom& room) {
+namespace {
+
+/// A value that is kept as a number and two texts.
+template <typename T, typename Number>
+struct TextRecord {
+  Number T::*number;
+  std::string T::*kind;
+  std::string T::*text;
+
+  static std::size_t size(const TextRoom& room) { return sizeof(Number) + room.kind + room.text; }
+
+  [[nodiscard]] TextRoom room_for(std::span<const T> values) const {
+    TextRoom room{.kind = 1, .text = 1};
+    for (const T& value : values) {
+      room.kind = std::max(room.kind, (value.*kind).size());
+      room.text = std::max(room.text, (value.*text).size());
+    }
+    return room;
+  }
+
+  [[nodiscard]] std::vector<std::byte> pack(std::span<const T> values, const TextRoom& room) const {
+    std::vector<std::byte> records(values.size() * size(room));
+    auto* record = records.data();
+    for (const T& value : values) {
+      std::memcpy(record, &(value.*number), sizeof(Number));
+      std::memcpy(record + sizeof(Number), (value.*kind).data(), fitting(value.*kind, room.kind));
+      std::memcpy(record + sizeof(Number) + room.kind, (value.*text).data(), fitting(value.*text, room.text));
+      record += size(room);
+    }
+    return records;
+  }
+
+  [[nodiscard]] std::vector<T> unpack(std::span<const std::byte> records, const TextRoom& room) const {
+    std::vector<T> values(records.size() / size(room));
+    const auto* record = records.data();
+    for (T& value : values) {
+      std::memcpy(&(value.*number), record, sizeof(Number));
+      value.*kind = text_in(record + sizeof(Number), room.kind);
+      value.*text = text_in(record + sizeof(Number) + room.kind, room.text);
+      record += size(room);
+    }
+    return values;
+  }
+};
+
+constexpr TextRecord<Event, double> event_record{&Event::time_s, &Event::kind, &Event::text};
+constexpr TextRecord<CycleFlag, std::uint32_t> flag_record{&CycleFlag::cycle, &CycleFlag::fault,
+                                                           &CycleFlag::reason};
+
+}  // namespace
+
+TextRoom room_for(std::span<const Event> events) { return event_record.room_for(events); }
+TextRoom room_for(std::span<const CycleFlag> flags) { return flag_record.room_for(flags); }
+
+h5::Handle event_type(const TextRoom& room) {
   const std::vector<h5::Field> fields{{"time", "float64", sizeof(double), 0},
                                       {"kind", "text", room.kind, sizeof(double)},
                                       {"text", "text", room.text, sizeof(double) + room.kind}};
-  return h5::record_type(fields, sizeof(double) + room.kind + room.text);
+  return h5::record_type(fields, event_record.size(room));
 }
 
-std::vector<std::byte> pack(std::span<const Event> events, const EventRoom& room) {
-  const std::size_t size = sizeof(double) + room.kind + room.text;
-  std::vector<std::byte> records(events.size() * size);
-  auto* record = records.data();
-  for (const auto& event : events) {
-    std::memcpy(record, &event.time_s, sizeof(double));
-    std::memcpy(record + sizeof(double), event.kind.data(), fitting(event.kind, room.kind));
-    std::memcpy(record + sizeof(double) + room.kind, event.text.data(), fitting(event.text, room.text));
-    record += size;
-  }
-  return records;
+h5::Handle flag_type(const TextRoom& room) {
+  constexpr std::size_t number = sizeof(std::uint32_t);
+  const std::vector<h5::Field> fields{{"cycle", "uint32", number, 0},
+                                      {"fault", "text", room.kind, number},
+                                      {"reason", "text", room.text, number + room.kind}};
+  return h5::record_type(fields, flag_record.size(room));
 }
 
-std::vector<Event> unpack_events(std::span<const std::byte> records, const EventRoom& room) {
-  const std::size_t size = sizeof(double) + room.kind + room.text;
-  std::vector<Event> events(records.size() / size);
-  const auto* record = records.data();
-  for (auto& event : events) {
-    std::memcpy(&event.time_s, record, sizeof(double));
-    event.kind = text_in(record + sizeof(double), room.kind);
-    event.text = text_in(record + sizeof(double) + room.kind, room.text);
-    record += size;
-  }
-  return events;
+std::vector<std::byte> pack(std::span<const Event> events, const TextRoom& room) {
+  return event_record.pack(events, room);
+}
+std::vector<std::byte> pack(std::span<const CycleFlag> flags, const TextRoom& room) {
+  return flag_record.pack(flags, room);
+}
+
+std::vector<Event> unpack_events(std::span<const std::byte> records, const TextRoom& room) {
+  return event_record.unpack(records, room);
+}
+std::vector<CycleFlag> unpack_flags(std::span<const std::byte> records, const TextRoom& room) {
+  return flag_record.unpack(records, room);
 }
 
 h5::Handle phase_type() {

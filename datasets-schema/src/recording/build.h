@@ -18,6 +18,7 @@ struct Sources {
   const Header& header;
   std::span<const Axis> axes;
   const Cycles* cycles = nullptr;
+  const CycleFlags* cycle_flags = nullptr;
 };
 
 /// Those attributes of an object that the tables say.
@@ -43,15 +44,21 @@ void attach_time(const h5::Handle& dataset, const h5::Handle& time);
 /// @throws std::invalid_argument for a name that cannot be one.
 [[nodiscard]] h5::Handle make_channel(hid_t file, const Channel& channel, const h5::DatasetOptions& options);
 
-/// Bytes for the texts of an event. They are of fixed size, as SWMR cannot follow any other.
-struct EventRoom {
-  std::size_t kind = 32;
+/// Bytes for the texts of an event or a flag. They are of fixed size, as SWMR cannot follow any other.
+struct TextRoom {
+  std::size_t kind = 32;  ///< of an event; of a flag: its fault
   std::size_t text = 256;
 };
-[[nodiscard]] h5::Handle event_type(const EventRoom& room);
-/// Events as records of that type; a text that has no room is cut between two characters.
-[[nodiscard]] std::vector<std::byte> pack(std::span<const Event> events, const EventRoom& room);
-[[nodiscard]] std::vector<Event> unpack_events(std::span<const std::byte> records, const EventRoom& room);
+/// For the longest texts that there are.
+[[nodiscard]] TextRoom room_for(std::span<const Event> events);
+[[nodiscard]] TextRoom room_for(std::span<const CycleFlag> flags);
+[[nodiscard]] h5::Handle event_type(const TextRoom& room);
+[[nodiscard]] h5::Handle flag_type(const TextRoom& room);
+/// As records of that type; a text that has no room is cut between two characters.
+[[nodiscard]] std::vector<std::byte> pack(std::span<const Event> events, const TextRoom& room);
+[[nodiscard]] std::vector<std::byte> pack(std::span<const CycleFlag> flags, const TextRoom& room);
+[[nodiscard]] std::vector<Event> unpack_events(std::span<const std::byte> records, const TextRoom& room);
+[[nodiscard]] std::vector<CycleFlag> unpack_flags(std::span<const std::byte> records, const TextRoom& room);
 [[nodiscard]] h5::Handle phase_type();
 
 }  // namespace kerf::schema

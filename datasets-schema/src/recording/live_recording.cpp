@@ -70,7 +70,7 @@ void read_last_event(hid_t file, Tail& tail) {
   tail.events = h5::describe(dataset.id()).extent.front();
   if (tail.events == 0) return;
   const auto sizes = h5::field_sizes(dataset.id());
-  const EventRoom room{.kind = sizes[1], .text = sizes[2]};
+  const TextRoom room{.kind = sizes[1], .text = sizes[2]};
   std::vector<std::byte> record(sizes[0] + sizes[1] + sizes[2]);
   h5::read(dataset.id(), event_type(room).id(), 1, record.data(), tail.events - 1);
   tail.last_event = unpack_events(record, room).front();

@@ -20,6 +20,7 @@ class PartReader {
     read_channels();
     read_events();
     read_phases();
+    read_cycle_flags();
     return std::move(recording_);
   }
 
@@ -27,6 +28,7 @@ class PartReader {
   void read_attributes() {
     recording_.header.status.clear();
     if (h5::is_group(file_, std::string(layout::cycles))) recording_.cycles.emplace();
+    if (h5::is_group(file_, std::string(layout::cycle_flags))) recording_.cycle_flags.emplace();
     const auto units = h5::read_texts(h5::open(file_, "/samples/position").id(), "units");
     recording_.axes.resize(units.size());
     for (std::size_t i = 0; i < units.size(); ++i) recording_.axes[i].position_unit = units[i];
@@ -60,6 +62,10 @@ class PartReader {
             std::uint64_t number = 0;
             h5::read_attribute(object, name, h5::native<std::uint64_t>(), &number);
             (*recording_.cycles).*member = number;
+          } else if constexpr (std::is_same_v<Pointer, std::string CycleFlags::*>) {
+            (*recording_.cycle_flags).*member = h5::read_texts(object, name).front();
+          } else if constexpr (std::is_same_v<Pointer, double CycleFlags::*>) {
+            h5::read_attribute(object, name, h5::native<double>(), &((*recording_.cycle_flags).*member));
           }
         },
         value);
@@ -127,14 +133,25 @@ class PartReader {
     }
   }
 
-  void read_events() {
-    const auto dataset = h5::open(file_, "/events");
+  void read_events() { recording_.events = read_records("/events", event_type, unpack_events); }
+
+  void read_cycle_flags() {
+    if (recording_.cycle_flags)
+      recording_.cycle_flags->flags = read_records("/cycle_flags/flags", flag_type, unpack_flags);
+  }
+
+  /// Records of a number and two texts.
+  template <typename T>
+  [[nodiscard]] std::vector<T> read_records(const char* path, h5::Handle (*type)(const TextRoom&),
+                                            std::vector<T> (*unpack)(std::span<const std::byte>,
+                                                                     const TextRoom&)) const {
+    const auto dataset = h5::open(file_, path);
     const hsize_t count = h5::describe(dataset.id()).extent.front();
     const auto sizes = h5::field_sizes(dataset.id());
-    const EventRoom room{.kind = sizes[1], .text = sizes[2]};
+    const TextRoom room{.kind = sizes[1], .text = sizes[2]};
     std::vector<std::byte> records(count * (sizes[0] + sizes[1] + sizes[2]));
-    if (count > 0) h5::read(dataset.id(), event_type(room).id(), count, records.data());
-    recording_.events = unpack_events(records, room);
+    if (count > 0) h5::read(dataset.id(), type(room).id(), count, records.data());
+    return unpack(records, room);
   }
 
   void read_phases() {

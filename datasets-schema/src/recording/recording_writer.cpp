@@ -293,7 +293,7 @@ void RecordingWriter::append(std::span<const Row> rows) {
 void RecordingWriter::append_event(const Event& event) {
   auto& self = *implementation_;
   self.guarded([&] {
-    const EventRoom room;
+    const TextRoom room;
     h5::append(self.events.id(), event_type(room).id(), self.event_rows, 1, pack({&event, 1}, room).data());
     ++self.event_rows;
   });

@@ -30,6 +30,8 @@ hsize_t length_of(char letter, const Recording& recording, hsize_t rows) {
       return recording.cycles->phases.size();
     case 'C':
       return recording.cycles->closing.size();
+    case 'K':
+      return recording.cycle_flags->flags.size();
     default:
       return recording.cycles->grid.size();
   }
@@ -54,7 +56,8 @@ class DatasetWriter {
       : file_(file),
         recording_(recording),
         rows_(rows),
-        sources_{recording.header, recording.axes, recording.cycles ? &*recording.cycles : nullptr} {}
+        sources_{recording.header, recording.axes, recording.cycles ? &*recording.cycles : nullptr,
+                 recording.cycle_flags ? &*recording.cycle_flags : nullptr} {}
 
   void write_samples() {
     for (const auto& rule : layout::datasets()) {
@@ -66,11 +69,7 @@ class DatasetWriter {
   }
 
   void write_events() {
-    EventRoom room{.kind = 1, .text = 1};
-    for (const auto& event : recording_.events) {
-      room.kind = std::max(room.kind, event.kind.size());
-      room.text = std::max(room.text, event.text.size());
-    }
+    const TextRoom room = room_for(recording_.events);
     write_records(layout::dataset("/events"), event_type(room), pack(recording_.events, room).data());
   }
 
@@ -81,6 +80,14 @@ class DatasetWriter {
     for (const auto& rule : layout::datasets()) {
       if (layout::parent(rule.path) == layout::cycles) write_of_cycles(rule);
     }
+  }
+
+  void write_cycle_flags() {
+    if (!recording_.cycle_flags) return;
+    write_group("/cycle_flags");
+    const auto& flags = recording_.cycle_flags->flags;
+    const TextRoom room = room_for(flags);
+    write_records(layout::dataset("/cycle_flags/flags"), flag_type(room), pack(flags, room).data());
   }
 
  private:
@@ -219,6 +226,7 @@ void write_datasets(hid_t file, const Recording& about, const RecordedRows& rows
   writer.write_samples();
   writer.write_events();
   writer.write_cycles();
+  writer.write_cycle_flags();
 }
 
 void require_axes(const Recording& recording) {

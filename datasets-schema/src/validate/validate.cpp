@@ -36,6 +36,7 @@ class ContentCheck {
     check_ticks();
     check_events();
     if (recording_.cycles) check_cycles(*recording_.cycles);
+    if (recording_.cycle_flags) check_cycle_flags(*recording_.cycle_flags);
   }
 
  private:
@@ -189,6 +190,18 @@ class ContentCheck {
           return std::to_string(cycles.grid[row]) + " after " + std::to_string(cycles.grid[row - 1]);
         },
         "positions that increase strictly");
+  }
+
+  void check_cycle_flags(const CycleFlags& flags) {
+    std::uint32_t last = 0;
+    if (recording_.cycles) {
+      for (const PhaseSpan& phase : recording_.cycles->phases) last = std::max(last, phase.cycle);
+    }
+    check_rows(
+        "/cycle_flags/flags", flags.flags.size(),
+        [&](std::size_t row) { return flags.flags[row].cycle < 1 || flags.flags[row].cycle > last; },
+        [&](std::size_t row) { return "cycle " + std::to_string(flags.flags[row].cycle); },
+        last == 0 ? "cycles in /cycles" : "a cycle from 1 to " + std::to_string(last));
   }
 
   const in_process::OpenRecording& file_;

@@ -40,6 +40,34 @@ TEST(Recording, ReadsBackBitForBitOverManyChunks) {
   test::expect_same(read_recording(folder / "r.h5"), recording);
 }
 
+TEST(Recording, KeepsWhatIsSaidOfItsCycles) {
+  const test::TemporaryFolder folder;
+  auto recording = test::sample_recording();
+  recording.cycle_flags = {
+      .created = "2026-01-31T12:00:00Z",
+      .software = "kerf test",
+      .felt = 0.05,
+      .flags = {{.cycle = 1, .fault = "put_down", .reason = "closed for 9.4 s"},
+                {.cycle = 1, .fault = "accepted", .reason = "as it was asked for: 5 µN·m"}}};
+  write_recording(folder / "r.h5", recording);
+  const Recording read = read_recording(folder / "r.h5");
+  test::expect_same(read, recording);
+  ASSERT_TRUE(read.cycle_flags);
+  EXPECT_EQ(read.cycle_flags->created, recording.cycle_flags->created);
+  EXPECT_EQ(read.cycle_flags->software, "kerf test");
+  EXPECT_EQ(read.cycle_flags->felt, 0.05);
+  ASSERT_EQ(read.cycle_flags->flags.size(), 2U);
+  EXPECT_EQ(read.cycle_flags->flags[1].cycle, 1U);
+  EXPECT_EQ(read.cycle_flags->flags[1].fault, "accepted");
+  EXPECT_EQ(read.cycle_flags->flags[1].reason, "as it was asked for: 5 µN·m");
+  recording.cycle_flags->flags.clear();
+  write_recording(folder / "r.h5", recording);
+  EXPECT_TRUE(read_recording(folder / "r.h5").cycle_flags) << "somebody looked, and found nothing";
+  recording.cycle_flags.reset();
+  write_recording(folder / "r.h5", recording);
+  EXPECT_FALSE(read_recording(folder / "r.h5").cycle_flags);
+}
+
 TEST(Recording, MayHaveNoRows) {
   const test::TemporaryFolder folder;
   auto recording = test::sample_recording(0);

@@ -140,6 +140,21 @@ struct Cycles {
   std::vector<double> opening_mean;          ///< G
 };
 
+/// One thing that is said of a cycle.
+struct CycleFlag {
+  std::uint32_t cycle = 0;
+  std::string fault;   ///< "put_down", ..., "by_hand"; "accepted": it is good whatever else is said of it
+  std::string reason;  ///< in a sentence, with its numbers
+};
+
+/// What is wrong with the cycles, in `/cycle_flags`: as `kerf segment` found it, and as a person said since.
+struct CycleFlags {
+  std::string created;   ///< when it was looked at: ISO 8601, UTC
+  std::string software;  ///< by what
+  double felt = 0.0;     ///< force beyond which contact was told, in the unit of the cycles' axis
+  std::vector<CycleFlag> flags;
+};
+
 /// A whole recording in memory, one vector a dataset. Arrays of N x D are row-major. Time, tick, position and
 /// velocity have N rows; any other may be empty and is then left out of the file.
 struct Recording {
@@ -159,6 +174,7 @@ struct Recording {
   std::vector<Channel> channels;  ///< further channels by name
   std::vector<Event> events;
   std::optional<Cycles> cycles;
+  std::optional<CycleFlags> cycle_flags;  ///< none: nobody has looked
 
   [[nodiscard]] std::size_t rows() const noexcept { return time.size(); }
   [[nodiscard]] std::size_t dimensions() const noexcept { return axes.size(); }

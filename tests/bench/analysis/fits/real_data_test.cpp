@@ -246,8 +246,8 @@ TEST_F(RealFit, OfAPunchDependsOnTheWayInTwoRecordingsAndOnTheTimeInThree) {
 }
 
 TEST_F(RealFit, OfAPunchBlamesTheSpreadFromCycleToCycle) {  // finding L4
-  for (const auto* name : {"7_blank_slow_1819", "8_blank_fast_1821", "9_meniscus_slow_1824",
-                           "11_meniscus_fast_1826", "15_skin_knee_lateral_slow_1900"}) {
+  for (const auto* name :
+       {"7_blank_slow_1819", "8_blank_fast_1821", "9_meniscus_slow_1824", "11_meniscus_fast_1826"}) {
     const std::string file = std::string("meniscus/") + name + ".txt";
     KERF_NEEDS_DATA(file);
     auto punch = imported(file, "time=5[ms],position=4[deg],force=2[gf]");
@@ -260,6 +260,21 @@ TEST_F(RealFit, OfAPunchBlamesTheSpreadFromCycleToCycle) {  // finding L4
     // A sensor's steps of 7 mN are nothing beside it.
     EXPECT_LT(fit.floor->noise_n, 0.01 * fit.floor->unlimited_n) << name;
   }
+}
+
+TEST_F(RealFit, OfAPunchWithFewGoodCyclesBlamesThatThereAreFew) {
+  const std::string file = "meniscus/15_skin_knee_lateral_slow_1900.txt";
+  KERF_NEEDS_DATA(file);
+  auto punch = imported(file, "time=5[ms],position=4[deg],force=2[gf]");
+  punch.cycles = find_cycles(punch, {});
+  const RecordingFit good = fit_recording(punch, {.models = {"hunt_crossley"}});
+  EXPECT_THAT(good.blame(good.laws.at(0)),
+              testing::AllOf(testing::HasSubstr("too little data is most to blame"),
+                             testing::HasSubstr("beside the spread from cycle to cycle")));
+  const RecordingFit all =
+      fit_recording(punch, {.models = {"hunt_crossley"}, .rows = {.cycles = {.by = CycleChoice::By::all}}});
+  EXPECT_THAT(all.blame(all.laws.at(0)),
+              testing::HasSubstr("the spread from cycle to cycle is most to blame"));
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ TEST(ContactRows, KeepAToolThatWasPutDownFromDeciding) {  // finding L1
   EXPECT_NEAR(with.laws[0].result.held_out_rmse(), without.laws[0].result.held_out_rmse(), 2e-3);
   EXPECT_THAT(with.warnings, Contains(HasSubstr("rows are out of contact")));
   FitRecordingOptions all = options;
-  all.rows = Counted::all;
+  all.rows.rows = Counted::all;
   EXPECT_LT(fit_recording(idle, all).jnd_n, 0.5 * without.jnd_n) << "asked for, it decides";
 }
 

@@ -46,7 +46,12 @@ schema::Recording three_cycles() {
 
 TEST(Rows, OfChosenCyclesAreExactlyTheirs) {
   schema::Recording recording = three_cycles();
+  recording.cycle_flags = {.flags = {{.cycle = 2, .fault = "outlier", .reason = "far"},
+                                     {.cycle = 3, .fault = "by_hand", .reason = "light"}}};
   keep_cycles(recording, {1, 3});
+  ASSERT_EQ(recording.cycle_flags->flags.size(), 1U) << "that of the cycle that is gone, too";
+  EXPECT_EQ(recording.cycle_flags->flags[0].cycle, 2U) << "numbered as the cycle is";
+  EXPECT_EQ(recording.cycle_flags->flags[0].reason, "light");
   ASSERT_EQ(recording.rows(), 20U);
   for (std::uint64_t i = 0; i < 20; ++i) {
     const std::uint64_t was = i < 10 ? 5 + i : 15 + i;

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/data/recordings/small_recording.h"
+#include "support/program.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -16,6 +19,42 @@ TEST(Sha256, IsThatOfTheStandard) {
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   EXPECT_EQ(sha256_of(std::string_view("")),
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+// Its definition written anew in Python: hashlib.sha256(b"kerf.samples 1\0" + struct.pack("<d", 1) +
+// b"theta\0rad\0N\xc2\xb7m\0"
+// + struct.pack("<d", 1) + b"time\0" + ... ), with the columns as NumPy has their bytes.
+TEST(ContentHash, IsOfWhatWasSampledAndOfNothingElse) {
+  const schema::Recording recording = test::small_recording();
+  const std::string hash = content_sha256_of(schema::RowsInMemory(recording));
+  EXPECT_EQ(hash, "8850ac7b227808c784658d776dfba92a0419eaca5f58a78e4cbd08eb75aba6b5");
+  schema::Recording said = recording;
+  said.header = schema::new_header("another");
+  said.axes[0].contact_position = 0.3;
+  said.events.push_back({.time_s = 0.001, .kind = "stop", .text = "enough"});
+  said.cycles.emplace();
+  said.cycle_flags.emplace();
+  EXPECT_EQ(content_sha256_of(schema::RowsInMemory(said)), hash);
+  schema::Recording other = recording;
+  other.force_measured[3] += 1e-15;
+  EXPECT_NE(content_sha256_of(schema::RowsInMemory(other)), hash);
+  other = recording;
+  other.axes[0].position_unit = "m";
+  EXPECT_NE(content_sha256_of(schema::RowsInMemory(other)), hash);
+  other = recording;
+  other.channels.push_back({.name = "label", .unit = "1", .values = std::vector<double>(11, 0.0)});
+  EXPECT_NE(content_sha256_of(schema::RowsInMemory(other)), hash);
+}
+
+TEST(ContentHash, IsTheSameInAFileAndInMemory) {
+  schema::Recording recording = test::small_recording();
+  recording.compute_time.assign(11, 1e-6F);
+  recording.flags.assign(11, 2);
+  recording.channels = {{.name = "b", .unit = "N", .values = std::vector<double>(11, 2.0)},
+                        {.name = "a", .unit = "m", .values = std::vector<double>(11, 1.0)}};
+  const test::TemporaryFolder folder;
+  schema::write_recording(folder / "r.h5", recording);
+  EXPECT_EQ(content_sha256_of(folder / "r.h5"), content_sha256_of(schema::RowsInMemory(recording)));
 }
 
 }  // namespace

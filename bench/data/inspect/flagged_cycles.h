@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <kerf/schema/recorded_rows.h>
+
+#include "inspect/cycle_flags.h"
+
+namespace kerf::bench {
+
+/// The cycles along an axis with what is wrong with each now; `felt` is the force from which contact is told.
+/// @throws std::invalid_argument without a force along it; schema::FormatError as cycle_facts().
+[[nodiscard]] std::vector<FlaggedCycle> flagged_cycles(const schema::RecordedRows& rows,
+                                                       const schema::Cycles& cycles, double felt);
+
+/// Adds what a person said of cycles, as it stands in a recording: flags by hand, and cycles that are
+/// accepted. What was found there before is passed over.
+void add_what_was_said(std::vector<FlaggedCycle>& cycles, const schema::CycleFlags& stored);
+
+/// What there is to say of the cycles, as a recording keeps it, now and by this program.
+[[nodiscard]] schema::CycleFlags stored_flags(const std::vector<FlaggedCycle>& cycles, double felt);
+
+/// What is said of the cycles of a recording: as it is stored, else as it is found now.
+struct CycleVerdict {
+  std::uint32_t cycle = 0;
+  std::string reason;  ///< empty: it is good
+};
+[[nodiscard]] std::vector<CycleVerdict> verdicts_on_cycles(const schema::RecordedRows& rows, double felt);
+
+}  // namespace kerf::bench
