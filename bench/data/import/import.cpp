@@ -11,8 +11,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "files/mapped_file.h"
 #include "files/memory_room.h"
+#include "formats/file_text.h"
 #include "import/resample.h"
 #include "import/text_table.h"
 #include "import/time_order.h"
@@ -233,9 +233,10 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
 }  // namespace
 
 Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
-  const std::string name = file.string();
-  const MappedFile mapped(file, options.max_bytes);
+  const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
+  const std::string& name = mapped.name();
   Imported imported;
+  imported.warnings = mapped.notes();
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
 
@@ -249,7 +250,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   });
   Rows rows(std::move(table), imported.columns);
   imported.parse_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.text()); });
+  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.bytes()); });
   imported.bad_lines = rows.bad_lines();
   if (rows.size() == 0) {
     throw std::invalid_argument(
@@ -297,9 +298,9 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   return imported;
 }
 
-std::string explain_columns(const std::filesystem::path& file, std::size_t max_bytes) {
-  const MappedFile mapped(file, max_bytes);
-  const TextLayout layout = find_layout(mapped.text(), file.string());
+std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options) {
+  const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
+  const TextLayout layout = find_layout(mapped.text(), mapped.name());
   return fmt::format("its columns are\n{}\nfor example {}", describe_columns(layout, mapped.text()),
                      suggest_map(layout));
 }

@@ -19,8 +19,9 @@ struct ImportOptions {
   double rate_hz = 0.0;            ///< of a file without a time column; 0: there is one
   double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
   double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, within 5 to 401 samples
-  std::size_t max_bytes = LargestInput::import;  ///< of the file
-  bool strict = false;                           ///< refuse a file that has lines which are not data
+  std::size_t max_bytes = LargestInput::import;  ///< of the file, and of what is packed in it
+  std::string sheet;    ///< of a workbook, by name or number; empty: the first with numbers
+  bool strict = false;  ///< refuse a file that has lines which are not data
   ShowProgress progress = show_no_progress;
 };
 
@@ -35,7 +36,7 @@ struct Imported {
   double parse_seconds = 0.0;
 };
 
-/// Reads a text file into a recording with one axis, in SI.
+/// Reads a file of numbers (formats/file_text.h) into a recording with one axis, in SI.
 ///
 /// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
 /// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
@@ -46,6 +47,6 @@ struct Imported {
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
 
 /// The columns of a file and a map to begin with, for a user who gave none.
-[[nodiscard]] std::string explain_columns(const std::filesystem::path& file, std::size_t max_bytes);
+[[nodiscard]] std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options);
 
 }  // namespace kerf::bench

@@ -14,7 +14,7 @@ namespace {
 constexpr double gap_s = 0.5;
 constexpr double margin_s = 0.1;
 constexpr double deviations = 4.0;
-constexpr std::size_t fewest_rows = 20;
+constexpr std::size_t fewest_in_contact = 20;
 
 /// The size from which a force is felt. Noise is taken where a force is felt already: elsewhere a sensor may
 /// stand still, and what was recorded beside the contact is not to decide.
@@ -67,7 +67,7 @@ std::size_t mark_contact(AxisSeries& series, double felt_n) {
   const std::size_t rows = series.force.size();
   const ContactRows found = spans_of(series.time_s, series.force, least_felt(series.force, felt_n, median));
   series.counts.clear();
-  if (found.rows < fewest_rows || found.rows == rows) return rows;
+  if (found.rows < fewest_in_contact || found.rows == rows) return rows;
   series.counts.assign(rows, 0);
   for (const RowSpan& span : found.spans) {
     std::fill(series.counts.begin() + static_cast<std::ptrdiff_t>(span.begin),

@@ -1,0 +1,233 @@
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "formats/cell_format.h"
+#include "formats/file_text.h"
+#include "formats/gzip.h"
+#include "formats/utf16.h"
+#include "import/import.h"
+#include "support/measured_data.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::filesystem::path made(const std::string& name) {
+  return std::filesystem::path(KERF_SOURCE_DIR) / "tests/bench/data/formats/files" / name;
+}
+
+Imported imported(const std::filesystem::path& file, const std::string& map, const std::string& sheet = "") {
+  ImportOptions options{.map = parse_map(map)};
+  options.sheet = sheet;
+  return import_text(file, options);
+}
+
+/// All rows, to the last bit of a double; forces to that of what the file holds.
+void expect_the_motion(const schema::Recording& recording, double force_tolerance = 0.0) {
+  ASSERT_EQ(recording.rows(), 40U);
+  for (std::size_t row = 0; row < 40; ++row) {
+    const double time = static_cast<double>(row) / 100.0;
+    EXPECT_EQ(recording.time[row], time);
+    EXPECT_NEAR(recording.position[row], 0.01 * std::sin(7.0 * time), 4e-18);
+    EXPECT_NEAR(recording.force_measured[row], 300.0 * recording.position[row] + 0.1,
+                1e-15 + force_tolerance);
+  }
+}
+
+class BadFile : public testing::Test {
+ protected:
+  std::string wrote(const std::string& name, const std::string& bytes) {
+    test::write_text(folder_ / name, bytes);
+    return (folder_ / name).string();
+  }
+  static void expect_refused(const std::string& file, const std::string& why,
+                             std::size_t max_bytes = 1U << 20U) {
+    EXPECT_THAT([&] { (void)FileText(file, {.max_bytes = max_bytes}); },
+                ThrowsMessage<std::invalid_argument>(testing::AllOf(HasSubstr(file), HasSubstr(why))));
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST(Gzip, IsUnpackedWhereverItComesFrom) {
+  for (const auto* name : {"punch.txt.gz", "members.txt.gz"}) {
+    const Imported one = imported(made(name), "time=time,position=position,force=force");
+    expect_the_motion(one.recording);
+    EXPECT_THAT(one.warnings, Contains("unpacked by gzip")) << name;
+    EXPECT_THAT(one.recording.header.source, HasSubstr(std::string(name) + " sha256:"));
+  }
+}
+
+TEST_F(BadFile, OfGzipIsRefused) {
+  const std::string packed = test::read_text(made("punch.txt.gz"));
+  expect_refused(wrote("cut.gz", packed.substr(0, packed.size() / 2)), "cut short after");
+  expect_refused(wrote("headless.gz", packed.substr(0, 3)), "cut short after 0 bytes");
+  std::string damaged = packed;
+  damaged[packed.size() / 2] = static_cast<char>(damaged[packed.size() / 2] ^ 0x20);
+  expect_refused(wrote("damaged.gz", damaged), "is damaged after");
+  expect_refused(wrote("more.gz", packed + "rest"), "4 bytes after what gzip packed");
+  EXPECT_NO_THROW(FileText(wrote("padded.gz", packed + std::string(512, '\0')), {.max_bytes = 1U << 20U}));
+  expect_refused(made("punch.txt.gz"), "unpacks to more than 1000 bytes", 1000);
+}
+
+TEST(Utf16, IsReadWithItsMarkAndWithout) {
+  for (const auto* name : {"punch-utf16.txt", "punch-utf16be.txt"}) {
+    expect_the_motion(imported(made(name), "time=time,position=position,force=force").recording);
+  }
+  EXPECT_EQ(utf16_order("1.25\t3.5\n2.25\t4.5\n"), std::nullopt);
+  EXPECT_EQ(utf16_order(std::string(64, '\0')), std::nullopt);
+  EXPECT_EQ(utf8_of_utf16(std::string_view("\xFF\xFE"
+                                           "a\0"
+                                           "\xB5\0"
+                                           "\x1C\x20",
+                                           8),
+                          Utf16::little_endian, "x"),
+            "aµ“");
+}
+
+TEST_F(BadFile, OfUtf16NamesItsByte) {
+  expect_refused(wrote("x.txt", std::string("\xFF\xFE"
+                                            "1\0"
+                                            "\x00\xD8"
+                                            "2\0",
+                                            8)),
+                 "begins as UTF-16, but byte 4 is none");
+}
+
+TEST(Workbook, IsReadAsItWasComputedLast) {
+  const Imported one = imported(made("punch.xlsx"), "time=time,position=position,force=force");
+  const schema::Recording& recording = one.recording;
+  ASSERT_EQ(recording.rows(), 38U) << "two forces are text";
+  EXPECT_EQ(one.bad_lines, (std::vector<std::size_t>{20, 21})) << "rows of the sheet";
+  EXPECT_EQ(recording.time[0], 0.0);
+  EXPECT_EQ(recording.time[37], 0.39);
+  EXPECT_EQ(recording.force_measured[0], 0.1) << "typed with a decimal comma";
+  EXPECT_DOUBLE_EQ(recording.force_measured[15], 300.0 * recording.position[15] + 0.1);
+  EXPECT_EQ(one.layout.units_line, 3U);
+  EXPECT_THAT(one.warnings,
+              Contains(HasSubstr("sheet 'Run 1' is taken, the first with numbers; --sheet takes "
+                                 "another: 'Notes', 'Old' (hidden), 'Run 2'")));
+  EXPECT_THAT(one.warnings, Contains(HasSubstr("9 numbers were written as text, with a decimal comma")));
+  EXPECT_THAT(one.warnings, Contains(HasSubstr("40 formulas have no value in the file")));
+  EXPECT_THAT(one.warnings,
+              Contains(HasSubstr("merged cells hold their value in the first of them alone: A1:C1")));
+  EXPECT_THAT(
+      one.warnings,
+      Contains(HasSubstr("40 cells are dates or times: they are taken in seconds, since 1899-12-30")));
+}
+
+TEST(Workbook, TakesADateForSeconds) {
+  const Imported one = imported(made("punch.xlsx"), "time=at[s],position=position,force=force");
+  ASSERT_EQ(one.recording.rows(), 38U);
+  for (const double time : one.recording.time)
+    EXPECT_NEAR(100.0 * time, std::round(100.0 * time), 2e-3) << "a day's fraction in fifteen digits";
+  EXPECT_NEAR(one.recording.time.back(), 0.39, 1e-5);
+}
+
+TEST(Workbook, TakesTheSheetThatIsAskedFor) {
+  for (const auto* sheet : {"Run 2", "4"}) {
+    const Imported one = imported(made("punch.xlsx"), "time=1[s],position=2[m],force=3[N]", sheet);
+    EXPECT_EQ(one.recording.rows(), 10U);
+    EXPECT_EQ(one.recording.position[9], 0.001 * 0.09);
+  }
+  EXPECT_EQ(imported(made("punch.xlsx"), "time=1[s],position=2[m],force=3[N]", "Run 2").warnings.size(), 0U);
+  const auto refused = test::run_kerf(
+      {"import", made("punch.xlsx").string(), "--sheet", "Run 3", "--map", "time=1", "-o", "/tmp/none.h5"});
+  EXPECT_EQ(refused.exit_status, 2);
+  EXPECT_THAT(
+      refused.errors,
+      HasSubstr("--sheet: there is no sheet 'Run 3'; there are 'Notes', 'Old' (hidden), 'Run 1', 'Run 2'"));
+}
+
+TEST_F(BadFile, OfAZipIsRefused) {
+  const std::string book = test::read_text(made("punch.xlsx"));
+  expect_refused(wrote("cut.xlsx", book.substr(0, book.size() / 2)), "a zip that cannot be opened");
+  expect_refused(made("punch.xlsx"), "unpacks to more than 9000 bytes", 9000);
+}
+
+TEST_F(BadFile, ThatIsChangedAnywhereIsReadOrRefusedInOneLine) {
+  for (const auto* name : {"punch.xlsx", "punch.mat", "plain.mat", "punch.txt.gz"}) {
+    const std::string whole = test::read_text(made(name));
+    for (std::size_t i = 0; i < whole.size(); i += 1 + whole.size() / 200) {
+      std::string changed = whole;
+      changed[i] = static_cast<char>(changed[i] ^ (1 << (i % 8)));
+      const std::string file = wrote("changed", i % 3 == 0 ? whole.substr(0, i) : changed);
+      try {
+        (void)FileText(file, {.max_bytes = 1U << 20U});
+      } catch (const std::invalid_argument& refused) {
+        EXPECT_EQ(std::string(refused.what()).find('\n'), std::string::npos) << name << " " << i;
+      }
+    }
+  }
+}
+
+TEST(CellFormat, TellsDatesAndDurations) {
+  for (const auto* code :
+       {"yyyy-mm-dd", "[h]:mm:ss", "d/m/yy", "\"at\" hh:mm", "[$-409]m/d/yy h:mm AM/PM", "mm:ss.0"})
+    EXPECT_TRUE(is_date_format(164, code)) << code;
+  for (const auto* code : {"General", "0.00", "#,##0 \"days\"", "[Red]0.0", "0.00E+00", "0\\d", "@", "0 \"h"})
+    EXPECT_FALSE(is_date_format(164, code)) << code;
+  EXPECT_TRUE(is_date_format(14, ""));
+  EXPECT_FALSE(is_date_format(2, ""));
+}
+
+TEST(MatFile, HasItsVectorsAsColumns) {
+  const Imported one =
+      imported(made("punch.mat"), "time=t[s],position=run.x[m],force=run.f[N],count=counts[2][1]");
+  expect_the_motion(one.recording, 2e-7);  // float32
+  ASSERT_EQ(one.recording.channels.size(), 1U);
+  EXPECT_EQ(one.recording.channels[0].values[5], 11.0) << "the second column of int16";
+  EXPECT_THAT(one.warnings, Contains(HasSubstr("short has 7 elements and is left out")));
+  EXPECT_THAT(one.warnings, Contains(HasSubstr("run.who is no vector or matrix of real numbers")));
+  expect_the_motion(imported(made("plain.mat"), "time=t[s],position=x[m],force=f[N]").recording);
+}
+
+TEST_F(BadFile, OfMatlabSaysHowToSaveIt) {
+  std::string head =
+      "MATLAB 7.3 MAT-file, Platform: GLNXA64, Created on: Sat Jan 31 12:00:00 2026 HDF5 schema 1.00 .";
+  head.resize(124, ' ');
+  expect_refused(wrote("new.mat", head + std::string("\0\x02IM", 4) + std::string(512, '\0')),
+                 "save it anew with save(..., '-v7')");
+  const std::string plain = test::read_text(made("plain.mat"));
+  expect_refused(wrote("cut.mat", plain.substr(0, 200)), "");
+}
+
+TEST_F(BadFile, OfAnotherKindIsNamed) {
+  expect_refused(wrote("a.txt", "\x89PNG\r\n\x1A\n"), "a picture, not a file of numbers");
+  expect_refused(wrote("b.csv", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1"), "save it as xlsx or as CSV");
+  expect_refused(wrote("c.tdms", "TDSm...."), "a TDMS file");
+}
+
+TEST(Standard, InputTakesEveryFormat) {
+  const test::TemporaryFolder folder;
+  for (const auto* name : {"punch.txt.gz", "punch-utf16.txt", "plain.mat", "punch.xlsx"}) {
+    const bool is_mat = std::string(name) == "plain.mat";
+    const auto outcome = test::run(
+        {"sh", "-c",
+         "cat " + made(name).string() + " | " + KERF_PROGRAM + " import - --map '" +
+             (is_mat ? "time=t[s],position=x[m],force=f[N]" : "time=time,position=position,force=force") +
+             "' --force -o " + (folder / "r.h5").string()});
+    ASSERT_EQ(outcome.exit_status, 0) << name << outcome.errors;
+    EXPECT_GE(schema::read_recording(folder / "r.h5").rows(), 38U) << name;
+  }
+}
+
+TEST(Workbook, OfARelaxationIsTheOneOfItsText) {
+  const std::string file = "vhb/relaxation_4d0.xlsx";
+  KERF_NEEDS_DATA(file);
+  const Imported one = imported(test::measured_file(file),
+                                "time=Time_s[s],position=CalculatedValue[mm],force=AdjustedForce[mN]");
+  ASSERT_EQ(one.recording.rows(), 801U);
+  EXPECT_EQ(one.recording.time[2], 1.0);
+  EXPECT_EQ(one.recording.force_measured[1], 33.21911229946524e-3) << "as openpyxl reads it";
+}
+
+}  // namespace
+}  // namespace kerf::bench
