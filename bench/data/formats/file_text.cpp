@@ -23,9 +23,10 @@ void refuse_what_cannot_be_read(std::string_view bytes, const std::string& name)
     throw std::invalid_argument(
         fmt::format("{}: a TDMS file; export it from LabVIEW as text (lvm) or CSV", name));
   if (bytes.starts_with("\x89HDF"))
-    throw std::invalid_argument(fmt::format(
-        "{}: a binary file, HDF5; a recording of Kerf's need not be imported, of others export the columns as CSV",
-        name));
+    throw std::invalid_argument(
+        fmt::format("{}: a binary file, HDF5; a recording of Kerf's need not be imported, of others export "
+                    "the columns as CSV",
+                    name));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t piece = std::size_t{1} << 20U;
+constexpr std::size_t unpacked_at_once = std::size_t{1} << 20U;
 
 /// zlib at work on one member after the other.
 class Inflating {
@@ -28,15 +28,15 @@ class Inflating {
     inflateReset(&stream_);
     std::size_t taken = 0;
     while (true) {
-      const auto now = static_cast<uInt>(std::min<std::size_t>(bytes.size() - taken, piece));
+      const auto now = static_cast<uInt>(std::min<std::size_t>(bytes.size() - taken, unpacked_at_once));
       stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data() + taken));  // zlib reads only
       stream_.avail_in = now;
       const std::size_t before = out.size();
-      out.resize(before + piece);
+      out.resize(before + unpacked_at_once);
       stream_.next_out = reinterpret_cast<Bytef*>(out.data() + before);
-      stream_.avail_out = static_cast<uInt>(piece);
+      stream_.avail_out = static_cast<uInt>(unpacked_at_once);
       const int status = inflate(&stream_, Z_NO_FLUSH);
-      out.resize(before + piece - stream_.avail_out);
+      out.resize(before + unpacked_at_once - stream_.avail_out);
       taken += now - stream_.avail_in;
       if (out.size() > limits.at_most)
         throw std::invalid_argument(

@@ -1,13 +1,16 @@
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "formats/cell_format.h"
 #include "formats/file_text.h"
 #include "formats/gzip.h"
+#include "formats/run_apart.h"
 #include "formats/utf16.h"
 #include "import/import.h"
 #include "support/measured_data.h"
@@ -187,6 +190,23 @@ TEST(MatFile, HasItsVectorsAsColumns) {
   EXPECT_THAT(one.warnings, Contains(HasSubstr("short has 7 elements and is left out")));
   EXPECT_THAT(one.warnings, Contains(HasSubstr("run.who is no vector or matrix of real numbers")));
   expect_the_motion(imported(made("plain.mat"), "time=t[s],position=x[m],force=f[N]").recording);
+}
+
+TEST(RunApart, BringsBackWhatIsSaidAndOutlivesAFall) {
+  const UnpackedLimits limits{.name = "x.mat", .at_most = 1U << 20U};
+  EXPECT_EQ(run_apart(limits, [] { return std::string("told"); }), "told");
+  EXPECT_THAT([&] { (void)run_apart(limits, []() -> std::string { throw std::invalid_argument("no"); }); },
+              ThrowsMessage<std::invalid_argument>("no"));
+  EXPECT_THAT([&] { (void)run_apart(limits, []() -> std::string { _exit(0); }); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("x.mat: it is damaged")));
+  EXPECT_THAT(
+      [&] {
+        (void)run_apart(limits, []() -> std::string {
+          kill(getpid(), SIGKILL);
+          return {};
+        });
+      },
+      ThrowsMessage<std::invalid_argument>(HasSubstr("its reader fell over it")));
 }
 
 TEST_F(BadFile, OfMatlabSaysHowToSaveIt) {
