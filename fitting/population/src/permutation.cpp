@@ -86,14 +86,27 @@ PermutationTest drawn(PermutationTest test, const Tally& tally) {
   return test;
 }
 
+/// Differences of blocks, as they are added up.
+struct Sums {
+  double sum = 0.0;
+  double squares = 0.0;
+
+  [[nodiscard]] Sums with(double difference) const {
+    return {.sum = sum + difference, .squares = squares + difference * difference};
+  }
+  /// t = r sqrt((n - 1) / (n - r^2)) grows with this r, which stays finite where all differences are equal.
+  [[nodiscard]] double statistic() const { return squares > 0.0 ? sum / std::sqrt(squares) : 0.0; }
+};
+
 /// Adds up every choice within every block, one block after the other.
-void add_up(const std::vector<std::vector<double>>& differences, std::size_t block, double sum,
+void add_up(const std::vector<std::vector<double>>& differences, std::size_t block, const Sums& sums,
             Tally& tally) {
   if (block == differences.size()) {
-    tally.add(sum);
+    tally.add(sums.statistic());
     return;
   }
-  for (const double difference : differences[block]) add_up(differences, block + 1, sum + difference, tally);
+  for (const double difference : differences[block])
+    add_up(differences, block + 1, sums.with(difference), tally);
 }
 
 bool is_even(const Block& block) { return 2 * block.first == block.values.size(); }
@@ -123,33 +136,33 @@ PermutationTest permute_within(const std::vector<Block>& blocks, Exchange exchan
                                const CompareOptions& options) {
   PermutationTest test{.exchange = exchange};
   double ways = 1.0;
-  double seen = 0.0;
+  Sums seen;
   for (const Block& block : blocks) {
     ways *= ways_of(block);
-    seen += difference_of(block.values, block.first);
+    seen = seen.with(difference_of(block.values, block.first));
   }
   const bool has_mirror = std::all_of(blocks.begin(), blocks.end(), is_even);
   test.least_p = std::min(1.0, (has_mirror ? 2.0 : 1.0) / ways);
-  Tally tally(seen);
+  Tally tally(seen.statistic());
   if (ways <= options.most_exact) {
     std::vector<std::vector<double>> differences(blocks.size());
     for (std::size_t i = 0; i < blocks.size(); ++i)
       for_each_choice(blocks[i], [&](const std::vector<double>& values) {
         differences[i].push_back(difference_of(values, blocks[i].first));
       });
-    add_up(differences, 0, 0.0, tally);
+    add_up(differences, 0, {}, tally);
     test.p = tally.exact();
     return test;
   }
   Random random(options.seed);
   std::vector<Block> shuffled = blocks;
   for (int i = 0; i < options.draws; ++i) {
-    double sum = 0.0;
+    Sums sums;
     for (Block& block : shuffled) {
       random.shuffle(block.values);
-      sum += difference_of(block.values, block.first);
+      sums = sums.with(difference_of(block.values, block.first));
     }
-    tally.add(sum);
+    tally.add(sums.statistic());
   }
   return drawn(test, tally);
 }

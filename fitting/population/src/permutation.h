@@ -17,7 +17,7 @@ struct Block {
 [[nodiscard]] PermutationTest permute_units(const Block& units, Exchange exchange,
                                             const CompareOptions& options);
 
-/// Exchanges within blocks: the mean over blocks of the difference of means.
+/// Exchanges within blocks: t of the differences of means, over blocks.
 [[nodiscard]] PermutationTest permute_within(const std::vector<Block>& blocks, Exchange exchange,
                                              const CompareOptions& options);
 

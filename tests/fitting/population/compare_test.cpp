@@ -83,7 +83,7 @@ Pair crossed_pair() {
   Pair pair;
   for (int i = 0; i < 4; ++i) {
     const std::string name = std::to_string(i);
-    for (const double more : {0.0, 0.01}) {
+    for (const double more : {0.0, 0.01 + 0.003 * i}) {
       pair.first.push_back(
           {.value = 10.0 * i + 1.0 + more + 0.02 * i, .standard_error = 0.01, .specimen = name});
       pair.second.push_back({.value = 10.0 * i + more, .standard_error = 0.01, .specimen = name});

@@ -42,5 +42,16 @@ TEST(DrawerOfKnownTruth, HasFewFalseAlarms) {
   EXPECT_GE(found(apart, 50, 4).told_tissues, 40);
 }
 
+TEST(DrawerOfKnownTruth, RaisesFewAlarmsWhereSpecimensReactUnlikeEachOther) {
+  CompareOptions options;
+  options.draws = 199;
+  options.most_exact = 300;
+  Drawer reacting;
+  reacting.specimens = {8, 8, 8};
+  reacting.interaction = 0.2;
+  EXPECT_LE(found(reacting, 100, 8, options).speeds, 13)
+      << "a mean of differences would alarm twice as often";
+}
+
 }  // namespace
 }  // namespace kerf::population
