@@ -80,8 +80,9 @@ struct Pair {
 /// test permutes specimens, by Welch's t of their means [ChungRomano2013]. Crossed (two or more specimens in
 /// both): differences within each specimen, as a group of their own; the test permutes within specimens, by
 /// t of their differences: exact where the factor does nothing, and near its level where specimens only react
-/// unlike each other [ChungRomano2013]. Specimens in one group only are then left out; if only one is in both, it is left out. p is
-/// the share of permutations no less extreme; drawn ones count with the data among them [PhipsonSmyth2010].
+/// unlike each other [ChungRomano2013]. Specimens in one group only are then left out; if only one is in
+/// both, it is left out. p is the share of permutations no less extreme; drawn ones count with the data among
+/// them [PhipsonSmyth2010].
 [[nodiscard]] std::vector<Comparison> compare(std::span<const Pair> pairs,
                                               const CompareOptions& options = {});
 
