@@ -30,6 +30,9 @@ constexpr const char* good = "good";
 struct PrepareVerbArguments {
   std::string recording;
   std::string output;
+  std::string blank;
+  std::string uncovered;
+  std::optional<double> blank_speeds;
   std::string free;
   std::string cycles;
   std::string filter;
@@ -54,6 +57,10 @@ PrepareOptions options_of(const PrepareVerbArguments& arguments) {
       throw std::invalid_argument("--causal, --filter-position and --filter-chart need --filter");
     }
   }
+  if (arguments.blank.empty() && (!arguments.uncovered.empty() || arguments.blank_speeds))
+    throw std::invalid_argument("--uncovered and --blank-speeds need --blank");
+  if (arguments.blank_speeds && *arguments.blank_speeds < 1.0)
+    throw std::invalid_argument("--blank-speeds: it is a factor of 1 or more");
   if (options.drift && !options.bias) throw std::invalid_argument("--drift needs --bias");
   weight.base_frame = arguments.frame == "base";
   if (weight.mass_kg || !arguments.centre.empty()) {
@@ -109,6 +116,11 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
     cycles = flagged_cycles(arguments.recording);
     options.cycles = parse_cycles(good_cycles(cycles));
   }
+  if (!arguments.blank.empty()) {
+    options.blank = read_blank(arguments.blank);
+    options.blank->drop = arguments.uncovered == "drop";
+    if (arguments.blank_speeds) options.blank->speed_factor = *arguments.blank_speeds;
+  }
   const Prepared prepared = prepare_file(arguments.recording, options);
   if (!arguments.filter_chart.empty())
     write_whole_file(arguments.filter_chart, filter_response_svg(*prepared.filter),
@@ -147,6 +159,18 @@ void add_onset_options(Verb& verb, PrepareVerbArguments& arguments) {
   verb.add_option("--score-labels", arguments.labels, "CHANNEL=VALUE: score the contacts against labels");
 }
 
+void add_blank_options(Verb& verb, PrepareVerbArguments& arguments) {
+  verb.add_option(
+      "--blank", arguments.blank,
+      "Recording of the tool cutting nothing: its friction, by position and direction, is taken off");
+  verb.add_option(
+          "--uncovered", arguments.uncovered,
+          "With --blank: rows where it has not been stay as they are (keep, the default) or go (drop)")
+      .one_of({"keep", "drop"});
+  verb.add_option("--blank-speeds", arguments.blank_speeds,
+                  "With --blank: how much faster or slower than its strokes one may be (default: 2)");
+}
+
 void add_filter_options(Verb& verb, PrepareVerbArguments& arguments) {
   verb.add_option(
       "--filter", arguments.filter,
@@ -164,9 +188,10 @@ void add_prepare(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<PrepareVerbArguments>();
   PrepareOptions& options = arguments->options;
   Verb verb = add_verb(
-      app, context, "prepare", "Prepare a recording for a fit: bias, weight, contacts, filter, rows",
+      app, context, "prepare", "Prepare a recording for a fit: bias, weight, blank, contacts, filter, rows",
       "kerf prepare cut.h5 -o clean.h5 --drop-gaps --bias --drift --onset --filter butterworth2:20\n\n"
-      "Steps run in this order, whatever the order of the options: gaps, weight, bias and drift, onset, "
+      "Steps run in this order, whatever the order of the options: gaps, weight, blank, bias and drift, "
+      "onset, "
       "filter,\n"
       "time span, cycles. Each is noted in the history of the new recording ('kerf info').",
       [arguments, &context] { run_prepare(*arguments, context); });
@@ -181,6 +206,7 @@ void add_prepare(CLI::App& app, Context& context) {
   verb.add_option("--frame", arguments->frame, "Axes in which the forces stand")
       .one_of({"sensor", "base"})
       .with_default();
+  add_blank_options(verb, *arguments);
   verb.add_flag("--bias", options.bias, "Take off the force's mean without contact");
   verb.add_flag("--drift", options.drift, "With --bias: a straight line in time");
   add_onset_options(verb, *arguments);

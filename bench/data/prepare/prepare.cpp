@@ -103,6 +103,7 @@ class Run {
     if (options_.drop_gaps) drop_gaps();
     const bool needs_free = (options_.weight && !options_.weight_options.mass_kg) || options_.bias;
     if (options_.weight) take_weight();
+    if (options_.blank) take_blank();
     if (options_.onset || options_.labels || (needs_free && options_.bias)) find();
     if (options_.bias) take_bias();
     if (options_.onset) store_onsets();
@@ -112,7 +113,7 @@ class Run {
     if (!options_.cycles.empty()) choose_cycles();
     if (done_.steps.empty() && !done_.score) {
       throw std::invalid_argument(
-          "nothing to do: ask for --drop-gaps, --weight, --bias, --onset, --filter, --from, --to or "
+          "nothing to do: ask for --drop-gaps, --weight, --blank, --bias, --onset, --filter, --from, --to or "
           "--cycles");
     }
     if (done_.recording.rows() == 0) throw std::invalid_argument("no row is left");
@@ -170,6 +171,12 @@ class Run {
       }
     }
     note(text);
+  }
+
+  void take_blank() {
+    done_.blank = remove_blank(recording(), *options_.blank);
+    done_.warnings.insert(done_.warnings.end(), done_.blank->warnings.begin(), done_.blank->warnings.end());
+    note(blank_step(*done_.blank));
   }
 
   void take_bias() {

@@ -9,6 +9,7 @@
 #include <kerf/schema/recording.h>
 
 #include "prepare/bias.h"
+#include "prepare/blank_off.h"
 #include "prepare/filter.h"
 #include "prepare/onset.h"
 #include "prepare/score.h"
@@ -27,6 +28,7 @@ struct PrepareOptions {
   bool drop_gaps = false;
   bool weight = false;
   WeightOptions weight_options;
+  std::optional<BlankOptions> blank;
   bool bias = false;
   bool drift = false;  ///< with the bias
   bool onset = false;
@@ -48,6 +50,7 @@ struct Prepared {
   std::size_t rows_before = 0;
   std::size_t gap_rows = 0;
   std::optional<Weight> weight;
+  std::optional<BlankTaken> blank;
   std::optional<Bias> bias;
   std::string contact_signal;
   std::optional<ContactsFound> contacts;  ///< rows count as they did before rows were chosen
@@ -59,11 +62,12 @@ struct Prepared {
 
 /// Runs the steps that are asked for, always in this order:
 ///
-///     gaps -> weight -> bias and drift -> onset -> score -> filter -> time span -> cycles
+///     gaps -> weight -> blank -> bias and drift -> onset -> score -> filter -> time span -> cycles
 ///
-/// Contacts are looked for in the force before the filter, which would smear them; rows are chosen last, so
-/// that the filter sees no seams and the bias comes from all free rows. Every step appends a line to the
-/// recording's history.
+/// The blank goes before the bias, which takes what the zeros of both differ by, and before contacts are
+/// looked for, since friction is none. Contacts are looked for in the force before the filter, which would
+/// smear them; rows are chosen last, so that the filter sees no seams and the bias comes from all free rows.
+/// Every step appends a line to the recording's history.
 /// @throws std::invalid_argument if nothing is asked for, or a step cannot be done.
 [[nodiscard]] Prepared prepare(schema::Recording recording, const PrepareOptions& options);
 

@@ -26,6 +26,11 @@ Prepared prepare_file(const std::filesystem::path& file, const PrepareOptions& o
   return prepared;
 }
 
+BlankOptions read_blank(const std::filesystem::path& file) {
+  return {
+      .recording = read_whole_recording(file), .file = file.filename().string(), .sha256 = sha256_of(file)};
+}
+
 Labels parse_labels(const std::string& text) {
   const auto equals = text.rfind('=');
   Labels labels;

@@ -11,6 +11,9 @@ namespace kerf::bench {
 /// @throws std::invalid_argument that names the file; as schema::read_recording() does.
 [[nodiscard]] Prepared prepare_file(const std::filesystem::path& recording, const PrepareOptions& options);
 
+/// A blank's file, with its hash. @throws as schema::read_recording() does.
+[[nodiscard]] BlankOptions read_blank(const std::filesystem::path& file);
+
 /// "CHANNEL=VALUE". @throws std::invalid_argument
 [[nodiscard]] Labels parse_labels(const std::string& text);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -39,6 +41,76 @@ ordered_json to_json(const Bias& bias) {
                     {"correlation_rows", axis.correlation_rows}});
   }
   return {{"rows", bias.rows}, {"axes", axes}};
+}
+
+ordered_json to_json(const BlankBranch& branch) {
+  ordered_json mean = ordered_json::array();
+  ordered_json spread = ordered_json::array();
+  for (std::size_t i = 0; i < branch.mean.size(); ++i) {
+    mean.push_back(json_number(branch.mean[i]));
+    spread.push_back(json_number(branch.spread[i]));
+  }
+  return {{"mean", mean},
+          {"spread", spread},
+          {"cycles", branch.cycles},
+          {"slowest", branch.slowest},
+          {"median_speed", branch.median_speed},
+          {"fastest", branch.fastest}};
+}
+
+ordered_json to_json(const UncoveredRows& uncovered) {
+  ordered_json json{{"rows", uncovered.rows}, {"least", nullptr}, {"most", nullptr}};
+  if (uncovered.rows > 0) {
+    json["least"] = json_number(uncovered.least);
+    json["most"] = json_number(uncovered.most);
+  }
+  return json;
+}
+
+ordered_json to_json(const BlankTaken& taken) {
+  const ToolForce& tool = taken.tool;
+  ordered_json left_out = ordered_json::array();
+  for (const BlankCycleLeftOut& cycle : tool.left_out)
+    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
+  const auto known = [](const std::optional<double>& value) {
+    return value ? json_number(*value) : ordered_json(nullptr);
+  };
+  return {
+      {"file", taken.file},
+      {"uuid", taken.uuid},
+      {"sha256", taken.sha256},
+      {"axis", taken.axis},
+      {"force_unit", taken.force_unit},
+      {"position_unit", taken.position_unit},
+      {"rows", taken.rows},
+      {"rows_covered", taken.covered},
+      {"of_no_cycle", to_json(taken.of_no_cycle)},
+      {"out_of_range", to_json(taken.out_of_range)},
+      {"too_fast", to_json(taken.too_fast)},
+      {"too_slow", to_json(taken.too_slow)},
+      {"uncovered", taken.are_dropped ? "drop" : "keep"},
+      {"force_rms", taken.force_rms},
+      {"taken_rms", taken.taken_rms},
+      {"spread_rms", taken.spread_rms},
+      {"error_rms", taken.error_rms},
+      {"told_share", taken.told_share},
+      {"negative_before", taken.negative_before},
+      {"negative_after", taken.negative_after},
+      {"pulling_share", taken.pulling_share},
+      {"pulling_least", taken.pulling_share > 0.0 ? json_number(taken.pulling_least) : ordered_json(nullptr)},
+      {"pulling_most", taken.pulling_share > 0.0 ? json_number(taken.pulling_most) : ordered_json(nullptr)},
+      {"closing_speed", taken.closing_speed},
+      {"opening_speed", taken.opening_speed},
+      {"inertia",
+       {{"value", known(tool.inertia.value)},
+        {"error", known(tool.inertia.error)},
+        {"noise_share", tool.inertia.noise_share},
+        {"determined", tool.inertia.is_determined}}},
+      {"cycles", tool.used},
+      {"cycles_left_out", left_out},
+      {"grid", tool.grid},
+      {"closing", to_json(tool.closing)},
+      {"opening", to_json(tool.opening)}};
 }
 
 ordered_json to_json(const ContactsFound& found, const std::string& signal) {
@@ -105,6 +177,30 @@ void add_filter(const FilterReport& report, Lines& lines) {
   }
 }
 
+void add_blank(const BlankTaken& taken, Lines& lines) {
+  const std::string& unit = taken.force_unit;
+  lines.push_back(fmt::format(
+      "  {:.4g} {} rms of {:.4g} taken off; the blank's spread from cycle to cycle {:.3g}, the error of its "
+      "mean "
+      "{:.3g}; beyond two errors in {:.0f} % of the rows",
+      taken.taken_rms, unit, taken.force_rms, taken.spread_rms, taken.error_rms, 100.0 * taken.told_share));
+  for (const BlankCycleLeftOut& cycle : taken.tool.left_out)
+    lines.push_back(fmt::format("  cycle {} of the blank not used: {}", cycle.number, cycle.reason));
+  const auto uncovered = [&](std::string_view what, const UncoveredRows& rows) {
+    if (rows.rows == 0) return;
+    lines.push_back(fmt::format("  {} rows {}, at {:.4g} to {:.4g} {}: {}", rows.rows, what, rows.least,
+                                rows.most, taken.position_unit,
+                                taken.are_dropped ? "left out" : "left as they were"));
+  };
+  uncovered("where the blank has not been", taken.out_of_range);
+  uncovered("of strokes faster than the blank's", taken.too_fast);
+  uncovered("of strokes slower than the blank's", taken.too_slow);
+  uncovered("of no cycle", taken.of_no_cycle);
+  lines.push_back(fmt::format(
+      "  below zero before {:.1f} %, after {:.1f} %, by more than two spreads and 0.05 N {:.1f} %",
+      100.0 * taken.negative_before, 100.0 * taken.negative_after, 100.0 * taken.pulling_share));
+}
+
 void add_score(const ContactScore& score, Lines& lines) {
   lines.push_back(fmt::format(
       "  of {} labelled {} found, {} missed; of {} detected {} false, {} more on one label", score.labelled,
@@ -128,6 +224,7 @@ ordered_json prepared_as_json(const Prepared& prepared) {
                       {"rows", prepared.recording.rows()},
                       {"gap_rows", prepared.gap_rows}};
   if (prepared.weight) result["weight"] = to_json(*prepared.weight);
+  if (prepared.blank) result["blank"] = to_json(*prepared.blank);
   if (prepared.bias) result["bias"] = to_json(*prepared.bias);
   if (prepared.contacts) result["contacts"] = to_json(*prepared.contacts, prepared.contact_signal);
   if (prepared.filter) result["filter"] = to_json(*prepared.filter);
@@ -142,6 +239,7 @@ std::vector<std::string> prepared_lines(const Prepared& prepared) {
   for (const std::string& step : prepared.steps) {
     if (!step.starts_with("filter ")) lines.push_back(step);
   }
+  if (prepared.blank) add_blank(*prepared.blank, lines);
   if (prepared.filter) add_filter(*prepared.filter, lines);
   if (prepared.score) add_score(*prepared.score, lines);
   return lines;

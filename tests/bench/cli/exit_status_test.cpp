@@ -46,6 +46,7 @@ const std::vector<Words> with_input{
     {"import", "INPUT"},
     {"repair", "INPUT"},
     {"prepare", "INPUT", "--bias", "-o", "FOLDER/out.h5"},
+    {"prepare", "FOLDER/r.h5", "--blank", "INPUT", "-o", "FOLDER/out.h5"},
     {"segment", "INPUT"},
     {"info", "INPUT"},
     {"info", "--follow", "INPUT"},
