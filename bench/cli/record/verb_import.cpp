@@ -58,7 +58,8 @@ void run_import(ImportVerbArguments arguments, Context& context) {
 void add_import(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ImportVerbArguments>();
   Verb verb = add_verb(
-      app, context, "import", "Turn CSV, TSV, an instrument's text, a workbook or a MAT-file into a recording, in SI",
+      app, context, "import",
+      "Turn CSV, TSV, an instrument's text, a workbook or a MAT-file into a recording, in SI",
       "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
       "raw\n"
@@ -75,18 +76,25 @@ void add_import(CLI::App& app, Context& context) {
       "reported.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data, "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input").required();
+  verb.add_option("DATA", arguments->data,
+                  "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input")
+      .required();
   verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
+  verb.add_option("--stretch", arguments->options.stretch,
+                  "Which stretch of a file whose clock starts anew, from 1 (else such a file is refused)")
+      .within(1, 1'000'000);
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
       .positive();
   verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]").positive();
   verb.add_option("--velocity-window", arguments->options.velocity_window_s,
                   "Window of the derived velocity [s] (default: 0.02, within 5 to 401 samples)")
       .positive();
-  verb.add_option("--max-bytes", arguments->options.max_bytes, "Refuse a larger file, or one that unpacks to more").with_default();
+  verb.add_option("--max-bytes", arguments->options.max_bytes,
+                  "Refuse a larger file, or one that unpacks to more")
+      .with_default();
   verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
   verb.add_flag("--force", arguments->force, "Replace an existing recording");
 }

@@ -70,6 +70,29 @@ class Rows {
     }
   }
 
+  /// Keeps the stretch of a clock that starts anew which was asked for. @throws std::invalid_argument if none
+  /// was, or it is not there.
+  void keep_stretch(std::size_t time_column, std::size_t asked, const std::string& name) {
+    std::vector<std::size_t> begins = clock_restarts(table_.columns[time_column]);
+    if (begins.empty() && asked <= 1) return;
+    if (asked == 0)
+      throw std::invalid_argument(fmt::format(
+          "{}:{}: the clock starts anew here, and at {} places in all: take one of its {} stretches by "
+          "--stretch 1 to {}, or map "
+          "no time and give --rate HZ for one recording of all",
+          name, table_.line_of(begins.front()), begins.size(), begins.size() + 1, begins.size() + 1));
+    if (asked > begins.size() + 1)
+      throw std::invalid_argument(
+          fmt::format("{}: --stretch {}: its clock starts {} times", name, asked, begins.size() + 1));
+    begins.insert(begins.begin(), 0);
+    begins.push_back(size());
+    first_ = begins[asked - 1];
+    for (auto& column : table_.columns) {
+      column.resize(begins[asked]);
+      column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_));
+    }
+  }
+
   /// Leaves out the rows whose times do not increase; returns their lines.
   std::vector<std::size_t> leave_out_misplaced(std::size_t time_column) {
     const auto& time = table_.columns[time_column];
@@ -85,7 +108,7 @@ class Rows {
       if (next != kept.end() && *next == row) {
         ++next;
       } else {
-        lines.push_back(table_.line_of(row));
+        lines.push_back(table_.line_of(first_ + row));
       }
     }
     for (auto& column : table_.columns) {
@@ -97,6 +120,7 @@ class Rows {
 
  private:
   TextTable table_;
+  std::size_t first_ = 0;  ///< row of the table that comes first
 };
 
 /// Numbers the rows, with a jump at every gap.
@@ -180,11 +204,14 @@ void take_time(Imported& imported, Rows& rows, const std::string& name, const Im
       throw std::invalid_argument(fmt::format(
           "{}: --map maps no time; map one, or give --rate HZ for samples at a uniform rate", name));
     }
+    if (options.stretch > 0)
+      throw std::invalid_argument("--stretch is of a time that --map takes from a column");
     for (std::size_t row = 0; row < rows.size(); ++row)
       time.push_back(static_cast<double>(row) / options.rate_hz);
     return;
   }
   const auto index = static_cast<std::size_t>(column - imported.columns.data());
+  rows.keep_stretch(index, options.stretch, name);
   imported.misplaced_lines = rows.leave_out_misplaced(index);
   time = std::move(rows.column(index));
   if (time.empty()) {
@@ -292,7 +319,8 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
   add_history(
       recording.header,
-      fmt::format("import: {} rows of {}{}", recording.rows(), file.filename().string(),
+      fmt::format("import: {} rows of {}{}{}", recording.rows(), file.filename().string(),
+                  options.stretch > 0 ? fmt::format(", stretch {}", options.stretch) : std::string(),
                   options.resample_hz > 0.0 ? fmt::format(", resampled to {:g} Hz", options.resample_hz)
                                             : std::string()));
   return imported;

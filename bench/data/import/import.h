@@ -20,8 +20,9 @@ struct ImportOptions {
   double resample_hz = 0.0;        ///< uniform rate to resample to; 0: leave the samples as they are
   double velocity_window_s = 0.0;  ///< of the derivative; 0: 20 ms, within 5 to 401 samples
   std::size_t max_bytes = LargestInput::import;  ///< of the file, and of what is packed in it
-  std::string sheet;    ///< of a workbook, by name or number; empty: the first with numbers
-  bool strict = false;  ///< refuse a file that has lines which are not data
+  std::string sheet;        ///< of a workbook, by name or number; empty: the first with numbers
+  std::size_t stretch = 0;  ///< of a file whose clock starts anew, from 1; 0: it has one
+  bool strict = false;      ///< refuse a file that has lines which are not data
   ShowProgress progress = show_no_progress;
 };
 
@@ -41,8 +42,9 @@ struct Imported {
 /// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
 /// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
 /// `misplaced_lines`, a warning and an event. A file of which more lines would be left out than kept is
-/// refused, and so is infinity. Gaps become jumps of `tick`. NaN stays as it is and is told of. The velocity
-/// is derived from the position by a zero-phase parabolic fit unless the map names one.
+/// refused, and so are infinity and a clock that starts anew, unless one of its stretches is asked for. Gaps
+/// become jumps of `tick`. NaN stays as it is and is told of. The velocity is derived from the position by a
+/// zero-phase parabolic fit unless the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
 

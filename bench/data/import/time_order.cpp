@@ -1,6 +1,7 @@
 #include "import/time_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -34,6 +35,37 @@ std::vector<std::size_t> rows_in_order(std::span<const double> time_s) {
     last = time_s[row];
   }
   return rows;
+}
+
+namespace {
+
+constexpr std::size_t fewest_of_a_stretch = 10;
+constexpr std::size_t looked_at = 5;
+
+double middle_of(std::span<const double> time_s, std::size_t begin, std::size_t end) {
+  std::array<double, looked_at> some{};
+  std::size_t count = 0;
+  for (std::size_t row = begin; row < end && count < looked_at; ++row) {
+    if (std::isfinite(time_s[row])) some.at(count++) = time_s[row];
+  }
+  std::sort(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+  return count == 0 ? std::numeric_limits<double>::quiet_NaN() : some.at(count / 2);
+}
+
+}  // namespace
+
+std::vector<std::size_t> clock_restarts(std::span<const double> time_s) {
+  std::vector<std::size_t> restarts;
+  std::size_t begin = 0;
+  for (std::size_t row = fewest_of_a_stretch; row + fewest_of_a_stretch <= time_s.size(); ++row) {
+    if (row - begin < fewest_of_a_stretch || !(time_s[row] < time_s[row - 1])) continue;
+    const double start = middle_of(time_s, begin, begin + looked_at);
+    const double half = 0.5 * (middle_of(time_s, row - looked_at, row) - start);
+    if (!(time_s[row] < start + half) || !(middle_of(time_s, row, row + looked_at) < start + half)) continue;
+    restarts.push_back(row);
+    begin = row;
+  }
+  return restarts;
 }
 
 }  // namespace kerf::bench

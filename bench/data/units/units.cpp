@@ -19,6 +19,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr double standard_gravity = 9.80665;  // [m/s^2], by definition; makes gram-force a force
+constexpr double inch = 0.0254;               // exact, since 1959
+constexpr double pound = 0.45359237;          // likewise [kg]
 
 struct Symbol {
   std::string_view text;
@@ -33,20 +35,27 @@ constexpr std::array symbols{
     Symbol{"us", 1e-6, "s"},
     Symbol{"µs", 1e-6, "s"},
     Symbol{"min", 60.0, "s"},
+    Symbol{"h", 3600.0, "s"},
     Symbol{"m", 1.0, "m"},
     Symbol{"cm", 1e-2, "m"},
     Symbol{"mm", 1e-3, "m"},
     Symbol{"um", 1e-6, "m"},
     Symbol{"µm", 1e-6, "m"},
+    Symbol{"in", inch, "m"},
+    Symbol{"ft", 12.0 * inch, "m"},
     Symbol{"rad", 1.0, "rad"},
     Symbol{"mrad", 1e-3, "rad"},
     Symbol{"deg", std::numbers::pi / 180.0, "rad"},
     Symbol{"°", std::numbers::pi / 180.0, "rad"},
+    Symbol{"rev", 2.0 * std::numbers::pi, "rad"},
+    Symbol{"rpm", std::numbers::pi / 30.0, "rad/s"},
     Symbol{"N", 1.0, "N"},
     Symbol{"mN", 1e-3, "N"},
     Symbol{"kN", 1e3, "N"},
     Symbol{"gf", 1e-3 * standard_gravity, "N"},
     Symbol{"kgf", standard_gravity, "N"},
+    Symbol{"lbf", pound* standard_gravity, "N"},
+    Symbol{"ozf", pound / 16.0 * standard_gravity, "N"},
     Symbol{"Nm", 1.0, "N·m"},
     Symbol{"mNm", 1e-3, "N·m"},
     Symbol{"J", 1.0, "J"},
@@ -60,6 +69,10 @@ constexpr std::array symbols{
     Symbol{"Pa", 1.0, "Pa"},
     Symbol{"kPa", 1e3, "Pa"},
     Symbol{"MPa", 1e6, "Pa"},
+    Symbol{"bar", 1e5, "Pa"},
+    Symbol{"psi", pound* standard_gravity / (inch * inch), "Pa"},
+    Symbol{"degC", 1.0, "°C"},
+    Symbol{"°C", 1.0, "°C"},
     Symbol{"kg", 1.0, "kg"},
     Symbol{"g", 1e-3, "kg"},
     Symbol{"%", 1e-2, "1"},

@@ -17,8 +17,9 @@ struct Unit {
   friend bool operator==(const Unit&, const Unit&) = default;
 };
 
-/// Reads a unit: symbols with SI prefixes where usual (`ms s us min`, `m cm mm um`, `rad mrad deg`, `N mN kN
-/// gf kgf`, `Nm mNm`, `J mJ kJ`, `V mV`, `A mA`, `Hz`, `Pa kPa MPa`, `kg g`, `%`, `1`), products with `·` or
+/// Reads a unit: symbols with SI prefixes where usual (`ms s us min h`, `m cm mm um in ft`, `rad mrad deg
+/// rev`, `rpm`, `N mN kN gf kgf lbf ozf`, `Nm mNm`, `J mJ kJ`, `V mV`, `A mA`, `Hz`, `Pa kPa MPa bar psi`,
+/// `degC` (kept as it is), `kg g`, `%`, `1`), products with `·` or
 /// `*`, quotients with `/`, powers with `²`, `³`, `^2` or `^3`.
 /// @throws std::invalid_argument that names the symbol and lists those known.
 [[nodiscard]] Unit parse_unit(std::string_view text);

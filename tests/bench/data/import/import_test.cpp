@@ -113,6 +113,39 @@ TEST(Import, DoubtsAClockThatMakesItLeaveOutMuchOfTheFile) {
   EXPECT_THAT(result.warnings, testing::Contains(HasSubstr("map no time and give --rate HZ")));
 }
 
+TEST(Import, TakesOneStretchOfAClockThatStartsAnew) {  // finding L8
+  const std::string text =
+      table(60, [](int i) { return std::to_string(0.01 * (i % 20)) + "," + std::to_string(i) + ",0"; });
+  EXPECT_THAT([&] { (void)imported(text); },
+              testing::ThrowsMessage<std::invalid_argument>(
+                  testing::AllOf(HasSubstr("data.txt:21: the clock starts anew here, and at 2 places in all"),
+                                 HasSubstr("--stretch 1 to 3"))));
+  ImportOptions options{.map = {}};
+  options.stretch = 2;
+  const Imported second = imported(text, options);
+  ASSERT_EQ(second.recording.rows(), 20U);
+  EXPECT_THAT(second.recording.position[0], DoubleEq(20e-3));
+  EXPECT_EQ(second.recording.time[0], 0.0);
+  EXPECT_THAT(second.warnings, testing::IsEmpty());
+  EXPECT_THAT(second.recording.header.history, HasSubstr("20 rows of data.txt, stretch 2"));
+  options.stretch = 4;
+  EXPECT_THAT(
+      [&] { (void)imported(text, options); },
+      testing::ThrowsMessage<std::invalid_argument>(HasSubstr("--stretch 4: its clock starts 3 times")));
+  options.stretch = 1;
+  EXPECT_EQ(imported("0,1,0\n1,2,0\n2,3,0\n", options).recording.rows(), 3U);
+}
+
+TEST(Import, NamesTheLinesOfTheStretchThatItTakes) {
+  std::string text = table(40, [](int i) { return std::to_string(0.01 * (i % 20)) + ",1,0"; });
+  text.insert(text.size(), "0.18,1,0\nslipped\n0.2,2,0\n");
+  ImportOptions options{.map = {}};
+  options.stretch = 2;
+  const Imported second = imported(text, options);
+  EXPECT_THAT(second.misplaced_lines, ElementsAre(41U)) << "a stamp that goes back by one";
+  EXPECT_THAT(second.bad_lines, ElementsAre(42U));
+}
+
 TEST(Import, TakesASingleRow) {
   const auto recording = imported("0,1,2\n").recording;
   EXPECT_THAT(recording.velocity, ElementsAre(0.0));

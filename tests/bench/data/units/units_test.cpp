@@ -24,6 +24,22 @@ TEST(Units, GramForceIsAGramUnderStandardGravity) {
   EXPECT_DOUBLE_EQ(parse_unit("kgf").factor, 9.80665);
 }
 
+// NIST Special Publication 811, appendix B.8.
+TEST(Units, OfInchesAndPoundsAreThoseOfNist) {
+  EXPECT_DOUBLE_EQ(parse_unit("lbf").factor, 4.4482216152605);
+  EXPECT_NEAR(parse_unit("ozf").factor, 2.780139e-1, 1e-7);
+  EXPECT_NEAR(parse_unit("psi").factor, 6.894757e3, 1e-3);
+  EXPECT_EQ(parse_unit("in").factor, 0.0254);
+  EXPECT_DOUBLE_EQ(parse_unit("ft").factor, 0.3048);
+  EXPECT_NEAR(parse_unit("lbf*in").factor, 1.129848e-1, 1e-7);
+  EXPECT_EQ(parse_unit("lbf*in").si, "N·m");
+  EXPECT_NEAR(parse_unit("rpm").factor, 1.047198e-1, 1e-7);
+  EXPECT_EQ(parse_unit("rpm").si, "rad/s");
+  EXPECT_DOUBLE_EQ(parse_unit("rev/min").factor, parse_unit("rpm").factor);
+  EXPECT_EQ(parse_unit("h").factor, 3600.0);
+  EXPECT_EQ(parse_unit("degC").si, "°C");
+}
+
 TEST(Units, TakeAFactorForRawCounts) {
   const Unit unit = parse_unit("0.0439453125 deg");
   EXPECT_DOUBLE_EQ(unit.factor, 0.0439453125 * degree);
