@@ -58,8 +58,7 @@ void run_import(ImportVerbArguments arguments, Context& context) {
 void add_import(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ImportVerbArguments>();
   Verb verb = add_verb(
-      app, context, "import",
-      "Turn CSV, TSV, an instrument's text, a workbook or a MAT-file into a recording, in SI",
+      app, context, "import", "Turn a text, a workbook or a MAT-file of numbers into a recording, in SI",
       "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
       "raw\n"

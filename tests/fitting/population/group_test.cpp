@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Estimate of(double value, std::optional<double> error, std::optional<std::string> specimen) {
-  return {.value = value, .standard_error = error, .specimen = specimen};
+  return {.value = value, .standard_error = error, .specimen = std::move(specimen)};
 }
 
 std::vector<Estimate> once_each(std::initializer_list<double> values) {

@@ -133,7 +133,7 @@ TEST(LawFile, SaysWhatIsWrongAndWhere) {
               HasSubstr("liver.law.toml:12: unknown parameter 'dumping'; the law takes parallel_stiffness"));
   EXPECT_THAT(refusal(replaced(", unit = \"N·s/rad\"", "")), HasSubstr(":12: 'damping' has no unit"));
   EXPECT_THAT(refusal(replaced("N·s/rad", "N·s/m")), HasSubstr("given in N·s/m, expected N·s/rad"));
-  EXPECT_THAT(refusal(replaced("N·s/rad", "lbf")), HasSubstr("unknown unit 'lbf'"));
+  EXPECT_THAT(refusal(replaced("N·s/rad", "furlong")), HasSubstr("unknown unit 'furlong'"));
   EXPECT_THAT(refusal(replaced("value = 8.0", "value = -8.0")),
               HasSubstr(":10: parameter 'parallel_stiffness' is -8 in SI, expected a number from 1e-09"));
   EXPECT_THAT(refusal(replaced("value = 8.0", "value = nan")),
