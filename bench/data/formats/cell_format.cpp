@@ -5,8 +5,8 @@
 namespace kerf::bench {
 namespace {
 
-bool is_known_date(unsigned number) noexcept {
-  const auto within = [&](unsigned first, unsigned last) { return number >= first && number <= last; };
+bool is_known_date(std::size_t number) noexcept {
+  const auto within = [&](std::size_t first, std::size_t last) { return number >= first && number <= last; };
   return within(14, 22) || within(27, 36) || within(45, 47) || within(50, 58);
 }
 
@@ -21,7 +21,7 @@ bool is_duration(std::string_view bracketed) noexcept {
 
 }  // namespace
 
-bool is_date_format(unsigned number, std::string_view code) noexcept {
+bool is_date_format(std::size_t number, std::string_view code) noexcept {
   if (is_known_date(number)) return true;
   for (std::size_t i = 0; i < code.size(); ++i) {
     const char c = code[i];

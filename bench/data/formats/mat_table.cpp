@@ -14,14 +14,11 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "formats/run_apart.h"
-
 namespace kerf::bench {
 namespace {
 
 constexpr std::size_t version_at = 124;
 constexpr std::size_t header_size = 128;
-constexpr char end_of_notes = '\x1E';
 
 /// A file in memory that has a path: matio reads files only, and what comes may be a pipe or packed.
 class NamedMemory {
@@ -170,7 +167,7 @@ class Columns {
   }
 };
 
-/// The length that most columns have; of two as frequent the longer.
+/// The length of which the columns hold most numbers; of two that hold as many the longer.
 std::size_t usual_length(const std::vector<MatColumn>& columns) {
   std::map<std::size_t, std::size_t> count;
   for (const MatColumn& column : columns) {
@@ -179,8 +176,8 @@ std::size_t usual_length(const std::vector<MatColumn>& columns) {
   std::size_t length = 0;
   std::size_t most = 0;
   for (const auto& [size, times] : count) {
-    if (times >= most) {
-      most = times;
+    if (size * times >= most) {
+      most = size * times;
       length = size;
     }
   }
@@ -216,7 +213,18 @@ Columns columns_of(std::string_view bytes, const UnpackedLimits& limits) {
   return columns;
 }
 
-MatTable read_table(std::string_view bytes, const UnpackedLimits& limits) {
+}  // namespace
+
+bool is_mat(std::string_view bytes) noexcept {
+  if (bytes.size() < header_size) return false;
+  const std::string_view order = bytes.substr(version_at + 2, 2);
+  return bytes.starts_with("MATLAB") && (order == "IM" || order == "MI");
+}
+
+MatTable mat_table(std::string_view bytes, const UnpackedLimits& limits) {
+  if (bytes.substr(0, version_at).find("MATLAB 7.3") != std::string_view::npos)
+    throw std::invalid_argument(
+        fmt::format("{}: a MAT-file of version 7.3; save it anew with save(..., '-v7')", limits.name));
   const Columns columns = columns_of(bytes, limits);
   const std::size_t length = usual_length(columns.all);
   const std::string objects =
@@ -248,34 +256,6 @@ MatTable read_table(std::string_view bytes, const UnpackedLimits& limits) {
     for (std::size_t i = 0; i < taken.size(); ++i)
       fmt::format_to(std::back_inserter(table.text), "{}{}", i > 0 ? "\t" : "", taken[i]->values[row]);
     table.text += '\n';
-  }
-  return table;
-}
-
-}  // namespace
-
-bool is_mat(std::string_view bytes) noexcept {
-  if (bytes.size() < header_size) return false;
-  const std::string_view order = bytes.substr(version_at + 2, 2);
-  return bytes.starts_with("MATLAB") && (order == "IM" || order == "MI");
-}
-
-MatTable mat_table(std::string_view bytes, const UnpackedLimits& limits) {
-  if (bytes.substr(0, version_at).find("MATLAB 7.3") != std::string_view::npos)
-    throw std::invalid_argument(
-        fmt::format("{}: a MAT-file of version 7.3; save it anew with save(..., '-v7')", limits.name));
-  // matio takes memory as a file asks for it, and believes lengths.
-  const std::string told = run_apart(limits, [&] {
-    const MatTable table = read_table(bytes, limits);
-    return fmt::format("{}{}{}", fmt::join(table.notes, "\n"), end_of_notes, table.text);
-  });
-  const auto end = told.find(end_of_notes);
-  MatTable table{.text = told.substr(end + 1), .notes = {}};
-  std::string_view notes = std::string_view(told).substr(0, end);
-  while (!notes.empty()) {
-    const auto line = notes.substr(0, notes.find('\n'));
-    table.notes.emplace_back(line);
-    notes.remove_prefix(std::min(notes.size(), line.size() + 1));
   }
   return table;
 }

@@ -17,7 +17,7 @@ struct MatTable {
 /// A MAT-file of level 5 (MATLAB 5 to 7.2, and later by -v7 or -v6), or one of 7.3, which is not read.
 [[nodiscard]] bool is_mat(std::string_view bytes) noexcept;
 
-/// The numeric vectors of the length that most of them have, each a column; the columns of a matrix with as
+/// The numeric vectors of the length that holds most numbers, each a column; the columns of a matrix with as
 /// many rows as NAME[1], NAME[2], ...; fields of a struct as NAME.FIELD. Numbers lose nothing. What has
 /// another length, or is no number, is named in the notes.
 /// @throws std::invalid_argument for a file that is damaged, of version 7.3, or has no two such columns;

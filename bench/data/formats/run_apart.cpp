@@ -1,5 +1,6 @@
 #include "formats/run_apart.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdint>
 #include <stdexcept>
@@ -75,7 +76,8 @@ void limit(decltype(RLIMIT_AS) what, rlim_t most) {
                                 const SharedAnswer& answer) {
   constexpr rlim_t beside = rlim_t{1} << 30U;
   constexpr rlim_t seconds = 120;
-  if (limits_addresses) limit(RLIMIT_AS, limits.at_most + beside);
+  const rlim_t most = std::min<rlim_t>(limits.at_most, RLIM_INFINITY / 2) + beside;
+  if (limits_addresses) limit(RLIMIT_AS, most);
   limit(RLIMIT_CPU, seconds);
   limit(RLIMIT_CORE, 0);
   bool is_told = false;

@@ -63,6 +63,14 @@ std::optional<double> cell_number(std::string_view text) {
   return value;
 }
 
+/// A whole number that is not negative.
+std::optional<std::size_t> whole_in(std::string_view text) {
+  std::size_t value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 /// "1,25" as "1.25", where it is a number by that.
 std::optional<std::string> with_a_point(std::string text) {
   if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string::npos) return std::nullopt;
@@ -277,18 +285,24 @@ class Workbook::Parts {
     const std::string content = part(name);
     pugi::xml_document document;
     const pugi::xml_node root = root_of(document, name, content);
-    std::map<unsigned, std::string> codes;
+    std::map<std::size_t, std::string> codes;
     each_child(child(root, "numFmts"), "numFmt", [&](const pugi::xml_node& one) {
-      codes[static_cast<unsigned>(cell_number(attribute(one, "numFmtId")).value_or(0.0))] =
-          attribute(one, "formatCode");
+      codes[whole_in(attribute(one, "numFmtId")).value_or(0)] = attribute(one, "formatCode");
     });
     each_child(child(root, "cellXfs"), "xf", [&](const pugi::xml_node& one) {
-      const auto number = static_cast<unsigned>(cell_number(attribute(one, "numFmtId")).value_or(0.0));
+      const std::size_t number = whole_in(attribute(one, "numFmtId")).value_or(0);
       is_date_.push_back(is_date_format(number, codes[number]));
     });
   }
 
+  /// A row with what stands in it, by its column.
+  struct Row {
+    std::size_t number = 0;  ///< from 1
+    std::map<std::size_t, std::string> cells;
+  };
+
   struct Counts {
+    std::string comma{};  ///< the first number with one
     std::size_t dates = 0;
     std::size_t commas = 0;
     std::size_t formulas = 0;
@@ -302,17 +316,17 @@ class Workbook::Parts {
     if (type == "inlineStr") return string_value(text_of(child(cell, "is")), counts);
     if (type == "str") return string_value(value, counts);
     if (type == "s") {
-      const auto place = cell_number(value);
-      if (!place || *place < 0.0 || *place >= static_cast<double>(strings_.size()))
+      const auto place = whole_in(value);
+      if (!place || *place >= strings_.size())
         refuse(fmt::format("sheet '{}', cell {}: there is no text {}", sheet, attribute(cell, "r"), value));
-      return string_value(strings_[static_cast<std::size_t>(*place)], counts);
+      return string_value(strings_[*place], counts);
     }
     if (value.empty()) {
       counts.formulas += child(cell, "f") ? 1 : 0;
       return "";
     }
     if (type == "e" || type == "d") return value;
-    const auto style = static_cast<std::size_t>(cell_number(attribute(cell, "s")).value_or(0.0));
+    const std::size_t style = whole_in(attribute(cell, "s")).value_or(0);
     const auto number = cell_number(value);
     counts.numbers += number ? 1 : 0;
     if (type != "b" && number && style < is_date_.size() && is_date_[style]) {
@@ -324,9 +338,10 @@ class Workbook::Parts {
 
   static std::string string_value(std::string text, Counts& counts) {
     if (auto number = with_a_point(text)) {
-      ++counts.commas;
+      if (counts.commas++ == 0) counts.comma = text;
       return *number;
     }
+    counts.numbers += cell_number(text) ? 1 : 0;
     for (char& c : text) {
       if (c == '\t' || c == '\n' || c == '\r') c = ' ';
     }
@@ -339,38 +354,46 @@ class Workbook::Parts {
     pugi::xml_document document;
     const pugi::xml_node root = root_of(document, place.part, content);
     Counts counts;
-    std::vector<std::vector<std::string>> rows;
+    std::vector<Row> rows;
     std::size_t width = 0;
     each_child(child(root, "sheetData"), "row", [&](const pugi::xml_node& row) {
       const std::string_view reference = attribute(row, "r");
-      const double number =
-          reference.empty() ? static_cast<double>(rows.size() + 1) : cell_number(reference).value_or(0.0);
-      if (!(number > static_cast<double>(rows.size())) || number > static_cast<double>(most_rows))
-        refuse(fmt::format("sheet '{}': row '{}' after row {}", place.name, reference, rows.size()));
-      rows.resize(static_cast<std::size_t>(number));
-      std::vector<std::string>& cells = rows.back();
+      const std::size_t last = rows.empty() ? 0 : rows.back().number;
+      const std::size_t number = reference.empty() ? last + 1 : whole_in(reference).value_or(0);
+      if (number <= last || number > most_rows)
+        refuse(fmt::format("sheet '{}': row '{}' after row {}", place.name, reference, last));
+      rows.push_back({.number = number, .cells = {}});
+      std::size_t next = 0;
       each_child(row, "c", [&](const pugi::xml_node& cell) {
         const std::string_view at = attribute(cell, "r");
-        const auto column = at.empty() ? std::optional(cells.size()) : column_of(at);
+        const auto column = at.empty() ? std::optional(next) : column_of(at);
         if (!column || *column >= most_columns)
-          refuse(fmt::format("sheet '{}', row {}: '{}' is no cell", place.name, rows.size(), at));
-        if (*column >= cells.size()) cells.resize(*column + 1);
-        cells[*column] = value_of(cell, place.name, counts);
+          refuse(fmt::format("sheet '{}', row {}: '{}' is no cell", place.name, number, at));
+        next = *column + 1;
+        if (std::string value = value_of(cell, place.name, counts); !value.empty()) {
+          rows.back().cells[*column] = std::move(value);
+          width = std::max(width, next);
+        }
       });
-      width = std::max(width, cells.size());
     });
     has_numbers_ = counts.numbers + counts.commas > 0;
     return {.name = place.name, .text = as_text(rows, width), .notes = notes_of(counts, root)};
   }
 
-  [[nodiscard]] std::string as_text(std::vector<std::vector<std::string>>& rows, std::size_t width) const {
+  /// A line a row, also for those that are not there, with a field a column.
+  [[nodiscard]] std::string as_text(const std::vector<Row>& rows, std::size_t width) const {
     std::string text;
-    for (std::vector<std::string>& cells : rows) {
-      const bool is_empty = std::ranges::all_of(cells, [](const std::string& one) { return one.empty(); });
-      if (!is_empty) {
-        cells.resize(width);
-        text += fmt::format("{}", fmt::join(cells, "\t"));
+    std::size_t lines = 0;
+    for (const Row& row : rows) {
+      text.append(row.number - lines - 1, '\n');
+      lines = row.number;
+      std::size_t column = 0;
+      for (const auto& [at, value] : row.cells) {
+        text.append(at - column, '\t');
+        text += value;
+        column = at;
       }
+      if (!row.cells.empty()) text.append(width - 1 - column, '\t');
       text += '\n';
       if (text.size() > limits_.at_most)
         refuse(fmt::format("a sheet of more than {} bytes (--max-bytes)", limits_.at_most));
@@ -384,7 +407,8 @@ class Workbook::Parts {
       notes.push_back(fmt::format("{} cells are dates or times: they are taken in seconds, since {}",
                                   counts.dates, epoch_1904_ ? "1904-01-01" : "1899-12-30"));
     if (counts.commas > 0)
-      notes.push_back(fmt::format("{} numbers were written as text, with a decimal comma", counts.commas));
+      notes.push_back(fmt::format("{} numbers were written as text, with a decimal comma, '{}' is the first",
+                                  counts.commas, counts.comma));
     if (counts.formulas > 0)
       notes.push_back(
           fmt::format("{} formulas have no value in the file: open and save it in a spreadsheet program",

@@ -117,7 +117,7 @@ TEST(Workbook, IsReadAsItWasComputedLast) {
   EXPECT_THAT(one.warnings,
               Contains(HasSubstr("sheet 'Run 1' is taken, the first with numbers; --sheet takes "
                                  "another: 'Notes', 'Old' (hidden), 'Run 2'")));
-  EXPECT_THAT(one.warnings, Contains(HasSubstr("9 numbers were written as text, with a decimal comma")));
+  EXPECT_THAT(one.warnings, Contains(HasSubstr("9 numbers were written as text, with a decimal comma, '")));
   EXPECT_THAT(one.warnings, Contains(HasSubstr("40 formulas have no value in the file")));
   EXPECT_THAT(one.warnings,
               Contains(HasSubstr("merged cells hold their value in the first of them alone: A1:C1")));
@@ -153,6 +153,71 @@ TEST_F(BadFile, OfAZipIsRefused) {
   const std::string book = test::read_text(made("punch.xlsx"));
   expect_refused(wrote("cut.xlsx", book.substr(0, book.size() / 2)), "a zip that cannot be opened");
   expect_refused(made("punch.xlsx"), "unpacks to more than 9000 bytes", 9000);
+}
+
+std::string little(std::uint64_t value, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>((value >> (8 * i)) & 0xFFU);
+  return text;
+}
+
+std::uint32_t crc32_of(const std::string& text) {
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char c : text) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return ~crc;
+}
+
+/// A zip of files that are stored as they are (APPNOTE 6.3), so that what is in them can be anything.
+std::string zipped(const std::vector<std::pair<std::string, std::string>>& files) {
+  std::string zip;
+  std::string directory;
+  for (const auto& [name, content] : files) {
+    const std::string about = little(20, 2) + little(0, 2) + little(0, 2) + little(0, 4) +
+                              little(crc32_of(content), 4) + little(content.size(), 4) +
+                              little(content.size(), 4) + little(name.size(), 2) + little(0, 2);
+    directory += "PK\x01\x02" + little(20, 2) + about + little(0, 2) + little(0, 2) + little(0, 2) +
+                 little(0, 4) + little(zip.size(), 4) + name;
+    zip += "PK\x03\x04" + about + name + content;
+  }
+  return zip + directory + "PK\x05\x06" + little(0, 4) + little(files.size(), 2) + little(files.size(), 2) +
+         little(directory.size(), 4) + little(zip.size(), 4) + little(0, 2);
+}
+
+/// A workbook of one sheet with these rows, in XML.
+std::string book_of(const std::string& rows) {
+  const std::string relation =
+      R"(<Relationships><Relationship Id="a" Type="x/officeDocument" Target="b.xml"/></Relationships>)";
+  const std::string sheets =
+      R"(<Relationships><Relationship Id="s" Type="x/worksheet" Target="s.xml"/></Relationships>)";
+  return zipped({{"_rels/.rels", relation},
+                 {"b.xml", R"(<workbook><sheets><sheet name="A" r:id="s"/></sheets></workbook>)"},
+                 {"_rels/b.xml.rels", sheets},
+                 {"s.xml", "<worksheet><sheetData>" + rows + "</sheetData></worksheet>"}});
+}
+
+TEST_F(BadFile, ThatIsAWorkbookByHandIsReadOrRefused) {
+  const std::string good =
+      wrote("good.xlsx",
+            book_of(R"(<row><c><v>1</v></c><c r="C1"><v>2</v></c></row><row r="3"><c><v>3</v></c></row>)"));
+  EXPECT_EQ(FileText(good, {.max_bytes = 1U << 20U}).text(), "1\t\t2\n\n3\t\t\n")
+      << "cells and rows without a reference follow";
+  expect_refused(wrote("half.xlsx", book_of(R"(<row r="0.5"><c><v>1</v></c></row>)")),
+                 "row '0.5' after row 0");
+  expect_refused(wrote("back.xlsx", book_of(R"(<row r="4"/><row r="4"/>)")), "row '4' after row 4");
+  expect_refused(wrote("far.xlsx", book_of(R"(<row r="99999999999999999999"/>)")), "after row 0");
+  expect_refused(wrote("nan.xlsx", book_of(R"(<row><c t="s"><v>nan</v></c></row>)")), "there is no text nan");
+  expect_refused(wrote("text.xlsx", book_of(R"(<row><c t="s"><v>-1</v></c></row>)")), "there is no text -1");
+  expect_refused(wrote("cell.xlsx", book_of(R"(<row><c r="ZZZZ1"><v>1</v></c></row>)")),
+                 "'ZZZZ1' is no cell");
+  EXPECT_NO_THROW(
+      FileText(wrote("style.xlsx", book_of(R"(<row><c s="-5"><v>1</v></c><c s="1e300"><v>2</v></c></row>)")),
+               {.max_bytes = 1U << 20U}));
+  std::string wide;
+  for (int row = 0; row < 2000; ++row) wide += R"(<row><c r="XFD1"><v>1</v></c></row>)";
+  expect_refused(wrote("wide.xlsx", book_of(wide)), "a sheet of more than 1048576 bytes");
 }
 
 TEST_F(BadFile, ThatIsChangedAnywhereIsReadOrRefusedInOneLine) {
