@@ -39,7 +39,10 @@ TextColumn named_column(std::string_view field) {
   const auto underscore = column.name.rfind('_');
   if (underscore != std::string::npos && underscore > 0) {
     const std::string unit = column.name.substr(underscore + 1);
-    if (!unit.empty() && std::isalpha(static_cast<unsigned char>(unit[0])) && known(unit)) column.unit = unit;
+    const bool is_word =
+        unit == "in" || unit == "h" || unit == "rev";  // of a voltage in, a hand's h, a revision
+    if (!unit.empty() && std::isalpha(static_cast<unsigned char>(unit[0])) && known(unit) && !is_word)
+      column.unit = unit;
   }
   return column;
 }

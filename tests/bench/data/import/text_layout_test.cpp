@@ -69,6 +69,14 @@ TEST(TextLayout, FindsUnitsInTheHeader) {
   EXPECT_EQ(layout.columns[3].unit, "");
 }
 
+TEST(TextLayout, TakesNoWordAtTheEndOfANameForAUnit) {
+  const TextLayout layout = layout_of("v_in,width (in),flow_h,f_N\n0,1,2,3\n1,2,3,4\n");
+  EXPECT_EQ(layout.columns[0].unit, "") << "what goes in, not inches";
+  EXPECT_EQ(layout.columns[1].unit, "in");
+  EXPECT_EQ(layout.columns[2].unit, "");
+  EXPECT_EQ(layout.columns[3].unit, "N");
+}
+
 TEST(TextLayout, ReadsHeadersInOtherEncodings) {
   const std::string units = "\n(s),(mm)\n1,2\n3,4\n";
   EXPECT_EQ(layout_of("\xEF\xBB\xBFtime,\xE4\xBD\x8D\xE7\xA7\xBB" + units).columns[1].name, "位移");
