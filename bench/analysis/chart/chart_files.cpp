@@ -117,9 +117,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"notes", chart.notes}};
   if (chart.cycles) {
     result["cycles"] = in_words(*chart.cycles);
-    result["cycles_left_out"] = json::array();
-    for (const LeftOutCycle& cycle : chart.cycles_left_out)
-      result["cycles_left_out"].push_back({{"number", cycle.number}, {"reason", cycle.reason}});
+    result["cycles_left_out"] = as_json(chart.cycles_left_out);
   }
   const std::vector<std::string> files = point_file_names(chart);
   auto file = files.begin();

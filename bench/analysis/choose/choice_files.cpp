@@ -89,9 +89,6 @@ json choice_as_json(const LawChoice& choice) {
   const auto name_at = [&](const std::optional<std::size_t>& place) {
     return place ? json(choice.candidates.at(*place).law.name) : json(nullptr);
   };
-  json left_out = json::array();
-  for (const LeftOutCycle& cycle : choice.cycles_left_out)
-    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
   return {
       {"jnd", choice.jnd_n},
       {"force_rms", choice.force_rms_n},
@@ -101,7 +98,7 @@ json choice_as_json(const LawChoice& choice) {
       {"jnd_source", choice.settings.jnd_source},
       {"held_out_by", choice.held_out},
       {"cycles", in_words(choice.rows.cycles)},
-      {"cycles_left_out", left_out},
+      {"cycles_left_out", as_json(choice.cycles_left_out)},
       {"choice",
        {{"law", name_at(choice.taken)},
         {"serves", choice.serves},

@@ -157,9 +157,6 @@ json law_as_json(const FittedLaw& law, const RecordingFit& all) {
 }
 
 json recording_as_json(const FittedRecording& recording) {
-  json left_out = json::array();
-  for (const LeftOutCycle& cycle : recording.cycles_left_out)
-    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
   return {
       {"name", recording.name},
       {"uuid", recording.uuid},
@@ -169,7 +166,7 @@ json recording_as_json(const FittedRecording& recording) {
       {"samples", recording.samples},
       {"left_out", recording.left_out},
       {"counted", recording.counted},
-      {"cycles_left_out", left_out},
+      {"cycles_left_out", as_json(recording.cycles_left_out)},
       {"noise", recording.noise_n > 0.0 ? json(recording.noise_n) : json(nullptr)}};
 }
 

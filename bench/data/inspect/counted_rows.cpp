@@ -122,6 +122,13 @@ CycleChoice settled(const CycleChoice& choice, const schema::Recording& recordin
   return settled;
 }
 
+nlohmann::ordered_json as_json(const std::vector<LeftOutCycle>& left_out) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const LeftOutCycle& cycle : left_out)
+    list.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
+  return list;
+}
+
 std::string cycles_left_out(const CountedRows& counted) {
   if (counted.none_is_good)
     return "none of the cycles is without a flag ('kerf inspect' says why): all are taken, and what follows "

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include <kerf/schema/recording.h>
 
 #include "recordings/axis_series.h"
@@ -61,6 +63,9 @@ CountedRows mark_counted(AxisSeries& series, const schema::Recording& recording,
 /// The same choice with its cycles by number, for who asks for them many times.
 [[nodiscard]] CycleChoice settled(const CycleChoice& choice, const schema::Recording& recording,
                                   std::size_t axis, double felt);
+
+/// What was left out, as JSON has it: number and reason of each.
+[[nodiscard]] nlohmann::ordered_json as_json(const std::vector<LeftOutCycle>& left_out);
 
 /// What was left out, in a sentence that says how to have it; empty where nothing was.
 [[nodiscard]] std::string cycles_left_out(const CountedRows& counted);

@@ -141,8 +141,9 @@ TEST(Workbook, TakesTheSheetThatIsAskedFor) {
     EXPECT_EQ(one.recording.position[9], 0.001 * 0.09);
   }
   EXPECT_EQ(imported(made("punch.xlsx"), "time=1[s],position=2[m],force=3[N]", "Run 2").warnings.size(), 0U);
-  const auto refused = test::run_kerf(
-      {"import", made("punch.xlsx").string(), "--sheet", "Run 3", "--map", "time=1", "-o", "/tmp/none.h5"});
+  const test::TemporaryFolder folder;
+  const auto refused = test::run_kerf({"import", made("punch.xlsx").string(), "--sheet", "Run 3", "--map",
+                                       "time=1", "-o", (folder / "none.h5").string()});
   EXPECT_EQ(refused.exit_status, 2);
   EXPECT_THAT(
       refused.errors,
