@@ -9,6 +9,8 @@
 
 #include <kerf/schema/recording.h>
 
+#include "inspect/counted_rows.h"
+
 namespace kerf::bench {
 
 /// The force of a tool that cuts nothing while it moves one way, on the grid of ToolForce; NaN where fewer
@@ -30,11 +32,6 @@ struct BlankInertia {
   bool is_determined = false;   ///< more than three errors above zero, and less than a tenth of it noise
 };
 
-struct BlankCycleLeftOut {
-  std::uint32_t number = 0;
-  std::string reason;
-};
-
 /// The tool's own force, by position and direction:
 ///
 ///     f(x, closing)  = c(x) + m a,      f(x, opening) = o(x) + m a
@@ -51,7 +48,7 @@ struct ToolForce {
   BlankInertia inertia;
   double closing_direction = 1.0;
   std::vector<std::uint32_t> used;  ///< numbers of the cycles
-  std::vector<BlankCycleLeftOut> left_out;
+  std::vector<LeftOutCycle> left_out;
 };
 
 /// Estimates it from the good cycles of a blank: those that `kerf inspect` flags with nothing, or only as

@@ -69,9 +69,6 @@ ordered_json to_json(const UncoveredRows& uncovered) {
 
 ordered_json to_json(const BlankTaken& taken) {
   const ToolForce& tool = taken.tool;
-  ordered_json left_out = ordered_json::array();
-  for (const BlankCycleLeftOut& cycle : tool.left_out)
-    left_out.push_back({{"number", cycle.number}, {"reason", cycle.reason}});
   const auto known = [](const std::optional<double>& value) {
     return value ? json_number(*value) : ordered_json(nullptr);
   };
@@ -107,7 +104,7 @@ ordered_json to_json(const BlankTaken& taken) {
         {"noise_share", tool.inertia.noise_share},
         {"determined", tool.inertia.is_determined}}},
       {"cycles", tool.used},
-      {"cycles_left_out", left_out},
+      {"cycles_left_out", as_json(tool.left_out)},
       {"grid", tool.grid},
       {"closing", to_json(tool.closing)},
       {"opening", to_json(tool.opening)}};
@@ -184,7 +181,7 @@ void add_blank(const BlankTaken& taken, Lines& lines) {
       "mean "
       "{:.3g}; beyond two errors in {:.0f} % of the rows",
       taken.taken_rms, unit, taken.force_rms, taken.spread_rms, taken.error_rms, 100.0 * taken.told_share));
-  for (const BlankCycleLeftOut& cycle : taken.tool.left_out)
+  for (const LeftOutCycle& cycle : taken.tool.left_out)
     lines.push_back(fmt::format("  cycle {} of the blank not used: {}", cycle.number, cycle.reason));
   const auto uncovered = [&](std::string_view what, const UncoveredRows& rows) {
     if (rows.rows == 0) return;
