@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "files/trimmed.h"
 
@@ -109,14 +109,24 @@ int take_power(std::string_view& text) {
   return 1;
 }
 
-/// Joins factors of a product in the order written, "1" left out.
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    if (part != "1") text += fmt::format("{}{}", text.empty() ? "" : "·", part);
+using Parts = std::vector<std::string>;
+
+/// Adds the factors of an SI unit, raised to a power: "N·m" has two above, "rad/s" one above and one below.
+void add_parts(std::string_view si, int power, Parts& above, Parts& below) {
+  Parts* side = &above;
+  while (!si.empty()) {
+    const auto end = std::min({si.find("·"), si.find('/'), si.size()});
+    const std::string_view part = si.substr(0, end);
+    if (part != "1") side->push_back(std::string(part) + power_texts.at(static_cast<std::size_t>(power)));
+    if (end == si.size()) return;
+    const bool divides = si[end] == '/';
+    if (divides) side = &below;
+    si.remove_prefix(end + (divides ? 1 : std::string_view("·").size()));
   }
-  return text;
 }
+
+/// Joins factors of a product in the order written, as a text.
+std::string joined(const Parts& parts) { return fmt::format("{}", fmt::join(parts, "·")); }
 
 }  // namespace
 
@@ -124,20 +134,18 @@ Unit parse_unit(std::string_view given) {
   std::string_view text = trimmed(given);
   if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
   Unit unit{.factor = take_factor(text), .si = {}};
-  std::vector<std::string> above;
-  std::vector<std::string> below;
+  Parts above;
+  Parts below;
   bool divides = false;
   while (!text.empty()) {
     const auto end = std::min({text.find("·"), text.find('*'), text.find('/'), text.size()});
-    const bool begins_with_divisor = above.empty() && text.starts_with('/');
+    const bool begins_with_divisor = !divides && above.empty() && text.starts_with('/');
     std::string_view name = begins_with_divisor ? "1" : trimmed(text.substr(0, end));
     const int power = take_power(name);
     const Symbol& symbol = find_symbol(name, given);
     const double factor = std::pow(symbol.factor, power);
     unit.factor = divides ? unit.factor / factor : unit.factor * factor;
-    (divides ? below : above)
-        .push_back(std::string(symbol.si) +
-                   (symbol.si == "1" ? "" : power_texts[static_cast<std::size_t>(power)]));
+    add_parts(symbol.si, power, divides ? below : above, divides ? above : below);
     if (end == text.size()) break;
     divides = divides || text[end] == '/';
     text.remove_prefix(end + (text.substr(end).starts_with("·") ? std::string_view("·").size() : 1));

@@ -60,6 +60,14 @@ TEST(Units, MultiplyAndDivide) {
   EXPECT_EQ(parse_unit("2 /s"), (Unit{2.0, "1/s"}));
 }
 
+TEST(Units, OfSeveralFactorsAreDividedAndRaisedByEach) {
+  EXPECT_EQ(parse_unit("m/rpm").si, "m·s/rad");
+  EXPECT_EQ(parse_unit("Nm/rpm").si, "N·m·s/rad");
+  EXPECT_EQ(parse_unit("rpm²").si, "rad²/s²");
+  EXPECT_EQ(parse_unit("J/Nm²").si, "J/N²·m²");
+  EXPECT_EQ(parse_unit("1/rpm").si, "s/rad");
+}
+
 TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
   const auto message = [](const char* text) -> std::string {
     try {
