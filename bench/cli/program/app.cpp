@@ -49,6 +49,7 @@ std::vector<Group> groups() {
           {"judge", {add_choose, add_check, add_chart, add_stability, add_reproduce}},
           {"replay", {add_replay, add_regress}},
           {"experiment", {add_session}},
+          {"study", {add_study}},
           {"share", {add_report}}};
 }
 

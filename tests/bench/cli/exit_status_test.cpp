@@ -33,8 +33,9 @@ using Words = std::vector<std::string>;
 // Verbs that read no file: what they need is in the program, or on the USB.
 const std::set<Words> without_input{{"devices"}, {"laws"}, {"reproduce"}, {"session", "key"}};
 // Verbs that write no file, or one only where it was named as their input.
-const std::set<Words> without_output{{"devices"},  {"laws"},   {"info"},          {"inspect"},
-                                     {"validate"}, {"studio"}, {"session", "run"}};
+const std::set<Words> without_output{
+    {"devices"}, {"laws"},           {"info"},         {"inspect"},         {"validate"},
+    {"studio"},  {"session", "run"}, {"study", "run"}, {"study", "report"}, {"study", "verify"}};
 
 const std::vector<Words> with_input{
     {"demo", "--text", "INPUT", "-o", "FOLDER/out"},
@@ -83,6 +84,11 @@ const std::vector<Words> with_input{
     {"session", "open", "INPUT", "--key-file", "FOLDER/key", "-o", "FOLDER/out"},
     {"session", "open", "FOLDER/s.h5", "--key-file", "INPUT", "-o", "FOLDER/out"},
     {"session", "simulate", "INPUT"},
+    {"study", "new", "FOLDER/nowhere", "-o", "FOLDER/out"},
+    {"study", "new", "FOLDER/k.law.toml", "-o", "FOLDER/out"},
+    {"study", "run", "INPUT"},
+    {"study", "report", "INPUT"},
+    {"study", "verify", "FOLDER/nowhere"},
     {"report", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--fits", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--check", "INPUT", "-o", "FOLDER/out.html"},
@@ -117,6 +123,7 @@ const std::vector<Words> with_output{
      "-o", "BELOW"},
     {"session", "open", "FOLDER/s.h5", "--key-file", "FOLDER/key", "--reason", "a test", "-o", "BELOW"},
     {"session", "simulate", "FOLDER/p.protocol.toml", "-o", "BELOW"},
+    {"study", "new", KERF_SOURCE_DIR "/examples/data", "-o", "BELOW"},
     {"report", "FOLDER/r.h5", "-o", "OUTPUT"},
 };
 

@@ -1,0 +1,113 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include <kerf/fitting/fit.h>
+
+#include "drawer/look.h"
+#include "drawer/study_file.h"
+#include "files/whole_file.h"
+#include "study/verb_study.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct StudyNewArguments {
+  std::string drawer;
+  std::string output;
+  std::string map;
+  std::vector<std::string> laws;
+  bool force = false;
+};
+
+/// Not within the drawer, which would find the study's own copies the next time.
+fs::path study_folder(const StudyNewArguments& arguments) {
+  const fs::path drawer = fs::weakly_canonical(arguments.drawer);
+  const fs::path folder =
+      arguments.output.empty() ? fs::path(drawer.filename().string() + "-study") : fs::path(arguments.output);
+  const fs::path whole = fs::weakly_canonical(folder);
+  if (std::mismatch(drawer.begin(), drawer.end(), whole.begin(), whole.end()).first == drawer.end())
+    throw std::invalid_argument(
+        fmt::format("{}: it lies in the drawer; name a folder outside of it with -o", folder.string()));
+  return folder;
+}
+
+void say_drawer(const StudyPlan& plan, Context& context) {
+  context.say(fmt::format("  {:44} {:24} {:10} {:10} {}", "file", "tissue", "speed", "specimen", ""));
+  for (const DrawerFile& file : plan.files) {
+    if (!file.ignored.empty()) {
+      context.say(fmt::format("  {:44} takes no part: {}", file.path, file.ignored));
+    } else {
+      context.say(fmt::format("  {:44} {:24} {:10} {:10} {}", file.path, file.blank ? "(blank)" : file.tissue,
+                              file.speed, file.specimen, file.found));
+    }
+  }
+}
+
+nlohmann::ordered_json drawer_as_json(const StudyPlan& plan, const fs::path& file) {
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const DrawerFile& one : plan.files)
+    files.push_back({{"path", one.path},
+                     {"ignored", one.ignored.empty() ? nlohmann::ordered_json(nullptr)
+                                                     : nlohmann::ordered_json(one.ignored)},
+                     {"found", one.found},
+                     {"tissue", one.tissue},
+                     {"speed", one.speed},
+                     {"specimen", one.specimen},
+                     {"blank", one.blank}});
+  return {{"study", file.string()}, {"files", files}};
+}
+
+void run_study_new(const StudyNewArguments& arguments, Context& context) {
+  StudyPlan plan;
+  plan.files = look_into(arguments.drawer, arguments.map);  // says if there is no such drawer
+  const fs::path folder = study_folder(arguments);
+  const fs::path file = folder / "study.toml";
+  require_output(file, arguments.force);
+  plan.map = arguments.map;
+  plan.laws = arguments.laws.empty() ? laws_to_begin_with() : arguments.laws;
+  for (const std::string& law : plan.laws) fitting::check_model(law);
+  plan.compare = {"peak"};
+  fs::create_directories(folder);
+  plan.folder = fs::weakly_canonical(arguments.drawer).lexically_relative(fs::weakly_canonical(folder));
+  write_whole_file(file, study_text(plan), schema::existing_if(arguments.force));
+  context.result = drawer_as_json(plan, file);
+  say_drawer(plan, context);
+  const auto taken =
+      std::ranges::count_if(plan.files, [](const DrawerFile& one) { return one.ignored.empty(); });
+  context.say(
+      fmt::format("{} of {} files take part; look through {} and correct it, then 'kerf study run {}'", taken,
+                  plan.files.size(), file.string(), file.string()));
+}
+
+}  // namespace
+
+void add_study_new(CLI::App& study, Context& context) {
+  auto arguments = std::make_shared<StudyNewArguments>();
+  Verb verb =
+      add_verb(study, context, "new", "Look into a folder of files and write a study.toml to correct",
+               "kerf study new drawer --map 'time=1[s],position=2[mm],force=3[N]' -o S\n\n"
+               "Words of names and folders are taken for tissue, speed, specimen (s3, donor2) and blanks. "
+               "Nothing in\nthe folder is changed.",
+               [arguments, &context] { run_study_new(*arguments, context); });
+  verb.add_option("FOLDER", arguments->drawer,
+                  "The drawer: text, workbooks, MAT-files, recordings, in folders or not")
+      .required();
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder of the study, outside of the drawer (default: NAME-study where one stands)");
+  verb.add_option("--map", arguments->map, "Columns of text files, as 'kerf import --map' has them");
+  verb.add_option("--laws", arguments->laws,
+                  "Laws to be fitted, separated by commas (default: the usual ones that are fast)")
+      .separated_by(',')
+      .one_value_each();
+  verb.add_flag("--force", arguments->force, "Replace a study.toml that is there");
+}
+
+}  // namespace kerf::bench

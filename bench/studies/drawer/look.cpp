@@ -1,0 +1,136 @@
+#include "drawer/look.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+#include <kerf/schema/recording_file.h>
+
+#include "drawer/name_factors.h"
+#include "files/named_file.h"
+#include "formats/file_text.h"
+#include "import/column_map.h"
+#include "import/text_layout.h"
+#include "recordings/provenance.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* separator_name(char separator) {
+  switch (separator) {
+    case '\t':
+      return "tabs";
+    case ',':
+      return "commas";
+    case ';':
+      return "semicolons";
+    default:
+      return "blanks";
+  }
+}
+
+/// A map of the columns whose headings give the unit of a time, a position and a force; empty where any of
+/// them is left to a guess.
+std::string map_of_headings(const TextLayout& layout, const std::string& name) {
+  if (layout.header_line == 0) return "";
+  const std::string words = suggest_map(layout);  // --map 'MAP', and what else it takes
+  const auto begin = words.find('\'') + 1;
+  const auto end = words.rfind('\'');
+  if (end + 1 != words.size()) return "";  // there is no time
+  const std::string map = words.substr(begin, end - begin);
+  const std::vector<MappedColumn> columns = match_columns(parse_map(map), layout, name);
+  const bool all_known = std::ranges::all_of(
+      columns, [&](const MappedColumn& column) { return !layout.columns[column.index].unit.empty(); });
+  return all_known && columns.size() == 3 ? map : "";
+}
+
+/// @throws std::invalid_argument for what is no text of numbers, or does not fit the map.
+void look_at_text(const fs::path& path, const std::string& map, DrawerFile& file) {
+  const FileText text(path, {.max_bytes = largest_drawer_file});
+  const TextLayout layout = find_layout(text.text(), file.path);
+  file.found =
+      fmt::format("{} columns separated by {}", layout.columns.size(), separator_name(layout.separator));
+  if (layout.header_line == 0) {
+    file.found += map.empty() ? ", no header: unknown columns" : ", no header";
+  } else {
+    file.found += ":";
+    for (const TextColumn& column : layout.columns) file.found += " [" + column.heading + "]";
+  }
+  if (map.empty()) {
+    file.map = map_of_headings(layout, file.path);
+  } else {
+    (void)match_columns(parse_map(map), layout, file.path);
+  }
+}
+
+/// A message without the name that it begins with, which stands beside it.
+std::string without_name(const std::string& message, const std::string& name) {
+  return message.starts_with(name + ": ") ? message.substr(name.size() + 2) : message;
+}
+
+void look_at(const fs::path& path, const std::string& map, DrawerFile& file) {
+  const std::uintmax_t bytes = fs::file_size(path);
+  if (bytes == 0) throw std::invalid_argument("it is empty");
+  if (bytes > largest_drawer_file) {
+    throw std::invalid_argument(fmt::format("{:.1f} GB: a file of a study holds {} MB at most",
+                                            1e-9 * static_cast<double>(bytes), largest_drawer_file >> 20U));
+  }
+  file.sha256 = sha256_of(path);
+  if (path.extension() != ".h5") return look_at_text(path, map, file);
+  const schema::RecordingFile rows(path);
+  file.found = fmt::format("recording of {} rows", rows.rows());
+}
+
+DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::string& map) {
+  DrawerFile file;
+  const std::string name = path.lexically_relative(folder).generic_string();
+  file.path = to_utf8(name);
+  try {
+    if (file.path != name) throw std::invalid_argument("its name is not UTF-8");
+    if (fs::is_directory(path)) throw std::invalid_argument("a link to a folder, which is not followed");
+    if (!fs::is_regular_file(path)) throw std::invalid_argument("it is no file, or a link to none");
+    look_at(path, map, file);
+    const NameFactors factors = name_factors(file.path);
+    file.tissue = factors.tissue;
+    file.speed = factors.speed;
+    file.specimen = factors.specimen;
+    file.blank = factors.blank;
+    file.numbers = factors.numbers;
+  } catch (const std::exception& error) {
+    file.ignored = without_name(without_name(error.what(), file.path), path.string());
+  }
+  return file;
+}
+
+/// One recording must not count twice.
+void ignore_copies(std::vector<DrawerFile>& files) {
+  std::map<std::string, std::string> first;
+  for (DrawerFile& file : files) {
+    if (!file.ignored.empty()) continue;
+    const auto [known, is_new] = first.emplace(file.sha256, file.path);
+    if (!is_new) file.ignored = "has the content of " + known->second;
+  }
+}
+
+}  // namespace
+
+std::vector<DrawerFile> look_into(const fs::path& folder, const std::string& map) {
+  require_named_folder(folder);
+  if (!map.empty()) (void)parse_map(map);
+  std::vector<fs::path> paths;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
+    if (entry.is_symlink() || !entry.is_directory()) paths.push_back(entry.path());
+  }
+  std::ranges::sort(paths);
+  std::vector<DrawerFile> files;
+  for (const fs::path& path : paths) files.push_back(looked_at(path, folder, map));
+  ignore_copies(files);
+  return files;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kerf::bench {
+
+/// One file of a drawer, as study.toml has it.
+struct DrawerFile {
+  std::string path;     ///< below the drawer's folder
+  std::string sha256;   ///< when the drawer was looked at; empty: too large to be read
+  std::string found;    ///< what it holds, in words
+  std::string ignored;  ///< why it takes no part; empty: it does
+  std::string map;      ///< of its own; empty: that of the study
+  std::string tissue;
+  std::string speed;
+  std::string specimen;
+  bool blank = false;    ///< the tool without a tissue
+  std::string accepted;  ///< why it counts whatever is doubted of it; empty: a doubt leaves it out
+  std::string numbers;   ///< numbers and time stamps of its name, which are no factor
+};
+
+/// What `kerf study run` goes by: a drawer of files, looked at and corrected by a person.
+struct StudyPlan {
+  static constexpr int version = 1;
+
+  std::filesystem::path folder;  ///< the drawer; in the file relative to the study's folder
+  std::string map;               ///< of text files, as `kerf import --map`; empty: unknown
+  std::vector<std::string> laws;
+  bool all_cycles = false;  ///< flagged cycles count too
+  std::string closing;      ///< "increasing" or "decreasing"; empty: the direction that costs more work
+  std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
+  std::string licence;               ///< of the data, a URL or a name; empty: none was given
+  std::vector<std::string> people;
+  std::vector<DrawerFile> files;
+};
+
+/// Laws to begin with: the usual ones but those of which a fit takes one more arm while held-out data pay for
+/// it, ten times as long as all others together; study.toml may name them.
+[[nodiscard]] std::vector<std::string> laws_to_begin_with();
+
+/// As TOML with comments that say how to correct it.
+[[nodiscard]] std::string study_text(const StudyPlan& study);
+
+/// @throws std::invalid_argument with file and line for what is no study: another version, an unknown key or
+///         law, a path that leaves the drawer.
+[[nodiscard]] StudyPlan read_study(const std::filesystem::path& file);
+
+/// Names of the files that take part, in their order, empty for those that do not: the stem, with a number
+/// where two have the same.
+[[nodiscard]] std::vector<std::string> recording_names(const StudyPlan& study);
+
+}  // namespace kerf::bench

@@ -1,0 +1,103 @@
+#include "page/study_charts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include <kerf/fitting/fit.h>
+
+#include "fits/fit_recording.h"
+#include "fits/fit_series.h"
+#include "fits/row_doubts.h"
+#include "laws/render.h"
+#include "recordings/axes.h"
+#include "recordings/whole_recording.h"
+#include "report/charts.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t most_points = 1500;  // of a small chart
+
+/// Rows of the recording's cycles that are flagged.
+std::vector<std::uint32_t> flagged_numbers(const DrawerRecording& recording) {
+  std::vector<std::uint32_t> numbers;
+  for (const StudiedCycle& cycle : recording.result.cycles)
+    if (!cycle.is_good) numbers.push_back(cycle.number);
+  return numbers;
+}
+
+}  // namespace
+
+Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const std::filesystem::path& folder) {
+  const schema::Recording recording =
+      read_whole_recording(folder / "recordings" / drawn.name / "recording.h5");
+  const std::size_t axis = find_cut_axis(recording, "");
+  const DrawnUnit unit = drawn_position(recording.axes[axis]);
+  const models::Contact contact = contact_of(recording, axis);
+  const AxisSeries whole = fit_series(recording, axis, contact);
+  fitting::FitOptions fit;
+  take_jnd_of(recording.axes[axis], fit);
+  const FitSource source{.recording = &recording, .name = "", .axis = axis, .contact = contact};
+  RowChoice all_cycles;
+  all_cycles.cycles.by = CycleChoice::By::all;
+  const AxisSeries counted = counted_series(source, all_cycles, fit.jnd).series;
+  const std::vector<std::uint32_t> flagged = flagged_numbers(drawn);
+  Curve idle{.label = "idle", .colour = Colour::sky, .mark = Mark::points, .width = 1.0};
+  Curve bad{.label = "flagged", .colour = Colour::vermillion, .mark = Mark::points, .width = 1.0};
+  Curve good{.label = "counts", .colour = Colour::black, .mark = Mark::points, .width = 1.0};
+  for (std::size_t i = 0; i < whole.force.size(); ++i) {
+    const bool is_idle = !counted.counts.empty() && counted.counts[i] == 0;
+    const bool is_flagged =
+        !whole.cycle.empty() && std::ranges::find(flagged, whole.cycle[i]) != flagged.end();
+    Curve& curve = is_idle ? idle : is_flagged && !plan.all_cycles ? bad : good;
+    curve.x.push_back(unit.factor * whole.penetration[i]);
+    curve.y.push_back(whole.force[i]);
+  }
+  Chart chart{.title = drawn.name,
+              .x_label = fmt::format("penetration [{}]", unit.unit),
+              .y_label = fmt::format("force [{}]", recording.axes[axis].force_unit)};
+  for (Curve* curve : {&idle, &bad, &good})
+    if (!curve->x.empty()) chart.curves.push_back(thinned(std::move(*curve), most_points));
+  chart.legend_below = true;
+  chart.width_px = 420;
+  chart.height_px = 300;
+  return chart;
+}
+
+Chart quantity_chart(const StudyResults& results, const std::string& quantity) {
+  Curve values{.label = "recordings", .colour = Colour::blue, .mark = Mark::circles, .width = 2.0};
+  Curve means{.label = "mean", .colour = Colour::vermillion, .mark = Mark::points, .width = 5.0};
+  Curve intervals{.label = "95 % of the mean", .colour = Colour::vermillion};
+  Chart chart{.title = quantity, .legend_below = true};
+  double at = 0.0;
+  for (const StudiedGroup& group : results.groups) {
+    const auto found = std::ranges::find(group.quantities, quantity, &StudiedQuantity::name);
+    if (found == group.quantities.end()) continue;
+    at += 1.0;
+    chart.x_ticks.push_back({.at = at, .name = group.name()});
+    chart.y_label = fmt::format("{} [{}]", quantity, found->unit);
+    const auto drawn = [&](double value) { return found->is_logarithm ? std::exp(value) : value; };
+    for (const population::Estimate& one : found->values) {
+      values.x.push_back(at - 0.15);
+      values.y.push_back(drawn(one.value));
+    }
+    if (!found->estimate.mean) continue;
+    means.x.push_back(at + 0.15);
+    means.y.push_back(drawn(*found->estimate.mean));
+    if (!found->estimate.interval) continue;
+    for (const double end : {found->estimate.interval->lower, found->estimate.interval->upper}) {
+      intervals.x.push_back(at + 0.15);
+      intervals.y.push_back(drawn(end));
+    }
+    intervals.x.push_back(line_break);
+    intervals.y.push_back(line_break);
+  }
+  chart.x_range = {0.5, at + 0.5};
+  for (Curve* curve : {&values, &intervals, &means})
+    if (!curve->x.empty()) chart.curves.push_back(std::move(*curve));
+  return chart;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,254 @@
+#include "results/study_results.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/ranges.h>
+
+#include <kerf/population/held_out.h>
+
+#include "results/conclusions.h"
+
+namespace kerf::bench {
+namespace {
+
+using population::Estimate;
+using population::GroupEstimate;
+
+std::optional<std::string> specimen_of(const DrawerRecording& recording) {
+  return recording.file.specimen.empty() ? std::nullopt : std::optional(recording.file.specimen);
+}
+
+const StudiedLaw* law_of(const DrawerRecording& recording, const std::string& model) {
+  for (const StudiedLaw& law : recording.result.laws)
+    if (law.model == model) return &law;
+  return nullptr;
+}
+
+/// Mean over the good cycles, with its standard error where there are two.
+std::optional<Estimate> over_cycles(const DrawerRecording& recording, double StudiedCycle::*quantity,
+                                    bool all_cycles) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double count = 0.0;
+  for (const StudiedCycle& cycle : recording.result.cycles) {
+    if (!cycle.is_good && !all_cycles) continue;
+    sum += cycle.*quantity;
+    squares += cycle.*quantity * (cycle.*quantity);
+    count += 1.0;
+  }
+  if (count == 0.0) return std::nullopt;
+  Estimate estimate{.value = sum / count, .standard_error = {}, .specimen = specimen_of(recording)};
+  if (count > 1.0) {
+    const double variance = std::max(0.0, squares - count * estimate.value * estimate.value) / (count - 1.0);
+    estimate.standard_error = std::sqrt(variance / count);
+  }
+  return estimate;
+}
+
+/// As a logarithm if all values are positive, and are so by nature.
+void settle(StudiedQuantity& quantity, bool positive_by_nature) {
+  quantity.is_logarithm = positive_by_nature && std::ranges::all_of(quantity.values, [](const Estimate& one) {
+                            return one.value > 0.0;
+                          });
+  if (quantity.is_logarithm)
+    std::ranges::transform(quantity.values, quantity.values.begin(), population::log_of);
+  quantity.estimate = population::estimate_group(quantity.values);
+}
+
+StudiedQuantity cycle_quantity(const StudyResults& results, const StudiedGroup& group,
+                               const std::string& name, const std::string& unit,
+                               double StudiedCycle::*quantity) {
+  StudiedQuantity found{.name = name, .unit = unit, .recordings = {}, .values = {}, .estimate = {}};
+  for (const std::size_t at : group.counted) {
+    const DrawerRecording& recording = results.recordings[at];
+    const auto value = over_cycles(recording, quantity, results.plan.all_cycles);
+    if (!value) continue;
+    found.recordings.push_back(recording.name);
+    found.values.push_back(*value);
+  }
+  settle(found, true);
+  return found;
+}
+
+/// Every parameter of a law, in the order of the first recording that has it.
+std::vector<StudiedQuantity> parameters_in_group(const StudyResults& results, const StudiedGroup& group,
+                                                 const std::string& model) {
+  std::vector<StudiedQuantity> found;
+  std::vector<bool> positive;
+  for (const std::size_t at : group.counted) {
+    const DrawerRecording& recording = results.recordings[at];
+    const StudiedLaw* const law = law_of(recording, model);
+    if (law == nullptr || !law->can_be_chosen) continue;
+    for (const StudiedParameter& parameter : law->parameters) {
+      const std::string name = model + "." + parameter.name;
+      auto place = std::ranges::find(found, name, &StudiedQuantity::name);
+      if (place == found.end()) {
+        found.push_back(
+            {.name = name, .unit = parameter.unit, .recordings = {}, .values = {}, .estimate = {}});
+        positive.push_back(parameter.is_positive);
+        place = std::prev(found.end());
+      }
+      place->recordings.push_back(recording.name);
+      place->values.push_back({.value = parameter.value,
+                               .standard_error = parameter.std_error,
+                               .specimen = specimen_of(recording)});
+    }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) settle(found[i], positive[i]);
+  return found;
+}
+
+LawInGroup law_in_group(const StudyResults& results, const StudiedGroup& group, const std::string& model) {
+  LawInGroup found{.model = model, .held_out = {}, .on_others = {}};
+  std::vector<population::HeldOutError> own;
+  for (const std::size_t at : group.counted) {
+    const DrawerRecording& recording = results.recordings[at];
+    const StudiedLaw* const law = law_of(recording, model);
+    if (law == nullptr) continue;
+    found.free_parameters = std::max(found.free_parameters, law->free_parameters);
+    if (law->within_jnd) ++found.serves;
+    own.push_back({.recording = recording.name,
+                   .specimen = specimen_of(recording),
+                   .error = law->held_out / recording.result.jnd});
+  }
+  std::vector<population::HeldOutError> others;
+  for (const ErrorOnOthers& error : group.on_others) {
+    if (error.law != model) continue;
+    const auto recording = std::ranges::find(results.recordings, error.recording, &DrawerRecording::name);
+    others.push_back(
+        {.recording = error.recording, .specimen = specimen_of(*recording), .error = error.error_jnd});
+  }
+  found.held_out = population::summarise(own);
+  found.on_others = population::summarise(others);
+  return found;
+}
+
+void judge_group(const StudyResults& results, StudiedGroup& group) {
+  if (group.counted.empty()) return;
+  const StudiedRecording& first = results.recordings[group.counted.front()].result;
+  group.quantities.push_back(cycle_quantity(results, group, "peak", first.force_unit, &StudiedCycle::peak));
+  group.quantities.push_back(cycle_quantity(results, group, "work", "J", &StudiedCycle::closing_work));
+  for (const std::string& model : results.plan.laws) {
+    group.laws.push_back(law_in_group(results, group, model));
+    for (StudiedQuantity& quantity : parameters_in_group(results, group, model))
+      group.quantities.push_back(std::move(quantity));
+  }
+  for (const LawInGroup& law : group.laws) {
+    if (law.serves < group.counted.size()) continue;
+    const auto serving = std::ranges::find(group.laws, group.serving, &LawInGroup::model);
+    if (serving == group.laws.end() || law.free_parameters < serving->free_parameters)
+      group.serving = law.model;
+  }
+}
+
+/// That serves most recordings of the study; of those the one with fewest parameters.
+std::string law_of_study(const StudyResults& results) {
+  std::string best;
+  std::pair<std::size_t, std::size_t> most{0, 0};  // recordings, parameters
+  for (const std::string& model : results.plan.laws) {
+    std::size_t serves = 0;
+    std::size_t parameters = 0;
+    for (const StudiedGroup& group : results.groups) {
+      const auto law = std::ranges::find(group.laws, model, &LawInGroup::model);
+      if (law == group.laws.end()) continue;
+      serves += law->serves;
+      parameters = std::max(parameters, law->free_parameters);
+    }
+    if (parameters == 0) continue;
+    if (best.empty() || serves > most.first || (serves == most.first && parameters < most.second)) {
+      best = model;
+      most = {serves, parameters};
+    }
+  }
+  return best;
+}
+
+/// A pair of groups, each by one quantity that both have.
+void add_comparison(const StudiedGroup& first, const StudiedGroup& second, const std::string& what,
+                    const std::string& by, std::vector<StudiedComparison>& comparisons,
+                    std::vector<population::Pair>& pairs) {
+  const auto of = [&](const StudiedGroup& group) {
+    const auto found = std::ranges::find(group.quantities, what, &StudiedQuantity::name);
+    return found == group.quantities.end() ? nullptr : &*found;
+  };
+  const StudiedQuantity* const one = of(first);
+  const StudiedQuantity* const other = of(second);
+  if (one == nullptr || other == nullptr || one->is_logarithm != other->is_logarithm) return;
+  comparisons.push_back({.quantity = what,
+                         .unit = one->unit,
+                         .is_logarithm = one->is_logarithm,
+                         .by = by,
+                         .first = first.name(),
+                         .second = second.name(),
+                         .found = {}});
+  pairs.push_back({.first = one->values, .second = other->values});
+}
+
+void compare_groups(StudyResults& results) {
+  std::vector<population::Pair> pairs;
+  for (const std::string& what : results.plan.compare) {
+    for (std::size_t i = 0; i < results.groups.size(); ++i) {
+      for (std::size_t k = i + 1; k < results.groups.size(); ++k) {
+        const StudiedGroup& first = results.groups[i];
+        const StudiedGroup& second = results.groups[k];
+        const bool of_tissues = first.speed == second.speed && first.tissue != second.tissue;
+        const bool of_speeds = first.tissue == second.tissue && first.speed != second.speed;
+        if (of_tissues || of_speeds)
+          add_comparison(first, second, what, of_tissues ? "tissue" : "speed", results.comparisons, pairs);
+      }
+    }
+  }
+  const std::vector<population::Comparison> found = population::compare(pairs);
+  for (std::size_t i = 0; i < found.size(); ++i) results.comparisons[i].found = found[i];
+}
+
+}  // namespace
+
+std::string StudiedGroup::name() const {
+  const std::string& what = tissue.empty() ? std::string("(no tissue)") : tissue;
+  return speed.empty() ? what : what + ", " + speed;
+}
+
+void form_groups(StudyResults& results) {
+  std::map<std::pair<std::string, std::string>, StudiedGroup> groups;
+  for (std::size_t i = 0; i < results.recordings.size(); ++i) {
+    const DrawerRecording& one = results.recordings[i];
+    if (one.file.blank) continue;
+    StudiedGroup& group = groups
+                              .try_emplace({one.file.tissue, one.file.speed},
+                                           StudiedGroup{.tissue = one.file.tissue, .speed = one.file.speed})
+                              .first->second;
+    if (one.counts()) {
+      group.counted.push_back(i);
+    } else {
+      ++group.left_out;
+    }
+  }
+  for (auto& [factors, group] : groups) results.groups.push_back(std::move(group));
+}
+
+void conclude(StudyResults& results) {
+  for (StudiedGroup& group : results.groups) judge_group(results, group);
+  results.law = law_of_study(results);
+  compare_groups(results);
+  results.conclusions = conclusions_of(results);
+}
+
+std::string in_words(const GroupEstimate& estimate, bool is_logarithm) {
+  const auto value = [&](double of) { return is_logarithm ? std::exp(of) : of; };
+  if (!estimate.mean) return "unknown";
+  std::string text = fmt::format("{:.3g}", value(*estimate.mean));
+  const std::string count =
+      estimate.specimens
+          ? fmt::format("{} specimen{}", *estimate.specimens, *estimate.specimens == 1 ? "" : "s")
+          : fmt::format("{} recording{}", estimate.recordings, estimate.recordings == 1 ? "" : "s");
+  if (estimate.interval)
+    return text + fmt::format(" ({:.3g} to {:.3g}; {})", value(estimate.interval->lower),
+                              value(estimate.interval->upper), count);
+  return text + fmt::format(" (no interval; {})", count);
+}
+
+}  // namespace kerf::bench

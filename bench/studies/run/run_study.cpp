@@ -1,0 +1,214 @@
+#include "run/run_study.h"
+
+#include <cerrno>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "files/json_file.h"
+#include "files/named_file.h"
+#include "files/whole_file.h"
+#include "files/whole_folder.h"
+#include "page/study_page.h"
+#include "recordings/provenance.h"
+#include "results/crate.h"
+#include "results/study_tables.h"
+#include "run/held_out.h"
+#include "run/recording_step.h"
+#include "threads/for_each_index.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using json = nlohmann::ordered_json;
+
+/// Two runs of one study at once would write over each other.
+class HeldStudy {
+ public:
+  explicit HeldStudy(const fs::path& file) : descriptor_(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      ::close(descriptor_);
+      throw std::invalid_argument(
+          fmt::format("{}: another process runs this study; wait until it ends", file.string()));
+    }
+  }
+  HeldStudy(const HeldStudy&) = delete;
+  HeldStudy& operator=(const HeldStudy&) = delete;
+  ~HeldStudy() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// Maps are asked for before the work, all at once.
+void require_maps(const fs::path& file, const StudyPlan& plan) {
+  std::size_t unknown = 0;
+  std::string first;
+  for (const DrawerFile& one : plan.files) {
+    if (!one.ignored.empty() || !one.map.empty() || fs::path(one.path).extension() == ".h5") continue;
+    if (!plan.map.empty()) continue;
+    if (unknown++ == 0) first = one.path;
+  }
+  if (unknown > 0)
+    throw std::invalid_argument(
+        fmt::format("{}: the columns of {} files are unknown, the first is {}; write a 'map' such as "
+                    "\"time=1[s],position=2[mm],force=3[N]\" into it",
+                    file.string(), unknown, first));
+}
+
+/// The study's own copy of a file of the drawer, so that the study can be handed on.
+fs::path copied_input(const StudyPlan& plan, const DrawerFile& file, const fs::path& folder) {
+  const fs::path source = plan.folder / fs::path(file.path);
+  const fs::path copy = folder / "inputs" / fs::path(file.path);
+  const bool in_drawer = fs::exists(source);
+  if (!in_drawer && fs::exists(copy)) return copy;  // handed on without the drawer
+  const std::string sha256 = sha256_of(source);
+  if (!file.sha256.empty() && sha256 != file.sha256)
+    throw std::invalid_argument(
+        "it is no longer the file that study.toml names by its sha256: look at it, and put the new one "
+        "there");
+  if (fs::exists(copy) && sha256_of(copy) == sha256) return copy;
+  fs::create_directories(copy.parent_path());
+  const fs::path unfinished = copy.string() + fmt::format(".writing-{}", ::getpid());
+  fs::copy_file(source, unfinished, fs::copy_options::overwrite_existing);
+  fs::rename(unfinished, copy);
+  return copy;
+}
+
+std::optional<StudiedRecording> kept_result(const fs::path& folder, const std::string& key) {
+  try {
+    StudiedRecording kept =
+        studied_recording(json::parse(read_named_file(folder / "result.json", LargestInput::table)));
+    if ((key.empty() || kept.key == key) && fs::exists(folder / "recording.h5")) return kept;
+  } catch (const std::exception&) {
+    return std::nullopt;  // none, or one that is made anew
+  }
+  return std::nullopt;
+}
+
+/// One line, without the path that the program itself made up.
+std::string in_one_line(std::string message, const fs::path& source, const std::string& name) {
+  for (const std::string& prefix : {source.string() + ": ", name + ": "})
+    if (message.starts_with(prefix)) message.erase(0, prefix.size());
+  return message;
+}
+
+StudiedRecording made_or_kept(const RecordingStep& step, const std::string& name, const fs::path& folder,
+                              const std::atomic<bool>& stop) {
+  const fs::path place = folder / "recordings" / name;
+  if (auto kept = kept_result(place, key_of(step))) return std::move(*kept);
+  WholeFolder whole(place, schema::Existing::replace);
+  StudiedRecording result = run_recording_step(step, whole.path(), stop);
+  whole.commit();
+  return result;
+}
+
+void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& folder,
+               const std::atomic<bool>& stop) {
+  RecordingStep step{.plan = &plan, .file = &one.file, .source = plan.folder / fs::path(one.file.path)};
+  try {
+    step.source = copied_input(plan, one.file, folder);
+    one.result = made_or_kept(step, one.name, folder, stop);
+  } catch (const std::system_error&) {
+    throw;  // a disk, or Ctrl-C: no fault of the file
+  } catch (const std::bad_alloc&) {
+    one.result.failure = "there was not enough memory";
+  } catch (const std::exception& error) {
+    one.result.failure = in_one_line(error.what(), step.source, one.file.path);
+  }
+}
+
+void study_all(const StudyPlan& plan, std::vector<DrawerRecording>& recordings, const fs::path& folder,
+               const StudyRunOptions& options, const std::atomic<bool>& stop) {
+  std::mutex says;
+  for_each_index(recordings.size(), options.jobs, [&](std::size_t i) {
+    if (stop) throw std::system_error(std::make_error_code(std::errc::interrupted), "the study was stopped");
+    study_one(plan, recordings[i], folder, stop);
+    if (!recordings[i].result.failure.empty() && options.warn) {
+      const std::scoped_lock lock(says);
+      options.warn(fmt::format("{}: {}", recordings[i].file.path, recordings[i].result.failure));
+    }
+    if (options.done != nullptr) ++*options.done;
+  });
+}
+
+void take_kept(std::vector<DrawerRecording>& recordings, const fs::path& folder) {
+  for (DrawerRecording& one : recordings) {
+    if (auto kept = kept_result(folder / "recordings" / one.name, "")) {
+      one.result = std::move(*kept);
+    } else {
+      one.result.failure = "nothing was computed of it yet";
+    }
+  }
+}
+
+void write_results(const StudyResults& results, const fs::path& folder) {
+  const fs::path tables = folder / "tables";
+  {
+    WholeFolder whole(tables, schema::Existing::replace);
+    write_study_tables(results, whole.path());
+    whole.commit();
+  }
+  write_json_file(folder / "study.json", study_as_json(results));
+  write_whole_file(folder / "report.html", study_page(results, folder));
+  write_json_file(folder / crate_file, study_crate(results, folder));
+}
+
+/// What no law can be fitted to together costs a line, and the study goes on.
+void judge_on_others(StudiedGroup& group, const StudyResults& results, const fs::path& folder,
+                     const StudyRunOptions& options, const std::atomic<bool>& stop) {
+  try {
+    group.on_others =
+        errors_on_others(results.plan, results.recordings, group.counted, folder, options.jobs, stop);
+  } catch (const std::invalid_argument& error) {
+    if (options.warn)
+      options.warn(fmt::format("{}: no law is judged on recordings that it was not fitted to: {}",
+                               group.name(), error.what()));
+  }
+}
+
+}  // namespace
+
+StudyResults run_study(const fs::path& file, const StudyRunOptions& options, const std::atomic<bool>& stop) {
+  StudyResults results;
+  results.plan = read_study(file);
+  const fs::path folder = fs::absolute(file).parent_path();
+  results.name = folder.filename().string();
+  const HeldStudy held(file);
+  const StudyPlan& plan = results.plan;
+  if (!options.only_report) {
+    require_maps(file, plan);
+    for (const char* output : {"study.json", "report.html", crate_file})
+      require_output(folder / output, true);
+  }
+  const std::vector<std::string> names = recording_names(plan);
+  for (std::size_t i = 0; i < plan.files.size(); ++i)
+    if (plan.files[i].ignored.empty())
+      results.recordings.push_back({.name = names[i], .file = plan.files[i], .result = {}});
+  if (results.recordings.empty())
+    throw std::invalid_argument(fmt::format("{}: no file takes part in this study", file.string()));
+  if (options.only_report) {
+    take_kept(results.recordings, folder);
+  } else {
+    study_all(plan, results.recordings, folder, options, stop);
+  }
+  doubt_recordings(results.recordings);
+  form_groups(results);
+  for (StudiedGroup& group : results.groups) judge_on_others(group, results, folder, options, stop);
+  conclude(results);
+  write_results(results, folder);
+  return results;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,141 @@
+#include "run/studied_recording.h"
+
+#include <cmath>
+#include <limits>
+
+namespace kerf::bench {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+/// JSON has no infinity and no NaN: what there is no number for is null.
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+double number_or(const json& value, double none) { return value.is_null() ? none : value.get<double>(); }
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+json parameter_as_json(const StudiedParameter& parameter) {
+  return {{"name", parameter.name},
+          {"unit", parameter.unit},
+          {"value", parameter.value},
+          {"std_error", number_or_null(parameter.std_error)},
+          {"is_positive", parameter.is_positive}};
+}
+
+json law_as_json(const StudiedLaw& law) {
+  json parameters = json::array();
+  for (const StudiedParameter& parameter : law.parameters) parameters.push_back(parameter_as_json(parameter));
+  return {{"model", law.model},
+          {"free_parameters", law.free_parameters},
+          {"rmse", law.rmse},
+          {"held_out", number_or_null(law.held_out)},
+          {"can_be_chosen", law.can_be_chosen},
+          {"within_jnd", law.within_jnd},
+          {"blame", law.blame},
+          {"parameters", parameters}};
+}
+
+json cycle_as_json(const StudiedCycle& cycle) {
+  return {{"cycle", cycle.number},
+          {"begin_s", cycle.begin_s},
+          {"closing_s", cycle.closing_s},
+          {"peak", cycle.peak},
+          {"closing_work_J", cycle.closing_work},
+          {"good", cycle.is_good},
+          {"reason", cycle.reason}};
+}
+
+StudiedLaw studied_law(const json& from) {
+  StudiedLaw law{.model = from.at("model"),
+                 .free_parameters = from.at("free_parameters"),
+                 .rmse = from.at("rmse"),
+                 .held_out = number_or(from.at("held_out"), no_number),
+                 .can_be_chosen = from.at("can_be_chosen"),
+                 .within_jnd = from.at("within_jnd"),
+                 .blame = from.at("blame"),
+                 .parameters = {}};
+  for (const json& one : from.at("parameters"))
+    law.parameters.push_back({.name = one.at("name"),
+                              .unit = one.at("unit"),
+                              .value = one.at("value"),
+                              .std_error = number_or(one.at("std_error"), no_limit),
+                              .is_positive = one.at("is_positive")});
+  return law;
+}
+
+StudiedCycle studied_cycle(const json& from) {
+  return {.number = from.at("cycle"),
+          .begin_s = from.at("begin_s"),
+          .closing_s = from.at("closing_s"),
+          .peak = from.at("peak"),
+          .closing_work = from.at("closing_work_J"),
+          .is_good = from.at("good"),
+          .reason = from.at("reason")};
+}
+
+}  // namespace
+
+json as_json(const StudiedRecording& recording) {
+  json all{{"key", recording.key}, {"failure", recording.failure}};
+  if (!recording.failure.empty()) return all;
+  json cycles = json::array();
+  for (const StudiedCycle& cycle : recording.cycles) cycles.push_back(cycle_as_json(cycle));
+  json laws = json::array();
+  for (const StudiedLaw& law : recording.laws) laws.push_back(law_as_json(law));
+  all.update({{"content_sha256", recording.content},
+              {"rows", recording.rows},
+              {"duration_s", recording.duration_s},
+              {"period_s", recording.period_s},
+              {"axis", recording.axis},
+              {"position_unit", recording.position_unit},
+              {"force_unit", recording.force_unit},
+              {"travel", recording.travel},
+              {"peak", recording.peak},
+              {"rms", recording.rms},
+              {"jnd", recording.jnd},
+              {"floor", number_or_null(recording.floor)},
+              {"closing_direction", recording.closing_direction},
+              {"clipped_at", number_or_null(recording.clipped_at)},
+              {"clipped_rows", recording.clipped_rows},
+              {"least_shown", number_or_null(recording.least_shown)},
+              {"warnings", recording.warnings},
+              {"cycles", cycles},
+              {"laws", laws},
+              {"chosen", recording.chosen},
+              {"why_chosen", recording.why_chosen},
+              {"not_fitted", recording.not_fitted}});
+  return all;
+}
+
+StudiedRecording studied_recording(const json& from) {
+  StudiedRecording recording;
+  recording.key = from.at("key");
+  recording.failure = from.at("failure");
+  if (!recording.failure.empty()) return recording;
+  recording.content = from.at("content_sha256");
+  recording.rows = from.at("rows");
+  recording.duration_s = from.at("duration_s");
+  recording.period_s = from.at("period_s");
+  recording.axis = from.at("axis");
+  recording.position_unit = from.at("position_unit");
+  recording.force_unit = from.at("force_unit");
+  recording.travel = from.at("travel");
+  recording.peak = from.at("peak");
+  recording.rms = from.at("rms");
+  recording.jnd = from.at("jnd");
+  recording.floor = number_or(from.at("floor"), no_number);
+  recording.closing_direction = from.at("closing_direction");
+  recording.clipped_at = number_or(from.at("clipped_at"), no_number);
+  recording.clipped_rows = from.at("clipped_rows");
+  recording.least_shown = number_or(from.at("least_shown"), no_number);
+  recording.warnings = from.at("warnings");
+  for (const json& cycle : from.at("cycles")) recording.cycles.push_back(studied_cycle(cycle));
+  for (const json& law : from.at("laws")) recording.laws.push_back(studied_law(law));
+  recording.chosen = from.at("chosen");
+  recording.why_chosen = from.at("why_chosen");
+  recording.not_fitted = from.at("not_fitted");
+  return recording;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace kerf::bench {
+
+/// A parameter of a law, as one recording gives it, in SI.
+struct StudiedParameter {
+  std::string name;
+  std::string unit;
+  double value = 0.0;
+  double std_error = 0.0;    ///< infinite: the recording sets no limit
+  bool is_positive = false;  ///< by nature: recordings differ by factors
+};
+
+/// A law fitted to one recording; errors in the force's unit.
+struct StudiedLaw {
+  std::string model;
+  std::size_t free_parameters = 0;
+  double rmse = 0.0;
+  double held_out = 0.0;  ///< on cycles (or blocks of time) that it was not fitted to; NaN: none
+  bool can_be_chosen = false;
+  bool within_jnd = false;  ///< held out
+  std::string blame;        ///< what is to blame where it is not
+  std::vector<StudiedParameter> parameters;
+};
+
+struct StudiedCycle {
+  std::uint32_t number = 0;
+  double begin_s = 0.0;
+  double closing_s = 0.0;
+  double peak = 0.0;
+  double closing_work = 0.0;  ///< [J]
+  bool is_good = true;
+  std::string reason;  ///< why it is not, or what was found and accepted
+};
+
+/// All that a study knows of one recording. The same recording and settings give the same, to the last bit.
+struct StudiedRecording {
+  std::string key;      ///< of what it was made of: source, settings, program
+  std::string failure;  ///< why there is nothing; empty: there is
+  std::string content;  ///< content_sha256_of() the recording
+  std::uint64_t rows = 0;
+  double duration_s = 0.0;
+  double period_s = 0.0;  ///< usual step
+  std::string axis;
+  std::string position_unit;
+  std::string force_unit;
+  double travel = 0.0;             ///< range of the positions
+  double peak = 0.0;               ///< largest force
+  double rms = 0.0;                ///< root mean square force of the rows that count
+  double jnd = 0.0;                ///< at it
+  double floor = 0.0;              ///< error that the best map without an equation leaves; NaN: unknown
+  double closing_direction = 0.0;  ///< 0: no cycles
+  double clipped_at = 0.0;         ///< force at which the sensor is clipped; NaN: it is not
+  std::uint64_t clipped_rows = 0;
+  double least_shown = 0.0;  ///< smallest force beside exact zeros, of a sensor with a dead zone; NaN: none
+  std::vector<std::string> warnings;
+  std::vector<StudiedCycle> cycles;
+  std::vector<StudiedLaw> laws;
+  std::string chosen;  ///< the simplest law that serves, or the best; empty: none
+  std::string why_chosen;
+  std::string not_fitted;  ///< why no law was; a blank, or no force that is felt
+};
+
+[[nodiscard]] nlohmann::ordered_json as_json(const StudiedRecording& recording);
+/// @throws nlohmann::json::exception for what as_json() did not write.
+[[nodiscard]] StudiedRecording studied_recording(const nlohmann::ordered_json& json);
+
+}  // namespace kerf::bench

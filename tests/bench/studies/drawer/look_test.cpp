@@ -1,0 +1,80 @@
+#include "drawer/look.h"
+
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+#include "support/recordings.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* some_numbers = "0 1 2\n1 2 3\n2 3 4\n3 4 5\n";
+
+class Drawer : public testing::Test {
+ protected:
+  std::map<std::string, DrawerFile> look(const std::string& map = "") {
+    std::map<std::string, DrawerFile> found;
+    for (DrawerFile& file : look_into(folder_.path(), map)) found.emplace(file.path, file);
+    return found;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(Drawer, OfRubbishSaysOfEachFileWhyItTakesNoPart) {
+  test::write_text(folder_ / "good.txt", some_numbers);
+  test::write_text(folder_ / "empty.txt", "");
+  test::write_text(folder_ / "picture.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 17));
+  test::write_text(folder_ / "notes.md", "# What was cut\n\nA liver.\n");
+  test::write_text(folder_ / "damaged.h5", "no HDF5");
+  fs::create_directory_symlink(folder_.path(), folder_ / "loop");
+  fs::create_symlink("nowhere", folder_ / "dangling.txt");
+  fs::create_directory(folder_ / "again");
+  test::write_text(folder_ / "again/good.txt", some_numbers);
+  test::write_text(folder_ / "log.txt", "");
+  fs::resize_file(folder_ / "log.txt", std::uintmax_t{2} << 30U);
+  schema::write_recording(folder_ / "liver.h5", test::punch());
+  const auto found = look();
+  EXPECT_EQ(found.at("good.txt").ignored, "has the content of again/good.txt");
+  EXPECT_EQ(found.at("again/good.txt").ignored, "");
+  EXPECT_EQ(found.at("liver.h5").ignored, "");
+  EXPECT_THAT(found.at("empty.txt").ignored, HasSubstr("empty"));
+  EXPECT_THAT(found.at("picture.png").ignored, testing::Not(testing::IsEmpty()));
+  EXPECT_THAT(found.at("notes.md").ignored, testing::Not(testing::IsEmpty()));
+  EXPECT_THAT(found.at("damaged.h5").ignored, testing::Not(testing::IsEmpty()));
+  EXPECT_THAT(found.at("loop").ignored, HasSubstr("link to a folder"));
+  EXPECT_THAT(found.at("dangling.txt").ignored, HasSubstr("link to none"));
+  EXPECT_THAT(found.at("log.txt").ignored, HasSubstr("2.1 GB"));
+  EXPECT_EQ(found.size(), 10U);
+}
+
+TEST_F(Drawer, LeavesOutWhatDoesNotFitTheMap) {
+  test::write_text(folder_ / "three.txt", some_numbers);
+  test::write_text(folder_ / "two.txt", "0 1\n1 2\n2 3\n");
+  const auto found = look("time=1[s],position=2[mm],force=3[N]");
+  EXPECT_EQ(found.at("three.txt").ignored, "");
+  EXPECT_THAT(found.at("two.txt").ignored, HasSubstr("3"));
+}
+
+TEST_F(Drawer, SuggestsTheMapThatHeadingsWithUnitsGive) {
+  test::write_text(folder_ / "a.csv", "Time [ms],Position [mm],Force [N]\n0,1,2\n1,2,3\n2,3,4\n");
+  test::write_text(folder_ / "b.csv", "Time [ms],Position,Force [N]\n0,1,2\n1,2,3\n2,3,5\n");
+  const auto found = look();
+  EXPECT_EQ(found.at("a.csv").map, "time=1[ms],position=2[mm],force=3[N]");
+  EXPECT_EQ(found.at("b.csv").map, "");
+}
+
+TEST_F(Drawer, ThatIsNotThereIsRefused) {
+  EXPECT_THROW((void)look_into(folder_ / "nowhere", ""), std::invalid_argument);
+  EXPECT_THROW((void)look_into(folder_.path(), "time"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,95 @@
+#include "drawer/study_file.h"
+
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+
+StudyPlan some_plan() {
+  StudyPlan plan;
+  plan.folder = "../drawer";
+  plan.map = "time=1[s],position=2[mm],force=3[N]";
+  plan.laws = {"kelvin", "exponential"};
+  plan.closing = "increasing";
+  plan.compare = {"peak", "kelvin.damping"};
+  plan.licence = "https://creativecommons.org/licenses/by/4.0/";
+  plan.people = {"A \"B\" C"};
+  plan.files = {{.path = "a\tb.txt",
+                 .sha256 = "00",
+                 .found = "3 columns",
+                 .tissue = "liver",
+                 .speed = "slow",
+                 .specimen = "s1",
+                 .accepted = "looked through",
+                 .numbers = "7"},
+                {.path = "picture.png", .ignored = "no text"}};
+  return plan;
+}
+
+class StudyFile : public testing::Test {
+ protected:
+  StudyPlan read(const std::string& text) {
+    test::write_text(folder_ / "study.toml", text);
+    return read_study(folder_ / "study.toml");
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      (void)read(text);
+      return "accepted";
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(StudyFile, IsReadAsItWasWritten) {
+  const StudyPlan plan = some_plan();
+  const StudyPlan again = read(study_text(plan));
+  EXPECT_EQ(again.folder, (folder_.path() / ".." / "drawer").lexically_normal());
+  EXPECT_EQ(again.map, plan.map);
+  EXPECT_EQ(again.laws, plan.laws);
+  EXPECT_EQ(again.closing, plan.closing);
+  EXPECT_EQ(again.compare, plan.compare);
+  EXPECT_EQ(again.licence, plan.licence);
+  EXPECT_EQ(again.people, plan.people);
+  ASSERT_EQ(again.files.size(), 2U);
+  EXPECT_EQ(again.files[0].path, plan.files[0].path);
+  EXPECT_EQ(again.files[0].specimen, "s1");
+  EXPECT_EQ(again.files[0].accepted, "looked through");
+  EXPECT_EQ(again.files[1].ignored, "no text");
+}
+
+TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
+  const std::string good = study_text(some_plan());
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return refusal(text);
+  };
+  EXPECT_THAT(with("version = 1", "version = 2"), HasSubstr("expected version = 1"));
+  EXPECT_THAT(with("laws = [\"kelvin\"", "laws = [\"kelwin\""), HasSubstr("kelwin"));
+  EXPECT_THAT(with("kelvin.damping", "maxwell.stiffness_1"), HasSubstr("'maxwell.stiffness_1'"));
+  EXPECT_THAT(with("cycles = \"good\"", "cycles = \"fine\""), HasSubstr("fine"));
+  EXPECT_THAT(with("closing = \"increasing\"", "closing = \"up\""), HasSubstr("\"up\""));
+  EXPECT_THAT(with("path = \"picture.png\"", "path = \"../picture.png\""), HasSubstr("below the drawer"));
+  EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
+  EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
+}
+
+TEST(RecordingNames, AreOfTheFilesThatTakePartAndDiffer) {
+  StudyPlan plan;
+  plan.files = {
+      {.path = "slow/liver 1.txt"}, {.path = "fast/liver 1.txt"}, {.path = "x.png", .ignored = "no text"}};
+  EXPECT_EQ(recording_names(plan), (std::vector<std::string>{"liver_1", "liver_1-2", ""}));
+}
+
+}  // namespace
+}  // namespace kerf::bench

@@ -1,0 +1,213 @@
+#include "support/program.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "support/recordings.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+
+/// A drawer of two tissues, of each three specimens, with one file that is none.
+class StudyProgram : public testing::Test {
+ protected:
+  StudyProgram() {
+    fs::create_directory(drawer());
+    for (unsigned specimen = 1; specimen <= 3; ++specimen) {
+      write_punch(fmt::format("liver_s{}.txt", specimen), 200.0 + 10.0 * specimen, specimen);
+      write_punch(fmt::format("skin_s{}.txt", specimen + 3), 400.0 + 10.0 * specimen, specimen + 3);
+    }
+    test::write_text(drawer() / "notes.md", "# What was cut\n");
+  }
+  [[nodiscard]] fs::path drawer() const { return folder_ / "drawer"; }
+  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
+
+  void write_punch(const std::string& name, double stiffness, unsigned seed,
+                   double force_factor = 1.0) const {
+    const schema::Recording recording =
+        test::punch({.parallel_stiffness = stiffness, .seconds = 3.0, .seed = seed});
+    std::ostringstream text;
+    text << "Time [s]\tPosition [mm]\tForce [N]\n";
+    for (std::size_t i = 0; i < recording.rows(); i += 2)
+      text << fmt::format("{:.3f}\t{:.6f}\t{:.6f}\n", recording.time[i], 1e3 * recording.position[i],
+                          force_factor * recording.force_measured[i]);
+    test::write_text(drawer() / name, text.str());
+  }
+  Outcome make() const {
+    return run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()});
+  }
+  Outcome run_it(std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"study", "run", (study() / "study.toml").string()});
+    return run_kerf(more);
+  }
+  [[nodiscard]] json found() const { return json::parse(test::read_text(study() / "study.json")); }
+  void edit(const std::string& from, const std::string& to) const {
+    std::string text = test::read_text(study() / "study.toml");
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(study() / "study.toml", text);
+  }
+  [[nodiscard]] fs::file_time_type made(const std::string& name) const {
+    return fs::last_write_time(study() / "recordings" / name / "result.json");
+  }
+  test::TemporaryFolder folder_;
+};
+
+// The tissues are Kelvin elements whose parallel springs are known.
+TEST_F(StudyProgram, FindsTheTissuesThatTheDrawerWasMadeOf) {
+  const Outcome looked = make();
+  ASSERT_EQ(looked.exit_status, 0) << looked.errors;
+  EXPECT_THAT(looked.output, HasSubstr("6 of 7 files take part"));
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  EXPECT_THAT(ran.output,
+              HasSubstr("liver: kelvin serves, with 3 parameters, in each of 3 recordings of 3 specimens"));
+  const json results = found();
+  ASSERT_EQ(results.at("groups").size(), 2U);
+  for (const json& quantity : results.at("groups")[0].at("quantities")) {
+    if (quantity.at("name") != "kelvin.parallel_stiffness") continue;
+    const json& estimate = quantity.at("estimate");
+    EXPECT_NEAR(std::exp(estimate.at("mean").get<double>()), std::cbrt(210.0 * 220.0 * 230.0), 2.0);
+    EXPECT_EQ(estimate.at("specimens"), 3);
+  }
+  for (const json& law : results.at("groups")[0].at("laws"))
+    EXPECT_LT(law.at("on_others_jnd").at("mean").get<double>(), 1.0);
+  for (const char* file : {"report.html", "ro-crate-metadata.json", "tables/groups.csv",
+                           "inputs/liver_s1.txt", "recordings/skin_s4/fits/kelvin.law.toml"})
+    EXPECT_TRUE(fs::exists(study() / file)) << file;
+}
+
+TEST_F(StudyProgram, ComputesOnlyWhatChanged) {
+  ASSERT_EQ(make().exit_status, 0);
+  ASSERT_EQ(run_it().exit_status, 0);
+  const auto liver = made("liver_s1");
+  const auto skin = made("skin_s4");
+  const std::string before = test::read_text(study() / "study.json");
+  ASSERT_EQ(run_it().exit_status, 0);
+  EXPECT_EQ(made("liver_s1"), liver);
+  EXPECT_EQ(test::read_text(study() / "study.json"), before);
+  // Of one file the map: it is made anew, and no other.
+  std::string text = test::read_text(study() / "study.toml");
+  const auto at = text.find("map = ", text.find("path = \"liver_s1.txt\""));
+  text.replace(at, text.find('\n', at) - at, "map = \"time=1[s],position=2[mm],force=3[gf]\"");
+  test::write_text(study() / "study.toml", text);
+  ASSERT_EQ(run_it().exit_status, 0);
+  EXPECT_NE(made("liver_s1"), liver);
+  EXPECT_EQ(made("skin_s4"), skin);
+}
+
+TEST_F(StudyProgram, DoesNotDependOnTheNumberOfJobs) {
+  ASSERT_EQ(make().exit_status, 0);
+  ASSERT_EQ(run_it({"-j", "1"}).exit_status, 0);
+  const std::string one = test::read_text(study() / "study.json");
+  fs::remove_all(study() / "recordings");
+  fs::remove_all(study() / "held_out");
+  ASSERT_EQ(run_it({"-j", "4"}).exit_status, 0);
+  EXPECT_EQ(test::read_text(study() / "study.json"), one);
+}
+
+TEST_F(StudyProgram, GoesOnAfterAFileThatIsNone) {
+  ASSERT_EQ(make().exit_status, 0);
+  test::write_text(drawer() / "liver_s2.txt", "gone\n");
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 1);
+  EXPECT_THAT(ran.errors, HasSubstr("liver_s2.txt: it is no longer the file"));
+  EXPECT_THAT(ran.output, HasSubstr("1 could not be used"));
+  EXPECT_EQ(found().at("groups")[0].at("recordings").size(), 2U);
+}
+
+TEST_F(StudyProgram, LeavesOutAFileInAnotherUnit) {
+  write_punch("liver_s7.txt", 220.0, 7, 101.97);  // gf under a heading of N
+  write_punch("liver_s8.txt", 220.0, 8);
+  ASSERT_EQ(make().exit_status, 0);
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  EXPECT_THAT(ran.output, testing::AllOf(HasSubstr("liver_s7.txt: its peak force is"),
+                                         HasSubstr("gf taken for N"), HasSubstr("it is left out")));
+  EXPECT_EQ(found().at("groups")[0].at("recordings").size(), 4U);
+}
+
+TEST_F(StudyProgram, NamesAFileWhoseClockStartsAnew) {
+  const std::string text = test::read_text(drawer() / "liver_s1.txt");
+  test::write_text(drawer() / "liver_s9.txt", text + text.substr(text.find('\n') + 1));
+  ASSERT_EQ(make().exit_status, 0);
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 1);
+  EXPECT_THAT(ran.errors, testing::AllOf(HasSubstr("liver_s9.txt: "), HasSubstr("anew")));
+}
+
+TEST_F(StudyProgram, IsVerifiedByItsHashesAndMadeAgain) {
+  ASSERT_EQ(make().exit_status, 0);
+  ASSERT_EQ(run_it().exit_status, 0);
+  fs::remove_all(drawer());  // it was handed on
+  const Outcome good = run_kerf({"study", "verify", study().string(), "--rerun", "liver_s1,skin_s5"});
+  EXPECT_EQ(good.exit_status, 0) << good.output << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("2 of 2 recordings came out the same, bit for bit"));
+  std::fstream input(study() / "inputs/liver_s1.txt", std::ios::in | std::ios::out);
+  input.seekp(200);
+  input.put('9');
+  input.close();
+  fs::remove(study() / "tables/groups.csv");
+  const Outcome bad = run_kerf({"study", "verify", study().string(), "--rerun", "all"});
+  EXPECT_EQ(bad.exit_status, 1);
+  EXPECT_THAT(bad.output,
+              testing::AllOf(HasSubstr("inputs/liver_s1.txt: it is not what it was"),
+                             HasSubstr("tables/groups.csv: it is missing"), HasSubstr("5 of 6 recordings")));
+}
+
+TEST_F(StudyProgram, RefusesWhatCannotBeRun) {
+  const std::string inside = (drawer() / "S").string();
+  EXPECT_THAT(run_kerf({"study", "new", drawer().string(), "-o", inside}).errors,
+              HasSubstr("lies in the drawer"));
+  for (unsigned specimen = 1; specimen <= 6; ++specimen) {  // no heading says what the columns are
+    const fs::path file = drawer() / fmt::format("{}_s{}.txt", specimen <= 3 ? "liver" : "skin", specimen);
+    const std::string text = test::read_text(file);
+    test::write_text(file, text.substr(text.find('\n') + 1));
+  }
+  ASSERT_EQ(make().exit_status, 0);
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 2);
+  EXPECT_THAT(ran.errors, testing::AllOf(HasSubstr("columns of 6 files are unknown"), HasSubstr("'map'")));
+  EXPECT_FALSE(fs::exists(study() / "report.html"));
+}
+
+TEST_F(StudyProgram, IsRunByOneProcessAtATime) {
+  ASSERT_EQ(make().exit_status, 0);
+  const int held = ::open((study() / "study.toml").c_str(), O_RDONLY);
+  ASSERT_EQ(::flock(held, LOCK_EX), 0);
+  const Outcome ran = run_it();
+  ::close(held);
+  EXPECT_EQ(ran.exit_status, 2);
+  EXPECT_THAT(ran.errors, HasSubstr("another process runs this study"));
+}
+
+TEST_F(StudyProgram, WritesItsReportAgainWithoutComputing) {
+  ASSERT_EQ(make().exit_status, 0);
+  ASSERT_EQ(run_it().exit_status, 0);
+  edit("tissue = \"skin\"", "tissue = \"liver\"");
+  const auto skin = made("skin_s4");
+  const Outcome report = run_kerf({"study", "report", (study() / "study.toml").string()});
+  ASSERT_EQ(report.exit_status, 0) << report.errors;
+  EXPECT_EQ(made("skin_s4"), skin);
+  EXPECT_EQ(found().at("groups")[0].at("recordings").size(), 4U);
+}
+
+}  // namespace
+}  // namespace kerf::bench
