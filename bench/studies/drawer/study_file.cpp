@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <set>
 
 #include <fmt/ranges.h>
@@ -52,6 +53,8 @@ std::string file_text(const DrawerFile& file) {
     return text;
   }
   if (!file.map.empty()) add("map", file.map);
+  if (!file.sheet.empty()) add("sheet", file.sheet);
+  if (file.stretch > 0) text += fmt::format("stretch = {}\n", file.stretch);
   add("tissue", file.tissue);
   add("speed", file.speed);
   add("specimen", file.specimen);
@@ -76,7 +79,7 @@ std::vector<std::string> texts_of(const Place& place, const toml::table& root, s
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
   place.allow_only(table,
                    {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank",
-                    "accepted", "numbers"},
+                    "accepted", "numbers", "sheet", "stretch"},
                    "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
@@ -88,6 +91,12 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.found = place.text(table, "found", "");
   file.ignored = place.text(table, "ignored", "");
   file.map = place.text(table, "map", "");
+  file.sheet = place.text(table, "sheet", "");
+  if (const toml::node* const stretch = table.get("stretch"); stretch != nullptr) {
+    const auto number = stretch->value_exact<std::int64_t>().value_or(0);
+    if (number < 1) place.refuse(*stretch, "'stretch' is a number from 1");
+    file.stretch = static_cast<std::size_t>(number);
+  }
   file.tissue = place.text(table, "tissue", "");
   file.speed = place.text(table, "speed", "");
   file.specimen = place.text(table, "specimen", "");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,11 +9,13 @@ namespace kerf::bench {
 
 /// One file of a drawer, as study.toml has it.
 struct DrawerFile {
-  std::string path;     ///< below the drawer's folder
-  std::string sha256;   ///< when the drawer was looked at; empty: too large to be read
-  std::string found;    ///< what it holds, in words
-  std::string ignored;  ///< why it takes no part; empty: it does
-  std::string map;      ///< of its own; empty: that of the study
+  std::string path;         ///< below the drawer's folder
+  std::string sha256;       ///< when the drawer was looked at; empty: too large to be read
+  std::string found;        ///< what it holds, in words
+  std::string ignored;      ///< why it takes no part; empty: it does
+  std::string map;          ///< of its own; empty: that of the study
+  std::string sheet{};      ///< of a workbook; empty: the first with numbers
+  std::size_t stretch = 0;  ///< of a clock that starts anew, from 1; 0: it does not
   std::string tissue;
   std::string speed;
   std::string specimen;

@@ -55,7 +55,8 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
     curve.x.push_back(unit.factor * whole.penetration[i]);
     curve.y.push_back(whole.force[i]);
   }
-  Chart chart{.title = drawn.name,
+  const char* const standing = drawn.file.blank ? " (blank)" : drawn.counts() ? "" : " (left out)";
+  Chart chart{.title = drawn.name + standing,
               .x_label = fmt::format("penetration [{}]", unit.unit),
               .y_label = fmt::format("force [{}]", recording.axes[axis].force_unit)};
   for (Curve* curve : {&idle, &bad, &good})

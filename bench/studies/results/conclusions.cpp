@@ -45,13 +45,15 @@ Conclusion drawer_in_words(const StudyResults& results) {
       ++doubted;
     }
   }
-  std::string text = fmt::format("Of {} files {} count", results.plan.files.size(), taken);
-  if (blanks > 0) text += fmt::format(", {} are blanks", blanks);
-  if (doubted > 0)
-    text += fmt::format(", {} are left out for what is doubted of them or could not be fitted", doubted);
-  if (failed > 0) text += fmt::format(", {} could not be used", failed);
+  std::string text = fmt::format("Of {} count {}", counted(results.plan.files.size(), "file"), taken);
   const std::size_t ignored = results.plan.files.size() - results.recordings.size();
-  if (ignored > 0) text += fmt::format(", {} take no part", ignored);
+  const auto add = [&](const char* what, std::size_t count) {
+    if (count > 0) text += fmt::format("; {}: {}", what, count);
+  };
+  add("blanks", blanks);
+  add("left out, doubted or not fitted", doubted);
+  add("could not be used", failed);
+  add("take no part", ignored);
   return {.says = taken == 0             ? Says::no
                   : failed + doubted > 0 ? Says::partly
                                          : Says::yes,

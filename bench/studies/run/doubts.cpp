@@ -32,7 +32,7 @@ constexpr std::array mistaken_times{MistakenUnit{1000.0, "ms taken for s"},
                                     MistakenUnit{1e6, "us taken for s"},
                                     MistakenUnit{60.0, "s taken for min"}};
 
-constexpr double near_a_unit = 1.25;       // of another unit's factor
+constexpr double near_a_unit = 1.4;  // of another unit's factor: none are nearer to each other than 2.2 times
 constexpr double far_whatever_unit = 5.0;  // no tissue differs so from its like
 constexpr std::size_t fewest_others = 3;
 constexpr double fewest_spreads = 3.0;
@@ -41,8 +41,29 @@ struct HeldQuantity {
   std::string_view name;
   std::function<double(const StudiedRecording&)> of;
   std::span<const MistakenUnit> mistakes;
-  bool of_the_tissue = false;
+  bool of_the_tissue = false;  ///< and of the speed, where there are enough of it
 };
+
+bool is_comparable(const DrawerRecording& one, const DrawerRecording& other) {
+  return other.result.failure.empty() && !other.file.blank &&
+         other.result.position_unit == one.result.position_unit &&
+         other.result.force_unit == one.result.force_unit;
+}
+
+/// Logarithms of what the others have.
+std::vector<double> of_others(const std::vector<DrawerRecording>& recordings, std::size_t at,
+                              const HeldQuantity& quantity, bool of_the_speed) {
+  const DrawerRecording& one = recordings[at];
+  std::vector<double> others;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const DrawerRecording& other = recordings[i];
+    if (i == at || !is_comparable(one, other)) continue;
+    if (quantity.of_the_tissue && other.file.tissue != one.file.tissue) continue;
+    if (of_the_speed && other.file.speed != one.file.speed) continue;
+    if (const double there = quantity.of(other.result); there > 0.0) others.push_back(std::log(there));
+  }
+  return others;
+}
 
 /// "9.8 times" or "1/9.8 of".
 std::string times_in_words(double ratio) {
@@ -62,16 +83,8 @@ std::string unit_in_words(double ratio, std::span<const MistakenUnit> mistakes) 
 void doubt_unit(std::vector<DrawerRecording>& recordings, std::size_t at, const HeldQuantity& quantity) {
   DrawerRecording& one = recordings[at];
   const double value = quantity.of(one.result);
-  std::vector<double> others;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const DrawerRecording& other = recordings[i];
-    if (i == at || !other.result.failure.empty() || other.file.blank) continue;
-    if (quantity.of_the_tissue && other.file.tissue != one.file.tissue) continue;
-    if (other.result.position_unit != one.result.position_unit ||
-        other.result.force_unit != one.result.force_unit)
-      continue;
-    if (const double there = quantity.of(other.result); there > 0.0) others.push_back(std::log(there));
-  }
+  std::vector<double> others = of_others(recordings, at, quantity, quantity.of_the_tissue);
+  if (others.size() < fewest_others) others = of_others(recordings, at, quantity, false);
   if (others.size() < fewest_others || !(value > 0.0)) return;
   const double usual = quantile(others, 0.5);
   std::vector<double> apart;
@@ -100,6 +113,16 @@ void doubt_kind_of_axis(std::vector<DrawerRecording>& recordings) {
   for (DrawerRecording& one : recordings)
     if (one.result.failure.empty() && kind_of(one) != usual->first)
       one.doubts.push_back(fmt::format("it has {}, and most have {}", kind_of(one), usual->first));
+}
+
+void doubt_cycles(std::vector<DrawerRecording>& recordings) {
+  for (DrawerRecording& one : recordings) {
+    const auto& cycles = one.result.cycles;
+    if (one.file.blank || cycles.empty()) continue;
+    if (std::ranges::none_of(cycles, [](const StudiedCycle& cycle) { return cycle.is_good; }))
+      one.doubts.push_back(fmt::format("none of its {} cycles is good; of the first, {}", cycles.size(),
+                                       cycles.front().reason));
+  }
 }
 
 void doubt_closing(std::vector<DrawerRecording>& recordings) {
@@ -145,7 +168,7 @@ void hold_to_blanks(std::vector<DrawerRecording>& recordings) {
 
 }  // namespace
 
-void doubt_recordings(std::vector<DrawerRecording>& recordings) {
+void doubt_recordings(std::vector<DrawerRecording>& recordings, bool all_cycles) {
   const std::array quantities{
       HeldQuantity{"travel", [](const StudiedRecording& one) { return one.travel; }, mistaken_positions},
       HeldQuantity{"usual step of time", [](const StudiedRecording& one) { return one.period_s; },
@@ -155,6 +178,7 @@ void doubt_recordings(std::vector<DrawerRecording>& recordings) {
     if (recordings[i].file.blank || !recordings[i].result.failure.empty()) continue;
     for (const HeldQuantity& quantity : quantities) doubt_unit(recordings, i, quantity);
   }
+  if (!all_cycles) doubt_cycles(recordings);
   doubt_kind_of_axis(recordings);
   doubt_closing(recordings);
   hold_to_blanks(recordings);

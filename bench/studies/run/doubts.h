@@ -29,16 +29,18 @@ struct DrawerRecording {
 ///
 ///     a unit     its travel, its usual step or its peak force is that of the others times what one unit is
 ///     of
-///                another (degrees for radians, ms for s, kgf for N), within a quarter; or more than 5 times
-///                theirs. Forces are held to recordings of the same tissue, the others to all. The others are
-///                at least three and agree with each other three times better.
+///                another (degrees for radians, ms for s, kgf for N), within 1.4 times; or more than 5 times
+///                theirs. Forces are held to recordings of the same tissue and speed (tissue, where there are
+///                too few), the others to all. The others are at least three and agree with each other three
+///                times better.
 ///     the axis   a law of an angle and a torque says nothing of a length and a force: most decide
+///     cycles     none is good (unless all count)
 ///     closing    it closes the other way round than most
 ///
 /// And whether a blank of its speed (any, where no speed is the same) meets a large share of its peak: no
 /// reason to leave it out, but what is fitted is then tool and tissue together.
 ///
 /// Another unit or another experiment: that is for a person to say.
-void doubt_recordings(std::vector<DrawerRecording>& recordings);
+void doubt_recordings(std::vector<DrawerRecording>& recordings, bool all_cycles = false);
 
 }  // namespace kerf::bench

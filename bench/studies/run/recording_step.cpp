@@ -44,6 +44,8 @@ schema::Recording imported_or_read(const RecordingStep& step, StudiedRecording& 
   if (map.empty()) throw std::invalid_argument("its columns are unknown: give it, or the study, a map");
   ImportOptions options;
   options.map = parse_map(map);
+  options.sheet = step.file->sheet;
+  options.stretch = step.file->stretch;
   options.max_bytes = std::size_t{512} << 20U;
   Imported imported = import_text(step.source, options);
   result.warnings = std::move(imported.warnings);
@@ -179,9 +181,11 @@ void fit_laws(const RecordingStep& step, const schema::Recording& recording, con
 
 std::string key_of(const RecordingStep& step) {
   const StudyPlan& plan = *step.plan;
-  const json all{{"result", first_result},  {"program", software()},    {"source", sha256_of(step.source)},
-                 {"map", map_of(step)},     {"laws", plan.laws},        {"all_cycles", plan.all_cycles},
-                 {"closing", plan.closing}, {"blank", step.file->blank}};
+  const json all{
+      {"result", first_result},   {"program", software()},         {"source", sha256_of(step.source)},
+      {"map", map_of(step)},      {"sheet", step.file->sheet},     {"stretch", step.file->stretch},
+      {"laws", plan.laws},        {"all_cycles", plan.all_cycles}, {"closing", plan.closing},
+      {"blank", step.file->blank}};
   return sha256_of(std::string_view(all.dump()));
 }
 

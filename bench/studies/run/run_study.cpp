@@ -97,11 +97,12 @@ std::optional<StudiedRecording> kept_result(const fs::path& folder, const std::s
   return std::nullopt;
 }
 
-/// One line, without the path that the program itself made up.
-std::string in_one_line(std::string message, const fs::path& source, const std::string& name) {
-  for (const std::string& prefix : {source.string() + ": ", name + ": "})
-    if (message.starts_with(prefix)) message.erase(0, prefix.size());
-  return message;
+/// One line, without the path of the copy that was read: "line 7: ...".
+std::string in_one_line(const std::string& message, const fs::path& source) {
+  const std::string path = source.string() + ":";
+  if (!message.starts_with(path)) return message;
+  const std::string rest = message.substr(path.size());
+  return rest.starts_with(' ') ? rest.substr(1) : "line " + rest;
 }
 
 StudiedRecording made_or_kept(const RecordingStep& step, const std::string& name, const fs::path& folder,
@@ -125,7 +126,7 @@ void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& fold
   } catch (const std::bad_alloc&) {
     one.result.failure = "there was not enough memory";
   } catch (const std::exception& error) {
-    one.result.failure = in_one_line(error.what(), step.source, one.file.path);
+    one.result.failure = in_one_line(error.what(), step.source);
   }
 }
 
@@ -203,7 +204,7 @@ StudyResults run_study(const fs::path& file, const StudyRunOptions& options, con
   } else {
     study_all(plan, results.recordings, folder, options, stop);
   }
-  doubt_recordings(results.recordings);
+  doubt_recordings(results.recordings, plan.all_cycles);
   form_groups(results);
   for (StudiedGroup& group : results.groups) judge_on_others(group, results, folder, options, stop);
   conclude(results);

@@ -24,6 +24,8 @@ StudyPlan some_plan() {
   plan.files = {{.path = "a\tb.txt",
                  .sha256 = "00",
                  .found = "3 columns",
+                 .sheet = "Run 2",
+                 .stretch = 2,
                  .tissue = "liver",
                  .speed = "slow",
                  .specimen = "s1",
@@ -63,6 +65,8 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   ASSERT_EQ(again.files.size(), 2U);
   EXPECT_EQ(again.files[0].path, plan.files[0].path);
   EXPECT_EQ(again.files[0].specimen, "s1");
+  EXPECT_EQ(again.files[0].stretch, 2U);
+  EXPECT_EQ(again.files[0].sheet, "Run 2");
   EXPECT_EQ(again.files[0].accepted, "looked through");
   EXPECT_EQ(again.files[1].ignored, "no text");
 }

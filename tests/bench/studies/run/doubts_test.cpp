@@ -51,6 +51,20 @@ TEST(Doubts, AreOfWhatClosesTheOtherWayOrIsAnotherAxis) {
   EXPECT_THAT(recordings[2].doubts, ElementsAre(HasSubstr("N over rad")));
 }
 
+TEST(Doubts, AreOfARecordingWithoutAGoodCycle) {
+  auto recordings = five_specimens("liver", 1.0);
+  for (StudiedCycle& cycle : recordings[0].result.cycles) {
+    cycle.is_good = false;
+    cycle.reason = "the sensor is clipped in 9 rows";
+  }
+  auto all_count = recordings;
+  doubt_recordings(recordings);
+  EXPECT_THAT(recordings[0].doubts,
+              ElementsAre(HasSubstr("none of its 2 cycles is good; of the first, the sensor")));
+  doubt_recordings(all_count, true);
+  EXPECT_THAT(all_count[0].doubts, IsEmpty());
+}
+
 TEST(Doubts, OfBlanksAreNoneAndTheirShareIsKnown) {
   auto recordings = five_specimens("liver", 1.0);
   recordings.push_back(test::studied({.name = "blank", .tissue = "", .peak = 0.5}));

@@ -129,7 +129,7 @@ TEST_F(StudyProgram, GoesOnAfterAFileThatIsNone) {
   const Outcome ran = run_it();
   EXPECT_EQ(ran.exit_status, 1);
   EXPECT_THAT(ran.errors, HasSubstr("liver_s2.txt: it is no longer the file"));
-  EXPECT_THAT(ran.output, HasSubstr("1 could not be used"));
+  EXPECT_THAT(ran.output, HasSubstr("could not be used: 1"));
   EXPECT_EQ(found().at("groups")[0].at("recordings").size(), 2U);
 }
 
@@ -150,7 +150,9 @@ TEST_F(StudyProgram, NamesAFileWhoseClockStartsAnew) {
   ASSERT_EQ(make().exit_status, 0);
   const Outcome ran = run_it();
   EXPECT_EQ(ran.exit_status, 1);
-  EXPECT_THAT(ran.errors, testing::AllOf(HasSubstr("liver_s9.txt: "), HasSubstr("anew")));
+  EXPECT_THAT(ran.errors, testing::AllOf(HasSubstr("liver_s9.txt: line 1502: "), HasSubstr("anew")));
+  edit("specimen = \"s9\"", "specimen = \"s9\"\nstretch = 2");
+  EXPECT_EQ(run_it().exit_status, 0);
 }
 
 TEST_F(StudyProgram, IsVerifiedByItsHashesAndMadeAgain) {
