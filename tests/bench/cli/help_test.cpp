@@ -41,7 +41,7 @@ TEST(Help, FitsAScreenWithEveryVerbInItsGroup) {
     if (std::regex_match(line, found, std::regex("([a-z]+) +([a-z]+) +[A-Z].*"))) groups.push_back(found[1]);
   }
   EXPECT_THAT(groups, ElementsAre("start", "devices", "record", "look", "fit", "judge", "replay",
-                                  "experiment", "share"));
+                                  "experiment", "study", "share"));
 }
 
 TEST(Help, SortsTheVerbsAsTheirFoldersDo) {
