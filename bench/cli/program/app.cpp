@@ -55,7 +55,7 @@ std::vector<Group> groups() {
 
 /// `kerf --help`: every verb in a line, by group.
 std::string overview(const CLI::App& app) {
-  std::string text = fmt::format("{}\n\nUsage: kerf VERB [OPTIONS]\n\n", app.get_description());
+  std::string text = fmt::format("{}\nUsage: kerf VERB [OPTIONS]\n\n", app.get_description());
   std::string group;
   for (const CLI::App* const verb : app.get_subcommands({})) {
     text += fmt::format("{:12}{:11}{}\n", verb->get_group() == group ? "" : verb->get_group(),
