@@ -110,6 +110,8 @@ const std::vector<Words> with_output{
     {"replay", "FOLDER/r.h5", "--through", "FOLDER/z.law.toml", "-o", "BELOW"},
     {"regress", "run", KERF_SOURCE_DIR "/examples/regress/kerf.toml", "--only", "kelvin", "--no-cost",
      "--junit", "OUTPUT"},
+    {"regress", "run", KERF_SOURCE_DIR "/examples/regress/kerf.toml", "--only", "kelvin", "--no-cost", "-o",
+     "BELOW"},
     {"session", "key", "OUTPUT"},
     {"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1", "--key-file", "FOLDER/key",
      "-o", "OUTPUT"},
