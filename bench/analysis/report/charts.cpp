@@ -19,6 +19,13 @@ using schema::Column;
 
 std::string name_of(const schema::Axis& axis) { return axis.position_unit == "rad" ? "angle" : "position"; }
 
+/// The same time stands at the same place in every chart over it.
+void align_times(Chart& chart, const BlockedValues& time_s) {
+  chart.left_margin = 10;
+  chart.right_margin = 16;
+  if (time_s.size() > 1) chart.x_range = {time_s[0], time_s[time_s.size() - 1]};
+}
+
 /// A few thousand points of so many, no spike lost.
 Curve drawn(std::size_t points, const ValueOfRow& x, const ValueOfRow& y, std::size_t most = 4000) {
   Curve curve;
@@ -113,6 +120,7 @@ Chart position_chart(const schema::Recording& about, const schema::RecordedRows&
   chart.y_label = fmt::format("{} [{}]", name_of(about.axes[axis]), unit.unit);
   const BlockedValues time_s = axis_values(rows, Column::time);
   const BlockedValues position = axis_values(rows, Column::position, axis);
+  align_times(chart, time_s);
   if (about.cycles && about.cycles->axis == axis) {
     chart.title = "Position over time: closing (red), turning to open (yellow), opening (blue)";
     chart.bands = phase_bands(phases_within(*about.cycles, rows.rows()), time_s);
@@ -132,6 +140,7 @@ Chart force_chart(const schema::Recording& about, const schema::RecordedRows& ro
   Chart chart{.title = "Force over time", .x_label = "time [s]"};
   chart.y_label = fmt::format("force [{}]", about.axes[axis].force_unit);
   const BlockedValues time_s = axis_values(rows, Column::time);
+  align_times(chart, time_s);
   const auto add = [&](Column column, const char* label, Colour colour) {
     if (rows.width(column) == 0) return;
     Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, axis_values(rows, column, axis), 1.0));
