@@ -19,13 +19,6 @@ using schema::Column;
 
 std::string name_of(const schema::Axis& axis) { return axis.position_unit == "rad" ? "angle" : "position"; }
 
-/// The same time stands at the same place in every chart over it.
-void align_times(Chart& chart, const BlockedValues& time_s) {
-  chart.left_margin = 10;
-  chart.right_margin = 16;
-  if (time_s.size() > 1) chart.x_range = {time_s[0], time_s[time_s.size() - 1]};
-}
-
 /// A few thousand points of so many, no spike lost.
 Curve drawn(std::size_t points, const ValueOfRow& x, const ValueOfRow& y, std::size_t most = 4000) {
   Curve curve;
@@ -38,10 +31,6 @@ Curve drawn(std::size_t points, const ValueOfRow& x, const ValueOfRow& y, std::s
 
 ValueOfRow times(double factor, const BlockedValues& values) {
   return [factor, &values](std::size_t row) { return factor * values[row]; };
-}
-
-Curve drawn(const BlockedValues& x, double x_factor, const BlockedValues& y, double y_factor) {
-  return drawn(y.size(), times(x_factor, x), times(y_factor, y));
 }
 
 /// The phases, but for those of a file that does not hold together.
@@ -107,7 +96,21 @@ std::vector<Band> phase_bands(const std::vector<schema::PhaseSpan>& phases, cons
   return bands;
 }
 
+void align_times(Chart& chart, const BlockedValues& time_s) {
+  if (time_s.size() > 1) align_times(chart, time_s[0], time_s[time_s.size() - 1]);
+}
+
 }  // namespace
+
+void align_times(Chart& chart, double first_s, double last_s) {
+  chart.left_margin = 10;
+  chart.right_margin = 16;
+  chart.x_range = {first_s, last_s};
+}
+
+Curve drawn_curve(const BlockedValues& x, double x_factor, const BlockedValues& y, double y_factor) {
+  return drawn(y.size(), times(x_factor, x), times(y_factor, y));
+}
 
 DrawnUnit drawn_position(const schema::Axis& axis) {
   if (axis.position_unit == "rad") return {.factor = 180.0 / std::numbers::pi, .unit = "deg"};
@@ -130,7 +133,7 @@ Chart position_chart(const schema::Recording& about, const schema::RecordedRows&
       chart.bands.clear();
     }
   }
-  Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, position, unit.factor));
+  Curve& curve = chart.curves.emplace_back(drawn_curve(time_s, 1.0, position, unit.factor));
   curve.colour = Colour::black;
   curve.width = 1.2;
   return chart;
@@ -143,7 +146,7 @@ Chart force_chart(const schema::Recording& about, const schema::RecordedRows& ro
   align_times(chart, time_s);
   const auto add = [&](Column column, const char* label, Colour colour) {
     if (rows.width(column) == 0) return;
-    Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, axis_values(rows, column, axis), 1.0));
+    Curve& curve = chart.curves.emplace_back(drawn_curve(time_s, 1.0, axis_values(rows, column, axis), 1.0));
     curve.label = label;
     curve.colour = colour;
     curve.width = 1.0;
@@ -161,7 +164,7 @@ Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& row
   const BlockedValues position = axis_values(rows, Column::position, axis);
   const BlockedValues force = axis_values(rows, force_column(rows), axis);
   if (!about.cycles || about.cycles->axis != axis) {
-    Curve& curve = chart.curves.emplace_back(drawn(position, unit.factor, force, 1.0));
+    Curve& curve = chart.curves.emplace_back(drawn_curve(position, unit.factor, force, 1.0));
     curve.label = "recorded";
     curve.colour = Colour::blue;
     curve.width = 1.0;

@@ -16,11 +16,12 @@
 #include "recordings/summary.h"
 #include "recordings/whole_recording.h"
 #include "report/charts.h"
+#include "report/cycle_section.h"
 #include "report/fit_section.h"
 #include "report/loop_section.h"
-#include "report/result_sections.h"
-#include "report/results.h"
-#include "report/summary.h"
+#include "report/results/found_results.h"
+#include "report/results/sections.h"
+#include "report/results/summary.h"
 
 namespace kerf::bench {
 namespace {
@@ -116,14 +117,14 @@ std::string summary_of_results(const std::vector<FoundResult>& results) {
   return html;
 }
 
-std::string section_of(const FoundResult& result, const std::filesystem::path& recording,
-                       const schema::RecordedRows& rows, std::size_t axis) {
+std::string section_of(const FoundResult& result, const std::filesystem::path& recording, std::size_t axis) {
   return read_with_care(result, [&]() -> std::string {
     switch (result.kind) {
       case ResultKind::inspection:
-        return inspection_section(result, rows, axis);
+        return inspection_section(result);
       case ResultKind::fits:
-        return fit_section(read_whole_recording(recording), axis, result.json, result.file.parent_path());
+        return fit_section(read_whole_recording(recording), axis, result.json, result.file.parent_path()) +
+               whose(result);
       case ResultKind::choice:
         return choice_section(result);
       case ResultKind::chart:
@@ -169,8 +170,8 @@ std::string report_page(const ReportInput& input) {
                                  escaped(recording.header.software), escaped(recording.axes[axis].name));
   const std::vector<FoundResult> results = results_of(input, recording.header.uuid);
   body += summary_of_results(results);
-  body += recording_section(rows, input.recording, axis);
-  for (const FoundResult& result : results) body += section_of(result, input.recording, rows, axis);
+  body += recording_section(rows, input.recording, axis) + cycle_section(rows, axis);
+  for (const FoundResult& result : results) body += section_of(result, input.recording, axis);
   body += without_fits_or_check(results) + missing_section(results, input.recording.filename().string());
   return html_page(name, body);
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "html/html.h"
-#include "report/results.h"
+#include "report/results/found_results.h"
 
 namespace kerf::bench {
 

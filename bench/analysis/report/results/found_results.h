@@ -28,9 +28,9 @@ struct FoundResult {
 };
 
 /// Reads results by their paths: a JSON that one of the verbs has written, or a folder that is looked
-/// through, itself and two folders down, for such. Which verb wrote one is told by its keys, so that names do
-/// not matter. In the order of the verbs above, those of a kind in the order in which they were found. `uuid`
-/// is the recording's.
+/// through, itself and two folders down, for such of this recording. Which verb wrote one is told by its
+/// keys, so that names do not matter. In the order of the verbs above, those of a kind in the order in which
+/// they were found. `uuid` is the recording's.
 /// @throws std::invalid_argument for a file that is none, or a folder without any.
 [[nodiscard]] std::vector<FoundResult> find_results(const std::vector<std::filesystem::path>& paths,
                                                     const std::string& uuid);

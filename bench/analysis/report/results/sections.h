@@ -1,34 +1,33 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
+#include <vector>
 
-#include <kerf/schema/recorded_rows.h>
-
-#include "report/results.h"
+#include "report/results/found_results.h"
 
 namespace kerf::bench {
 
-/// What a recording is worth: its signals, its cycles with their flags, and the flagged ones drawn on the
-/// data.
-[[nodiscard]] std::string inspection_section(const FoundResult& result, const schema::RecordedRows& rows,
-                                             std::size_t axis);
+/// What its signals are worth, and what ought to be known before it is used.
+[[nodiscard]] std::string inspection_section(const FoundResult& result);
 
-/// Which law was chosen, why, and every candidate.
+/// Which law was chosen, why, and every candidate: error against parameters.
 [[nodiscard]] std::string choice_section(const FoundResult& result);
 
-/// Cost of a tick against error, with the front.
+/// Cost of a tick against error, with the front, as the chart itself draws it.
 [[nodiscard]] std::string chart_section(const FoundResult& result);
 
-/// What was found of a law's stability, the map, and of each condition whether it is necessary or sufficient.
+/// What was found of a law's stability or of walls, with the map.
+/// @throws std::invalid_argument for cells that are no grid.
 [[nodiscard]] std::string stability_section(const FoundResult& result);
 
-/// What each law gave along the recording: errors, contacts, releases and drops.
+/// What each law gave along the recording: errors, contacts, releases and drops, and its force over time as
+/// far as the recordings of the laws lie beside the result. @throws schema::FormatError for one that is
+/// damaged.
 [[nodiscard]] std::string replay_section(const FoundResult& result);
 
 // All throw nlohmann::json::exception if the JSON lacks what its verb writes.
 
-/// That a result is of another recording, or does not say whose it is; empty if it is of this one.
+/// From which file a result is, and whether that is of another recording, or does not say of which.
 [[nodiscard]] std::string whose(const FoundResult& result);
 
 /// The kinds that nobody has looked at, each with the command that makes one; empty if there are none. Fits

@@ -1,4 +1,4 @@
-#include "report/results.h"
+#include "report/results/found_results.h"
 
 #include <algorithm>
 #include <optional>
@@ -82,18 +82,32 @@ std::vector<fs::path> json_files_in(const fs::path& folder) {
   return files;
 }
 
+/// What a folder holds of the recording. A lab keeps the results of many beside each other: what says that it
+/// is of another one is passed over.
 void look_through(const fs::path& folder, const std::string& uuid, std::vector<FoundResult>& found) {
   const std::size_t before = found.size();
+  std::size_t of_others = 0;
   for (const fs::path& file : json_files_in(folder)) {
     try {
-      if (auto result = result_of(file, read_result(file), uuid)) found.push_back(std::move(*result));
+      auto result = result_of(file, read_result(file), uuid);
+      if (!result) continue;
+      if (result->belongs == Belongs::elsewhere) {
+        ++of_others;
+      } else {
+        found.push_back(std::move(*result));
+      }
     } catch (const std::invalid_argument&) {  // somebody else's
     }
   }
-  if (found.size() == before) {
-    throw std::invalid_argument(fmt::format(
-        "{}: holds no JSON of fit, choose, chart, stability, replay, check or inspect", folder.string()));
+  if (found.size() > before) return;
+  if (of_others > 0) {
+    throw std::invalid_argument(
+        fmt::format("{}: holds results of other recordings alone; one that is named as a file is shown all "
+                    "the same",
+                    folder.string()));
   }
+  throw std::invalid_argument(fmt::format(
+      "{}: holds no JSON of fit, choose, chart, stability, replay, check or inspect", folder.string()));
 }
 
 }  // namespace

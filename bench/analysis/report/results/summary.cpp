@@ -1,4 +1,4 @@
-#include "report/summary.h"
+#include "report/results/summary.h"
 
 #include <algorithm>
 #include <array>
@@ -167,7 +167,7 @@ std::string summary_paragraph(const std::vector<FoundResult>& results) {
     unknown.push_back(missing + " would say");
   }
   const std::string lists =
-      listed("What holds", holds) + listed("What does not", fails) + listed("What is not known", unknown);
+      listed("Holds", holds) + listed("Does not hold", fails) + listed("Not known", unknown);
   return html_answer(worst, lists.substr(4));  // without the first line break
 }
 
