@@ -59,13 +59,14 @@ void run_report(const ReportVerbArguments& arguments, Context& context) {
 
 void add_report(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ReportVerbArguments>();
-  Verb verb =
-      add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
-               "kerf report punch.h5 fits choice check.json inspect.json -o punch.html\n"
-               "  kerf report punch.h5 --fits fits --check check.json -o punch.html\n\n"
-               "RESULTS are what other verbs have found, files or folders, in any number: the JSON of fit,\n"
-               "choose, chart, stability, replay, check and inspect. Which it is, is told by what is in it.",
-               [arguments, &context] { run_report(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "report", "Write one self-contained HTML page about a recording",
+      "kerf report punch.h5 fits choice check.json inspect.json -o punch.html\n"
+      "  kerf report punch.h5 --fits fits --check check.json -o punch.html\n\n"
+      "RESULTS are what other verbs have found, files or folders, in any number: the JSON of fit,\n"
+      "choose, chart, stability, replay, check and inspect. Which it is, is told by what is in it; of a\n"
+      "folder only what is of this recording is taken. docs/reports.md says what is on the page.",
+      [arguments, &context] { run_report(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording").required();
   verb.add_option("RESULTS", arguments->results, "JSON of other verbs, or folders that hold such");
   verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");

@@ -84,6 +84,7 @@ const std::vector<Words> with_input{
     {"session", "open", "FOLDER/s.h5", "--key-file", "INPUT", "-o", "FOLDER/out"},
     {"session", "simulate", "INPUT"},
     {"report", "INPUT", "-o", "FOLDER/out.html"},
+    {"report", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--fits", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--check", "INPUT", "-o", "FOLDER/out.html"},
 };

@@ -106,7 +106,7 @@ std::string events_of_laws(const json& laws) {
         const auto number = [&](const char* key) { return number_text(count.at(key), "{:.0f}"); };
         rows.push_back({law.at("name").get<std::string>(), axis.at("axis").get<std::string>(), kind,
                         number("recorded"), number("rendered"), number("matched"),
-                        number_text(count.at("mean_late_ms"), "{:.1f}")});
+                        number_text(count.at("mean_late_ms"), "{:.3g}")});
       }
     }
   }
