@@ -146,7 +146,8 @@ std::string missing_section(const std::vector<FoundResult>& results, const std::
       {ResultKind::replay, fmt::format("kerf replay {} --through LAW.law.toml -o replay", recording)}};
   std::string html;
   for (const auto& [kind, command] : commands) {
-    if (std::ranges::any_of(results, [&](const FoundResult& one) { return one.kind == kind; })) continue;
+    if (std::ranges::any_of(results, [kind = kind](const FoundResult& one) { return one.kind == kind; }))
+      continue;
     html += fmt::format("<p class=\"soft\">No result of {} was given: <code>{}</code> makes one.</p>\n",
                         verb_of(kind), escaped(command));
   }
