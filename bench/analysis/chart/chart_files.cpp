@@ -115,6 +115,7 @@ json chart_as_json(const SpeedAccuracy& chart) {
               {"front", json::array()},
               {"cold_front", json::array()},
               {"notes", chart.notes}};
+  if (!chart.recording.empty()) result["recording"] = chart.recording;
   if (chart.cycles) {
     result["cycles"] = in_words(*chart.cycles);
     result["cycles_left_out"] = as_json(chart.cycles_left_out);

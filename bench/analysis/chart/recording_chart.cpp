@@ -104,6 +104,7 @@ class RecordingChart {
 
   SpeedAccuracy run() {
     chart_.source = source_.name;
+    chart_.recording = source_.recording->header.uuid;
     chart_.rate_hz = options_.rate_hz;
     chart_.reference = options_.folds > 0
                            ? "held-out cycles, or blocks of time where there are none, as rendered"

@@ -53,6 +53,7 @@ inline constexpr double jnd_fraction_limit = 0.05;
 /// Cost against error, for all laws and fidelities.
 struct SpeedAccuracy {
   std::string source;         ///< name of the recording or scene
+  std::string recording{};    ///< its uuid; empty for a scene
   std::string reference;      ///< in words, what errors are towards
   Convergence convergence{};  ///< of the reference, where it is a finer mesh; no refinements else
   double rate_hz = 0.0;

@@ -98,7 +98,9 @@ Chart choice_chart(const json& all) {
   const bool fidelities = !all.contains("recording");  // of one law: they have as many parameters
   Curve within{.label = "within the JND", .colour = Colour::blue, .mark = Mark::points, .width = 4.0};
   Curve beyond{.label = "passed over", .colour = Colour::grey, .mark = Mark::points, .width = 4.0};
-  Curve taken{.label = "taken", .colour = Colour::vermillion, .mark = Mark::points, .width = 6.0};
+  const bool serves = all.at("choice").value("serves", true);
+  Curve taken{
+      .label = serves ? "taken" : "best", .colour = Colour::vermillion, .mark = Mark::points, .width = 6.0};
   for (const json& one : all.at("candidates")) {
     if (one.at("held_out_jnd").is_null()) continue;
     Curve& curve = one.at("law") == all.at("choice").at("law") ? taken

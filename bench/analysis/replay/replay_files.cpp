@@ -73,7 +73,11 @@ json open_loop_as_json(const Source& source, const OpenLoopResult& result) {
   }
   all["laws"] = json::array();
   for (const LawTrace& trace : result.laws) {
-    json law{{"name", trace.name}, {"model", trace.file.law.model()}, {"faults", trace.faults}};
+    const bool spatial = trace.file.law.is_spatial();
+    json law{{"name", trace.name},
+             {"model", trace.file.law.model()},
+             {"direction", spatial ? json(nullptr) : json(trace.file.contact.direction)},
+             {"faults", trace.faults}};
     for (const AxisComparison& one : trace.axes)
       law["axes"].push_back(axis_as_json(one, source.recording.axes[one.axis]));
     all["laws"].push_back(std::move(law));

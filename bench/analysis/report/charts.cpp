@@ -33,10 +33,6 @@ ValueOfRow times(double factor, const BlockedValues& values) {
   return [factor, &values](std::size_t row) { return factor * values[row]; };
 }
 
-Curve drawn(const BlockedValues& x, double x_factor, const BlockedValues& y, double y_factor) {
-  return drawn(y.size(), times(x_factor, x), times(y_factor, y));
-}
-
 /// The phases, but for those of a file that does not hold together.
 std::vector<schema::PhaseSpan> phases_within(const schema::Cycles& cycles, std::uint64_t rows) {
   std::vector<schema::PhaseSpan> phases;
@@ -100,7 +96,21 @@ std::vector<Band> phase_bands(const std::vector<schema::PhaseSpan>& phases, cons
   return bands;
 }
 
+void align_times(Chart& chart, const BlockedValues& time_s) {
+  if (time_s.size() > 1) align_times(chart, time_s[0], time_s[time_s.size() - 1]);
+}
+
 }  // namespace
+
+void align_times(Chart& chart, double first_s, double last_s) {
+  chart.left_margin = 10;
+  chart.right_margin = 16;
+  chart.x_range = {first_s, last_s};
+}
+
+Curve drawn_curve(const BlockedValues& x, double x_factor, const BlockedValues& y, double y_factor) {
+  return drawn(y.size(), times(x_factor, x), times(y_factor, y));
+}
 
 DrawnUnit drawn_position(const schema::Axis& axis) {
   if (axis.position_unit == "rad") return {.factor = 180.0 / std::numbers::pi, .unit = "deg"};
@@ -113,6 +123,7 @@ Chart position_chart(const schema::Recording& about, const schema::RecordedRows&
   chart.y_label = fmt::format("{} [{}]", name_of(about.axes[axis]), unit.unit);
   const BlockedValues time_s = axis_values(rows, Column::time);
   const BlockedValues position = axis_values(rows, Column::position, axis);
+  align_times(chart, time_s);
   if (about.cycles && about.cycles->axis == axis) {
     chart.title = "Position over time: closing (red), turning to open (yellow), opening (blue)";
     chart.bands = phase_bands(phases_within(*about.cycles, rows.rows()), time_s);
@@ -122,7 +133,7 @@ Chart position_chart(const schema::Recording& about, const schema::RecordedRows&
       chart.bands.clear();
     }
   }
-  Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, position, unit.factor));
+  Curve& curve = chart.curves.emplace_back(drawn_curve(time_s, 1.0, position, unit.factor));
   curve.colour = Colour::black;
   curve.width = 1.2;
   return chart;
@@ -132,9 +143,10 @@ Chart force_chart(const schema::Recording& about, const schema::RecordedRows& ro
   Chart chart{.title = "Force over time", .x_label = "time [s]"};
   chart.y_label = fmt::format("force [{}]", about.axes[axis].force_unit);
   const BlockedValues time_s = axis_values(rows, Column::time);
+  align_times(chart, time_s);
   const auto add = [&](Column column, const char* label, Colour colour) {
     if (rows.width(column) == 0) return;
-    Curve& curve = chart.curves.emplace_back(drawn(time_s, 1.0, axis_values(rows, column, axis), 1.0));
+    Curve& curve = chart.curves.emplace_back(drawn_curve(time_s, 1.0, axis_values(rows, column, axis), 1.0));
     curve.label = label;
     curve.colour = colour;
     curve.width = 1.0;
@@ -152,7 +164,7 @@ Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& row
   const BlockedValues position = axis_values(rows, Column::position, axis);
   const BlockedValues force = axis_values(rows, force_column(rows), axis);
   if (!about.cycles || about.cycles->axis != axis) {
-    Curve& curve = chart.curves.emplace_back(drawn(position, unit.factor, force, 1.0));
+    Curve& curve = chart.curves.emplace_back(drawn_curve(position, unit.factor, force, 1.0));
     curve.label = "recorded";
     curve.colour = Colour::blue;
     curve.width = 1.0;

@@ -7,6 +7,7 @@
 #include <kerf/schema/recording.h>
 
 #include "plot/plot.h"
+#include "signal/blocked_values.h"
 
 namespace kerf::bench {
 
@@ -16,6 +17,13 @@ struct DrawnUnit {
   std::string unit;
 };
 [[nodiscard]] DrawnUnit drawn_position(const schema::Axis& axis);
+
+/// The same time stands at the same place in every chart over it: below one another they align.
+void align_times(Chart& chart, double first_s, double last_s);
+
+/// A few thousand points of so many, no spike lost; x and y times a factor each.
+[[nodiscard]] Curve drawn_curve(const BlockedValues& x, double x_factor, const BlockedValues& y,
+                                double y_factor);
 
 // `about` says all but the rows; of these some are looked at at a time, and of the points that are too many
 // for a chart each stretch keeps its smallest and its largest.

@@ -9,6 +9,7 @@
 
 #include "fits/fit_files.h"
 #include "html/html.h"
+#include "inspect/flagged_cycles.h"
 #include "report/comparison.h"
 #include "report/fit_view.h"
 #include "report/parameter_tables.h"
@@ -26,18 +27,30 @@ struct Window {
   std::size_t end = 0;
 };
 
-/// The first cycles, or all where there are none: what the eye can follow.
+/// Cycles that are flagged show what no law was asked for.
+std::vector<std::uint32_t> flagged_in(const schema::Recording& recording) {
+  std::vector<std::uint32_t> flagged;
+  if (!recording.cycle_flags) return flagged;
+  for (const CycleVerdict& one :
+       verdicts_on_cycles(schema::RowsInMemory(recording), recording.cycle_flags->felt))
+    if (!one.reason.empty()) flagged.push_back(one.cycle);
+  return flagged;
+}
+
+/// The first good cycles, or all where there are none: what the eye can follow.
 Window window_of(const schema::Recording& recording, const AxisSeries& series) {
   const Window all{.begin = 0, .end = series.time_s.size()};
   if (!recording.cycles || recording.cycles->phases.empty()) return all;
   const auto& phases = recording.cycles->phases;
-  const auto first = std::find_if(phases.begin(), phases.end(),
-                                  [](const auto& span) { return span.phase == schema::Phase::closing; });
+  const std::vector<std::uint32_t> flagged = flagged_in(recording);
+  const auto first = std::find_if(phases.begin(), phases.end(), [&](const auto& span) {
+    return span.phase == schema::Phase::closing && std::ranges::find(flagged, span.cycle) == flagged.end();
+  });
   if (first == phases.end()) return all;
   const double begin_s = recording.time[first->begin];
   double end_s = begin_s;
   for (const auto& span : phases) {
-    if (span.cycle < first->cycle + cycles_drawn)
+    if (span.cycle >= first->cycle && span.cycle < first->cycle + cycles_drawn)
       end_s = recording.time[std::min<std::size_t>(span.end, recording.rows() - 1)];
   }
   const double margin_s = (end_s - begin_s) / 20.0;

@@ -49,15 +49,15 @@ std::string histogram_figure(const json& check) {
   chart.curves.push_back(outline(check.at("histograms").at("wake_us"), "wake latency", Colour::blue));
   chart.curves.push_back(
       outline(check.at("histograms").at("cycle_us"), "cycle (read to record)", Colour::vermillion));
-  chart.vertical.push_back({.at = period_us, .label = "deadline"});
+  chart.vertical.push_back({.at = period_us, .label = "deadline", .label_after = true});
   if (const json& floor = check.at("floor"); !floor.is_null()) {
     chart.vertical.push_back(
         {.at = std::max(floor.at("wake_us").at("p999").get<double>(), 1e-2), .label = "empty loop, 99.9 %"});
   }
   chart.x_range = {
       1e-2,
-      std::max(2.0 * period_us, 1.2 * std::max(chart.curves[0].x.empty() ? 0.0 : chart.curves[0].x.back(),
-                                               chart.curves[1].x.empty() ? 0.0 : chart.curves[1].x.back()))};
+      std::max(10.0 * period_us, 1.2 * std::max(chart.curves[0].x.empty() ? 0.0 : chart.curves[0].x.back(),
+                                                chart.curves[1].x.empty() ? 0.0 : chart.curves[1].x.back()))};
   return html_figure(draw(chart));
 }
 

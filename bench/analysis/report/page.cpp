@@ -2,34 +2,31 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording_file.h>
 
-#include "files/named_file.h"
 #include "html/html.h"
 #include "recordings/axes.h"
 #include "recordings/axis_values.h"
 #include "recordings/summary.h"
 #include "recordings/whole_recording.h"
 #include "report/charts.h"
+#include "report/cycle_section.h"
 #include "report/fit_section.h"
 #include "report/loop_section.h"
+#include "report/results/found_results.h"
+#include "report/results/sections.h"
+#include "report/results/summary.h"
 
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json read_json(const std::filesystem::path& file) {
-  try {
-    return json::parse(read_named_file(file, LargestInput::table));
-  } catch (const json::exception& error) {
-    throw std::invalid_argument(fmt::format("{}: not JSON: {}", file.string(), error.what()));
-  }
-}
 
 std::string channel_table(const json& summary) {
   std::vector<std::vector<std::string>> rows{{"channel", "unit", "smallest", "largest"}};
@@ -78,6 +75,85 @@ std::string recording_section(const schema::RecordedRows& rows, const std::files
   return html;
 }
 
+/// Runs what reads a result. @throws std::invalid_argument that names its file and its verb.
+template <typename Read>
+std::string read_with_care(const FoundResult& result, const Read& read) {
+  try {
+    return read();
+  } catch (const json::exception& error) {
+    throw std::invalid_argument(fmt::format("{} is not what '{}' writes: {}", result.file.string(),
+                                            verb_of(result.kind), error.what()));
+  }
+}
+
+/// Those that were named as fits and check, and those that were found.
+std::vector<FoundResult> results_of(const ReportInput& input, const std::string& uuid) {
+  std::vector<std::filesystem::path> paths;
+  if (input.fits) paths.push_back(*input.fits / "fit.json");
+  if (input.check) paths.push_back(*input.check);
+  paths.insert(paths.end(), input.results.begin(), input.results.end());
+  std::vector<FoundResult> results = find_results(paths, uuid);
+  const auto same = [](const FoundResult& a, const FoundResult& b) {
+    std::error_code absent;
+    return std::filesystem::equivalent(a.file, b.file, absent);
+  };
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto next = results.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    results.erase(std::remove_if(next, results.end(),
+                                 [&](const FoundResult& other) { return same(results[i], other); }),
+                  results.end());
+  }
+  return results;
+}
+
+std::string summary_of_results(const std::vector<FoundResult>& results) {
+  for (const FoundResult& result : results)
+    (void)read_with_care(result, [&] { return summary_of(result).text; });
+  std::string html = summary_paragraph(results);
+  for (const FoundResult& result : results) {
+    if (result.kind == ResultKind::fits) html += choice_paragraph(result.json);
+    if (result.kind == ResultKind::check) html += verdict_paragraph(result.json);
+  }
+  return html;
+}
+
+std::string section_of(const FoundResult& result, const std::filesystem::path& recording, std::size_t axis) {
+  return read_with_care(result, [&]() -> std::string {
+    switch (result.kind) {
+      case ResultKind::inspection:
+        return inspection_section(result);
+      case ResultKind::fits:
+        return fit_section(read_whole_recording(recording), axis, result.json, result.file.parent_path()) +
+               whose(result);
+      case ResultKind::choice:
+        return choice_section(result);
+      case ResultKind::chart:
+        return chart_section(result);
+      case ResultKind::stability:
+        return stability_section(result);
+      case ResultKind::replay:
+        return replay_section(result);
+      case ResultKind::check:
+        return loop_section(result.json) + whose(result);
+    }
+    return "";
+  });
+}
+
+std::string without_fits_or_check(const std::vector<FoundResult>& results) {
+  const auto has = [&](ResultKind kind) {
+    return std::ranges::any_of(results, [&](const FoundResult& one) { return one.kind == kind; });
+  };
+  std::string html;
+  if (!has(ResultKind::fits))
+    html += "<h2>Fits</h2>\n<p class=\"soft\">No fit was given: <code>kerf fit</code> makes one.</p>\n";
+  if (!has(ResultKind::check))
+    html +=
+        "<h2>Closed loop</h2>\n<p class=\"soft\">No check was given: <code>kerf check -o</code> makes "
+        "one.</p>\n";
+  return html;
+}
+
 }  // namespace
 
 std::string report_page(const ReportInput& input) {
@@ -92,25 +168,11 @@ std::string report_page(const ReportInput& input) {
   const std::string name = input.recording.stem().string();
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"soft\">Report of {}, axis {}</p>\n", escaped(name),
                                  escaped(recording.header.software), escaped(recording.axes[axis].name));
-  json fits;
-  if (input.fits) {
-    fits = read_json(*input.fits / "fit.json");
-    body += choice_paragraph(fits);
-  }
-  json check;
-  if (input.check) {
-    check = read_json(*input.check);
-    body += verdict_paragraph(check);
-  }
-  body += recording_section(rows, input.recording, axis);
-  body += input.fits
-              ? fit_section(read_whole_recording(input.recording), axis, fits, *input.fits)
-              : "<h2>Fits</h2>\n<p class=\"soft\">No fit was given: <code>kerf fit</code> makes one.</p>\n";
-  body +=
-      input.check
-          ? loop_section(check)
-          : "<h2>Closed loop</h2>\n<p class=\"soft\">No check was given: <code>kerf check -o</code> makes "
-            "one.</p>\n";
+  const std::vector<FoundResult> results = results_of(input, recording.header.uuid);
+  body += summary_of_results(results);
+  body += recording_section(rows, input.recording, axis) + cycle_section(rows, axis);
+  for (const FoundResult& result : results) body += section_of(result, input.recording, axis);
+  body += without_fits_or_check(results) + missing_section(results, input.recording.filename().string());
   return html_page(name, body);
 }
 

@@ -97,6 +97,7 @@ Chart residual_over_time(const FitView& view, const FittedTrace& trace, double l
               .x_label = "time [s]",
               .y_label = "residual [" + view.force_unit + "]",
               .height_px = 240};
+  align_times(chart, view.series.time_s.front(), view.series.time_s.back());
   if (largest > 0.0) chart.y_range = {-largest, largest};
   chart.curves.push_back(
       decimated({.x = view.series.time_s, .y = trace.residual, .colour = trace.colour, .width = 0.8}, 3000));

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -10,6 +11,7 @@
 #include "answers/answers_table.h"
 #include "experiment/key_arguments.h"
 #include "experiment/verb_session.h"
+#include "files/whole_file.h"
 #include "sealed/opening.h"
 #include "sealed/session_store.h"
 #include "session/receipt.h"
@@ -98,6 +100,8 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
 }
 
 void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {
+  if (!arguments.output.empty())
+    require_output(std::filesystem::path(arguments.output) / "analysis.html", arguments.replace);
   AnalysisOptions& options = arguments.options;
   options.bootstrap = static_cast<int>(arguments.bootstrap);
   options.seed = context.seed;

@@ -58,6 +58,9 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   const Verdict verdict = judge(result);
   context.result = check_as_json(result, verdict);
   context.result["law"] = std::string(options.law->law.model());
+  const std::string& fitted_to = options.law->fit.recording_uuid;
+  context.result["law_of_recording"] =
+      fitted_to.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fitted_to);
   if (!arguments.output.empty())
     write_json_file(arguments.output, context.result, schema::existing_if(options.replace));
   if (!verdict.passed) context.exit = Exit::check_failed;

@@ -45,7 +45,11 @@ Findings study(const StabilityVerbArguments& given, Context& context) {
   options.map.with_cells = !given.no_cells;
   options.map.threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
   if (given.law.empty()) return study_walls(options);
-  LawFindings of_law = study_law(read_law_file(given.law), given.law, options);
+  const LawFile law = read_law_file(given.law);
+  LawFindings of_law = study_law(law, given.law, options);
+  const std::string& fitted_to = law.fit.recording_uuid;
+  of_law.findings.json["law_of_recording"] =
+      fitted_to.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fitted_to);
   if (!of_law.holds) context.exit = Exit::check_failed;
   return std::move(of_law.findings);
 }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
@@ -54,6 +55,9 @@ void refuse(bool given, std::string_view option, std::string_view action) {
 void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   refuse(!arguments.reason.empty(), "--reason", "update");
   refuse(arguments.yes, "--yes", "update");
+  if (!arguments.junit.empty()) require_output(arguments.junit, true);
+  if (!arguments.output.empty())
+    require_output(std::filesystem::path(arguments.output) / "regress.json", true);
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
   for (const RegressionOutcome& one : outcome.cases) say_case(one, context);

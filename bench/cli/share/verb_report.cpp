@@ -2,6 +2,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -18,6 +19,7 @@ namespace {
 
 struct ReportVerbArguments {
   std::string recording;
+  std::vector<std::string> results;
   std::string fits;
   std::string check;
   std::string axis;
@@ -46,6 +48,7 @@ void run_report(const ReportVerbArguments& arguments, Context& context) {
   ReportInput input{.recording = arguments.recording, .axis = arguments.axis};
   if (!arguments.fits.empty()) input.fits = arguments.fits;
   if (!arguments.check.empty()) input.check = arguments.check;
+  input.results.assign(arguments.results.begin(), arguments.results.end());
   require_a_row(arguments);
   write_whole_file(arguments.output, report_page(input), schema::existing_if(arguments.force));
   context.result = {{"report", arguments.output}};
@@ -56,10 +59,16 @@ void run_report(const ReportVerbArguments& arguments, Context& context) {
 
 void add_report(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ReportVerbArguments>();
-  Verb verb = add_verb(app, context, "report", "Write one self-contained HTML page about a recording",
-                       "kerf report punch.h5 --fits fits --check check.json -o punch.html",
-                       [arguments, &context] { run_report(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "report", "Write one self-contained HTML page about a recording",
+      "kerf report punch.h5 fits choice check.json inspect.json -o punch.html\n"
+      "  kerf report punch.h5 --fits fits --check check.json -o punch.html\n\n"
+      "RESULTS are what other verbs have found, files or folders, in any number: the JSON of fit,\n"
+      "choose, chart, stability, replay, check and inspect. Which it is, is told by what is in it; of a\n"
+      "folder only what is of this recording is taken. docs/reports.md says what is on the page.",
+      [arguments, &context] { run_report(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording").required();
+  verb.add_option("RESULTS", arguments->results, "JSON of other verbs, or folders that hold such");
   verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");
   verb.add_option("--check", arguments->check, "JSON that 'kerf check -o' wrote");
   verb.add_option("--axis", arguments->axis, "Axis to report (default: that of the cycles, or the first)");

@@ -162,6 +162,8 @@ std::string script_of(const Chart& chart, const std::string& output) {
   const std::vector<Curve> curves = curves_of(chart);
   if (std::all_of(curves.begin(), curves.end(), [](const Curve& curve) { return curve.label.empty(); }))
     script += "unset key\nset rmargin 3\n";
+  if (chart.left_margin > 0) fmt::format_to(out, "set lmargin {}\n", chart.left_margin);
+  if (chart.right_margin > 0) fmt::format_to(out, "set rmargin {}\n", chart.right_margin);
   const auto ticks = [](const std::vector<NamedTick>& given, bool logarithmic, const Range& range) {
     return given.empty() && logarithmic ? ticks_of_few_decades(range) : given;
   };

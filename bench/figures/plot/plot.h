@@ -100,6 +100,8 @@ struct Chart {
   bool log_x = false;
   bool log_y = false;
   bool legend_below = false;  ///< instead of at the right
+  int left_margin = 0;        ///< in letters, so that charts below one another align; 0: what labels need
+  int right_margin = 0;
   int width_px = 900;
   int height_px = 340;
 };

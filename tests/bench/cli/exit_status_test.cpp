@@ -90,6 +90,7 @@ const std::vector<Words> with_input{
     {"study", "report", "INPUT"},
     {"study", "verify", "FOLDER/nowhere"},
     {"report", "INPUT", "-o", "FOLDER/out.html"},
+    {"report", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--fits", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--check", "INPUT", "-o", "FOLDER/out.html"},
 };
@@ -116,6 +117,8 @@ const std::vector<Words> with_output{
     {"replay", "FOLDER/r.h5", "--through", "FOLDER/z.law.toml", "-o", "BELOW"},
     {"regress", "run", KERF_SOURCE_DIR "/examples/regress/kerf.toml", "--only", "kelvin", "--no-cost",
      "--junit", "OUTPUT"},
+    {"regress", "run", KERF_SOURCE_DIR "/examples/regress/kerf.toml", "--only", "kelvin", "--no-cost", "-o",
+     "BELOW"},
     {"session", "key", "OUTPUT"},
     {"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1", "--key-file", "FOLDER/key",
      "-o", "OUTPUT"},

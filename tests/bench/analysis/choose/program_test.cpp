@@ -57,6 +57,11 @@ TEST_F(ProgramChoose, WritesTheLawItsTablesAndAPage) {
               AllOf(HasSubstr("<svg"), HasSubstr("Which effects matter"), HasSubstr("kelvin")));
   EXPECT_THAT(test::read_text(path("choice") + "/kelvin.law.toml"), HasSubstr("sha256 = '"));
   expect_refusal({cut, "-o", path("choice"), "--no-loop"}, 2, "--force");
+  ASSERT_EQ(run_kerf({"report", cut, path("choice"), "-o", path("page.html")}).exit_status, 0);
+  EXPECT_THAT(test::read_text(path("page.html")),
+              AllOf(HasSubstr("<p class=\"answer\"><strong>It serves: kelvin.</strong>"),
+                    HasSubstr("Error on held-out data against the number of parameters"),
+                    HasSubstr("Holds</strong>: choice: kelvin serves.")));
 }
 
 TEST_F(ProgramChoose, RunsTheLawInClosedLoop) {

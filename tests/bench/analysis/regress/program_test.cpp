@@ -43,6 +43,16 @@ TEST_F(RegressProgram, PassesWhatDidNotChange) {
   EXPECT_THAT(test::read_text(folder_.at("page/regress.html")), HasSubstr("All 1 cases passed"));
 }
 
+TEST_F(RegressProgram, FindsAFolderThatCannotBeBeforeItRunsACase) {
+  store();
+  test::write_text(folder_.at("file"), "");
+  for (const char* option : {"-o", "--junit"}) {
+    const Outcome outcome = kerf("run", {option, folder_.at("file/below")});
+    EXPECT_EQ(outcome.exit_status, 4);
+    EXPECT_EQ(outcome.output, "") << "no case has run";
+  }
+}
+
 TEST_F(RegressProgram, SaysHowToStoreForcesThatAreMissing) {
   const Outcome outcome = kerf("run");
   EXPECT_EQ(outcome.exit_status, 2);

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace kerf::bench {
+
+/// What a verb has found out.
+enum class ResultKind : std::uint8_t { inspection, fits, choice, chart, stability, replay, check };
+
+/// "kerf choose", which makes one.
+[[nodiscard]] std::string_view verb_of(ResultKind kind) noexcept;
+
+/// What a result says of whose it is.
+enum class Belongs : std::uint8_t { here, elsewhere, unknown };
+
+/// The JSON of a verb, as it was found.
+struct FoundResult {
+  ResultKind kind = ResultKind::fits;
+  std::filesystem::path file;
+  nlohmann::ordered_json json;
+  Belongs belongs = Belongs::unknown;  ///< to the recording, or a law that was fitted to it
+};
+
+/// Reads results by their paths: a JSON that one of the verbs has written, or a folder that is looked
+/// through, itself and two folders down, for such of this recording. Which verb wrote one is told by its
+/// keys, so that names do not matter. In the order of the verbs above, those of a kind in the order in which
+/// they were found. `uuid` is the recording's.
+/// @throws std::invalid_argument for a file that is none, or a folder without any.
+[[nodiscard]] std::vector<FoundResult> find_results(const std::vector<std::filesystem::path>& paths,
+                                                    const std::string& uuid);
+
+/// A JSON file. @throws std::invalid_argument that names it.
+[[nodiscard]] nlohmann::ordered_json read_result(const std::filesystem::path& file);
+
+}  // namespace kerf::bench

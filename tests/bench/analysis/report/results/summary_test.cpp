@@ -1,0 +1,78 @@
+#include "report/results/summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace kerf::bench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+FoundResult of_kind(ResultKind kind, const char* text, Belongs belongs = Belongs::here) {
+  return {.kind = kind, .file = "r.json", .json = nlohmann::ordered_json::parse(text), .belongs = belongs};
+}
+
+constexpr auto passing = R"({"law": "kelvin", "verdict": "pass", "passive": true})";
+constexpr auto all_good = R"({"cycles": {"list": [{"good": true}]}, "warnings": []})";
+
+std::vector<FoundResult> everything() {
+  return {of_kind(ResultKind::inspection, all_good),
+          of_kind(ResultKind::fits, R"({"choice": {"model": "kelvin", "within_jnd": true}})"),
+          of_kind(ResultKind::choice, R"({"choice": {"law": "kelvin", "serves": true}})"),
+          of_kind(ResultKind::chart, R"({"points": [{"within_jnd": true}, {"within_jnd": false}]})"),
+          of_kind(ResultKind::stability, R"({"law": "kelvin", "passive": true})"),
+          of_kind(ResultKind::replay,
+                  R"({"laws": [{"name": "kelvin", "axes": [{"axis": "z", "rms_jnd": 0.5}]}]})"),
+          of_kind(ResultKind::check, passing)};
+}
+
+TEST(Summary, IsGreenOnlyIfEveryVerbHasLookedAndAllHolds) {
+  std::vector<FoundResult> results = everything();
+  EXPECT_THAT(summary_paragraph(results), AllOf(HasSubstr("<p class=\"answer\">"), HasSubstr("chart: 1 of 2"),
+                                                Not(HasSubstr("Not known"))));
+  results.pop_back();
+  EXPECT_THAT(summary_paragraph(results),
+              AllOf(HasSubstr("answer partly"), HasSubstr("Not known</strong>: what kerf check would say.")));
+}
+
+TEST(Summary, IsRedBesideOneThingThatIsBad) {
+  std::vector<FoundResult> results = everything();
+  results.back() = of_kind(ResultKind::check, R"({"law": "kelvin", "verdict": "fail", "passive": true})");
+  EXPECT_THAT(
+      summary_paragraph(results),
+      AllOf(HasSubstr("answer bad"), HasSubstr("Does not hold</strong>: closed loop: kelvin fails.")));
+}
+
+TEST(Summary, TakesWhatIsOfAnotherRecordingForNothingThatIsKnownOfThisOne) {
+  for (const Belongs belongs : {Belongs::elsewhere, Belongs::unknown}) {
+    const SummaryLine line = summary_of(of_kind(ResultKind::check, passing, belongs));
+    EXPECT_FALSE(line.is_known) << line.text;
+    EXPECT_NE(line.answer, Answer::good) << line.text;
+  }
+}
+
+TEST(Summary, TakesWhatNobodyJudgedForUnknown) {
+  EXPECT_FALSE(summary_of(of_kind(ResultKind::fits, R"({"choice": {"model": "kelvin", "within_jnd": null}})"))
+                   .is_known);
+  EXPECT_FALSE(summary_of(of_kind(ResultKind::choice,
+                                  R"({"choice": {"law": "kelvin", "serves": true, "in_doubt": true}})"))
+                   .is_known);
+  EXPECT_FALSE(summary_of(of_kind(ResultKind::chart, R"({"points": [{"error_jnd": 0.1}]})")).is_known);
+  EXPECT_FALSE(summary_of(of_kind(ResultKind::stability, R"({"study": "wall"})")).is_known);
+  EXPECT_FALSE(summary_of(of_kind(ResultKind::replay, R"({"laws": []})")).is_known);
+}
+
+TEST(Summary, CountsFlagsAndWarningsAlsoWithoutAnyCycle) {
+  EXPECT_EQ(
+      summary_of(of_kind(ResultKind::inspection, R"({"cycles": null, "warnings": ["clipped"]})")).answer,
+      Answer::partly);
+  const SummaryLine line = summary_of(of_kind(
+      ResultKind::inspection, R"({"cycles": {"list": [{"good": true}, {"good": false}]}, "warnings": []})"));
+  EXPECT_EQ(line.answer, Answer::partly);
+  EXPECT_EQ(line.text, "the recording: 1 of 2 cycles flagged, 0 warnings");
+}
+
+}  // namespace
+}  // namespace kerf::bench
