@@ -20,6 +20,8 @@ struct ImportVerbArguments {
   std::string data;
   std::string output;
   std::vector<std::string> maps;
+  std::vector<double> origin;
+  std::vector<double> point;
   ImportOptions options;
   bool force = false;
 };
@@ -43,6 +45,9 @@ void run_import(ImportVerbArguments arguments, Context& context) {
   for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
   options.map = parse_map(map);
   options.progress = show_bar;
+  if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
+  if (arguments.point.size() == 3)
+    std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
 
   const Imported imported = import_text(arguments.data, options);
   schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
@@ -73,6 +78,15 @@ void add_import(CLI::App& app, Context& context) {
       "is refused, and so are infinities and more numbers in a line than names in the header. NaN is kept "
       "and\n"
       "reported.\n"
+      "In space: position=2:4[mm],orientation=5:8[quaternion xyzw],wrench=9:14[N N·m sensor], by headings "
+      "too\n"
+      "(position=x:z[m]); or position.x, force.x, torque.x one by one. Orientation, from the sensor's frame "
+      "to the\n"
+      "world's: [quaternion xyzw], [quaternion wxyz], [rotvec rad], [euler xyz deg] (about the world's axes; "
+      "XYZ about\n"
+      "axes that turn along, as in SciPy), [matrix rows], [matrix columns]. A wrench names its frame, sensor "
+      "or world.\n"
+      "The recording has x, y, z, rx, ry, rz with forces in the world's axes, as kerf blade takes them.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data,
@@ -85,6 +99,15 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--stretch", arguments->options.stretch,
                   "Which stretch of a file whose clock starts anew, from 1 (else such a file is refused)")
       .within(1, 1'000'000);
+  verb.add_option("--origin", arguments->origin,
+                  "Point x,y,z of the file's world that becomes 0,0,0 [m], in space")
+      .separated_by(',')
+      .taking(3);
+  verb.add_option("--point", arguments->point,
+                  "Point x,y,z about which the file's torques are, in the frame of its wrench [m] (default: "
+                  "the position)")
+      .separated_by(',')
+      .taking(3);
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
       .positive();
   verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]").positive();

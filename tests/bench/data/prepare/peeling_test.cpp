@@ -27,7 +27,8 @@ class Peeling : public testing::Test {
     recording_ = six_axes(columns.recording);
   }
 
-  /// The importer knows one axis; pose and wrench come as channels.
+  /// Pose and wrench as they stand in the file, which does not say the wrench's frame: an import in space
+  /// asks.
   static schema::Recording six_axes(const schema::Recording& from) {
     const auto channel = [&](const char* name) -> const std::vector<double>& {
       return std::ranges::find(from.channels, name, &schema::Channel::name)->values;
