@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -10,6 +11,7 @@
 #include "files/whole_file.h"
 #include "import/import.h"
 #include "import/imported_text.h"
+#include "imports/import_file.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 
@@ -26,6 +28,29 @@ struct ImportVerbArguments {
   bool force = false;
 };
 
+/// What --map says and the other options, and a file behind them if it names one.
+ImportOptions options_of_import(const ImportVerbArguments& arguments) {
+  ImportOptions options = arguments.options;
+  if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
+  if (arguments.point.size() == 3)
+    std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
+  std::string map;
+  bool has_file = false;
+  for (const std::string& part : arguments.maps) {
+    std::string entries = part;
+    if (names_import_file(part)) {
+      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
+      has_file = true;
+      const ImportFile file = read_import_file(part);
+      entries = file.map;
+      options = with_file_behind(std::move(options), file.options);
+    }
+    map += (map.empty() ? "" : ",") + entries;
+  }
+  options.map = parse_map(map);
+  return options;
+}
+
 void run_import(ImportVerbArguments arguments, Context& context) {
   if (arguments.data == "-") arguments.data = "/dev/stdin";
   if (arguments.maps.empty()) {
@@ -40,14 +65,8 @@ void run_import(ImportVerbArguments arguments, Context& context) {
     throw std::invalid_argument(
         fmt::format("{}: -o names the data itself; give another name", arguments.data));
   require_output(arguments.output, arguments.force);
-  ImportOptions options = arguments.options;
-  std::string map;
-  for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
-  options.map = parse_map(map);
+  ImportOptions options = options_of_import(arguments);
   options.progress = show_bar;
-  if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
-  if (arguments.point.size() == 3)
-    std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
 
   const Imported imported = import_text(arguments.data, options);
   schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
@@ -87,12 +106,16 @@ void add_import(CLI::App& app, Context& context) {
       "axes that turn along, as in SciPy), [matrix rows], [matrix columns]. A wrench names its frame, sensor "
       "or world.\n"
       "The recording has x, y, z, rx, ry, rz with forces in the world's axes, as kerf blade takes them.\n"
+      "A file that --map names has map = \"...\" and, if need be, sheet, stretch, rate, resample,\n"
+      "velocity_window, origin, point and strict; options given beside it win.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data,
                   "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input")
       .required();
-  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
+  verb.add_option("--map", arguments->maps,
+                  "CHANNEL=COLUMN[unit],... (may be repeated), or FILE.toml that says it and other options")
+      .one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");

@@ -23,9 +23,9 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t not_mapped = std::numeric_limits<std::size_t>::max();
 constexpr double near_whole_turn_rad = 0.2;
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// The places among the mapped columns of "position.x", "position.y", "position.z", or of an orientation's
 /// numbers.
@@ -34,7 +34,7 @@ std::vector<std::size_t> places_of(const std::vector<MappedColumn>& columns,
   std::vector<std::size_t> places;
   for (const std::string& channel : channels) {
     const auto found = std::ranges::find(columns, channel, &MappedColumn::channel);
-    places.push_back(found == columns.end() ? none : static_cast<std::size_t>(found - columns.begin()));
+    places.push_back(found == columns.end() ? not_mapped : static_cast<std::size_t>(found - columns.begin()));
   }
   return places;
 }
@@ -70,7 +70,7 @@ class Turns {
 };
 
 Vector3d vector_at(const MappedValues& values, const std::vector<std::size_t>& places, std::size_t row) {
-  if (places.front() == none) return Vector3d::Constant(missing);
+  if (places.front() == not_mapped) return Vector3d::Constant(no_number);
   return {values[places[0]][row], values[places[1]][row], values[places[2]][row]};
 }
 
