@@ -61,6 +61,7 @@ std::vector<std::string> imported_lines(const Imported& imported) {
                                 heading.empty() ? "" : fmt::format(" '{}'", heading), column.unit_text,
                                 column.unit_from_file ? " as the file says" : ""));
   }
+  if (imported.spatial) lines.push_back(spatial_text(*imported.spatial, {}));
   return lines;
 }
 
