@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -10,6 +11,7 @@
 #include "files/whole_file.h"
 #include "import/import.h"
 #include "import/imported_text.h"
+#include "imports/import_file.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 
@@ -20,9 +22,34 @@ struct ImportVerbArguments {
   std::string data;
   std::string output;
   std::vector<std::string> maps;
+  std::vector<double> origin;
+  std::vector<double> point;
   ImportOptions options;
   bool force = false;
 };
+
+/// What --map says and the other options, and a file behind them if it names one.
+ImportOptions options_of_import(const ImportVerbArguments& arguments) {
+  ImportOptions options = arguments.options;
+  if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
+  if (arguments.point.size() == 3)
+    std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
+  std::string map;
+  bool has_file = false;
+  for (const std::string& part : arguments.maps) {
+    std::string entries = part;
+    if (names_import_file(part)) {
+      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
+      has_file = true;
+      const ImportFile file = read_import_file(part);
+      entries = file.map;
+      options = with_file_behind(std::move(options), file.options);
+    }
+    map += (map.empty() ? "" : ",") + entries;
+  }
+  options.map = parse_map(map);
+  return options;
+}
 
 void run_import(ImportVerbArguments arguments, Context& context) {
   if (arguments.data == "-") arguments.data = "/dev/stdin";
@@ -38,10 +65,7 @@ void run_import(ImportVerbArguments arguments, Context& context) {
     throw std::invalid_argument(
         fmt::format("{}: -o names the data itself; give another name", arguments.data));
   require_output(arguments.output, arguments.force);
-  ImportOptions options = arguments.options;
-  std::string map;
-  for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
-  options.map = parse_map(map);
+  ImportOptions options = options_of_import(arguments);
   options.progress = show_bar;
 
   const Imported imported = import_text(arguments.data, options);
@@ -73,18 +97,40 @@ void add_import(CLI::App& app, Context& context) {
       "is refused, and so are infinities and more numbers in a line than names in the header. NaN is kept "
       "and\n"
       "reported.\n"
+      "In space: position=2:4[mm],orientation=5:8[quaternion xyzw],wrench=9:14[N N·m sensor], by headings "
+      "too\n"
+      "(position=x:z[m]); or position.x, force.x, torque.x one by one. Orientation, from the sensor's frame "
+      "to the\n"
+      "world's: [quaternion xyzw], [quaternion wxyz], [rotvec rad], [euler xyz deg] (about the world's axes; "
+      "XYZ about\n"
+      "axes that turn along, as in SciPy), [matrix rows], [matrix columns]. A wrench names its frame, sensor "
+      "or world.\n"
+      "The recording has x, y, z, rx, ry, rz with forces in the world's axes, as kerf blade takes them.\n"
+      "A file that --map names has map = \"...\" and, if need be, sheet, stretch, rate, resample,\n"
+      "velocity_window, origin, point and strict; options given beside it win.\n"
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data,
                   "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input")
       .required();
-  verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
+  verb.add_option("--map", arguments->maps,
+                  "CHANNEL=COLUMN[unit],... (may be repeated), or FILE.toml that says it and other options")
+      .one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,
                   "Which stretch of a file whose clock starts anew, from 1 (else such a file is refused)")
       .within(1, 1'000'000);
+  verb.add_option("--origin", arguments->origin,
+                  "Point x,y,z of the file's world that becomes 0,0,0 [m], in space")
+      .separated_by(',')
+      .taking(3);
+  verb.add_option("--point", arguments->point,
+                  "Point x,y,z about which the file's torques are, in the frame of its wrench [m] (default: "
+                  "the position)")
+      .separated_by(',')
+      .taking(3);
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")
       .positive();
   verb.add_option("--resample", arguments->options.resample_hz, "Resample to a uniform rate [Hz]").positive();

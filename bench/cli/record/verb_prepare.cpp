@@ -203,7 +203,8 @@ void add_prepare(CLI::App& app, Context& context) {
   verb.add_option("--centre", arguments->centre, "Its centre of mass x,y,z [m], in the sensor's frame")
       .separated_by(',')
       .taking(3);
-  verb.add_option("--frame", arguments->frame, "Axes in which the forces stand")
+  verb.add_option("--frame", arguments->frame,
+                  "Axes in which the forces stand (an import in space says it itself)")
       .one_of({"sensor", "base"})
       .with_default();
   add_blank_options(verb, *arguments);

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "files/trimmed.h"
+#include "import/spatial_columns.h"
 
 namespace kerf::bench {
 namespace {
@@ -52,9 +53,13 @@ bool is_channel_name(std::string_view name) {
 MapEntry parse_entry(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos) refuse_entry(text, "has no '='");
-  MapEntry entry{.channel = std::string(trimmed(text.substr(0, equals))), .column = {}, .unit = {}};
+  MapEntry entry{.channel = std::string(trimmed(text.substr(0, equals))),
+                 .column = {},
+                 .unit = {},
+                 .orientation = {},
+                 .frame = {}};
   if (entry.channel == "force") entry.channel = "force_measured";
-  if (!is_channel_name(entry.channel))
+  if (!is_channel_name(entry.channel) && !is_spatial_part(entry.channel))
     refuse_entry(text, "has no channel name of letters, digits and _ before '='");
   std::string_view column = trimmed(text.substr(equals + 1));
   if (column.ends_with(']')) {
@@ -64,10 +69,11 @@ MapEntry parse_entry(std::string_view text) {
     if (entry.unit.empty()) refuse_entry(text, "has an empty unit; write [1] for a plain number");
     column = trimmed(column.substr(0, open));
   }
-  if (column.size() >= 2 && column.front() == '"' && column.back() == '"')
+  if (column.size() >= 2 && column.find('"', 1) == column.size() - 1 && column.front() == '"')
     column = column.substr(1, column.size() - 2);
   if (column.empty()) refuse_entry(text, "names no column");
   entry.column = column;
+  take_spatial_words(entry);
   return entry;
 }
 
@@ -87,28 +93,16 @@ std::string column_list(const TextLayout& layout) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::size_t find_column(const MapEntry& entry, const TextLayout& layout, const std::string& name) {
-  for (const auto part : {&TextColumn::heading, &TextColumn::name}) {
-    const auto is_meant = [&](const TextColumn& column) { return column.*part == entry.column; };
-    const auto named = std::find_if(layout.columns.begin(), layout.columns.end(), is_meant);
-    if (named == layout.columns.end()) continue;
-    if (std::any_of(named + 1, layout.columns.end(), is_meant)) {
-      throw std::invalid_argument(fmt::format("{}: two columns are named '{}'; give a number: {}", name,
-                                              entry.column, column_list(layout)));
-    }
-    return static_cast<std::size_t>(named - layout.columns.begin());
-  }
-  const auto number = column_number(entry.column);
-  if (number && *number >= 1 && *number <= layout.columns.size()) return *number - 1;
-  throw std::invalid_argument(fmt::format("{}: --map asks for column '{}' for {}, but the file has {}", name,
-                                          entry.column, entry.channel, column_list(layout)));
-}
-
 /// The kinds of unit that a channel of the schema may have; empty for a channel of one's own.
 std::vector<std::string_view> kinds_of(std::string_view channel) {
   if (channel == "time") return {"s"};
   if (channel == "position") return {"m", "rad"};
   if (channel == "velocity") return {"m/s", "rad/s"};
+  if (is_spatial_part(channel))
+    return channel.starts_with("p")   ? std::vector<std::string_view>{"m"}
+           : channel.starts_with("f") ? std::vector<std::string_view>{"N"}
+                                      : std::vector<std::string_view>{"N·m"};
+  if (is_spatial(channel)) return {"1", "rad"};
   if (channel == "force" || channel == "force_measured" || channel == "force_commanded") return {"N", "N·m"};
   return {};
 }
@@ -152,13 +146,30 @@ void check_units_agree(const std::vector<MappedColumn>& columns) {
     }
     force = column.unit.si;
   }
-  if (!velocity.empty() && velocity != position + "/s") {
+  if (!velocity.empty() && !position.empty() && velocity != position + "/s") {
     throw std::invalid_argument(fmt::format(
         "--map: velocity in {} does not fit a position in {}; expected {}/s", velocity, position, position));
   }
 }
 
 }  // namespace
+
+std::size_t find_column(const MapEntry& entry, const TextLayout& layout, const std::string& name) {
+  for (const auto part : {&TextColumn::heading, &TextColumn::name}) {
+    const auto is_meant = [&](const TextColumn& column) { return column.*part == entry.column; };
+    const auto named = std::find_if(layout.columns.begin(), layout.columns.end(), is_meant);
+    if (named == layout.columns.end()) continue;
+    if (std::any_of(named + 1, layout.columns.end(), is_meant)) {
+      throw std::invalid_argument(fmt::format("{}: two columns are named '{}'; give a number: {}", name,
+                                              entry.column, column_list(layout)));
+    }
+    return static_cast<std::size_t>(named - layout.columns.begin());
+  }
+  const auto number = column_number(entry.column);
+  if (number && *number >= 1 && *number <= layout.columns.size()) return *number - 1;
+  throw std::invalid_argument(fmt::format("{}: --map asks for column '{}' for {}, but the file has {}", name,
+                                          entry.column, entry.channel, column_list(layout)));
+}
 
 std::vector<MapEntry> parse_map(std::string_view text) {
   std::vector<MapEntry> entries;
@@ -175,8 +186,8 @@ std::vector<MapEntry> parse_map(std::string_view text) {
 std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries, const TextLayout& layout,
                                         const std::string& name) {
   std::vector<MappedColumn> columns;
-  for (const MapEntry& entry : entries) {
-    const std::size_t index = find_column(entry, layout, name);
+  for (const MapEntry& entry : entries_of_one_column(entries, layout, name)) {
+    const std::size_t index = entry.number > 0 ? entry.number - 1 : find_column(entry, layout, name);
     const TextColumn& column = layout.columns[index];
     columns.push_back({.channel = entry.channel,
                        .index = index,
@@ -184,7 +195,8 @@ std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries, co
                        .unit_text = entry.unit.empty() ? column.unit : entry.unit,
                        .unit_from_file = entry.unit.empty()});
   }
-  if (std::none_of(columns.begin(), columns.end(), [](const auto& c) { return c.channel == "position"; })) {
+  if (std::none_of(columns.begin(), columns.end(),
+                   [](const auto& c) { return c.channel == "position" || is_spatial(c.channel); })) {
     throw std::invalid_argument(fmt::format("{}: --map maps no position; for example {}", name, map_example));
   }
   check_units_agree(columns);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "import/text_layout.h"
+#include "poses/orientation_form.h"
 #include "units/units.h"
 
 namespace kerf::bench {
@@ -14,12 +16,17 @@ namespace kerf::bench {
 struct MapEntry {
   std::string
       channel;         ///< "time", "position", "force", "velocity", "force_commanded", or a name of one's own
-  std::string column;  ///< 1-based number or header name
+  std::string column;  ///< 1-based number or header name, or FIRST:LAST of an entry of several columns
   std::string unit;    ///< as given in brackets; empty if not given
+  std::size_t number = 0;                      ///< of the column where it is known, from 1
+  std::optional<OrientationForm> orientation;  ///< of the channel "orientation"
+  std::string frame;                           ///< "sensor" or "world", of a wrench
 };
 
 /// Reads `time=5[ms],position=4[deg],force=2[gf]`. Header names may stand in double quotes, and must if they
-/// hold a comma; the last pair of square brackets outside quotes is the unit.
+/// hold a comma or stand in FIRST:LAST with a colon; the last pair of square brackets outside quotes is the
+/// unit. In space: `position=2:4[mm],orientation=5:8[quaternion xyzw],wrench=9:14[N N·m sensor]`, or
+/// `position.x=2[mm]`, `force.x=9[N sensor]`, `torque.x=12[N·m sensor]`.
 /// @throws std::invalid_argument that quotes the entry and shows how one is written.
 [[nodiscard]] std::vector<MapEntry> parse_map(std::string_view text);
 
@@ -32,7 +39,12 @@ struct MappedColumn {
   bool unit_from_file = false;
 };
 
-/// Matches the entries with the columns that a file has.
+/// The place of the column that an entry names, from 0. @throws std::invalid_argument if there is none, or
+/// two have its name.
+[[nodiscard]] std::size_t find_column(const MapEntry& entry, const TextLayout& layout,
+                                      const std::string& name);
+
+/// Matches the entries with the columns that a file has, one or several an entry.
 /// @throws std::invalid_argument for a column that does not exist, a unit that is neither given nor in the
 ///         file, a unit of the wrong kind, forces in units that do not fit each other, or no position.
 [[nodiscard]] std::vector<MappedColumn> match_columns(const std::vector<MapEntry>& entries,

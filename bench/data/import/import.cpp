@@ -54,6 +54,8 @@ class Rows {
 
   [[nodiscard]] std::size_t size() const { return table_.columns.front().size(); }
   [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }
+  [[nodiscard]] const MappedValues& columns() const { return table_.columns; }
+  [[nodiscard]] std::size_t line_of(std::size_t row) const { return table_.line_of(row); }
   [[nodiscard]] const std::vector<std::size_t>& bad_lines() const { return table_.bad_lines; }
 
   /// Infinity is what a logger writes that divided by zero or overflowed: no chart, filter or fit can use it.
@@ -185,13 +187,22 @@ void report_irregular_lines(Imported& imported) {
 }
 
 /// By the length of the lines in the middle. A row takes its mapped columns, the velocity, tick and flags.
-void require_memory_for_rows(const std::filesystem::path& file, std::string_view text, std::size_t columns) {
-  constexpr std::size_t further = 3;
+void require_memory_for_rows(const std::filesystem::path& file, std::string_view text, std::size_t columns,
+                             bool spatial) {
+  const std::size_t further = spatial ? 22 : 3;  // six positions, velocities and forces, and two at work
   const std::string_view middle = text.substr(text.size() / 2, std::size_t{1} << 16U);
   const auto lines = static_cast<std::size_t>(std::count(middle.begin(), middle.end(), '\n')) + 1;
   const auto rows = static_cast<std::uintmax_t>(
       static_cast<double>(text.size()) / static_cast<double>(middle.size()) * static_cast<double>(lines));
   require_memory(file, rows * (columns + further) * sizeof(double), fmt::format("about {} rows", rows));
+}
+
+/// @throws std::invalid_argument for a place that nothing is counted from.
+void require_places_that_fit(const std::optional<SpatialMap>& map, const SpatialPlaces& places) {
+  if (!map && (places.point_m || places.origin_m != std::array<double, 3>{}))
+    throw std::invalid_argument("--origin and --point need a --map with position.x, position.y, position.z");
+  if (places.point_m && !map->has_torque)
+    throw std::invalid_argument("--point says where torques are counted from, and --map maps none");
 }
 
 void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
@@ -233,7 +244,7 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
   schema::Recording& recording = imported.recording;
   for (std::size_t i = 0; i < imported.columns.size(); ++i) {
     const MappedColumn& column = imported.columns[i];
-    if (column.channel == "time") continue;
+    if (column.channel == "time" || is_spatial(column.channel)) continue;
     std::vector<double>& values = rows.column(i);
     if (column.channel == "position") {
       recording.axes[0].position_unit = column.unit.si;
@@ -249,9 +260,14 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
           {.name = column.channel, .unit = column.unit.si, .values = std::move(values)});
     }
   }
+  if (imported.spatial) {
+    for (std::string& warning :
+         take_spatial_axes(recording, *imported.spatial, imported.columns, rows.columns(), options.places))
+      imported.warnings.push_back(std::move(warning));
+  }
   if (recording.velocity.empty()) {
     const double window_s = velocity_window(options, period_s);
-    recording.velocity = differentiate(recording.time, recording.position, window_s);
+    derive_velocities(recording, window_s);
     recording.header.velocity_derived =
         fmt::format("slope of a parabola fitted to the positions within {:.4g} s, zero phase", window_s);
   }
@@ -267,7 +283,10 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
 
-  require_memory_for_rows(file, mapped.text(), imported.columns.size());
+  imported.spatial = spatial_map_of(options.map, imported.columns);
+  require_places_that_fit(imported.spatial, options.places);
+
+  require_memory_for_rows(file, mapped.text(), imported.columns.size(), imported.spatial.has_value());
   std::vector<std::size_t> indices;
   for (const MappedColumn& column : imported.columns) indices.push_back(column.index);
   const auto begin = std::chrono::steady_clock::now();
@@ -291,6 +310,10 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   }
 
   rows.require_finite(imported.columns, name);
+  if (imported.spatial) {
+    require_rotations(*imported.spatial, imported.columns, rows.columns(), name,
+                      [&](std::size_t row) { return rows.line_of(row); });
+  }
   schema::Recording& recording = imported.recording;
   recording.axes.resize(1);
   take_time(imported, rows, name, options);
@@ -313,16 +336,18 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   for (std::string& doubt : unit_doubts(imported)) imported.warnings.push_back(std::move(doubt));
   if (options.resample_hz > 0.0) resample(recording, options.resample_hz, period_s);
 
-  const std::string derived = recording.header.velocity_derived;
-  recording.header = schema::new_header(software());
-  recording.header.velocity_derived = derived;
+  schema::Header header = schema::new_header(software());
+  header.velocity_derived = recording.header.velocity_derived;
+  header.device_properties = recording.header.device_properties;
+  recording.header = std::move(header);
   recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
   add_history(
       recording.header,
-      fmt::format("import: {} rows of {}{}{}", recording.rows(), file.filename().string(),
+      fmt::format("import: {} rows of {}{}{}{}", recording.rows(), file.filename().string(),
                   options.stretch > 0 ? fmt::format(", stretch {}", options.stretch) : std::string(),
                   options.resample_hz > 0.0 ? fmt::format(", resampled to {:g} Hz", options.resample_hz)
-                                            : std::string()));
+                                            : std::string(),
+                  imported.spatial ? ", " + spatial_text(*imported.spatial, options.places) : ""));
   return imported;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "files/named_file.h"
 #include "files/progress.h"
 #include "import/column_map.h"
+#include "import/spatial_axes.h"
+#include "import/spatial_columns.h"
 #include "import/text_layout.h"
 
 namespace kerf::bench {
@@ -23,6 +26,7 @@ struct ImportOptions {
   std::string sheet;        ///< of a workbook, by name or number; empty: the first with numbers
   std::size_t stretch = 0;  ///< of a file whose clock starts anew, from 1; 0: it has one
   bool strict = false;      ///< refuse a file that has lines which are not data
+  SpatialPlaces places;     ///< of a map with x, y, z
   ShowProgress progress = show_no_progress;
 };
 
@@ -31,13 +35,15 @@ struct Imported {
   schema::Recording recording;
   TextLayout layout;
   std::vector<MappedColumn> columns;
+  std::optional<SpatialMap> spatial;         ///< of a map with x, y, z
   std::vector<std::size_t> bad_lines;        ///< lines that are not data
   std::vector<std::size_t> misplaced_lines;  ///< lines left out for their time
   std::vector<std::string> warnings;
   double parse_seconds = 0.0;
 };
 
-/// Reads a file of numbers (formats/file_text.h) into a recording with one axis, in SI.
+/// Reads a file of numbers (formats/file_text.h) into a recording in SI, with one axis, or with x, y, z and
+/// rx, ry, rz of a map that has them (take_spatial_axes()).
 ///
 /// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
 /// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in

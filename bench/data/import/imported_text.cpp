@@ -33,6 +33,11 @@ nlohmann::ordered_json imported_as_json(const Imported& imported) {
                                          {"unit", column.unit_text},
                                          {"unit_from_file", column.unit_from_file}};
   }
+  if (imported.spatial) {
+    const SpatialMap& map = *imported.spatial;
+    if (map.orientation) result["orientation"] = map.orientation->text();
+    if (map.has_force) result["wrench_frame"] = map.frame;
+  }
   result["layout"] = {{"separator", name_of(imported.layout.separator)},
                       {"decimal", std::string(1, imported.layout.point)},
                       {"preamble_lines", imported.layout.preamble_lines},
@@ -56,6 +61,7 @@ std::vector<std::string> imported_lines(const Imported& imported) {
                                 heading.empty() ? "" : fmt::format(" '{}'", heading), column.unit_text,
                                 column.unit_from_file ? " as the file says" : ""));
   }
+  if (imported.spatial) lines.push_back(spatial_text(*imported.spatial, {}));
   return lines;
 }
 

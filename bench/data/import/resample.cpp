@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -68,10 +71,24 @@ void resample(schema::Recording& recording, double rate_hz, double period_s) {
     }
     values = resampled(recording.time, values, grid, rate_hz, period_s);
   };
-  apply(recording.position, "position");
-  apply(recording.velocity, "velocity");
-  apply(recording.force_commanded, "force_commanded");
-  apply(recording.force_measured, "force_measured");
+  const auto apply_to_axes = [&](std::vector<double>& values, const std::string& channel) {
+    const std::size_t dimensions = recording.dimensions();
+    if (dimensions == 1 || values.empty()) return apply(values, channel);
+    std::vector<double> all(grid.time.size() * dimensions, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t axis = 0; axis < dimensions; ++axis) {
+      std::vector<double> along(recording.rows());
+      for (std::size_t row = 0; row < along.size(); ++row) along[row] = values[row * dimensions + axis];
+      // No sensor is behind an axis without a number.
+      if (std::ranges::none_of(along, [](double v) { return std::isfinite(v); })) continue;
+      apply(along, fmt::format("{}.{}", channel, recording.axes[axis].name));
+      for (std::size_t row = 0; row < along.size(); ++row) all[row * dimensions + axis] = along[row];
+    }
+    values = std::move(all);
+  };
+  apply_to_axes(recording.position, "position");
+  apply_to_axes(recording.velocity, "velocity");
+  apply_to_axes(recording.force_commanded, "force_commanded");
+  apply_to_axes(recording.force_measured, "force_measured");
   for (schema::Channel& channel : recording.channels) apply(channel.values, channel.name);
   recording.time = grid.time;
   recording.tick = grid.tick;

@@ -1,6 +1,7 @@
 #include "import/unit_doubts.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -41,9 +42,11 @@ struct Range {
   double least = 0.0;
   double most = 0.0;
 };
-Range range_of_finite(const std::vector<double>& values) {
+/// Of one axis of rows that have several.
+Range range_of_finite(const std::vector<double>& values, std::size_t axis, std::size_t axes) {
   std::optional<Range> range;
-  for (const double value : values) {
+  for (std::size_t at = axis; at < values.size(); at += axes) {
+    const double value = values[at];
     if (!std::isfinite(value)) continue;
     if (!range) range = Range{.least = value, .most = value};
     range->least = std::min(range->least, value);
@@ -52,22 +55,24 @@ Range range_of_finite(const std::vector<double>& values) {
   return range.value_or(Range{});
 }
 
-void doubt_force(const Imported& imported, const char* channel, const std::vector<double>& values,
-                 std::vector<std::string>& doubts) {
-  const std::string& unit = imported.recording.axes[0].force_unit;
-  const auto [least, most] = range_of_finite(values);
+void doubt_force(const Imported& imported, const std::string& channel, const std::vector<double>& values,
+                 std::size_t axis, std::vector<std::string>& doubts) {
+  const std::string& unit = imported.recording.axes[axis].force_unit;
+  const auto [least, most] = range_of_finite(values, axis, imported.recording.dimensions());
   const double largest = std::max(std::abs(least), std::abs(most));
   if (largest <= (unit == "N" ? largest_force_n : largest_torque_nm)) return;
   doubts.push_back(fmt::format("{} reaches {:.4g} {} with its column in {}; is that unit right?", channel,
                                largest, unit, unit_text_of(imported, channel)));
 }
 
-void doubt_position(const Imported& imported, std::vector<std::string>& doubts) {
-  const std::string& unit = imported.recording.axes[0].position_unit;
-  const auto [least, most] = range_of_finite(imported.recording.position);
+void doubt_position(const Imported& imported, const std::string& channel, std::size_t axis,
+                    std::vector<std::string>& doubts) {
+  const std::string& unit = imported.recording.axes[axis].position_unit;
+  const auto [least, most] =
+      range_of_finite(imported.recording.position, axis, imported.recording.dimensions());
   if (most - least <= (unit == "m" ? longest_way_m : widest_way_rad)) return;
-  doubts.push_back(fmt::format("position goes over {:.4g} {} with its column in {}; is that unit right?",
-                               most - least, unit, unit_text_of(imported, "position")));
+  doubts.push_back(fmt::format("{} goes over {:.4g} {} with its column in {}; is that unit right?", channel,
+                               most - least, unit, unit_text_of(imported, channel)));
 }
 
 void doubt_time(const Imported& imported, std::vector<std::string>& doubts) {
@@ -94,9 +99,21 @@ std::vector<std::string> unit_doubts(const Imported& imported) {
                     column.index + 1, heading.heading, heading.unit, column.channel, column.unit_text));
   }
   doubt_time(imported, doubts);
-  doubt_position(imported, doubts);
-  doubt_force(imported, "force_measured", imported.recording.force_measured, doubts);
-  doubt_force(imported, "force_commanded", imported.recording.force_commanded, doubts);
+  const schema::Recording& recording = imported.recording;
+  if (!imported.spatial) {
+    doubt_position(imported, "position", 0, doubts);
+    doubt_force(imported, "force_measured", recording.force_measured, 0, doubts);
+    doubt_force(imported, "force_commanded", recording.force_commanded, 0, doubts);
+    return doubts;
+  }
+  constexpr std::array letters_of_axes{"x", "y", "z"};
+  for (std::size_t axis = 0; axis < recording.dimensions(); ++axis) {
+    const bool turns = axis >= letters_of_axes.size();
+    const char* const letter = letters_of_axes.at(axis % letters_of_axes.size());
+    if (!turns) doubt_position(imported, fmt::format("position.{}", letter), axis, doubts);
+    doubt_force(imported, fmt::format("{}.{}", turns ? "torque" : "force", letter), recording.force_measured,
+                axis, doubts);
+  }
   return doubts;
 }
 

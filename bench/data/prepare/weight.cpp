@@ -8,6 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <fmt/core.h>
 
 #include <kerf/models/rotation.h>
@@ -25,6 +26,8 @@ constexpr double gravity = 9.80665;
 /// two degrees only.
 constexpr double worst_condition = 50.0;
 constexpr std::size_t fewest_rows = 30;
+/// Of the Jacobian of a rotation vector; 0.2 rad from a whole turn.
+constexpr double least_determinant = 1e-3;
 
 /// Where the six axes stand in a row.
 struct Places {
@@ -68,20 +71,38 @@ struct Sensed {
   Vector3d torque;
   Vector3d gravity_here;
   Matrix3d to_world;
+  Matrix3d jacobian;  ///< of the rotation vector, where torques are generalised
 };
+
+/// As an import of six axes says of itself: torques are J^T of the moment in the world's axes.
+bool holds_generalised_torques(const schema::Recording& recording) {
+  const auto found = recording.header.device_properties.find("torques");
+  return found != recording.header.device_properties.end() &&
+         found->second == schema::Properties::mapped_type("generalised");
+}
 
 class Rows {
  public:
   Rows(schema::Recording& recording, bool base_frame)
-      : recording_(recording), places_(find_places(recording)), base_frame_(base_frame) {}
+      : recording_(recording),
+        places_(find_places(recording)),
+        generalised_(holds_generalised_torques(recording)),
+        base_frame_(base_frame || generalised_) {}
 
   [[nodiscard]] Sensed operator[](std::size_t row) const {
     const std::size_t at = row * recording_.dimensions();
     Sensed sensed;
-    sensed.to_world = models::rotation_of(take(&recording_.position[at], places_.angular));
+    const Vector3d r = take(&recording_.position[at], places_.angular);
+    sensed.to_world = models::rotation_of(r);
+    if (generalised_) sensed.jacobian = models::left_jacobian(r);
     sensed.force = take(&recording_.force_measured[at], places_.linear);
     sensed.torque = take(&recording_.force_measured[at], places_.angular);
     sensed.gravity_here = sensed.to_world.transpose() * Vector3d(0.0, 0.0, -gravity);
+    if (generalised_) {
+      // Near a whole turn the torques of the axes do not tell the moment.
+      if (!(sensed.jacobian.determinant() > least_determinant)) sensed.force.setConstant(NAN);
+      sensed.torque = sensed.jacobian.transpose().inverse() * sensed.torque;
+    }
     if (base_frame_) {
       sensed.force = sensed.to_world.transpose() * sensed.force;
       sensed.torque = sensed.to_world.transpose() * sensed.torque;
@@ -94,6 +115,7 @@ class Rows {
       force = sensed.to_world * force;
       torque = sensed.to_world * torque;
     }
+    if (generalised_) torque = sensed.jacobian.transpose() * torque;
     double* const values = &recording_.force_measured[row * recording_.dimensions()];
     for (std::size_t i = 0; i < 3; ++i) {
       values[places_.linear[i]] -= force[static_cast<Eigen::Index>(i)];
@@ -104,6 +126,7 @@ class Rows {
  private:
   schema::Recording& recording_;
   Places places_;
+  bool generalised_;
   bool base_frame_;
 };
 

@@ -33,7 +33,8 @@ struct Weight {
 struct WeightOptions {
   std::optional<double> mass_kg;  ///< known: nothing is estimated
   std::array<double, 3> centre_m{};
-  bool base_frame = false;  ///< the forces stand in the world's axes, not the sensor's
+  bool base_frame = false;  ///< the forces stand in the world's axes, not the sensor's; an import of six
+                            ///< axes says itself that they do, and that its torques are generalised
 };
 
 /// Takes the tool's weight off the measured force of a recording with axes x, y, z (force in N) and rx, ry,

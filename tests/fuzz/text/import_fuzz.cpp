@@ -60,8 +60,9 @@ ImportOptions suggested(const TextLayout& layout) {
 
 void check_imported(const schema::Recording& recording) {
   promise(recording.rows() > 0, "an import has rows");
-  promise(recording.position.size() == recording.rows() && recording.velocity.size() == recording.rows(),
-          "a position and a velocity a row");
+  const std::size_t values = recording.rows() * recording.dimensions();
+  promise(recording.position.size() == values && recording.velocity.size() == values,
+          "a position and a velocity a row and axis");
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     promise(std::isfinite(recording.time[row]), "times are finite");
     promise(row == 0 || (recording.time[row] > recording.time[row - 1] &&

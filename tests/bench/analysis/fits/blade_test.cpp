@@ -2,9 +2,14 @@
 #include <limits>
 #include <string>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include <kerf/models/rotation.h>
 
 #include "fits/blade_recording.h"
 #include "support/program.h"
@@ -107,6 +112,47 @@ TEST_F(KerfBlade, FindsTheThresholdsOfATissueThatTears) {
   expect_within(result, "rupture_force", 0.4, 0.03);
   expect_within(result, "release_force", 0.1, 0.06);
   EXPECT_GT(result.at("phases").at("ruptures").at("events").get<int>(), 10);
+}
+
+/// A recording as another lab would have it: quaternions, the wrench in the sensor's frame about a point of
+/// the sensor, positions in mm.
+std::string as_text(const schema::Recording& recording, const Eigen::Vector3d& point) {
+  std::string text = "t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,fx_N,fy_N,fz_N,tx_Nm,ty_Nm,tz_Nm\n";
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    const Eigen::Vector3d at(&recording.position[6 * row]);
+    const Eigen::Vector3d r(&recording.position[6 * row + 3]);
+    const Eigen::Quaterniond q(Eigen::AngleAxisd(r.norm(), r.norm() > 0.0 ? r.normalized() : r));
+    const Eigen::Vector3d force = q.conjugate() * Eigen::Vector3d(&recording.force_measured[6 * row]);
+    const Eigen::Vector3d torques(&recording.force_measured[6 * row + 3]);
+    const Eigen::Vector3d moment = models::left_jacobian(r).transpose().inverse() * torques;
+    const Eigen::Vector3d torque = q.conjugate() * moment - point.cross(force);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", recording.time[row], 1e3 * at[0],
+                        1e3 * at[1], 1e3 * at[2], q.w(), q.x(), q.y(), q.z(), force[0], force[1], force[2],
+                        torque[0], torque[1], torque[2]);
+  }
+  return text;
+}
+
+TEST_F(KerfBlade, FindsTheSameLawInATextOfTheSameCut) {
+  record(friction, shape, "6");
+  const Outcome recorded = blade({"--json"});
+  ASSERT_EQ(recorded.exit_status, 0) << recorded.errors;
+  test::write_text(folder_ / "cut.csv", as_text(schema::read_recording(at("cut.h5")), {0.01, -0.02, 0.08}));
+  const Outcome import =
+      run_kerf({"import", at("cut.csv"), "--map",
+                "time=t_s,position=x_mm:z_mm,orientation=qw:qz[quaternion wxyz],wrench=fx_N:tz_Nm[sensor]",
+                "--point", "0.01,-0.02,0.08", "-o", at("cut.h5"), "--force"});
+  ASSERT_EQ(import.exit_status, 0) << import.errors;
+  const Outcome imported = blade({"--json"});
+  ASSERT_EQ(imported.exit_status, 0) << imported.errors;
+  const json expected = json::parse(recorded.output);
+  const json found = json::parse(imported.output);
+  EXPECT_EQ(found.at("rows_in_tissue"), expected.at("rows_in_tissue"));
+  for (const auto& [name, parameter] : expected.at("parameters").items()) {
+    const double value = parameter.at("value").get<double>();
+    EXPECT_NEAR(found.at("parameters").at(name).at("value").get<double>() / value, 1.0, 1e-9) << name;
+  }
+  expect_within(found, "normal_damping", 2e4, 0.02);
 }
 
 TEST_F(KerfBlade, ReplacesNothingUnasked) {

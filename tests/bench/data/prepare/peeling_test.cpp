@@ -27,7 +27,8 @@ class Peeling : public testing::Test {
     recording_ = six_axes(columns.recording);
   }
 
-  /// The importer knows one axis; pose and wrench come as channels.
+  /// Pose and wrench as they stand in the file, which does not say the wrench's frame: an import in space
+  /// asks.
   static schema::Recording six_axes(const schema::Recording& from) {
     const auto channel = [&](const char* name) -> const std::vector<double>& {
       return std::ranges::find(from.channels, name, &schema::Channel::name)->values;
@@ -93,6 +94,24 @@ TEST_F(Peeling, DoesNotTellTheToolsWeightFromNothing) {
     ASSERT_EQ(prepared.warnings.size(), 1U);
     EXPECT_NE(prepared.warnings[0].find("not told from zero"), std::string::npos);
   }
+}
+
+TEST_F(Peeling, ComesInWithSixAxesAndTheSameWeight) {
+  const schema::Recording imported =
+      import_text(test::measured_file("peeling/demo4.csv"),
+                  {.map = parse_map("time=t_s,position=x_m:z_m,orientation=qi:qw[quaternion xyzw],"
+                                    "wrench=fx_N:tz_Nm[sensor]")})
+          .recording;
+  ASSERT_EQ(imported.position.size(), recording_.position.size());
+  for (std::size_t at = 6; at < imported.position.size(); ++at)
+    ASSERT_LT(std::abs(imported.position[at] - imported.position[at - 6]), 0.1) << "no jump at half a turn";
+  PrepareOptions options{.weight = true};
+  options.contact.free = {{.begin_s = 0.0, .end_s = 10.5}};
+  const Weight by_hand = *prepare(recording_, options).weight;
+  const Weight by_import = *prepare(imported, options).weight;
+  EXPECT_NEAR(by_import.mass_kg, by_hand.mass_kg, 1e-9);
+  EXPECT_NEAR(by_import.centre_m[2], by_hand.centre_m[2], 1e-9);
+  EXPECT_EQ(by_import.rows, by_hand.rows);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "prepare/weight.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -7,6 +8,8 @@
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <kerf/models/rotation.h>
 
 #include "prepare/prepare.h"
 
@@ -66,6 +69,24 @@ TEST(Weight, IsFoundAndTakenOffExactly) {
     }
     for (const double force : recording.force_measured) ASSERT_NEAR(force, 0.0, 1e-10);
   }
+}
+
+TEST(Weight, IsTakenOffTorquesOfTheAxesOfARotationVector) {
+  schema::Recording recording = tilted(0.5, 0.4, 0.0, true);
+  recording.header.device_properties["torques"] = "generalised";  // as an import of six axes says
+  for (std::size_t row = 0; row < recording.rows(); ++row) {
+    const Vector3d turn(&recording.position[6 * row + 3]);
+    const Vector3d moment(&recording.force_measured[6 * row + 3]);
+    const Vector3d torque = models::left_jacobian(turn).transpose() * moment;
+    std::copy_n(torque.data(), 3, &recording.force_measured[6 * row + 3]);
+  }
+  const Weight weight = remove_weight(recording, std::vector<bool>(2000, true), {});
+  EXPECT_NEAR(weight.mass_kg, 0.2, 1e-12);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(weight.centre_m[i], centre[static_cast<Eigen::Index>(i)], 1e-10);
+    EXPECT_NEAR(weight.torque_bias_nm[i], torque_bias[static_cast<Eigen::Index>(i)], 1e-10);
+  }
+  for (const double force : recording.force_measured) ASSERT_NEAR(force, 0.0, 1e-10);
 }
 
 TEST(Weight, OfANoisySensorIsWithinItsStandardErrors) {

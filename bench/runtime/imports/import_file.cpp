@@ -1,0 +1,101 @@
+#include "imports/import_file.h"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "files/named_file.h"
+#include "laws/law_toml.h"
+
+namespace kerf::bench {
+namespace {
+
+constexpr std::size_t most_stretches = 1'000'000;
+
+/// A number above zero; 0 where there is none.
+double positive_number(const Place& place, const toml::table& table, std::string_view key) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return 0.0;
+  const double value = place.number(*node, fmt::format("'{}'", key));
+  if (!(value > 0.0) || !std::isfinite(value))
+    place.refuse(*node, "'{}' is {}, expected a number above zero", key, value);
+  return value;
+}
+
+std::size_t stretch_of(const Place& place, const toml::table& table) {
+  const double value = positive_number(place, table, "stretch");
+  if (value > static_cast<double>(most_stretches) || value != std::floor(value))
+    place.refuse(*table.get("stretch"), "'stretch' is {}, expected a whole number from 1 to {}", value,
+                 most_stretches);
+  return static_cast<std::size_t>(value);
+}
+
+std::array<double, 3> point_of(const Place& place, const toml::node& node, std::string_view key) {
+  const toml::array* list = node.as_array();
+  if (list == nullptr || list->size() != 3) place.refuse(node, "'{}' must be three numbers [m]", key);
+  std::array<double, 3> point{};
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    point.at(i) = place.number(*list->get(i), fmt::format("'{}'", key));
+    if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers [m]", key);
+  }
+  return point;
+}
+
+std::string map_of(const Place& place, const toml::table& table) {
+  const toml::node* node = table.get("map");
+  if (node == nullptr)
+    place.refuse(table, "no 'map'; expected for example map = \"time=1[ms],position=2[deg],force=3[N]\"");
+  const toml::array* list = node->as_array();
+  if (list == nullptr) return place.text(table, "map", "");
+  std::string map;
+  for (const toml::node& part : *list) {
+    if (!part.is_string()) place.refuse(part, "'map' must be a text, or a list of texts");
+    map += (map.empty() ? "" : ",") + **part.as_string();
+  }
+  return map;
+}
+
+}  // namespace
+
+ImportFile read_import_file(const std::filesystem::path& file) {
+  const toml::table table = parse_toml(read_named_file(file), file.string());
+  const Place place(file.string());
+  place.allow_only(
+      table, {"map", "sheet", "stretch", "rate", "resample", "velocity_window", "origin", "point", "strict"},
+      "an import file");
+  ImportFile read{.map = map_of(place, table), .options = {}};
+  try {
+    (void)parse_map(read.map);
+  } catch (const std::invalid_argument& error) {
+    place.refuse(*table.get("map"), "{}", error.what());
+  }
+  ImportOptions& options = read.options;
+  options.sheet = place.text(table, "sheet", "");
+  options.stretch = stretch_of(place, table);
+  options.rate_hz = positive_number(place, table, "rate");
+  options.resample_hz = positive_number(place, table, "resample");
+  options.velocity_window_s = positive_number(place, table, "velocity_window");
+  options.strict = place.flag(table, "strict", false);
+  if (const toml::node* origin = table.get("origin"))
+    options.places.origin_m = point_of(place, *origin, "origin");
+  if (const toml::node* point = table.get("point")) options.places.point_m = point_of(place, *point, "point");
+  return read;
+}
+
+bool names_import_file(std::string_view map) {
+  return map.ends_with(".toml") && map.find('=') == std::string_view::npos;
+}
+
+ImportOptions with_file_behind(ImportOptions given, const ImportOptions& file) {
+  if (given.sheet.empty()) given.sheet = file.sheet;
+  if (given.stretch == 0) given.stretch = file.stretch;
+  if (given.rate_hz == 0.0) given.rate_hz = file.rate_hz;
+  if (given.resample_hz == 0.0) given.resample_hz = file.resample_hz;
+  if (given.velocity_window_s == 0.0) given.velocity_window_s = file.velocity_window_s;
+  given.strict = given.strict || file.strict;
+  if (given.places.origin_m == std::array<double, 3>{}) given.places.origin_m = file.places.origin_m;
+  if (!given.places.point_m) given.places.point_m = file.places.point_m;
+  return given;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "import/import.h"
+
+namespace kerf::bench {
+
+/// An import as a file describes it, which is written once for all files of an instrument:
+///
+///     map = "time=5[ms],position=4[deg],force=2[gf]"     # or a list of texts; as --map has it
+///     sheet = "Run 1"                                    # the others as the options of `kerf import`
+///     stretch = 2
+///     rate = 100                                         # [Hz]
+///     resample = 1000                                    # [Hz]
+///     velocity_window = 0.02                             # [s]
+///     origin = [0.5, 0, 0.1]                             # [m]
+///     point = [0, 0, 0.08]                               # [m]
+///     strict = true
+///
+/// Every key but `map` may be left out.
+struct ImportFile {
+  std::string map;        ///< as --map has it
+  ImportOptions options;  ///< without the map
+};
+
+/// @throws std::invalid_argument with file and line.
+[[nodiscard]] ImportFile read_import_file(const std::filesystem::path& file);
+
+/// Whether what --map was given names such a file: it ends in .toml and maps nothing.
+[[nodiscard]] bool names_import_file(std::string_view map);
+
+/// Options that were given, and those of the file for what was left as it is.
+[[nodiscard]] ImportOptions with_file_behind(ImportOptions given, const ImportOptions& file);
+
+}  // namespace kerf::bench
