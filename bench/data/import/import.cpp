@@ -7,6 +7,7 @@
 #include <future>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -26,6 +27,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_lines_named = 10;
+constexpr double ns_of_second = 1e9;
 
 /// "3, 7, 9 and 12 more"
 std::string named_lines(const std::vector<std::size_t>& lines) {
@@ -194,6 +196,18 @@ void require_memory_for_rows(const std::filesystem::path& file, std::string_view
   require_memory(file, rows * (columns + further) * sizeof(double), fmt::format("about {} rows", rows));
 }
 
+/// Stamps are moments: they have no unit, and say when, not how much.
+/// @throws std::invalid_argument for stamps that are mapped to anything but the time, or with another unit.
+void require_stamps_for_time(const Imported& imported, const std::string& name) {
+  for (const MappedColumn& column : imported.columns) {
+    if (!imported.layout.columns[column.index].stamps) continue;
+    if (column.channel == "time" && column.unit.factor == 1.0) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: column {} holds time stamps, mapped to {}[{}]; expected time={}, without a unit",
+                    name, column.index + 1, column.channel, column.unit_text, column.index + 1));
+  }
+}
+
 void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
   auto& time = imported.recording.time;
   const MappedColumn* column = find_channel(imported.columns, "time");
@@ -220,6 +234,12 @@ void take_time(Imported& imported, Rows& rows, const std::string& name, const Im
   }
   // Stamps are subtracted as they were written, where whole milliseconds are exact, and scaled after that.
   const double start = time.front();
+  if (const auto& stamps = imported.layout.columns[column->index].stamps) {
+    imported.recording.header.start_ns = stamps->ns + std::llround(start);
+    imported.recording.header.start_clock = stamps->has_zone ? "UTC" : "local";
+    for (double& t : time) t = (t - start) / ns_of_second;
+    return;
+  }
   for (double& t : time) t = (t - start) * column->unit.factor;
 }
 
@@ -266,6 +286,7 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
   imported.warnings = mapped.notes();
   imported.layout = find_layout(mapped.text(), name);
   imported.columns = match_columns(options.map, imported.layout, name);
+  require_stamps_for_time(imported, name);
 
   require_memory_for_rows(file, mapped.text(), imported.columns.size());
   std::vector<std::size_t> indices;
@@ -310,12 +331,16 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
     imported.warnings.push_back(
         fmt::format("the rate is {:.4g} Hz; is the unit of time right?", 1.0 / period_s));
   }
+  if (recording.header.start_clock == "local")
+    imported.warnings.emplace_back(
+        "the time stamps name no zone: the start is kept as it stands, of a local clock that nobody named");
   for (std::string& doubt : unit_doubts(imported)) imported.warnings.push_back(std::move(doubt));
   if (options.resample_hz > 0.0) resample(recording, options.resample_hz, period_s);
 
-  const std::string derived = recording.header.velocity_derived;
-  recording.header = schema::new_header(software());
-  recording.header.velocity_derived = derived;
+  const schema::Header found = std::exchange(recording.header, schema::new_header(software()));
+  recording.header.velocity_derived = found.velocity_derived;
+  recording.header.start_ns = found.start_ns;
+  recording.header.start_clock = found.start_clock;
   recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
   add_history(
       recording.header,

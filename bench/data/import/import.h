@@ -39,12 +39,13 @@ struct Imported {
 
 /// Reads a file of numbers (formats/file_text.h) into a recording with one axis, in SI.
 ///
-/// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
-/// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
-/// `misplaced_lines`, a warning and an event. A file of which more lines would be left out than kept is
-/// refused, and so are infinity and a clock that starts anew, unless one of its stretches is asked for. Gaps
-/// become jumps of `tick`. NaN stays as it is and is told of. The velocity is derived from the position by a
-/// zero-phase parabolic fit unless the map names one.
+/// Time starts at zero; of time stamps the moment of the first is kept beside it (start_ns). The times of a
+/// recording increase strictly, so rows whose time repeats, goes back or is not finite cannot stand in it:
+/// they are left out, as few as will do (see rows_in_order), and told of in `misplaced_lines`, a warning and
+/// an event. A file of which more lines would be left out than kept is refused, and so are infinity and a
+/// clock that starts anew, unless one of its stretches is asked for. Gaps become jumps of `tick`. NaN stays
+/// as it is and is told of. The velocity is derived from the position by a zero-phase parabolic fit unless
+/// the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
 
