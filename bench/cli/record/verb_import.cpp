@@ -76,7 +76,7 @@ void add_import(CLI::App& app, Context& context) {
       "Without --map the columns are listed, with a map to begin with.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data,
-                  "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input")
+                  "Text, xlsx or MAT-file, also packed by gzip; - is standard input")
       .required();
   verb.add_option("--map", arguments->maps, "CHANNEL=COLUMN[unit],... (may be repeated)").one_value_each();
   verb.add_option("-o,--output", arguments->output, "Recording to write");
