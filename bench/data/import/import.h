@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,15 @@ struct Imported {
 /// the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
+
+/// Is handed each trial by its name, and what makes its recording, which throws as import_text() does.
+using TakeTrial = std::function<void(const std::string& trial, const std::function<Imported()>& import)>;
+
+/// Reads one long table of several trials, told apart by what stands in a column, a number or a word: one
+/// recording a trial, in the order in which they begin. Returns what is to be known of the file as a whole.
+/// @throws as import_text() does, and for a column that is not there or names a trial in every few lines.
+std::vector<std::string> import_trials(const std::filesystem::path& file, const std::string& column,
+                                       const ImportOptions& options, const TakeTrial& take);
 
 /// The columns of a file and a map to begin with, for a user who gave none.
 [[nodiscard]] std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options);

@@ -150,6 +150,7 @@ void on_all_cores(std::vector<Part>& parts, const Work& work) {
 }  // namespace
 
 std::size_t TextTable::line_of(std::size_t row) const {
+  if (!row_lines.empty()) return row_lines.at(row);
   // Each line without data before the row moves it one line down.
   std::size_t line = first_line + row;
   auto bad = bad_lines.begin();
@@ -180,7 +181,11 @@ TextTable parse_table(std::string_view text, const TextLayout& layout, std::span
     part.lines = 0;
   }
 
-  TextTable table{.columns = {}, .bad_lines = {}, .empty_lines = {}, .first_line = layout.preamble_lines + 1};
+  TextTable table{.columns = {},
+                  .bad_lines = {},
+                  .empty_lines = {},
+                  .first_line = layout.preamble_lines + 1,
+                  .row_lines = {}};
   std::vector<double*> begins;
   for (std::size_t i = 0; i < columns.size(); ++i)
     begins.push_back(table.columns.emplace_back(max_rows).data());

@@ -16,6 +16,7 @@ struct TextTable {
   std::vector<std::size_t> bad_lines;        ///< numbers of the lines that are not data, increasing
   std::vector<std::size_t> empty_lines;      ///< numbers of the empty lines after the first data, increasing
   std::size_t first_line = 1;                ///< number of the first line of the data
+  std::vector<std::size_t> row_lines;  ///< numbers of the rows' lines, of rows chosen from a file; else empty
 
   /// The number of the line that a row came from.
   [[nodiscard]] std::size_t line_of(std::size_t row) const;
