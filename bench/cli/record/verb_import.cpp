@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "clocks/join.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "import/import.h"
@@ -25,8 +26,35 @@ struct ImportVerbArguments {
   std::vector<std::string> maps;
   ImportOptions options;
   std::string trial;
+  std::string join_file;
+  std::vector<std::string> join_maps;
+  std::string join_on;
   bool force = false;
 };
+
+std::vector<MapEntry> map_of(const std::vector<std::string>& parts) {
+  std::string map;
+  for (const std::string& part : parts) map += (map.empty() ? "" : ",") + part;
+  return parse_map(map);
+}
+
+/// Takes in the file of --join, if there is one. `line` says what came in.
+nlohmann::ordered_json join_other(const ImportVerbArguments& arguments, const ImportOptions& options,
+                                  Imported& imported, std::string& line) {
+  if (arguments.join_file.empty()) return {};
+  if (arguments.join_maps.empty()) {
+    throw std::invalid_argument(fmt::format("{}: --join-map is needed to tell what its columns are; {}",
+                                            arguments.join_file,
+                                            explain_columns(arguments.join_file, arguments.options)));
+  }
+  const Joined joined = join(
+      imported, {.file = arguments.join_file, .map = map_of(arguments.join_maps), .on = arguments.join_on},
+      options);
+  for (const std::string& warning : joined.warnings)
+    imported.warnings.push_back(fmt::format("{}: {}", joined.file, warning));
+  line = joined_line(joined);
+  return joined_as_json(joined);
+}
 
 ImportOptions options_of(const ImportVerbArguments& arguments, const std::string& example) {
   if (arguments.maps.empty()) {
@@ -37,9 +65,7 @@ ImportOptions options_of(const ImportVerbArguments& arguments, const std::string
     throw std::invalid_argument(
         "-o is needed: the recording to write, for example -o r.h5, or a folder of several");
   ImportOptions options = arguments.options;
-  std::string map;
-  for (const std::string& part : arguments.maps) map += (map.empty() ? "" : ",") + part;
-  options.map = parse_map(map);
+  options.map = map_of(arguments.maps);
   options.progress = show_bar;
   return options;
 }
@@ -52,11 +78,15 @@ void import_one(const ImportVerbArguments& arguments, Context& context) {
     throw std::invalid_argument(fmt::format("{}: -o names the data itself; give another name", data));
   require_output(arguments.output, arguments.force);
 
-  const Imported imported = import_text(data, options);
+  Imported imported = import_text(data, options);
+  std::string joined_line;
+  const nlohmann::ordered_json joined = join_other(arguments, options, imported, joined_line);
   schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
   context.result = imported_as_json(imported);
+  if (!joined.is_null()) context.result["join"] = joined;
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   for (const std::string& line : imported_lines(imported)) context.say(line);
+  if (!joined_line.empty()) context.say(joined_line);
   context.say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
                           imported.recording.time.back()));
 }
@@ -120,6 +150,8 @@ void run_import(ImportVerbArguments arguments, Context& context) {
   std::error_code unknown;
   const bool is_one = arguments.data.size() == 1 && arguments.trial.empty() &&
                       !std::filesystem::is_directory(arguments.data.front(), unknown);
+  if (!is_one && !arguments.join_file.empty())
+    throw std::invalid_argument("--join takes one file to another; expected one DATA, and no --trial");
   if (is_one) {
     import_one(arguments, context);
   } else {
@@ -135,7 +167,10 @@ void add_import(CLI::App& app, Context& context) {
       app, context, "import", "Turn a text, a workbook or a MAT-file of numbers into a recording, in SI",
       "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n"
       "  kerf import a.csv b.csv drawer --map time=1[s],position=2[mm],force=3[N] -o recordings\n"
-      "  kerf import long.csv --trial specimen --map time=1[s],position=2[mm],force=3[N] -o recordings\n\n"
+      "  kerf import long.csv --trial specimen --map time=1[s],position=2[mm],force=3[N] -o recordings\n"
+      "  kerf import motion.csv --map time=t,position=x[mm] --join forces.csv --join-map "
+      "time=t,position=wire[mm],force=F[N]\n"
+      "    --join-on position -o r.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
       "raw\n"
       "counts: position=2[0.0439453125 deg]. Without a unit, the one in the file is taken. Channels: time, "
@@ -164,6 +199,12 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("-o,--output", arguments->output, "Recording to write, or the folder for several");
   verb.add_option("--trial", arguments->trial,
                   "Column by which one long table is divided into recordings, by its name or number");
+  verb.add_option("--join", arguments->join_file,
+                  "Another file with its own clock, whose channels are taken in at the times of DATA");
+  verb.add_option("--join-map", arguments->join_maps, "Its columns, as --map").one_value_each();
+  verb.add_option("--join-on", arguments->join_on,
+                  "Channel of both maps that brings the clocks together by cross-correlation, or time where "
+                  "they are one clock");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,

@@ -160,6 +160,7 @@ void take_time(Imported& imported, MappedRows& rows, const std::string& name, co
     for (double& t : time) t = (t - start) / ns_of_second;
     return;
   }
+  imported.first_time_s = start * column->unit.factor;
   for (double& t : time) t = (t - start) * column->unit.factor;
 }
 

@@ -36,6 +36,7 @@ struct Imported {
   std::vector<std::size_t> misplaced_lines;  ///< lines left out for their time
   std::vector<std::string> warnings;
   double parse_seconds = 0.0;
+  double first_time_s = 0.0;  ///< what the file says at time 0, of a time that is not a stamp
 };
 
 /// Reads a file of numbers (formats/file_text.h) into a recording with one axis, in SI.
