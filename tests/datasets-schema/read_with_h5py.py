@@ -26,6 +26,8 @@ def check_root(file):
     equal(file.attrs["uuid"], "0b5f1e0a-54bb-4c5e-9d55-6cf3f4d33c11")
     equal(file.attrs["status"], "complete")
     equal(file.attrs["source"], "cut.txt, SHA-256 00ff")
+    equal(int(file.attrs["start_ns"]), 1769860800123456789)
+    equal(file.attrs["start_clock"], "local")
     equal(file["device"].attrs["uri"], "sim:scissors?seed=3")
     equal(file["device"].attrs["maker"], "Schärfe")
     equal(float(file["device"].attrs["resolution_rad"]), 0.00098)

@@ -10,6 +10,7 @@
 
 #include <kerf/schema/recording_file.h>
 
+#include "clocks/time_stamp.h"
 #include "html/html.h"
 #include "recordings/axes.h"
 #include "recordings/axis_values.h"
@@ -49,6 +50,7 @@ std::string recording_section(const schema::RecordedRows& rows, const std::files
   facts.push_back({"identifier", recording.header.uuid});
   facts.push_back({"written", recording.header.created + " by " + recording.header.software});
   if (!recording.header.source.empty()) facts.push_back({"imported from", recording.header.source});
+  if (recording.header.start_ns) facts.push_back({"time 0", start_text(recording.header)});
   if (!recording.header.device_uri.empty()) facts.push_back({"device", recording.header.device_uri});
   facts.push_back({"status", recording.header.status});
   facts.push_back(

@@ -8,23 +8,31 @@
 
 #include <fmt/core.h>
 
+#include "clocks/join.h"
 #include "files/whole_file.h"
+#include "files/whole_folder.h"
 #include "import/import.h"
+#include "import/import_many.h"
 #include "import/imported_text.h"
 #include "imports/import_file.h"
 #include "program/progress.h"
 #include "program/verbs.h"
+#include "run/run.h"
 
 namespace kerf::bench {
 namespace {
 
 struct ImportVerbArguments {
-  std::string data;
+  std::vector<std::string> data;
   std::string output;
   std::vector<std::string> maps;
   std::vector<double> origin;
   std::vector<double> point;
   ImportOptions options;
+  std::string trial;
+  std::string join_file;
+  std::vector<std::string> join_maps;
+  std::string join_on;
   bool force = false;
 };
 
@@ -51,30 +59,130 @@ ImportOptions options_of_import(const ImportVerbArguments& arguments) {
   return options;
 }
 
-void run_import(ImportVerbArguments arguments, Context& context) {
-  if (arguments.data == "-") arguments.data = "/dev/stdin";
+std::vector<MapEntry> map_of(const std::vector<std::string>& parts) {
+  std::string map;
+  for (const std::string& part : parts) map += (map.empty() ? "" : ",") + part;
+  return parse_map(map);
+}
+
+/// Takes in the file of --join, if there is one. `line` says what came in.
+nlohmann::ordered_json join_other(const ImportVerbArguments& arguments, const ImportOptions& options,
+                                  Imported& imported, std::string& line) {
+  if (arguments.join_file.empty()) return {};
+  if (arguments.join_maps.empty()) {
+    throw std::invalid_argument(fmt::format("{}: --join-map is needed to tell what its columns are; {}",
+                                            arguments.join_file,
+                                            explain_columns(arguments.join_file, arguments.options)));
+  }
+  const Joined joined = join(
+      imported, {.file = arguments.join_file, .map = map_of(arguments.join_maps), .on = arguments.join_on},
+      options);
+  for (const std::string& warning : joined.warnings)
+    imported.warnings.push_back(fmt::format("{}: {}", joined.file, warning));
+  line = joined_line(joined);
+  return joined_as_json(joined);
+}
+
+ImportOptions options_of(const ImportVerbArguments& arguments, const std::string& example) {
   if (arguments.maps.empty()) {
-    throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}",
-                                            arguments.data,
-                                            explain_columns(arguments.data, arguments.options)));
+    throw std::invalid_argument(fmt::format("{}: --map is needed to tell what the columns are; {}", example,
+                                            explain_columns(example, arguments.options)));
   }
   if (arguments.output.empty())
-    throw std::invalid_argument("-o is needed: the recording to write, for example -o r.h5");
-  std::error_code absent;
-  if (std::filesystem::equivalent(arguments.data, arguments.output, absent))
     throw std::invalid_argument(
-        fmt::format("{}: -o names the data itself; give another name", arguments.data));
-  require_output(arguments.output, arguments.force);
+        "-o is needed: the recording to write, for example -o r.h5, or a folder of several");
   ImportOptions options = options_of_import(arguments);
   options.progress = show_bar;
+  return options;
+}
 
-  const Imported imported = import_text(arguments.data, options);
+void import_one(const ImportVerbArguments& arguments, Context& context) {
+  const std::string& data = arguments.data.front();
+  const ImportOptions options = options_of(arguments, data);
+  std::error_code absent;
+  if (std::filesystem::equivalent(data, arguments.output, absent))
+    throw std::invalid_argument(fmt::format("{}: -o names the data itself; give another name", data));
+  require_output(arguments.output, arguments.force);
+
+  Imported imported = import_text(data, options);
+  std::string joined_line;
+  const nlohmann::ordered_json joined = join_other(arguments, options, imported, joined_line);
   schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
   context.result = imported_as_json(imported);
+  if (!joined.is_null()) context.result["join"] = joined;
   for (const auto& warning : context.result["warnings"]) warn(warning.get<std::string>());
   for (const std::string& line : imported_lines(imported)) context.say(line);
+  if (!joined_line.empty()) context.say(joined_line);
   context.say(fmt::format("{}: {} samples over {:.3f} s", arguments.output, imported.recording.rows(),
                           imported.recording.time.back()));
+}
+
+void say_imports(const std::vector<ImportEntry>& entries, const std::string& folder, Context& context) {
+  std::size_t failed = 0;
+  for (const ImportEntry& entry : entries) {
+    if (!entry.failure.empty()) {
+      ++failed;
+      warn(entry.failure);
+      continue;
+    }
+    context.say(fmt::format("  {:40} {} samples over {:.3f} s", entry.recording,
+                            entry.about["samples"].get<std::size_t>(),
+                            entry.about["duration_s"].get<double>()));
+    for (const auto& warning : entry.about["warnings"])
+      warn(fmt::format(
+          "{}: {}", entry.trial.empty() ? entry.file : fmt::format("{}, trial '{}'", entry.file, entry.trial),
+          warning.get<std::string>()));
+  }
+  if (failed > 0) context.exit = Exit::check_failed;
+  context.say(failed == entries.size()
+                  ? fmt::format("none of {} imported; nothing is written", entries.size())
+                  : fmt::format("{} of {} imported; the recordings are in {}", entries.size() - failed,
+                                entries.size(), folder));
+}
+
+/// The folder appears with all recordings that there are, or not at all.
+void import_several(const ImportVerbArguments& arguments, Context& context) {
+  const std::vector<FileToImport> files = files_to_import(arguments.data, arguments.output);
+  ImportManyOptions options{.each = options_of(arguments, files.front().file.string()),
+                            .trial_column = arguments.trial,
+                            .folder = {}};
+  options.each.progress = show_no_progress;
+  std::error_code absent;
+  if (std::filesystem::exists(arguments.output, absent) &&
+      !std::filesystem::is_directory(arguments.output, absent))
+    throw std::invalid_argument(
+        fmt::format("{}: a file; the recordings of several files need a folder", arguments.output));
+  // What trials are called stands in the files: those are met when the folder takes its name.
+  for (const FileToImport& file : arguments.trial.empty() ? files : std::vector<FileToImport>())
+    require_output(std::filesystem::path(arguments.output) / (file.name.string() + ".h5"), arguments.force);
+  WholeFolder whole(arguments.output, schema::existing_if(arguments.force));
+  options.folder = whole.path();
+  std::vector<ImportEntry> entries;
+  {
+    const StopOnSignal signals;
+    Progress progress(fmt::format("importing {} files", files.size()), files.size());
+    entries = import_many(files, options, signals.requested(), progress.done);
+  }
+  context.result = imports_as_json(entries);
+  const auto is_written = [](const ImportEntry& entry) { return entry.failure.empty(); };
+  if (std::any_of(entries.begin(), entries.end(), is_written)) whole.commit();
+  say_imports(entries, arguments.output, context);
+}
+
+void run_import(ImportVerbArguments arguments, Context& context) {
+  for (std::string& file : arguments.data) {
+    if (file == "-") file = "/dev/stdin";
+  }
+  std::error_code unknown;
+  const bool is_one = arguments.data.size() == 1 && arguments.trial.empty() &&
+                      !std::filesystem::is_directory(arguments.data.front(), unknown);
+  if (!is_one && !arguments.join_file.empty())
+    throw std::invalid_argument("--join takes one file to another; expected one DATA, and no --trial");
+  if (is_one) {
+    import_one(arguments, context);
+  } else {
+    import_several(arguments, context);
+  }
 }
 
 }  // namespace
@@ -83,7 +191,12 @@ void add_import(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ImportVerbArguments>();
   Verb verb = add_verb(
       app, context, "import", "Turn a text, a workbook or a MAT-file of numbers into a recording, in SI",
-      "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n\n"
+      "kerf import examples/data/punch.txt --map time=time,position=angle,force=force -o punch.h5\n"
+      "  kerf import a.csv b.csv drawer --map time=1[s],position=2[mm],force=3[N] -o recordings\n"
+      "  kerf import long.csv --trial specimen --map time=1[s],position=2[mm],force=3[N] -o recordings\n"
+      "  kerf import motion.csv --map time=t,position=x[mm] --join forces.csv --join-map "
+      "time=t,position=wire[mm],force=F[N]\n"
+      "    --join-on position -o r.h5\n\n"
       "A column is a number from 1 or a name of the header; its unit stands in brackets, after a factor for "
       "raw\n"
       "counts: position=2[0.0439453125 deg]. Without a unit, the one in the file is taken. Channels: time, "
@@ -108,15 +221,29 @@ void add_import(CLI::App& app, Context& context) {
       "The recording has x, y, z, rx, ry, rz with forces in the world's axes, as kerf blade takes them.\n"
       "A file that --map names has map = \"...\" and, if need be, sheet, stretch, rate, resample,\n"
       "velocity_window, origin, point and strict; options given beside it win.\n"
-      "Without --map the columns are listed, with a map to begin with.",
+      "Without --map the columns are listed, with a map to begin with. Of several files, a folder or trials "
+      "-o "
+      "is a\n"
+      "folder with a recording of each. What is wrong with one costs a line, and the others go on; exit "
+      "status "
+      "1 then.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data,
-                  "Text, xlsx or MAT-file (level 5), also packed by gzip; - is standard input")
+  verb.add_option(
+          "DATA", arguments->data,
+          "Text, xlsx or MAT-file, also packed by gzip; - is standard input. Several, or folders of them")
       .required();
   verb.add_option("--map", arguments->maps,
                   "CHANNEL=COLUMN[unit],... (may be repeated), or FILE.toml that says it and other options")
       .one_value_each();
-  verb.add_option("-o,--output", arguments->output, "Recording to write");
+  verb.add_option("-o,--output", arguments->output, "Recording to write, or the folder for several");
+  verb.add_option("--trial", arguments->trial,
+                  "Column by which one long table is divided into recordings, by its name or number");
+  verb.add_option("--join", arguments->join_file,
+                  "Another file with its own clock, whose channels are taken in at the times of DATA");
+  verb.add_option("--join-map", arguments->join_maps, "Its columns, as --map").one_value_each();
+  verb.add_option("--join-on", arguments->join_on,
+                  "Channel of both maps that brings the clocks together by cross-correlation, or time where "
+                  "they are one clock");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,
@@ -141,7 +268,7 @@ void add_import(CLI::App& app, Context& context) {
                   "Refuse a larger file, or one that unpacks to more")
       .with_default();
   verb.add_flag("--strict", arguments->options.strict, "Refuse a file with lines that are not data");
-  verb.add_flag("--force", arguments->force, "Replace an existing recording");
+  verb.add_flag("--force", arguments->force, "Replace existing recordings");
 }
 
 }  // namespace kerf::bench

@@ -85,8 +85,9 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
     take(std::move(made.text));
   } else if (is_mat(text())) {
     const UnpackedLimits limits{.name = name_, .at_most = options.max_bytes};
+    const MatCopy copy(text());
     Made made = made_apart(limits, [&]() -> Made {
-      MatTable table = mat_table(text(), limits);
+      MatTable table = mat_table(text(), copy, limits);
       return {.notes = std::move(table.notes), .text = std::move(table.text)};
     });
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());

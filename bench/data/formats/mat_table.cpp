@@ -8,7 +8,11 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <matio.h>
 #include <sys/mman.h>
@@ -20,29 +24,21 @@ namespace {
 constexpr std::size_t version_at = 124;
 constexpr std::size_t header_size = 128;
 
-/// A file in memory that has a path: matio reads files only, and what comes may be a pipe or packed.
-class NamedMemory {
- public:
-  explicit NamedMemory(std::string_view bytes) : file_(memfd_create("kerf-mat", MFD_CLOEXEC)) {
-    if (file_ < 0) throw std::system_error(errno, std::generic_category(), "no file in memory");
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(file_, bytes.data(), bytes.size());
-      if (written <= 0) {
-        const int why = errno;
-        ::close(file_);
-        throw std::system_error(why, std::generic_category(), "no room for a file in memory");
-      }
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
-  NamedMemory(const NamedMemory&) = delete;
-  NamedMemory& operator=(const NamedMemory&) = delete;
-  ~NamedMemory() { ::close(file_); }
-  [[nodiscard]] std::string path() const { return fmt::format("/proc/self/fd/{}", file_); }
+bool is_hdf5(std::string_view bytes) {
+  return bytes.substr(0, version_at).find("MATLAB 7.3") != std::string_view::npos;
+}
 
- private:
-  int file_;
-};
+/// A file with a name of its own, in memory where the system has a folder for that.
+/// @throws std::system_error if there is no room for one.
+std::pair<int, std::string> named_file() {
+  for (const std::filesystem::path& folder :
+       {std::filesystem::path("/dev/shm"), std::filesystem::temp_directory_path()}) {
+    std::string name = (folder / "kerf-mat-XXXXXX").string();
+    const int file = mkostemp(name.data(), O_CLOEXEC);
+    if (file >= 0) return {file, name};
+  }
+  throw std::system_error(errno, std::generic_category(), "no file in memory");
+}
 
 struct CloseMat {
   void operator()(mat_t* mat) const noexcept { Mat_Close(mat); }
@@ -87,6 +83,22 @@ std::size_t bytes_of(matio_classes kind) {
 bool is_numeric(const matvar_t& variable) {
   return bytes_of(variable.class_type) > 0 && variable.isComplex == 0 && variable.rank == 2 &&
          variable.data != nullptr;
+}
+
+/// Whether a double holds every one of these numbers: beyond 2^53 it leaves out odd ones.
+template <typename T>
+bool are_exact(const matvar_t& variable, std::size_t count) {
+  const auto* data = static_cast<const T*>(variable.data);
+  constexpr T most = T{1} << 53U;
+  return std::all_of(data, data + count, [](T value) {
+    return value <= most && (std::is_unsigned_v<T> || value >= T{0} - most);
+  });
+}
+
+bool fits_doubles(const matvar_t& variable, std::size_t count) {
+  if (variable.class_type == MAT_C_INT64) return are_exact<std::int64_t>(variable, count);
+  if (variable.class_type == MAT_C_UINT64) return are_exact<std::uint64_t>(variable, count);
+  return true;
 }
 
 void append_any(const matvar_t& variable, std::size_t first, std::size_t count, std::vector<double>& values) {
@@ -134,6 +146,8 @@ class Columns {
     // What the file says of itself is not to be believed beyond what was read.
     if (columns > 0 && rows > variable.nbytes / bytes_of(variable.class_type) / columns) {
       passed_over.push_back(name);
+    } else if (!fits_doubles(variable, rows * columns)) {
+      too_large.push_back(name);
     } else if (rows <= 1 || columns <= 1) {
       all.push_back({.name = name, .values = {}});
       append_any(variable, 0, rows * columns, all.back().values);
@@ -148,6 +162,7 @@ class Columns {
   std::vector<MatColumn> all;
   std::vector<std::string> objects;
   std::vector<std::string> passed_over;
+  std::vector<std::string> too_large;  ///< whole numbers that no double holds
 
  private:
   static constexpr std::size_t most_columns = 1000;
@@ -184,9 +199,9 @@ std::size_t usual_length(const std::vector<MatColumn>& columns) {
   return length;
 }
 
-Columns columns_of(std::string_view bytes, const UnpackedLimits& limits) {
-  const NamedMemory file(bytes);
-  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(file.path().c_str(), MAT_ACC_RDONLY));
+Columns columns_of(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits) {
+  const std::unique_ptr<mat_t, CloseMat> mat(Mat_Open(copy.path().c_str(), MAT_ACC_RDONLY));
+  copy.remove_name();
   if (!mat)
     throw std::invalid_argument(
         fmt::format("{}: a MAT-file that cannot be opened: is it whole?", limits.name));
@@ -200,7 +215,9 @@ Columns columns_of(std::string_view bytes, const UnpackedLimits& limits) {
     if (bytes_read > limits.at_most)
       throw std::invalid_argument(fmt::format("{}: its variables take more than {} bytes (--max-bytes)",
                                               limits.name, limits.at_most));
-    if (about->class_type == MAT_C_OPAQUE) {
+    // A class that matio does not know is told as none in files of 7.3.
+    const bool is_unknown = is_hdf5(bytes) && about->class_type == MAT_C_EMPTY;
+    if (about->class_type == MAT_C_OPAQUE || is_unknown) {
       columns.objects.push_back(name);
       continue;
     }
@@ -213,7 +230,47 @@ Columns columns_of(std::string_view bytes, const UnpackedLimits& limits) {
   return columns;
 }
 
+std::string about_object(const std::string& name, bool is_hdf5) {
+  return fmt::format(
+      "{} is an object (a table, timetable, string or datetime), which only MATLAB reads: save "
+      "table2struct(T, "
+      "'ToScalar', true), or its columns, in its place{}",
+      name,
+      is_hdf5 ? "; where Python wrote it, whose names of classes are padded, save it by scipy.io.savemat"
+              : "");
+}
+
 }  // namespace
+
+MatCopy::MatCopy(std::string_view bytes) {
+  if (is_hdf5(bytes)) {
+    std::tie(file_, name_) = named_file();
+  } else {
+    file_ = memfd_create("kerf-mat", MFD_CLOEXEC);
+    if (file_ < 0) throw std::system_error(errno, std::generic_category(), "no file in memory");
+  }
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file_, bytes.data(), bytes.size());
+    if (written <= 0) {
+      const int why = errno;
+      remove_name();
+      ::close(file_);
+      throw std::system_error(why, std::generic_category(), "no room for a file in memory");
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+MatCopy::~MatCopy() {
+  remove_name();
+  ::close(file_);
+}
+
+std::string MatCopy::path() const { return name_.empty() ? fmt::format("/proc/self/fd/{}", file_) : name_; }
+
+void MatCopy::remove_name() const noexcept {
+  if (!name_.empty()) ::unlink(name_.c_str());
+}
 
 bool is_mat(std::string_view bytes) noexcept {
   if (bytes.size() < header_size) return false;
@@ -221,19 +278,11 @@ bool is_mat(std::string_view bytes) noexcept {
   return bytes.starts_with("MATLAB") && (order == "IM" || order == "MI");
 }
 
-MatTable mat_table(std::string_view bytes, const UnpackedLimits& limits) {
-  if (bytes.substr(0, version_at).find("MATLAB 7.3") != std::string_view::npos)
-    throw std::invalid_argument(
-        fmt::format("{}: a MAT-file of version 7.3; save it anew with save(..., '-v7')", limits.name));
-  const Columns columns = columns_of(bytes, limits);
+MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits) {
+  const Columns columns = columns_of(bytes, copy, limits);
   const std::size_t length = usual_length(columns.all);
   const std::string objects =
-      columns.objects.empty()
-          ? ""
-          : fmt::format(
-                "{} is an object (a table, timetable, string or datetime), which only MATLAB reads: save "
-                "table2struct(T, 'ToScalar', true), or its columns, in its place",
-                columns.objects.front());
+      columns.objects.empty() ? "" : about_object(columns.objects.front(), is_hdf5(bytes));
   std::vector<const MatColumn*> taken;
   MatTable table;
   for (const MatColumn& column : columns.all) {
@@ -248,6 +297,11 @@ MatTable mat_table(std::string_view bytes, const UnpackedLimits& limits) {
     throw std::invalid_argument(fmt::format("{}: no two numeric vectors of one length{}{}", limits.name,
                                             objects.empty() ? "" : "; ", objects));
   if (!objects.empty()) table.notes.push_back(objects);
+  for (const std::string& name : columns.too_large)
+    table.notes.push_back(fmt::format(
+        "{} has whole numbers beyond 2^53, which would lose their last digits, and is left out: save "
+        "double({} - {}(1)) in its place",
+        name, name, name));
   for (const std::string& name : columns.passed_over)
     table.notes.push_back(fmt::format("{} is no vector or matrix of real numbers and is left out", name));
   for (std::size_t i = 0; i < taken.size(); ++i) table.text += (i > 0 ? "\t" : "") + taken[i]->name;

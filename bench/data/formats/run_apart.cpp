@@ -7,6 +7,7 @@
 #include <string_view>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -72,6 +73,14 @@ void limit(decltype(RLIMIT_AS) what, rlim_t most) {
   setrlimit(what, &both);
 }
 
+/// Libraries tell of a damaged file in many lines of their own, where one of ours is to stand.
+void silence_errors() {
+#if !defined(__SANITIZE_ADDRESS__)
+  const int nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  if (nothing >= 0) dup2(nothing, STDERR_FILENO);
+#endif
+}
+
 [[noreturn]] void work_in_child(const UnpackedLimits& limits, const std::function<std::string()>& work,
                                 const SharedAnswer& answer) {
   constexpr rlim_t beside = rlim_t{1} << 30U;
@@ -80,6 +89,7 @@ void limit(decltype(RLIMIT_AS) what, rlim_t most) {
   if (limits_addresses) limit(RLIMIT_AS, most);
   limit(RLIMIT_CPU, seconds);
   limit(RLIMIT_CORE, 0);
+  silence_errors();
   bool is_told = false;
   try {
     is_told = answer.put(result, work());

@@ -7,15 +7,17 @@
 #include <future>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include "files/memory_room.h"
 #include "formats/file_text.h"
+#include "import/mapped_rows.h"
 #include "import/resample.h"
 #include "import/text_table.h"
-#include "import/time_order.h"
+#include "import/trials.h"
 #include "import/unit_doubts.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
@@ -26,6 +28,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_lines_named = 10;
+constexpr double ns_of_second = 1e9;
 
 /// "3, 7, 9 and 12 more"
 std::string named_lines(const std::vector<std::size_t>& lines) {
@@ -40,90 +43,6 @@ const MappedColumn* find_channel(const std::vector<MappedColumn>& columns, std::
       std::find_if(columns.begin(), columns.end(), [&](const auto& c) { return c.channel == channel; });
   return place == columns.end() ? nullptr : &*place;
 }
-
-/// The table's numbers in the order of the mapped columns, in SI but for the time, and the lines they came
-/// from.
-class Rows {
- public:
-  Rows(TextTable table, const std::vector<MappedColumn>& columns) : table_(std::move(table)) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      if (columns[i].unit.factor == 1.0 || columns[i].channel == "time") continue;
-      for (double& value : table_.columns[i]) value *= columns[i].unit.factor;
-    }
-  }
-
-  [[nodiscard]] std::size_t size() const { return table_.columns.front().size(); }
-  [[nodiscard]] std::vector<double>& column(std::size_t i) { return table_.columns[i]; }
-  [[nodiscard]] const MappedValues& columns() const { return table_.columns; }
-  [[nodiscard]] std::size_t line_of(std::size_t row) const { return table_.line_of(row); }
-  [[nodiscard]] const std::vector<std::size_t>& bad_lines() const { return table_.bad_lines; }
-
-  /// Infinity is what a logger writes that divided by zero or overflowed: no chart, filter or fit can use it.
-  /// @throws std::invalid_argument that names the first.
-  void require_finite(const std::vector<MappedColumn>& columns, const std::string& name) const {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const auto& values = table_.columns[i];
-      const auto found = std::find_if(values.begin(), values.end(), [](double v) { return std::isinf(v); });
-      if (found == values.end()) continue;
-      throw std::invalid_argument(fmt::format(
-          "{}:{}: column {}, mapped to {}, is infinite; expected a finite number, or nan where there is none",
-          name, table_.line_of(static_cast<std::size_t>(found - values.begin())), columns[i].index + 1,
-          columns[i].channel));
-    }
-  }
-
-  /// Keeps the stretch of a clock that starts anew which was asked for. @throws std::invalid_argument if none
-  /// was, or it is not there.
-  void keep_stretch(std::size_t time_column, std::size_t asked, const std::string& name) {
-    std::vector<std::size_t> begins = clock_restarts(table_.columns[time_column]);
-    if (begins.empty() && asked <= 1) return;
-    if (asked == 0)
-      throw std::invalid_argument(fmt::format(
-          "{}:{}: the clock starts anew here, and at {} places in all: take one of its {} stretches by "
-          "--stretch 1 to {}, or map "
-          "no time and give --rate HZ for one recording of all",
-          name, table_.line_of(begins.front()), begins.size(), begins.size() + 1, begins.size() + 1));
-    if (asked > begins.size() + 1)
-      throw std::invalid_argument(
-          fmt::format("{}: --stretch {}: its clock starts {} times", name, asked, begins.size() + 1));
-    begins.insert(begins.begin(), 0);
-    begins.push_back(size());
-    first_ = begins[asked - 1];
-    for (auto& column : table_.columns) {
-      column.resize(begins[asked]);
-      column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(first_));
-    }
-  }
-
-  /// Leaves out the rows whose times do not increase; returns their lines.
-  std::vector<std::size_t> leave_out_misplaced(std::size_t time_column) {
-    const auto& time = table_.columns[time_column];
-    const auto follows = [](double before, double after) { return before < after && std::isfinite(after); };
-    if (std::isfinite(time.front()) &&
-        std::adjacent_find(time.begin(), time.end(), std::not_fn(follows)) == time.end()) {
-      return {};
-    }
-    const std::vector<std::size_t> kept = rows_in_order(time);
-    std::vector<std::size_t> lines;
-    auto next = kept.begin();
-    for (std::size_t row = 0; row < time.size(); ++row) {
-      if (next != kept.end() && *next == row) {
-        ++next;
-      } else {
-        lines.push_back(table_.line_of(first_ + row));
-      }
-    }
-    for (auto& column : table_.columns) {
-      for (std::size_t i = 0; i < kept.size(); ++i) column[i] = column[kept[i]];
-      column.resize(kept.size());
-    }
-    return lines;
-  }
-
- private:
-  TextTable table_;
-  std::size_t first_ = 0;  ///< row of the table that comes first
-};
 
 /// Numbers the rows, with a jump at every gap.
 void number_ticks(Imported& imported, double period_s) {
@@ -205,7 +124,20 @@ void require_places_that_fit(const std::optional<SpatialMap>& map, const Spatial
     throw std::invalid_argument("--point says where torques are counted from, and --map maps none");
 }
 
-void take_time(Imported& imported, Rows& rows, const std::string& name, const ImportOptions& options) {
+/// Stamps are moments: they have no unit, and say when, not how much.
+/// @throws std::invalid_argument for stamps that are mapped to anything but the time, or with another unit.
+void require_stamps_for_time(const TextLayout& layout, const std::vector<MappedColumn>& columns,
+                             const std::string& name) {
+  for (const MappedColumn& column : columns) {
+    if (!layout.columns[column.index].stamps) continue;
+    if (column.channel == "time" && column.unit.factor == 1.0) continue;
+    throw std::invalid_argument(
+        fmt::format("{}: column {} holds time stamps, mapped to {}[{}]; expected time={}, without a unit",
+                    name, column.index + 1, column.channel, column.unit_text, column.index + 1));
+  }
+}
+
+void take_time(Imported& imported, MappedRows& rows, const std::string& name, const ImportOptions& options) {
   auto& time = imported.recording.time;
   const MappedColumn* column = find_channel(imported.columns, "time");
   if (column != nullptr && options.rate_hz > 0.0)
@@ -231,6 +163,13 @@ void take_time(Imported& imported, Rows& rows, const std::string& name, const Im
   }
   // Stamps are subtracted as they were written, where whole milliseconds are exact, and scaled after that.
   const double start = time.front();
+  if (const auto& stamps = imported.layout.columns[column->index].stamps) {
+    imported.recording.header.start_ns = stamps->ns + std::llround(start);
+    imported.recording.header.start_clock = stamps->has_zone ? "UTC" : "local";
+    for (double& t : time) t = (t - start) / ns_of_second;
+    return;
+  }
+  imported.first_time_s = start * column->unit.factor;
   for (double& t : time) t = (t - start) * column->unit.factor;
 }
 
@@ -240,7 +179,7 @@ double velocity_window(const ImportOptions& options, double period_s) {
   return period_s > 0.0 ? std::clamp(usual_s, 4.0 * period_s, 400.0 * period_s) : usual_s;
 }
 
-void take_channels(Imported& imported, Rows& rows, const ImportOptions& options, double period_s) {
+void take_channels(Imported& imported, MappedRows& rows, const ImportOptions& options, double period_s) {
   schema::Recording& recording = imported.recording;
   for (std::size_t i = 0; i < imported.columns.size(); ++i) {
     const MappedColumn& column = imported.columns[i];
@@ -273,35 +212,71 @@ void take_channels(Imported& imported, Rows& rows, const ImportOptions& options,
   }
 }
 
-}  // namespace
+/// A file of numbers as it was read, before it becomes a recording or several.
+struct ReadFile {
+  ReadFile(const std::filesystem::path& named, const ImportOptions& options)
+      : path(named),
+        file(named, {.max_bytes = options.max_bytes, .sheet = options.sheet}),
+        layout(find_layout(file.text(), file.name())),
+        columns(match_columns(options.map, layout, file.name())),
+        spatial(spatial_map_of(options.map, columns)) {
+    require_stamps_for_time(layout, columns, file.name());
+    require_places_that_fit(spatial, options.places);
+    require_memory_for_rows(path, file.text(), columns.size(), spatial.has_value());
+    std::vector<std::size_t> indices;
+    for (const MappedColumn& column : columns) indices.push_back(column.index);
+    const auto begin = std::chrono::steady_clock::now();
+    options.progress("importing", file.text().size(), [&](std::atomic<std::size_t>& done) {
+      table = parse_table(file.text(), layout, indices, done);
+    });
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    hash = std::async(std::launch::async, [this] { return sha256_of(file.bytes()); }).share();
+  }
+  ReadFile(const ReadFile&) = delete;
+  ReadFile& operator=(const ReadFile&) = delete;
+  ~ReadFile() = default;
 
-Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
-  const FileText mapped(file, {.max_bytes = options.max_bytes, .sheet = options.sheet});
-  const std::string& name = mapped.name();
-  Imported imported;
-  imported.warnings = mapped.notes();
-  imported.layout = find_layout(mapped.text(), name);
-  imported.columns = match_columns(options.map, imported.layout, name);
-
-  imported.spatial = spatial_map_of(options.map, imported.columns);
-  require_places_that_fit(imported.spatial, options.places);
-
-  require_memory_for_rows(file, mapped.text(), imported.columns.size(), imported.spatial.has_value());
-  std::vector<std::size_t> indices;
-  for (const MappedColumn& column : imported.columns) indices.push_back(column.index);
-  const auto begin = std::chrono::steady_clock::now();
+  std::filesystem::path path;
+  FileText file;
+  TextLayout layout;
+  std::vector<MappedColumn> columns;
+  std::optional<SpatialMap> spatial;
   TextTable table;
-  options.progress("importing", mapped.text().size(), [&](std::atomic<std::size_t>& done) {
-    table = parse_table(mapped.text(), imported.layout, indices, done);
-  });
-  Rows rows(std::move(table), imported.columns);
-  imported.parse_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto hash = std::async(std::launch::async, [&] { return sha256_of(mapped.bytes()); });
+  double seconds = 0.0;
+  std::shared_future<std::string> hash;  ///< last: it reads the file until it ends
+};
+
+void write_header(schema::Recording& recording, const ReadFile& read, const std::string& trial,
+                  const ImportOptions& options) {
+  const schema::Header found = std::exchange(recording.header, schema::new_header(software()));
+  recording.header.velocity_derived = found.velocity_derived;
+  recording.header.start_ns = found.start_ns;
+  recording.header.start_clock = found.start_clock;
+  recording.header.device_properties = found.device_properties;
+  const std::string file = read.path.filename().string();
+  recording.header.source = fmt::format("{} sha256:{}", file, read.hash.get());
+  std::string how;
+  if (!trial.empty()) how += fmt::format(", trial '{}'", trial);
+  if (options.stretch > 0) how += fmt::format(", stretch {}", options.stretch);
+  if (options.resample_hz > 0.0) how += fmt::format(", resampled to {:g} Hz", options.resample_hz);
+  if (read.spatial) how += ", " + spatial_text(*read.spatial, options.places);
+  add_history(recording.header, fmt::format("import: {} rows of {}{}", recording.rows(), file, how));
+}
+
+/// Rows of a file as a recording; `name` stands for them in messages.
+Imported recording_of(const ReadFile& read, TextTable table, const std::string& name,
+                      const std::string& trial, const ImportOptions& options) {
+  Imported imported;
+  imported.layout = read.layout;
+  imported.columns = read.columns;
+  imported.spatial = read.spatial;
+  imported.parse_seconds = read.seconds;
+  MappedRows rows(std::move(table), imported.columns);
   imported.bad_lines = rows.bad_lines();
   if (rows.size() == 0) {
     throw std::invalid_argument(
         fmt::format("{}: no line has a number in every mapped column; its columns are\n{}", name,
-                    describe_columns(imported.layout, mapped.text())));
+                    describe_columns(imported.layout, read.file.text())));
   }
   if (options.strict && !imported.bad_lines.empty()) {
     throw std::invalid_argument(
@@ -333,22 +308,42 @@ Imported import_text(const std::filesystem::path& file, const ImportOptions& opt
     imported.warnings.push_back(
         fmt::format("the rate is {:.4g} Hz; is the unit of time right?", 1.0 / period_s));
   }
+  if (recording.header.start_clock == "local")
+    imported.warnings.emplace_back(
+        "the time stamps name no zone: the start is kept as it stands, of a local clock that nobody named");
   for (std::string& doubt : unit_doubts(imported)) imported.warnings.push_back(std::move(doubt));
   if (options.resample_hz > 0.0) resample(recording, options.resample_hz, period_s);
-
-  schema::Header header = schema::new_header(software());
-  header.velocity_derived = recording.header.velocity_derived;
-  header.device_properties = recording.header.device_properties;
-  recording.header = std::move(header);
-  recording.header.source = fmt::format("{} sha256:{}", file.filename().string(), hash.get());
-  add_history(
-      recording.header,
-      fmt::format("import: {} rows of {}{}{}{}", recording.rows(), file.filename().string(),
-                  options.stretch > 0 ? fmt::format(", stretch {}", options.stretch) : std::string(),
-                  options.resample_hz > 0.0 ? fmt::format(", resampled to {:g} Hz", options.resample_hz)
-                                            : std::string(),
-                  imported.spatial ? ", " + spatial_text(*imported.spatial, options.places) : ""));
+  write_header(recording, read, trial, options);
   return imported;
+}
+
+}  // namespace
+
+Imported import_text(const std::filesystem::path& file, const ImportOptions& options) {
+  ReadFile read(file, options);
+  Imported imported = recording_of(read, std::move(read.table), read.file.name(), "", options);
+  const std::vector<std::string>& notes = read.file.notes();
+  imported.warnings.insert(imported.warnings.begin(), notes.begin(), notes.end());
+  return imported;
+}
+
+std::vector<std::string> import_trials(const std::filesystem::path& file, const std::string& column,
+                                       const ImportOptions& options, const TakeTrial& take) {
+  ReadFile read(file, options);
+  const std::string& name = read.file.name();
+  Trials trials = divided_by_trial(read.file.text(), read.layout,
+                                   find_trial_column(read.layout, column, name), std::move(read.table), name);
+  for (Trial& trial : trials.all) {
+    take(trial.name, [&] {
+      return recording_of(read, std::move(trial.table), fmt::format("{}, trial '{}'", name, trial.name),
+                          trial.name, options);
+    });
+  }
+  std::vector<std::string> warnings = read.file.notes();
+  if (!trials.lines_of_none.empty())
+    warnings.push_back(fmt::format("{} lines name no trial and are left out: {}", trials.lines_of_none.size(),
+                                   named_lines(trials.lines_of_none)));
+  return warnings;
 }
 
 std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,19 +41,30 @@ struct Imported {
   std::vector<std::size_t> misplaced_lines;  ///< lines left out for their time
   std::vector<std::string> warnings;
   double parse_seconds = 0.0;
+  double first_time_s = 0.0;  ///< what the file says at time 0, of a time that is not a stamp
 };
 
 /// Reads a file of numbers (formats/file_text.h) into a recording in SI, with one axis, or with x, y, z and
 /// rx, ry, rz of a map that has them (take_spatial_axes()).
 ///
-/// Time starts at zero. The times of a recording increase strictly, so rows whose time repeats, goes back or
-/// is not finite cannot stand in it: they are left out, as few as will do (see rows_in_order), and told of in
-/// `misplaced_lines`, a warning and an event. A file of which more lines would be left out than kept is
-/// refused, and so are infinity and a clock that starts anew, unless one of its stretches is asked for. Gaps
-/// become jumps of `tick`. NaN stays as it is and is told of. The velocity is derived from the position by a
-/// zero-phase parabolic fit unless the map names one.
+/// Time starts at zero; of time stamps the moment of the first is kept beside it (start_ns). The times of a
+/// recording increase strictly, so rows whose time repeats, goes back or is not finite cannot stand in it:
+/// they are left out, as few as will do (see rows_in_order), and told of in `misplaced_lines`, a warning and
+/// an event. A file of which more lines would be left out than kept is refused, and so are infinity and a
+/// clock that starts anew, unless one of its stretches is asked for. Gaps become jumps of `tick`. NaN stays
+/// as it is and is told of. The velocity is derived from the position by a zero-phase parabolic fit unless
+/// the map names one.
 /// @throws std::invalid_argument for a file or a map that makes no sense; std::system_error.
 [[nodiscard]] Imported import_text(const std::filesystem::path& file, const ImportOptions& options);
+
+/// Is handed each trial by its name, and what makes its recording, which throws as import_text() does.
+using TakeTrial = std::function<void(const std::string& trial, const std::function<Imported()>& import)>;
+
+/// Reads one long table of several trials, told apart by what stands in a column, a number or a word: one
+/// recording a trial, in the order in which they begin. Returns what is to be known of the file as a whole.
+/// @throws as import_text() does, and for a column that is not there or names a trial in every few lines.
+std::vector<std::string> import_trials(const std::filesystem::path& file, const std::string& column,
+                                       const ImportOptions& options, const TakeTrial& take);
 
 /// The columns of a file and a map to begin with, for a user who gave none.
 [[nodiscard]] std::string explain_columns(const std::filesystem::path& file, const ImportOptions& options);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "clocks/time_stamp.h"
 #include "recordings/summary.h"
 
 namespace kerf::bench {
@@ -57,6 +58,12 @@ std::vector<std::string> imported_lines(const Imported& imported) {
   std::vector<std::string> lines{about};
   for (const MappedColumn& column : imported.columns) {
     const std::string& heading = layout.columns[column.index].heading;
+    if (layout.columns[column.index].stamps) {
+      lines.push_back(fmt::format("{}: column {}{}, time stamps; time 0 is {}", column.channel,
+                                  column.index + 1, heading.empty() ? "" : fmt::format(" '{}'", heading),
+                                  start_text(imported.recording.header)));
+      continue;
+    }
     lines.push_back(fmt::format("{}: column {}{}, in {}{}", column.channel, column.index + 1,
                                 heading.empty() ? "" : fmt::format(" '{}'", heading), column.unit_text,
                                 column.unit_from_file ? " as the file says" : ""));

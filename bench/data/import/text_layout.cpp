@@ -21,6 +21,11 @@ constexpr std::size_t sampled_data_lines = 50;
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t' || c == '\r'; }
 
+bool is_stamp(std::string_view field) noexcept {
+  TimeStamp stamp;
+  return is_time_stamp(field, stamp);
+}
+
 /// One way to read the lines, and how well it reads them.
 struct Reading {
   char separator;
@@ -35,7 +40,9 @@ struct Reading {
     const auto numbers =
         std::count_if(fields.begin(), fields.end(), [&](auto f) { return is_decimal(f, point); });
     const auto filled = std::count_if(fields.begin(), fields.end(), [](auto f) { return !f.empty(); });
-    return numbers >= 1 && 2 * numbers > filled && 2 * static_cast<std::size_t>(numbers) >= columns;
+    // A stamp alone is a remark: when something began.
+    const auto values = numbers >= 1 ? numbers + std::count_if(fields.begin(), fields.end(), is_stamp) : 0;
+    return values >= 1 && 2 * values > filled && 2 * static_cast<std::size_t>(values) >= columns;
   }
 };
 
@@ -52,7 +59,7 @@ Reading best_reading(const std::vector<std::string_view>& lines) {
       if (!reading.reads(line)) continue;
       ++reading.lines;
       for (const auto field : split_line(line, reading.separator)) {
-        if (is_decimal(field, reading.point)) {
+        if (is_decimal(field, reading.point) || is_stamp(field)) {
           ++numbers;
         } else if (!field.empty()) {
           ++reading.strangers;
@@ -96,6 +103,17 @@ bool looks_like_gb(std::string_view text) noexcept {
     ++i;
   }
   return true;
+}
+
+/// Which columns hold time stamps, by the first line of the data.
+void find_stamps(TextLayout& layout, std::string_view line) {
+  const auto fields = split_line(line, layout.separator);
+  for (std::size_t i = 0; i < std::min(fields.size(), layout.columns.size()); ++i) {
+    TimeStamp stamp;
+    if (!is_time_stamp(fields[i], stamp)) continue;
+    layout.columns[i].stamps = stamp;
+    layout.columns[i].unit = "s";
+  }
 }
 
 }  // namespace
@@ -199,6 +217,7 @@ TextLayout find_layout(std::string_view text, const std::string& name) {
   auto width = split_line(*first, layout.separator).size();
   if (split_line(*first, layout.separator).back().empty() && width > 1) --width;  // a separator ends the line
   const HeaderLine header = read_header(layout, {lines.data(), layout.preamble_lines}, width);
+  find_stamps(layout, *first);
   for (auto line = first; line != lines.end(); ++line) {
     const auto number = static_cast<std::size_t>(line - lines.begin()) + 1;
     if (reading.reads(*line))

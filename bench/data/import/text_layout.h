@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "clocks/time_stamp.h"
 
 namespace kerf::bench {
 
@@ -13,6 +16,8 @@ struct TextColumn {
   std::string name;     ///< the heading without its unit
   std::string
       unit;  ///< from the units row, or from the name ("Time [ms]", "Load (N)", "t_s"); empty if unknown
+  /// Of a column of time stamps the first one; its unit is s whatever its name says.
+  std::optional<TimeStamp> stamps;
 };
 
 /// How a text file of numbers is laid out, found by looking at its first lines.

@@ -32,7 +32,9 @@ class LineReader {
       if (quoted) ++at;
       if (const int slot = slots_[field]; slot != not_wanted) {
         double value = 0.0;
-        const char* const stop = parse_decimal(at, end, layout_->point, value);
+        const auto& stamps = layout_->columns[field].stamps;
+        const char* const stop = stamps ? read_stamp(at, end, quoted ? '"' : separator, *stamps, value)
+                                        : parse_decimal(at, end, layout_->point, value);
         if (stop == at) return false;
         values[static_cast<std::size_t>(slot)][row] = value;
         at = stop;
@@ -61,6 +63,14 @@ class LineReader {
   [[nodiscard]] const char* skip_blanks(const char* at, const char* end) const noexcept {
     while (at != end && (*at == ' ' || *at == '\r' || (*at == '\t' && layout_->separator != '\t'))) ++at;
     return at;
+  }
+  static const char* read_stamp(const char* at, const char* end, char separator, const TimeStamp& first,
+                                double& value) noexcept {
+    TimeStamp stamp;
+    const char* const stop = parse_time_stamp(at, end, separator, stamp);
+    if (stop == at || stamp.has_zone != first.has_zone) return at;
+    value = static_cast<double>(stamp.ns - first.ns);
+    return stop;
   }
   static const char* skip_field(const char* at, const char* end, char stop) noexcept {
     if (stop == ' ') {
@@ -140,6 +150,7 @@ void on_all_cores(std::vector<Part>& parts, const Work& work) {
 }  // namespace
 
 std::size_t TextTable::line_of(std::size_t row) const {
+  if (!row_lines.empty()) return row_lines.at(row);
   // Each line without data before the row moves it one line down.
   std::size_t line = first_line + row;
   auto bad = bad_lines.begin();
@@ -170,7 +181,11 @@ TextTable parse_table(std::string_view text, const TextLayout& layout, std::span
     part.lines = 0;
   }
 
-  TextTable table{.columns = {}, .bad_lines = {}, .empty_lines = {}, .first_line = layout.preamble_lines + 1};
+  TextTable table{.columns = {},
+                  .bad_lines = {},
+                  .empty_lines = {},
+                  .first_line = layout.preamble_lines + 1,
+                  .row_lines = {}};
   std::vector<double*> begins;
   for (std::size_t i = 0; i < columns.size(); ++i)
     begins.push_back(table.columns.emplace_back(max_rows).data());

@@ -80,7 +80,8 @@ void doubt_time(const Imported& imported, std::vector<std::string>& doubts) {
   const std::string unit = unit_text_of(imported, "time");
   const double span_s = time_s.empty() ? 0.0 : time_s.back() - time_s.front();
   const double rate_hz = span_s > 0.0 ? static_cast<double>(time_s.size() - 1) / span_s : 0.0;
-  if (unit.empty() || span_s < longest_s || rate_hz >= slowest_hz) return;
+  if (imported.recording.header.start_ns || unit.empty() || span_s < longest_s || rate_hz >= slowest_hz)
+    return;
   doubts.push_back(
       fmt::format("the recording takes {:.1f} hours at {:.3g} Hz with its time in {}; is that unit right?",
                   span_s / 3600.0, rate_hz, unit));

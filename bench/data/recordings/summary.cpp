@@ -11,6 +11,8 @@
 
 #include <fmt/core.h>
 
+#include "clocks/time_stamp.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -93,6 +95,9 @@ void add_header(nlohmann::ordered_json& summary, const schema::Recording& record
   summary["software"] = header.software;
   summary["uuid"] = header.uuid;
   if (!header.source.empty()) summary["source"] = header.source;
+  if (header.start_ns)
+    summary["start"] = {
+        {"ns", *header.start_ns}, {"clock", header.start_clock}, {"text", start_text(header)}};
   if (!header.history.empty()) summary["history"] = lines_of(header.history);
   if (!header.device_uri.empty()) summary["device"] = header.device_uri;
   if (!header.velocity_derived.empty()) summary["velocity_derived"] = header.velocity_derived;
@@ -165,6 +170,7 @@ std::string summary_table(const nlohmann::ordered_json& summary) {
   for (const char* origin : {"source", "device"}) {
     if (summary.contains(origin)) line(origin, summary[origin].get<std::string>());
   }
+  if (summary.contains("start")) line("start", summary["start"]["text"].get<std::string>());
   line("samples", fmt::format("{} over {:.3f} s at {:.6g} Hz", summary["samples"].get<std::size_t>(),
                               summary["duration_s"].get<double>(), summary["rate_hz"].get<double>()));
   line("gaps", std::to_string(summary["gaps"].get<std::size_t>()));

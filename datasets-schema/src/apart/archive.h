@@ -25,8 +25,9 @@ auto fields(Is<Axis> auto& x) {
 auto fields(Is<Event> auto& x) { return std::tie(x.time_s, x.kind, x.text); }
 auto fields(Is<Channel> auto& x) { return std::tie(x.name, x.unit, x.values); }
 auto fields(Is<Header> auto& x) {
-  return std::tie(x.created, x.software, x.uuid, x.status, x.velocity_derived, x.source, x.history,
-                  x.device_uri, x.device_toml, x.scene_toml, x.device_properties, x.scene_properties);
+  return std::tie(x.created, x.software, x.uuid, x.status, x.velocity_derived, x.source, x.start_ns,
+                  x.start_clock, x.history, x.device_uri, x.device_toml, x.scene_toml, x.device_properties,
+                  x.scene_properties);
 }
 auto fields(Is<Cycles> auto& x) {
   return std::tie(x.axis, x.closing_direction, x.contact_position, x.filter_corner_hz, x.phases, x.grid,

@@ -124,6 +124,8 @@ hid_t native<double>();
 template <>
 hid_t native<float>();
 template <>
+hid_t native<std::int64_t>();
+template <>
 hid_t native<std::uint64_t>();
 template <>
 hid_t native<std::uint32_t>();

@@ -47,6 +47,11 @@ hid_t native<float>() {
   return H5T_NATIVE_FLOAT;
 }
 template <>
+hid_t native<std::int64_t>() {
+  silence();
+  return H5T_NATIVE_INT64;
+}
+template <>
 hid_t native<std::uint64_t>() {
   silence();
   return H5T_NATIVE_UINT64;

@@ -47,6 +47,14 @@ const std::array attribute_table{
               &Header::status},
     Attribute{"/", "source", "text", "", optional, "Imports: file name and SHA-256 of the data",
               &Header::source},
+    Attribute{
+        "/", "start_ns", "int64", "", optional,
+        "When `time` was 0, in nanoseconds since 1970-01-01T00:00:00 of the `start_clock`, leap seconds not "
+        "counted; absent if unknown",
+        &Header::start_ns},
+    Attribute{"/", "start_clock", "text", "", optional,
+              "`UTC`, or `local`: the clock of a zone that nobody named; stands beside `start_ns`",
+              &Header::start_clock},
     Attribute{"/", "history", "text", "", optional,
               "What was done to it since: one line a step, in order, each with its time and program",
               &Header::history},

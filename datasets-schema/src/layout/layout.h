@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +48,9 @@ struct Dataset {
 
 /// What an attribute holds: the same in every file, or a member.
 using Value = std::variant<std::string_view, std::span<const std::uint32_t>, std::span<const std::uint8_t>,
-                           std::string Header::*, std::string Axis::*, double Axis::*, double Cycles::*,
-                           std::size_t Cycles::*, std::string CycleFlags::*, double CycleFlags::*>;
+                           std::string Header::*, std::optional<std::int64_t> Header::*, std::string Axis::*,
+                           double Axis::*, double Cycles::*, std::size_t Cycles::*, std::string CycleFlags::*,
+                           double CycleFlags::*>;
 
 struct Attribute {
   std::string_view object;

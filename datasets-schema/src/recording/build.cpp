@@ -43,6 +43,9 @@ void write_attribute(hid_t object, const layout::Attribute& rule, const Sources&
               h5::write_attribute(object, name, from.header.*text);
             }
           },
+          [&](std::optional<std::int64_t> Header::*number) {
+            if (from.header.*number) one(*(from.header.*number));
+          },
           [&](std::string Axis::*text) { h5::write_attribute(object, name, gather(from.axes, text)); },
           [&](double Axis::*number) {
             const auto numbers = gather(from.axes, number);

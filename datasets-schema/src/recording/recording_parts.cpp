@@ -49,6 +49,9 @@ class PartReader {
           using Pointer = decltype(member);
           if constexpr (std::is_same_v<Pointer, std::string Header::*>) {
             recording_.header.*member = h5::read_texts(object, name).front();
+          } else if constexpr (std::is_same_v<Pointer, std::optional<std::int64_t> Header::*>) {
+            h5::read_attribute(object, name, h5::native<std::int64_t>(),
+                               &(recording_.header.*member).emplace());
           } else if constexpr (std::is_same_v<Pointer, std::string Axis::*>) {
             const auto texts = h5::read_texts(object, name);
             for (std::size_t i = 0; i < texts.size(); ++i) recording_.axes[i].*member = texts[i];

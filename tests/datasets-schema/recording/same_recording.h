@@ -29,6 +29,8 @@ inline void expect_same_header(const schema::Header& found, const schema::Header
   EXPECT_EQ(found.status, expected.status);
   EXPECT_EQ(found.velocity_derived, expected.velocity_derived);
   EXPECT_EQ(found.source, expected.source);
+  EXPECT_EQ(found.start_ns, expected.start_ns);
+  EXPECT_EQ(found.start_clock, expected.start_clock);
   EXPECT_EQ(found.history, expected.history);
   EXPECT_EQ(found.device_uri, expected.device_uri);
   EXPECT_EQ(found.device_toml, expected.device_toml);

@@ -16,6 +16,8 @@ inline schema::Recording sample_recording(std::size_t rows = 5) {
   header.uuid = "0b5f1e0a-54bb-4c5e-9d55-6cf3f4d33c11";
   header.velocity_derived = "quadratic over 20 ms";
   header.source = "cut.txt, SHA-256 00ff";
+  header.start_ns = 1769860800'123'456'789;
+  header.start_clock = "local";
   header.history = "2026-02-01T08:00:00Z kerf 0.1.0: bias removed\n2026-02-01T08:01:00Z µ\n";
   header.device_uri = "sim:scissors?seed=3";
   header.device_toml = "gain = 1.0\n";

@@ -106,12 +106,14 @@ struct Header {
   std::string status = "complete";  ///< "recording", "complete" or "aborted: WHY"
   std::string velocity_derived;     ///< how the velocity was derived from the position; empty if measured
   std::string source;               ///< file name and SHA-256 of the imported data; empty if recorded
-  std::string history;              ///< what was done to it since, one line a step; empty if nothing was
-  std::string device_uri;           ///< empty if imported
-  std::string device_toml;          ///< the device's configuration
-  std::string scene_toml;           ///< what was simulated or cut, and with which known parameters
-  Properties device_properties;     ///< attributes of /device beside its URI and TOML
-  Properties scene_properties;      ///< attributes of /scene beside its TOML
+  std::optional<std::int64_t> start_ns;  ///< when time was 0: nanoseconds since 1970 of start_clock
+  std::string start_clock;       ///< "UTC", or "local" of a zone that nobody named; empty without start_ns
+  std::string history;           ///< what was done to it since, one line a step; empty if nothing was
+  std::string device_uri;        ///< empty if imported
+  std::string device_toml;       ///< the device's configuration
+  std::string scene_toml;        ///< what was simulated or cut, and with which known parameters
+  Properties device_properties;  ///< attributes of /device beside its URI and TOML
+  Properties scene_properties;   ///< attributes of /scene beside its TOML
 };
 
 /// A header of a recording that begins now: created, software and a new random uuid.

@@ -1,8 +1,11 @@
-"""Makes the files of this folder: python3 make.py (with openpyxl, NumPy, SciPy, gzip and iconv of Debian 12)."""
+"""Makes the files of this folder: python3 make.py (with openpyxl, NumPy, SciPy, h5py, hdf5storage, gzip and iconv of Debian 12)."""
 
 import datetime
+import pathlib
 import subprocess
 
+import h5py
+import hdf5storage
 import numpy as np
 import openpyxl
 import scipy.io
@@ -45,3 +48,26 @@ book.save("punch.xlsx")
 scipy.io.savemat("punch.mat", {"t": time, "run": {"x": position, "f": force.astype(np.float32), "gain": 3.0, "who": "nobody"},
                                "counts": np.arange(80, dtype=np.int16).reshape(40, 2), "short": np.arange(7.0)}, do_compression=True)
 scipy.io.savemat("plain.mat", {"t": time[:, None], "x": position[:, None], "f": force[:, None]}, do_compression=False)
+
+
+def as_matlab_writes(_, item):
+    """A class as MATLAB writes it: a text that ends by a zero (NULLTERM). h5py and hdf5storage pad it with zeros, which matio does not read."""
+    text = item.attrs.get("MATLAB_class")
+    if text is None:
+        return
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(len(text))
+    del item.attrs["MATLAB_class"]
+    h5py.h5a.create(item.id, b"MATLAB_class", kind, h5py.h5s.create(h5py.h5s.SCALAR)).write(np.array(text), mtype=kind)
+
+
+pathlib.Path("punch73.mat").unlink(missing_ok=True)
+hdf5storage.savemat("punch73.mat", {"t": time, "run": {"x": position, "f": force.astype(np.float32), "gain": 3.0, "who": "nobody"},
+                                    "counts": np.arange(80, dtype=np.int16).reshape(40, 2), "ticks": 2**53 - 390 + 10 * np.arange(40, dtype=np.int64),
+                                    "stamps": 1769860800000000001 + np.arange(40, dtype=np.int64), "touches": force > 1.0},
+                    format="7.3", oned_as="column", store_python_metadata=False)
+with h5py.File("punch73.mat", "r+") as file:
+    objects = file.create_dataset("objects", data=np.array([[0xDD000000, 2, 1, 1, 1, 1]], np.uint32))  # as a table refers to what it holds
+    objects.attrs["MATLAB_class"] = np.bytes_("table")
+    objects.attrs["MATLAB_object_decode"] = np.int32(3)
+    file.visititems(as_matlab_writes)
