@@ -42,33 +42,41 @@ std::vector<schema::PhaseSpan> phases_within(const schema::Cycles& cycles, std::
   return phases;
 }
 
-/// The rows of one kind of phase one after the other, with a break after each phase.
-class PhaseRows {
- public:
-  PhaseRows(const std::vector<schema::PhaseSpan>& phases, schema::Phase phase) {
-    for (const schema::PhaseSpan& span : phases) {
-      if (span.phase != phase) continue;
-      spans_.push_back(span);
-      begins_.push_back(points_);
-      points_ += span.end - span.begin + 1;
+constexpr std::size_t most_phases_drawn = 60;  ///< with more there are too few points for each
+constexpr std::size_t points_of_phases = 8000;
+
+/// The phases of one kind that are drawn: of very many some that are spread evenly.
+struct DrawnPhases {
+  std::vector<schema::PhaseSpan> spans;
+  std::size_t all = 0;
+
+  DrawnPhases(const std::vector<schema::PhaseSpan>& phases, schema::Phase phase)
+      : all(static_cast<std::size_t>(std::ranges::count(phases, phase, &schema::PhaseSpan::phase))) {
+    const std::size_t stride = (all + most_phases_drawn - 1) / most_phases_drawn;
+    std::size_t number = 0;
+    for (const schema::PhaseSpan& span : phases)
+      if (span.phase == phase && number++ % stride == 0) spans.push_back(span);
+  }
+  /// "opening", and how many of them where it is not all.
+  [[nodiscard]] std::string label(const char* name) const {
+    return spans.size() == all ? name : fmt::format("{}, {} of {}", name, spans.size(), all);
+  }
+  /// Each for itself, so that no line leads from the end of one to the begin of the next.
+  [[nodiscard]] Curve curve(double factor, const BlockedValues& position, const BlockedValues& force) const {
+    Curve curve;
+    for (const schema::PhaseSpan& span : spans) {
+      const auto of_span = [&span](double times, const BlockedValues& values) -> ValueOfRow {
+        return [times, &values, begin = span.begin](std::size_t row) { return times * values[begin + row]; };
+      };
+      const Curve one = drawn(span.end - span.begin, of_span(factor, position), of_span(1.0, force),
+                              points_of_phases / spans.size());
+      curve.x.insert(curve.x.end(), one.x.begin(), one.x.end());
+      curve.y.insert(curve.y.end(), one.y.begin(), one.y.end());
+      curve.x.push_back(line_break);
+      curve.y.push_back(line_break);
     }
+    return curve;
   }
-
-  [[nodiscard]] std::size_t points() const noexcept { return points_; }
-  /// The values of those rows, which stay where they are.
-  [[nodiscard]] ValueOfRow of(double factor, const BlockedValues& values) const {
-    return [this, factor, &values](std::size_t point) {
-      const auto next = std::upper_bound(begins_.begin(), begins_.end(), point);
-      const auto& span = spans_[static_cast<std::size_t>(next - begins_.begin()) - 1];
-      const std::uint64_t row = span.begin + (point - *std::prev(next));
-      return row < span.end ? factor * values[row] : line_break;
-    };
-  }
-
- private:
-  std::vector<schema::PhaseSpan> spans_;
-  std::vector<std::size_t> begins_;  ///< the point with which each begins
-  std::size_t points_ = 0;
 };
 
 Colour colour_of(schema::Phase phase) {
@@ -173,10 +181,9 @@ Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& row
   const schema::Cycles& cycles = *about.cycles;
   const auto phases = phases_within(cycles, rows.rows());
   const auto add_phase = [&](schema::Phase phase, const char* label, Colour colour) {
-    const PhaseRows of_phase(phases, phase);
-    Curve& curve = chart.curves.emplace_back(
-        drawn(of_phase.points(), of_phase.of(unit.factor, position), of_phase.of(1.0, force), 8000));
-    curve.label = label;
+    const DrawnPhases of_phase(phases, phase);
+    Curve& curve = chart.curves.emplace_back(of_phase.curve(unit.factor, position, force));
+    curve.label = of_phase.label(label);
     curve.colour = colour;
     curve.width = 0.8;
   };

@@ -36,7 +36,8 @@ void align_times(Chart& chart, double first_s, double last_s);
 [[nodiscard]] Chart force_chart(const schema::Recording& about, const schema::RecordedRows& rows,
                                 std::size_t axis);
 
-/// Force against position: every closing and opening, and their averages over them if it was segmented.
+/// Force against position: every closing and opening, or sixty of each where there are more, and their
+/// averages over them if it was segmented.
 [[nodiscard]] Chart loop_chart(const schema::Recording& about, const schema::RecordedRows& rows,
                                std::size_t axis);
 

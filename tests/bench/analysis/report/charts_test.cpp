@@ -1,11 +1,14 @@
 #include "report/charts.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <regex>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "segment/segment.h"
 #include "support/recordings.h"
 
 namespace kerf::bench {
@@ -36,6 +39,27 @@ TEST(ReportCharts, TheTimeAxisEndsWithTheRecording) {
   const Chart chart = force_chart(recording, schema::RowsInMemory(recording), 0);
   EXPECT_EQ(chart.x_range.begin, recording.time.front());
   EXPECT_EQ(chart.x_range.end, recording.time.back());
+}
+
+TEST(ReportCharts, OfManyCyclesSomeAreDrawnAsTheyRanAndNotAllAsStraightLines) {
+  schema::Recording recording = test::punch({.seconds = 100.0});
+  for (std::size_t row = 0; row < recording.rows();
+       ++row) {  // 5 mm in and out, in step with no stretch of rows
+    const double turn = 2.0 * 3.14159265358979 * 1.037 * recording.time[row];
+    recording.position[row] = 0.0025 * (1.0 - std::cos(turn));
+    recording.force_measured[row] = (std::sin(turn) > 0.0 ? 500.0 : 300.0) * recording.position[row];
+  }
+  recording.cycles = find_cycles(recording, {});
+  ASSERT_GT(recording.cycles->closing.size(), 60U);
+  const Chart chart = loop_chart(recording, schema::RowsInMemory(recording), 0);
+  const Curve& closing = chart.curves.at(1);
+  EXPECT_TRUE(std::regex_match(closing.label, std::regex("closing, [0-9]+ of [0-9]+"))) << closing.label;
+  double longest_mm = 0.0;
+  for (std::size_t i = 1; i < closing.x.size(); ++i) {
+    if (!std::isnan(closing.x[i] - closing.x[i - 1]))
+      longest_mm = std::max(longest_mm, std::abs(closing.x[i] - closing.x[i - 1]));
+  }
+  EXPECT_LT(longest_mm, 0.5) << "of a stroke of 5 mm";
 }
 
 }  // namespace
