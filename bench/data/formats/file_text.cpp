@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "formats/gzip.h"
+#include "formats/lvm.h"
 #include "formats/mat_table.h"
 #include "formats/run_apart.h"
 #include "formats/utf16.h"
@@ -95,6 +96,10 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
   } else if (const auto order = utf16_order(text())) {
     take(utf8_of_utf16(text(), *order, name_));
     notes_.push_back("UTF-16 text");
+  } else if (is_lvm(text())) {
+    LvmText made = lvm_text(text(), name_);
+    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+    take(std::move(made.text));
   } else {
     refuse_what_cannot_be_read(text(), name_);
   }

@@ -212,6 +212,54 @@ void take_channels(Imported& imported, MappedRows& rows, const ImportOptions& op
   }
 }
 
+/// Whether a field is a number whose digits stand in groups: 1,234.5 or 1.234,5 or -12,345,678.
+bool has_groups(std::string_view field) {
+  if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
+  std::size_t digits = 0;
+  std::size_t groups = 0;
+  char separator = '\0';
+  for (std::size_t i = 0; i <= field.size(); ++i) {
+    const char c = i < field.size() ? field[i] : '\0';
+    if (c >= '0' && c <= '9') {
+      ++digits;
+      continue;
+    }
+    const bool is_whole_group = groups == 0 ? digits >= 1 && digits <= 3 : digits == 3;
+    if (!is_whole_group) return false;
+    if (separator == '\0' && (c == ',' || c == '.' || c == '\'')) separator = c;
+    if (c != separator || i == field.size()) return groups > 0 && (c == ',' || c == '.' || i == field.size());
+    ++groups;
+    digits = 0;
+  }
+  return false;
+}
+
+/// A file whose numbers have groups from a thousand on loses its largest ones, and those alone.
+/// @throws std::invalid_argument that names the first, among the first bad lines.
+void require_no_groups(std::string_view text, const TextLayout& layout,
+                       const std::vector<MappedColumn>& columns, const TextTable& table,
+                       const std::string& name) {
+  constexpr std::size_t looked_at = 1000;
+  std::string_view rest = text.substr(layout.data_begin);
+  std::size_t number = table.first_line;
+  for (std::size_t i = 0; i < std::min(table.bad_lines.size(), looked_at); ++i) {
+    while (number < table.bad_lines[i]) {
+      (void)take_line(rest);
+      ++number;
+    }
+    std::string_view line = rest;
+    const auto fields = split_line(take_line(line), layout.separator);
+    for (const MappedColumn& column : columns) {
+      if (column.index >= fields.size() || !has_groups(fields[column.index])) continue;
+      throw std::invalid_argument(
+          fmt::format("{}:{}: column {} holds '{}', a number in groups of thousands; expected digits with "
+                      "one decimal sign and "
+                      "nothing between them: write the file anew without groups",
+                      name, number, column.index + 1, fields[column.index]));
+    }
+  }
+}
+
 /// A file of numbers as it was read, before it becomes a recording or several.
 struct ReadFile {
   ReadFile(const std::filesystem::path& named, const ImportOptions& options)
@@ -229,6 +277,7 @@ struct ReadFile {
     options.progress("importing", file.text().size(), [&](std::atomic<std::size_t>& done) {
       table = parse_table(file.text(), layout, indices, done);
     });
+    require_no_groups(file.text(), layout, columns, table, file.name());
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     hash = std::async(std::launch::async, [this] { return sha256_of(file.bytes()); }).share();
   }

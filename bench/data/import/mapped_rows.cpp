@@ -15,6 +15,8 @@ MappedRows::MappedRows(TextTable table, const std::vector<MappedColumn>& columns
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (columns[i].unit.factor == 1.0 || columns[i].channel == "time") continue;
     for (double& value : table_.columns[i]) value *= columns[i].unit.factor;
+    if (columns[i].unit.offset == 0.0) continue;
+    for (double& value : table_.columns[i]) value += columns[i].unit.offset;
   }
 }
 

@@ -73,6 +73,8 @@ constexpr std::array symbols{
     Symbol{"psi", pound* standard_gravity / (inch * inch), "Pa"},
     Symbol{"degC", 1.0, "°C"},
     Symbol{"°C", 1.0, "°C"},
+    Symbol{"degF", 1.0 / 1.8, "°C"},
+    Symbol{"°F", 1.0 / 1.8, "°C"},
     Symbol{"kg", 1.0, "kg"},
     Symbol{"g", 1e-3, "kg"},
     Symbol{"%", 1e-2, "1"},
@@ -133,7 +135,8 @@ std::string joined(const Parts& parts) { return fmt::format("{}", fmt::join(part
 Unit parse_unit(std::string_view given) {
   std::string_view text = trimmed(given);
   if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
-  Unit unit{.factor = take_factor(text), .si = {}};
+  Unit unit{.factor = take_factor(text), .si = {}, .offset = 0.0};
+  const bool is_fahrenheit = text == "degF" || text == "°F";
   Parts above;
   Parts below;
   bool divides = false;
@@ -157,6 +160,7 @@ Unit parse_unit(std::string_view given) {
     throw std::invalid_argument(
         fmt::format("the factor in unit '{}' must be a finite number other than zero", given));
   }
+  if (is_fahrenheit) unit.offset = -32.0 / 1.8;
   unit.si = joined(above);
   if (unit.si.empty()) unit.si.push_back('1');
   if (const std::string divisor = joined(below); !divisor.empty()) unit.si += "/" + divisor;

@@ -13,14 +13,15 @@ namespace kerf::bench {
 struct Unit {
   double factor = 1.0;  ///< value in SI = factor * value
   std::string si;       ///< "m", "s", "rad", "N", "V", "1", or a product such as "N·s/rad"
+  double offset = 0.0;  ///< added to that: of a temperature in degF; zero of all others
 
   friend bool operator==(const Unit&, const Unit&) = default;
 };
 
 /// Reads a unit: symbols with SI prefixes where usual (`ms s us min h`, `m cm mm um in ft`, `rad mrad deg
 /// rev`, `rpm`, `N mN kN gf kgf lbf ozf`, `Nm mNm`, `J mJ kJ`, `V mV`, `A mA`, `Hz`, `Pa kPa MPa bar psi`,
-/// `degC` (kept as it is), `kg g`, `%`, `1`), products with `·` or
-/// `*`, quotients with `/`, powers with `²`, `³`, `^2` or `^3`.
+/// `degC` (kept as it is), `degF` (in a product or quotient a difference), `kg g`, `%`, `1`), products with
+/// `·` or `*`, quotients with `/`, powers with `²`, `³`, `^2` or `^3`.
 /// @throws std::invalid_argument that names the symbol and lists those known.
 [[nodiscard]] Unit parse_unit(std::string_view text);
 

@@ -322,6 +322,64 @@ TEST_F(BadFile, OfAnotherKindIsNamed) {
   expect_refused(wrote("c.tdms", "TDSm...."), "a TDMS file");
 }
 
+constexpr auto lvm_head =
+    "LabVIEW "
+    "Measurement\t\r\nWriter_Version\t2\r\nSeparator\tTab\r\nDecimal_Separator\t.\r\nX_Columns\tXXX\r\n"
+    "***End_of_Header***\t\r\n\t\r\nChannels\t2\t\t\r\nSamples\t3\t3\t\r\nDate\t2026/01/31\t2026/01/31\t\r\n"
+    "Time\t12:00:00.25\t12:00:00.25\t\r\nY_Unit_Label\tmm\tN\t\r\nX_Dimension\tTime\tTime\t\r\n"
+    "X0\t0.5\t0.5\t\r\nDelta_X\t0.001000\tYYY\t\r\n***End_of_Header***\t\t\t\r\n";
+
+std::string lvm(const std::string& columns, const std::string& step, const std::string& rows) {
+  std::string text = lvm_head;
+  text.replace(text.find("XXX"), 3, columns);
+  text.replace(text.find("YYY"), 3, step);
+  return text + "X_Value\tWay\tLoad\tComment\r\n" + rows;
+}
+
+TEST_F(BadFile, OfLabViewIsReadWithItsUnits) {
+  const std::string rows = "0.5\t1\t2\r\n0.501\t1.5\t3\r\n0.502\t2\t4\tslipped\r\n";
+  const std::string one = wrote("a.lvm", lvm("One", "0.001", rows));
+  const Imported read = imported(one, "time=X_Value,position=Way,force=Load");
+  EXPECT_THAT(read.recording.time,
+              testing::ElementsAre(0.0, testing::DoubleNear(1e-3, 1e-15), testing::DoubleNear(2e-3, 1e-15)));
+  EXPECT_THAT(read.recording.position, testing::ElementsAre(1e-3, 1.5e-3, 2e-3));
+  EXPECT_EQ(read.layout.header_line, 17U) << "lines are those of the file";
+  EXPECT_TRUE(read.bad_lines.empty());
+  EXPECT_THAT(read.warnings, Contains("a LabVIEW measurement file, begun 2026/01/31 12:00:00.25"));
+  const std::string none = wrote("b.lvm", lvm("No", "0.001", "\t1\t2\r\n\t1.5\t3\r\n\t2\t4\r\n"));
+  const Imported timed = imported(none, "time=X_Value,position=Way,force=Load");
+  EXPECT_NEAR(timed.recording.time[2], 2e-3, 1e-15);
+  EXPECT_THAT(timed.recording.force_measured, testing::ElementsAre(2.0, 3.0, 4.0));
+  expect_refused(wrote("c.lvm", lvm("No", "0.002", "\t1\t2\r\n")), "channels have different ones");
+  expect_refused(wrote("d.lvm", "LabVIEW Measurement\t\r\nX_Columns\tOne\r\n"),
+                 "header has no ***End_of_Header***");
+}
+
+TEST_F(BadFile, OfLabViewInSegmentsIsOneAfterTheOther) {
+  const std::string segment = lvm("One", "0.001", "0.5\t1\t2\n0.501\t1.5\t3\n");
+  const std::string next = segment.substr(segment.find("Channels"));
+  const Imported read =
+      imported(wrote("a.lvm", segment + "\n" + next.substr(0, next.find("0.5\t1\t2")) + "0.502\t2\t4\n"),
+               "time=X_Value,position=Way,force=Load");
+  EXPECT_THAT(read.recording.force_measured, testing::ElementsAre(2.0, 3.0, 4.0));
+  EXPECT_TRUE(read.bad_lines.empty());
+  EXPECT_THAT(read.warnings, Contains("its 2 segments follow each other"));
+}
+
+TEST_F(BadFile, OfAtiIsReadByItsCounts) {
+  std::string text =
+      "Start Time: 1/31/2026 12:00:00 PM\nRDT Sample Rate: 1000\nForce Units: N\nCounts per Unit Force: "
+      "1000000\n"
+      "Torque Units: N-m\nCounts per Unit Torque: 1000000\n"
+      "Status (hex), RDT Sequence, F/T Sequence, Fx, Fy, Fz, Tx, Ty, Tz, Time\n";
+  for (const auto* row : {"1,1001,1500000", "2,1002,-250000", "5,1005,3"})
+    text += std::string("0x0,") + row + ",0,0,0,0,0,12:00:00.001\n";
+  const Imported read =
+      imported(wrote("ft.csv", text), "time=\"RDT Sequence\"[0.001 s],position=Fy[m],force=Fx[1e-6 N]");
+  EXPECT_THAT(read.recording.force_measured, testing::ElementsAre(1.5, -0.25, testing::DoubleEq(3e-6)));
+  EXPECT_THAT(read.recording.time, testing::ElementsAre(0.0, 1e-3, 4e-3)) << "lost packets are a gap";
+}
+
 TEST(Standard, InputTakesEveryFormat) {
   const test::TemporaryFolder folder;
   for (const auto* name : {"punch.txt.gz", "punch-utf16.txt", "plain.mat", "punch.xlsx"}) {

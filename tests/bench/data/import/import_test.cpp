@@ -63,6 +63,29 @@ TEST(Import, ReportsLinesThatAreNotDataByTheirNumbers) {
   EXPECT_THROW((void)imported("0,1,2\nx\n1,1,2\n", {.strict = true}), std::invalid_argument);
 }
 
+TEST(Import, RefusesNumbersInGroupsWhoseLargestWouldBeLost) {
+  const auto grouped = [](const std::string& field, const std::string& rest) {
+    return "0;1;1\n1;2;2\n2;" + field + ";3\n3;" + rest + ";3\n";
+  };
+  for (const auto* field : {"1,000.5", "-12,345,678", "1'000.5", "1,234"}) {
+    EXPECT_THAT([&] { (void)imported(grouped(field, "999.5")); },
+                testing::ThrowsMessage<std::invalid_argument>(
+                    HasSubstr("data.txt:3: column 2 holds '" + std::string(field) + "', a number in groups")))
+        << field;
+  }
+  for (const auto* field : {"1,00.5", "12:30", "x", "1,,000", "1234,5x", "2026.01.31", ""})
+    EXPECT_EQ(imported(grouped(field, "999.5")).bad_lines.size(), 1U) << field;
+}
+
+TEST(Import, TakesFahrenheitInCelsius) {
+  const Imported result =
+      imported("0,1,32\n1,1,212\n", {}, "time=1[s],position=2[mm],heat=3[degF],step=3[degF/s]");
+  EXPECT_NEAR(result.recording.channels[0].values[0], 0.0, 1e-13);
+  EXPECT_NEAR(result.recording.channels[0].values[1], 100.0, 1e-13);
+  EXPECT_EQ(result.recording.channels[0].unit, "°C");
+  EXPECT_NEAR(result.recording.channels[1].values[0], 32.0 / 1.8, 1e-13) << "a difference";
+}
+
 TEST(Import, TakesNoNumberThatGoesOnAsAWord) {
   const Imported result = imported("0 1 2\n1 2x 3\n2 3 4\n");
   EXPECT_THAT(result.recording.time, ElementsAre(0.0, 2.0));
