@@ -11,7 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "files/trimmed.h"
-#include "import/spatial_columns.h"
+#include "import/spatial/spatial_columns.h"
 
 namespace kerf::bench {
 namespace {

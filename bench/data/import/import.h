@@ -12,8 +12,8 @@
 #include "files/named_file.h"
 #include "files/progress.h"
 #include "import/column_map.h"
-#include "import/spatial_axes.h"
-#include "import/spatial_columns.h"
+#include "import/spatial/spatial_axes.h"
+#include "import/spatial/spatial_columns.h"
 #include "import/text_layout.h"
 
 namespace kerf::bench {

@@ -1,4 +1,4 @@
-#include "import/spatial_axes.h"
+#include "import/spatial/spatial_axes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include <kerf/schema/recording.h>
 
 #include "import/column_map.h"
-#include "import/spatial_columns.h"
+#include "import/spatial/spatial_columns.h"
 
 namespace kerf::bench {
 

@@ -1,4 +1,4 @@
-#include "import/spatial_columns.h"
+#include "import/spatial/spatial_columns.h"
 
 #include <algorithm>
 #include <array>
