@@ -18,8 +18,8 @@
 namespace kerf::bench {
 namespace {
 
-constexpr char result = 'r';
-constexpr char refusal = 'x';
+constexpr char result_mark = 'r';
+constexpr char refusal_mark = 'x';
 
 // The address sanitizer keeps terabytes of addresses to itself.
 #if defined(__SANITIZE_ADDRESS__)
@@ -92,9 +92,9 @@ void silence_errors() {
   silence_errors();
   bool is_told = false;
   try {
-    is_told = answer.put(result, work());
+    is_told = answer.put(result_mark, work());
   } catch (const std::invalid_argument& refused) {
-    is_told = answer.put(refusal, refused.what());
+    is_told = answer.put(refusal_mark, refused.what());
   } catch (...) {  // which the parent tells as any other end
     is_told = false;
   }
@@ -118,7 +118,7 @@ std::string run_apart(const UnpackedLimits& limits, const std::function<std::str
         "{}: it is damaged, or needs more memory than it may take: its reader fell over it", limits.name));
   const char kind = text.front();
   text.erase(0, 1);
-  if (kind == refusal) throw std::invalid_argument(text);
+  if (kind == refusal_mark) throw std::invalid_argument(text);
   return text;
 }
 

@@ -24,7 +24,7 @@ const std::string position = "time=t_s,position=x_mm:z_mm,rx=rx[1],ry=ry[1],rz=r
 const std::string wrench = ",Fx=Fx[1],Fy=Fy[1],Fz=Fz[1],Tx=Tx[1],Ty=Ty[1],Tz=Tz[1]";
 
 Imported imported_file(const std::string& map, const SpatialPlaces& places = {}) {
-  return import_text(KERF_SOURCE_DIR "/tests/bench/data/import/spatial.csv",
+  return import_text(KERF_SOURCE_DIR "/tests/bench/data/import/spatial/spatial.csv",
                      {.map = parse_map(map), .places = places});
 }
 
@@ -153,7 +153,7 @@ TEST(SpatialAxes, AreResampledOneByOne) {
       .map = parse_map(position + wrench + ",orientation=qx:qw[quaternion xyzw],force=sfx_N:sfz_N[sensor]"),
       .resample_hz = 48.0};
   const auto recording =
-      import_text(KERF_SOURCE_DIR "/tests/bench/data/import/spatial.csv", options).recording;
+      import_text(KERF_SOURCE_DIR "/tests/bench/data/import/spatial/spatial.csv", options).recording;
   ASSERT_EQ(recording.rows(), 49U);
   ASSERT_EQ(recording.position.size(), 6U * 49U);
   expect_axis(recording, recording.position, 5, "rz", 1e-9);
