@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/file_names.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
@@ -24,14 +25,9 @@ namespace fs = std::filesystem;
 
 /// What names each file apart from the others: its stem, with a number where two have the same.
 std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  NewNames new_names;
   std::vector<std::string> names;
-  for (const std::string& file : files) {
-    const std::string stem = fs::path(file).stem().string();
-    std::string name = stem;
-    for (int i = 2; std::find(names.begin(), names.end(), name) != names.end(); ++i)
-      name = fmt::format("{}-{}", stem, i);
-    names.push_back(name);
-  }
+  for (const std::string& file : files) names.push_back(new_names.take(fs::path(file).stem()).string());
   return names;
 }
 

@@ -8,12 +8,12 @@
 
 #include <fmt/core.h>
 
-#include "clocks/join.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "import/import.h"
 #include "import/import_many.h"
 #include "import/imported_text.h"
+#include "import/join.h"
 #include "imports/import_file.h"
 #include "program/progress.h"
 #include "program/verbs.h"

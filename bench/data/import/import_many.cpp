@@ -1,14 +1,13 @@
 #include "import/import_many.h"
 
 #include <algorithm>
-#include <cctype>
 #include <new>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
+#include "files/file_names.h"
 #include "files/named_file.h"
 #include "import/imported_text.h"
 
@@ -45,30 +44,6 @@ std::vector<fs::path> files_in(const fs::path& folder, const fs::path& output) {
   if (files.empty()) throw std::invalid_argument(fmt::format("{}: a folder without a file", folder.string()));
   std::sort(files.begin(), files.end());
   return files;
-}
-
-/// Names that nobody has yet.
-class NewNames {
- public:
-  fs::path take(const fs::path& wanted) {
-    fs::path name = wanted;
-    for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}-{}", wanted.string(), i);
-    return name;
-  }
-
- private:
-  std::set<fs::path> taken_;
-};
-
-/// A trial as part of a file's name: letters, digits, and what is not ASCII; anything else is an underscore.
-std::string as_file_name(const std::string& trial) {
-  constexpr std::size_t longest = 100;
-  std::string name = trial.substr(0, longest);
-  for (char& c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && std::isalnum(byte) == 0 && c != '-' && c != '.') c = '_';
-  }
-  return name;
 }
 
 /// What is wrong, in one line that begins with the file.

@@ -23,7 +23,7 @@ constexpr std::size_t points = 51;
 constexpr double acceleration_corner_hz = 20.0;
 constexpr double errors_above_zero = 3.0;
 constexpr double most_noise = 0.1;
-constexpr double felt_n = 0.05;
+constexpr double felt_by_default_n = 0.05;
 
 /// Rows of one cycle that move one way, and those of its stroke among them.
 struct BlankRows {
@@ -56,7 +56,7 @@ schema::Recording with_cycles(const schema::Recording& blank, std::size_t axis, 
 /// Sorts the cycles into those that are used and those that are not.
 void choose_blank_cycles(const schema::Recording& blank, std::size_t axis, ToolForce& tool) {
   const schema::Axis& about = blank.axes[axis];
-  const double felt = about.force_unit == "N" ? felt_n : felt_n * about.lever;
+  const double felt = about.force_unit == "N" ? felt_by_default_n : felt_by_default_n * about.lever;
   const Inspection inspection = inspect(schema::RowsInMemory(blank), {.axis = axis, .felt = felt});
   for (const FlaggedCycle& cycle : inspection.cycles.cycles) {
     std::string reasons;

@@ -1,14 +1,13 @@
 #include "drawer/study_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
-#include <set>
 
 #include <fmt/ranges.h>
 
 #include <kerf/fitting/fit.h>
 
+#include "files/file_names.h"
 #include "files/named_file.h"
 #include "fits/fit_recording.h"
 #include "laws/law_toml.h"
@@ -85,7 +84,7 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.path = place.text(table, "path", "");
   const fs::path path(file.path);
   const bool leaves = std::ranges::any_of(path, [](const fs::path& part) { return part == ".."; });
-  if (file.path.empty() || path.is_absolute() || leaves)
+  if (!path.has_filename() || path.filename() == "." || path.is_absolute() || leaves)
     place.refuse(table, "a [[file]] needs a 'path' below the drawer's folder");
   file.sha256 = place.text(table, "sha256", "");
   file.found = place.text(table, "found", "");
@@ -212,20 +211,11 @@ StudyPlan read_study(const fs::path& file) {
 }
 
 std::vector<std::string> recording_names(const StudyPlan& study) {
+  NewNames new_names;
   std::vector<std::string> names;
-  std::set<std::string> taken;
   for (const DrawerFile& file : study.files) {
-    std::string name;
-    if (file.ignored.empty()) {
-      std::string stem = fs::path(file.path).stem().string();
-      for (char& c : stem) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (std::isalnum(byte) == 0 && c != '-' && c != '_') c = '_';
-      }
-      name = stem;
-      for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}-{}", stem, i);
-    }
-    names.push_back(name);
+    const std::string stem = as_file_name(fs::path(file.path).stem().string());
+    names.push_back(file.ignored.empty() ? new_names.take(stem).string() : "");
   }
   return names;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include <boost/math/statistics/univariate_statistics.hpp>
 #include <fmt/ranges.h>
 
 #include <kerf/population/held_out.h>
@@ -30,20 +31,13 @@ const StudiedLaw* law_of(const DrawerRecording& recording, const std::string& mo
 /// Mean over the good cycles, with its standard error where there are two.
 std::optional<Estimate> over_cycles(const DrawerRecording& recording, double StudiedCycle::*quantity,
                                     bool all_cycles) {
-  double sum = 0.0;
-  double squares = 0.0;
-  double count = 0.0;
-  for (const StudiedCycle& cycle : recording.result.cycles) {
-    if (!cycle.is_good && !all_cycles) continue;
-    sum += cycle.*quantity;
-    squares += cycle.*quantity * (cycle.*quantity);
-    count += 1.0;
-  }
-  if (count == 0.0) return std::nullopt;
-  Estimate estimate{.value = sum / count, .standard_error = {}, .specimen = specimen_of(recording)};
-  if (count > 1.0) {
-    const double variance = std::max(0.0, squares - count * estimate.value * estimate.value) / (count - 1.0);
-    estimate.standard_error = std::sqrt(variance / count);
+  const std::vector<double> values = of_cycles(recording.result, quantity, all_cycles);
+  if (values.empty()) return std::nullopt;
+  Estimate estimate{.value = values.front(), .standard_error = {}, .specimen = specimen_of(recording)};
+  if (values.size() > 1) {
+    const auto [mean, variance] = boost::math::statistics::mean_and_sample_variance(values);
+    estimate.value = mean;
+    estimate.standard_error = std::sqrt(variance / static_cast<double>(values.size()));
   }
   return estimate;
 }

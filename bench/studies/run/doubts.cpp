@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <string_view>
 
@@ -137,14 +138,9 @@ void doubt_closing(std::vector<DrawerRecording>& recordings) {
 }
 
 double mean_peak(const StudiedRecording& result) {
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (const StudiedCycle& cycle : result.cycles) {
-    if (!cycle.is_good) continue;
-    sum += cycle.peak;
-    ++count;
-  }
-  return count > 0 ? sum / static_cast<double>(count) : result.peak;
+  const std::vector<double> peaks = of_cycles(result, &StudiedCycle::peak);
+  if (peaks.empty()) return result.peak;
+  return std::accumulate(peaks.begin(), peaks.end(), 0.0) / static_cast<double>(peaks.size());
 }
 
 void hold_to_blanks(std::vector<DrawerRecording>& recordings) {

@@ -77,17 +77,10 @@ GroupSources sources_of_group(const StudyPlan& plan, const std::vector<DrawerRec
 }
 
 /// Root mean square error of a law as a loop renders it, over the rows that count.
-double rendered_error(const models::Law& law, const AxisSeries& series, double rate_hz) {
+double rendered_error(const models::Law& law, AxisSeries series, double rate_hz) {
   const std::vector<double> force = RenderedSeries(series, rate_hz).force(law);
-  double squares = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (!series.counts.empty() && series.counts[i] == 0) continue;
-    const double error = force[i] - series.force[i];
-    squares += error * error;
-    count += 1.0;
-  }
-  return std::sqrt(squares / count);
+  for (std::size_t i = 0; i < force.size(); ++i) series.force[i] -= force[i];
+  return fitting::rms_of(fitted_view(series));
 }
 
 std::vector<ErrorOnOthers> errors_of_fold(const GroupSources& all, const Fold& fold,
@@ -145,13 +138,19 @@ std::vector<ErrorOnOthers> kept_errors(const fs::path& file, const std::string& 
 
 }  // namespace
 
+fs::path kept_errors_file(const std::vector<DrawerRecording>& recordings,
+                          const std::vector<std::size_t>& group, const StudyPlan& plan,
+                          const fs::path& folder) {
+  return folder / "held_out" / (key_of_group(plan, recordings, group).substr(0, 16) + ".json");
+}
+
 std::vector<ErrorOnOthers> errors_on_others(const StudyPlan& plan,
                                             const std::vector<DrawerRecording>& recordings,
                                             const std::vector<std::size_t>& group, const fs::path& folder,
                                             std::size_t threads, const std::atomic<bool>& stop) {
   if (group.size() < 2) return {};
   const std::string key = key_of_group(plan, recordings, group);
-  const fs::path file = folder / "held_out" / (key.substr(0, 16) + ".json");
+  const fs::path file = kept_errors_file(recordings, group, plan, folder);
   std::vector<ErrorOnOthers> errors = kept_errors(file, key);
   if (!errors.empty()) return errors;
   const GroupSources all = sources_of_group(plan, recordings, group, folder);

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <new>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -154,7 +155,18 @@ void take_kept(std::vector<DrawerRecording>& recordings, const fs::path& folder)
   }
 }
 
+/// What was kept of groups that are no more.
+void remove_unused(const StudyResults& results, const fs::path& folder) {
+  std::set<fs::path> used;
+  for (const StudiedGroup& group : results.groups)
+    used.insert(kept_errors_file(results.recordings, group.counted, results.plan, folder));
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder / "held_out", none))
+    if (!used.contains(entry.path())) fs::remove(entry.path(), none);
+}
+
 void write_results(const StudyResults& results, const fs::path& folder) {
+  remove_unused(results, folder);
   const fs::path tables = folder / "tables";
   {
     WholeFolder whole(tables, schema::Existing::replace);

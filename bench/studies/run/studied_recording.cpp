@@ -76,6 +76,14 @@ StudiedCycle studied_cycle(const json& from) {
 
 }  // namespace
 
+std::vector<double> of_cycles(const StudiedRecording& recording, double StudiedCycle::*quantity,
+                              bool all_cycles) {
+  std::vector<double> values;
+  for (const StudiedCycle& cycle : recording.cycles)
+    if (cycle.is_good || all_cycles) values.push_back(cycle.*quantity);
+  return values;
+}
+
 json as_json(const StudiedRecording& recording) {
   json all{{"key", recording.key}, {"failure", recording.failure}};
   if (!recording.failure.empty()) return all;

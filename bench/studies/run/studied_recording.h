@@ -68,6 +68,10 @@ struct StudiedRecording {
   std::string not_fitted;  ///< why no law was; a blank, or no force that is felt
 };
 
+/// What good cycles (or all) have of a quantity, in their order.
+[[nodiscard]] std::vector<double> of_cycles(const StudiedRecording& recording, double StudiedCycle::*quantity,
+                                            bool all_cycles = false);
+
 [[nodiscard]] nlohmann::ordered_json as_json(const StudiedRecording& recording);
 /// @throws nlohmann::json::exception for what as_json() did not write.
 [[nodiscard]] StudiedRecording studied_recording(const nlohmann::ordered_json& json);

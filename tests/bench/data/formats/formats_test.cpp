@@ -324,15 +324,15 @@ TEST_F(BadFile, OfAnotherKindIsNamed) {
 
 constexpr auto lvm_head =
     "LabVIEW "
-    "Measurement\t\r\nWriter_Version\t2\r\nSeparator\tTab\r\nDecimal_Separator\t.\r\nX_Columns\tXXX\r\n"
+    "Measurement\t\r\nWriter_Version\t2\r\nSeparator\tTab\r\nDecimal_Separator\t.\r\nX_Columns\tCOLUMNS\r\n"
     "***End_of_Header***\t\r\n\t\r\nChannels\t2\t\t\r\nSamples\t3\t3\t\r\nDate\t2026/01/31\t2026/01/31\t\r\n"
     "Time\t12:00:00.25\t12:00:00.25\t\r\nY_Unit_Label\tmm\tN\t\r\nX_Dimension\tTime\tTime\t\r\n"
-    "X0\t0.5\t0.5\t\r\nDelta_X\t0.001000\tYYY\t\r\n***End_of_Header***\t\t\t\r\n";
+    "X0\t0.5\t0.5\t\r\nDelta_X\t0.001000\tSTEP\t\r\n***End_of_Header***\t\t\t\r\n";
 
 std::string lvm(const std::string& columns, const std::string& step, const std::string& rows) {
   std::string text = lvm_head;
-  text.replace(text.find("XXX"), 3, columns);
-  text.replace(text.find("YYY"), 3, step);
+  text.replace(text.find("COLUMNS"), 7, columns);
+  text.replace(text.find("STEP"), 4, step);
   return text + "X_Value\tWay\tLoad\tComment\r\n" + rows;
 }
 

@@ -84,6 +84,7 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("cycles = \"good\"", "cycles = \"fine\""), HasSubstr("fine"));
   EXPECT_THAT(with("closing = \"increasing\"", "closing = \"up\""), HasSubstr("\"up\""));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"../picture.png\""), HasSubstr("below the drawer"));
+  EXPECT_THAT(with("path = \"picture.png\"", "path = \"pictures/\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
   EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
 }

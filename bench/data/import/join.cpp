@@ -1,4 +1,4 @@
-#include "clocks/join.h"
+#include "import/join.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 bool names(const std::vector<MapEntry>& map, const std::string& channel) {
   return std::ranges::find(map, channel, &MapEntry::channel) != map.end();
@@ -41,6 +41,14 @@ std::string unit_of(const schema::Recording& recording, const std::string& chann
   if (channel.starts_with("force_")) return axis.force_unit;
   const auto found = std::ranges::find(recording.channels, channel, &schema::Channel::name);
   return found == recording.channels.end() ? "" : found->unit;
+}
+
+/// @throws std::invalid_argument for a recording in space, whose values lie six in a row.
+void require_one_axis(const Imported& imported, const std::string& name) {
+  if (imported.spatial)
+    throw std::invalid_argument(fmt::format(
+        "{}: --join brings two files of one axis together, not axes in space; join first, or import apart",
+        name));
 }
 
 /// A recording has a position, which a file of forces need not have: any of its columns stands for one until
@@ -112,7 +120,7 @@ class Resampler {
     std::vector<double> result =
         corner_hz_ > 0.0 && is_whole ? smoothed(values) : interpolate(from_, values, times_);
     for (std::size_t row = 0; row < result.size(); ++row)
-      if (!is_covered(times_[row])) result[row] = missing;
+      if (!is_covered(times_[row])) result[row] = no_value;
     return result;
   }
 
@@ -173,7 +181,9 @@ Joined join(Imported& imported, const JoinOptions& join_options, const ImportOpt
   if (on.empty())
     throw std::invalid_argument(
         "--join-on is needed: a channel that both maps name and both files measured, or time for one clock");
+  require_one_axis(imported, "--map");
   Imported other = read_other(join_options, options);
+  require_one_axis(other, file);
   schema::Recording& recording = imported.recording;
   Joined joined{.file = file, .on = on, .is_one_clock = on == "time", .warnings = other.warnings};
   if (joined.is_one_clock) {

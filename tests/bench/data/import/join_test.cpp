@@ -1,4 +1,4 @@
-#include "clocks/join.h"
+#include "import/join.h"
 
 #include <cmath>
 #include <cstdint>
@@ -174,6 +174,15 @@ TEST_F(JoinProgram, TakesStampsOfOneClock) {
   const auto refused = stamped();
   EXPECT_EQ(refused.exit_status, 2);
   EXPECT_THAT(refused.errors, HasSubstr("expected times of one clock"));
+}
+
+TEST(Join, RefusesAxesInSpace) {
+  ImportOptions options;
+  options.rate_hz = 100.0;
+  Imported imported;
+  imported.spatial.emplace();
+  EXPECT_THAT([&] { (void)join(imported, {.file = "forces.csv", .map = {}, .on = "position"}, options); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("axes in space")));
 }
 
 TEST_F(JoinProgram, RefusesWhatMakesNoSense) {

@@ -1,0 +1,33 @@
+#include "files/file_names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstddef>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+
+std::string as_file_name(const std::string& text) {
+  constexpr std::size_t longest = 100;
+  std::size_t size = std::min(text.size(), longest);
+  const auto continues = [&](std::size_t i) {
+    return (static_cast<unsigned char>(text[i]) & 0xC0U) == 0x80U;
+  };
+  while (size > 0 && size < text.size() && continues(size)) --size;  // not within a character of UTF-8
+  std::string name = text.substr(0, size);
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte) == 0 && c != '-' && c != '.') c = '_';
+  }
+  if (name.starts_with('.')) name.front() = '_';
+  return name;
+}
+
+std::filesystem::path NewNames::take(const std::filesystem::path& wanted) {
+  std::filesystem::path name = wanted;
+  for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}-{}", wanted.string(), i);
+  return name;
+}
+
+}  // namespace kerf::bench
