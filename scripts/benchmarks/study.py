@@ -51,25 +51,18 @@ def drawer(folder, seed):
                 rates.append(rate)
     k1, k2, b = numpy.array(parameters).T
     rates = numpy.array(rates)
-    fine = 20  # steps a row, so that the simulation's own error is far below a standard error
-    step = 1.0 / (RATE * fine)
-    arm = numpy.zeros(len(names))
-    decay = numpy.exp(-k2 / b * step)
     rows = int(SECONDS * RATE)
-    force = numpy.zeros((rows, len(names)))
-    position = numpy.zeros((rows, len(names)))
-    for i in range(rows * fine):
-        time = i * step
-        if i % fine == 0:
-            position[i // fine] = 0.5 * DEPTH * (1.0 - numpy.cos(2.0 * math.pi * rates * time))
-            force[i // fine] = k1 * position[i // fine] + arm
-        speed = math.pi * DEPTH * rates * numpy.sin(2.0 * math.pi * rates * (time + 0.5 * step))
-        arm = arm * decay + b * speed * (1.0 - decay)
+    time = numpy.arange(rows) / RATE
+    # The arm's force f of x = D/2 (1 - cos wt) solves f' = k2 x' - (k2 / b) f, f(0) = 0.
+    omega, a, phase = 2.0 * math.pi * rates, k2 / b, 2.0 * math.pi * time[:, None] * rates
+    position = 0.5 * DEPTH * (1.0 - numpy.cos(phase))
+    arm = (0.5 * k2 * DEPTH * omega / (a**2 + omega**2)
+           * (a * numpy.sin(phase) + omega * (numpy.exp(-a * time[:, None]) - numpy.cos(phase))))
+    force = k1 * position + arm
     force = numpy.maximum(force, 0.0) + random.normal(0.0, NOISE, force.shape)
     clipped, gram, two_clocks = random.choice(len(names), 3, replace=False)
     force[:, clipped] = numpy.minimum(force[:, clipped], 0.9 * force[:, clipped].max())
     force[:, gram] /= 9.80665e-3
-    time = numpy.arange(rows) / RATE
     for at, name in enumerate(names):
         clock = numpy.where(time < SECONDS / 2, time, time - SECONDS / 2) if at == two_clocks else time
         table = numpy.column_stack([clock, 1e3 * position[:, at], force[:, at]])
@@ -95,7 +88,8 @@ def one_seed(arguments):
         counts["unit found"] += any("gf taken for N" in doubt for doubt in recordings[wrong["gram"]]["doubts"])
         counts["clock found"] += "anew" in (recordings[wrong["two clocks"]]["failure"] or "")
         counts["clipping found"] += any("clipped" in line for line in recordings[wrong["clipped"]]["warnings"])
-        counts["wrongly doubted"] += sum(bool(one["doubts"]) for name, one in recordings.items() if name != wrong["gram"])
+        counts["wrongly doubted"] += sum(bool(one["doubts"]) for name, one in recordings.items()
+                                         if name not in wrong.values())
         together = math.hypot(BETWEEN, WITHIN)
         for group in found["groups"]:
             for quantity in group["quantities"]:
