@@ -13,19 +13,9 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t most_levels = std::size_t{1} << 18U;
-constexpr std::uint64_t kept_in_memory = 1'000'000;
 constexpr double stands_out = 8.0;  // times the noise
 constexpr double worth_a_word = 0.01;
 constexpr double beyond_a_step = 2.5;
-
-/// The same number either way; a few rows are sorted sooner than counted.
-template <typename ForEach>
-double median_of(const ForEach& for_each, std::uint64_t most) {
-  if (most > kept_in_memory) return StreamedMedian::of(for_each);
-  std::vector<double> values;
-  for_each([&](double value) { values.push_back(value); });
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : median(std::move(values));
-}
 
 /// The median of sizes that were rounded to steps: within the step that it lies in by the share of the rows.
 template <typename ForEach>
@@ -99,7 +89,7 @@ std::optional<double> noise_of(const BlockedValues& values, std::optional<double
     each_second_difference(
         values, [&](std::size_t row) { return in_spans(row) == which.inside; }, look_at);
   };
-  double middle = median_of(each, values.size());
+  double middle = StreamedMedian::of(each);
   if (std::isnan(middle)) return std::nullopt;
   if (quantum) middle = median_within_step(each, middle, *quantum);
   return std::max(noise_of_second_differences(middle), quantum.value_or(0.0) / std::sqrt(12.0));

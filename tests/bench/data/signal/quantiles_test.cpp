@@ -19,7 +19,7 @@ TEST(Median, IsTheMiddleValueOrTheMeanOfTwo) {
 
 TEST(StreamedMedian, IsThatOfTheValuesKept) {
   std::mt19937_64 random(3);
-  for (const std::size_t count : {1U, 2U, 3U, 10U, 999U, 1000U}) {
+  for (const std::size_t count : {1U, 2U, 3U, 10U, 999U, 1000U, 131072U, 131073U, 131074U}) {
     for (const double spread : {0.0, 1e-18, 1e-3, 1e300}) {
       std::normal_distribution<double> normal(1e-3, 1.0);
       std::vector<double> values;
