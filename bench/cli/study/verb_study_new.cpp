@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 struct StudyNewArguments {
   std::string drawer;
   std::string output;
-  std::string map;
+  std::vector<std::string> maps;
   std::vector<std::string> laws;
   bool force = false;
 };
@@ -37,6 +37,22 @@ fs::path study_folder(const StudyNewArguments& arguments) {
     throw std::invalid_argument(
         fmt::format("{}: it lies in the drawer; name a folder outside of it with -o", folder.string()));
   return folder;
+}
+
+/// A path that study.toml names, from its folder.
+std::string from_study(const fs::path& path, const fs::path& folder) {
+  return fs::weakly_canonical(path).lexically_relative(fs::weakly_canonical(folder)).generic_string();
+}
+
+/// Maps as study.toml is to name them.
+std::vector<OfferedMap> offered_maps(const StudyNewArguments& arguments, const fs::path& folder) {
+  std::vector<OfferedMap> offered;
+  for (const std::string& map : arguments.maps) {
+    OfferedMap one{.name = map, .import = {.map = map, .options = {}}};
+    if (names_import_file(map)) one = {.name = from_study(map, folder), .import = read_import_file(map)};
+    offered.push_back(std::move(one));
+  }
+  return offered;
 }
 
 void say_drawer(const StudyPlan& plan, Context& context) {
@@ -67,16 +83,17 @@ nlohmann::ordered_json drawer_as_json(const StudyPlan& plan, const fs::path& fil
 
 void run_study_new(const StudyNewArguments& arguments, Context& context) {
   StudyPlan plan;
-  plan.files = look_into(arguments.drawer, arguments.map);  // says if there is no such drawer
   const fs::path folder = study_folder(arguments);
+  const std::vector<OfferedMap> maps = offered_maps(arguments, folder);
+  plan.files = look_into(arguments.drawer, maps);  // says if there is no such drawer
   const fs::path file = folder / "study.toml";
   require_output(file, arguments.force);
-  plan.map = arguments.map;
+  if (!maps.empty()) plan.map = maps.front().name;
   plan.laws = arguments.laws.empty() ? laws_to_begin_with() : arguments.laws;
   for (const std::string& law : plan.laws) fitting::check_model(law);
   plan.compare = {"peak"};
   fs::create_directories(folder);
-  plan.folder = fs::weakly_canonical(arguments.drawer).lexically_relative(fs::weakly_canonical(folder));
+  plan.folder = from_study(arguments.drawer, folder);
   write_whole_file(file, study_text(plan), schema::existing_if(arguments.force));
   context.result = drawer_as_json(plan, file);
   say_drawer(plan, context);
@@ -93,7 +110,8 @@ void add_study_new(CLI::App& study, Context& context) {
   auto arguments = std::make_shared<StudyNewArguments>();
   Verb verb =
       add_verb(study, context, "new", "Look into a folder of files and write a study.toml to correct",
-               "kerf study new drawer --map 'time=1[s],position=2[mm],force=3[N]' -o S\n\n"
+               "kerf study new drawer --map 'time=1[s],position=2[mm],force=3[N]' -o S\n"
+               "  kerf study new drawer --map new.import.toml --map old.import.toml -o S\n\n"
                "Words of names and folders are taken for tissue, speed, specimen (s3, donor2) and blanks. "
                "Nothing in\nthe folder is changed.",
                [arguments, &context] { run_study_new(*arguments, context); });
@@ -102,7 +120,10 @@ void add_study_new(CLI::App& study, Context& context) {
       .required();
   verb.add_option("-o,--output", arguments->output,
                   "Folder of the study, outside of the drawer (default: NAME-study where one stands)");
-  verb.add_option("--map", arguments->map, "Columns of text files, as 'kerf import --map' has them");
+  verb.add_option("--map", arguments->maps,
+                  "Columns of text files, as 'kerf import --map' has them, or FILE.toml that says it; may be "
+                  "repeated: a file that does not fit the first one has the next that it fits")
+      .one_value_each();
   verb.add_option("--laws", arguments->laws,
                   "Laws to be fitted, separated by commas (default: the usual ones that are fast)")
       .separated_by(',')

@@ -49,22 +49,39 @@ std::string map_of_headings(const TextLayout& layout, const std::string& name) {
 }
 
 /// @throws std::invalid_argument for what is no text of numbers, or does not fit the map.
-void look_at_text(const fs::path& path, const std::string& map, DrawerFile& file) {
-  const FileText text(path, {.max_bytes = largest_drawer_file});
+void look_at_text(const fs::path& path, const OfferedMap* map, DrawerFile& file) {
+  const std::string sheet = map == nullptr ? "" : map->import.options.sheet;
+  const FileText text(path, {.max_bytes = largest_drawer_file, .sheet = sheet});
   const TextLayout layout = find_layout(text.text(), file.path);
   file.found =
       fmt::format("{} columns separated by {}", layout.columns.size(), separator_name(layout.separator));
   if (layout.header_line == 0) {
-    file.found += map.empty() ? ", no header: unknown columns" : ", no header";
+    file.found += map == nullptr ? ", no header: unknown columns" : ", no header";
   } else {
     file.found += ":";
     for (const TextColumn& column : layout.columns) file.found += " [" + column.heading + "]";
   }
-  if (map.empty()) {
+  if (map == nullptr) {
     file.map = map_of_headings(layout, file.path);
   } else {
-    (void)match_columns(parse_map(map), layout, file.path);
+    (void)match_columns(parse_map(map->import.map), layout, file.path);
   }
+}
+
+/// By the first of the maps that it fits. @throws as for the first of them, if it fits none.
+void look_at_text(const fs::path& path, const std::vector<OfferedMap>& maps, DrawerFile& file) {
+  if (maps.empty()) return look_at_text(path, nullptr, file);
+  std::string first_reason;
+  for (const OfferedMap& map : maps) {
+    try {
+      look_at_text(path, &map, file);
+      if (&map != &maps.front()) file.map = map.name;
+      return;
+    } catch (const std::invalid_argument& error) {
+      if (first_reason.empty()) first_reason = error.what();
+    }
+  }
+  throw std::invalid_argument(first_reason);
 }
 
 /// A message without the name that it begins with, which stands beside it.
@@ -72,20 +89,16 @@ std::string without_name(const std::string& message, const std::string& name) {
   return message.starts_with(name + ": ") ? message.substr(name.size() + 2) : message;
 }
 
-void look_at(const fs::path& path, const std::string& map, DrawerFile& file) {
-  const std::uintmax_t bytes = fs::file_size(path);
-  if (bytes == 0) throw std::invalid_argument("it is empty");
-  if (bytes > largest_drawer_file) {
-    throw std::invalid_argument(fmt::format("{:.1f} GB: a file of a study holds {} MB at most",
-                                            1e-9 * static_cast<double>(bytes), largest_drawer_file >> 20U));
-  }
+void look_at(const fs::path& path, const std::vector<OfferedMap>& maps, DrawerFile& file) {
+  if (fs::file_size(path) == 0) throw std::invalid_argument("it is empty");
+  require_drawer_size(path);
   file.sha256 = sha256_of(path);
-  if (path.extension() != ".h5") return look_at_text(path, map, file);
+  if (path.extension() != ".h5") return look_at_text(path, maps, file);
   const schema::RecordingFile rows(path);
   file.found = fmt::format("recording of {} rows", rows.rows());
 }
 
-DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::string& map) {
+DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::vector<OfferedMap>& maps) {
   DrawerFile file;
   const std::string name = path.lexically_relative(folder).generic_string();
   file.path = to_utf8(name);
@@ -93,7 +106,7 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::st
     if (file.path != name) throw std::invalid_argument("its name is not UTF-8");
     if (fs::is_directory(path)) throw std::invalid_argument("a link to a folder, which is not followed");
     if (!fs::is_regular_file(path)) throw std::invalid_argument("it is no file, or a link to none");
-    look_at(path, map, file);
+    look_at(path, maps, file);
     const NameFactors factors = name_factors(file.path);
     file.tissue = factors.tissue;
     file.speed = factors.speed;
@@ -118,9 +131,9 @@ void ignore_copies(std::vector<DrawerFile>& files) {
 
 }  // namespace
 
-std::vector<DrawerFile> look_into(const fs::path& folder, const std::string& map) {
+std::vector<DrawerFile> look_into(const fs::path& folder, const std::vector<OfferedMap>& maps) {
   require_named_folder(folder);
-  if (!map.empty()) (void)parse_map(map);
+  for (const OfferedMap& map : maps) (void)parse_map(map.import.map);
   std::vector<fs::path> paths;
   for (const auto& entry :
        fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
@@ -128,7 +141,7 @@ std::vector<DrawerFile> look_into(const fs::path& folder, const std::string& map
   }
   std::ranges::sort(paths);
   std::vector<DrawerFile> files;
-  for (const fs::path& path : paths) files.push_back(looked_at(path, folder, map));
+  for (const fs::path& path : paths) files.push_back(looked_at(path, folder, maps));
   ignore_copies(files);
   return files;
 }

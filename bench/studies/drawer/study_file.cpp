@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <stdexcept>
+#include <utility>
 
-#include <fmt/ranges.h>
+#include <fmt/core.h>
+#include <fnmatch.h>
 
 #include <kerf/fitting/fit.h>
 
@@ -16,52 +19,6 @@ namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string toml_quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (byte < 0x20 || byte == 0x7f) {
-      quoted += fmt::format("\\u{:04x}", byte);
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + '"';
-}
-
-std::string toml_list(const std::vector<std::string>& texts) {
-  std::vector<std::string> quoted;
-  for (const std::string& text : texts) quoted.push_back(toml_quoted(text));
-  return fmt::format("[{}]", fmt::join(quoted, ", "));
-}
-
-std::string file_text(const DrawerFile& file) {
-  std::string text = "\n[[file]]\n";
-  const auto add = [&](const char* key, const std::string& value) {
-    text += fmt::format("{} = {}\n", key, toml_quoted(value));
-  };
-  add("path", file.path);
-  if (!file.sha256.empty()) add("sha256", file.sha256);
-  if (!file.found.empty()) add("found", file.found);
-  if (!file.ignored.empty()) {
-    add("ignored", file.ignored);
-    return text;
-  }
-  if (!file.map.empty()) add("map", file.map);
-  if (!file.sheet.empty()) add("sheet", file.sheet);
-  if (file.stretch > 0) text += fmt::format("stretch = {}\n", file.stretch);
-  add("tissue", file.tissue);
-  add("speed", file.speed);
-  add("specimen", file.specimen);
-  text += fmt::format("blank = {}\n", file.blank);
-  if (!file.accepted.empty()) add("accepted", file.accepted);
-  if (!file.numbers.empty()) add("numbers", file.numbers);
-  return text;
-}
 
 std::vector<std::string> texts_of(const Place& place, const toml::table& root, std::string_view key) {
   std::vector<std::string> texts;
@@ -118,6 +75,21 @@ void read_files(const Place& place, const toml::table& root, StudyPlan& study) {
   }
 }
 
+void read_layouts(const Place& place, const toml::table& root, StudyPlan& study) {
+  const toml::node* const layouts = root.get("layout");
+  if (layouts == nullptr) return;
+  if (!layouts->is_array()) place.refuse(*layouts, "expected [[layout]] for files of other columns");
+  for (const auto& node : *layouts->as_array()) {
+    if (!node.is_table()) place.refuse(node, "expected [[layout]] for files of other columns");
+    const toml::table& table = *node.as_table();
+    place.allow_only(table, {"files", "map"}, "[[layout]]");
+    StudyLayout layout{.files = place.text(table, "files", ""), .map = place.text(table, "map", "")};
+    if (layout.files.empty() || layout.map.empty())
+      place.refuse(node, "a [[layout]] needs 'files', such as \"rig2/*.csv\", and their 'map'");
+    study.layouts.push_back(std::move(layout));
+  }
+}
+
 void read_laws(const Place& place, const toml::table& root, StudyPlan& study) {
   study.laws = texts_of(place, root, "laws");
   if (study.laws.empty()) place.refuse(root, "a study needs 'laws', such as laws = [\"kelvin\"]");
@@ -153,42 +125,16 @@ std::vector<std::string> laws_to_begin_with() {
   return laws;
 }
 
-std::string study_text(const StudyPlan& study) {
-  std::string text = fmt::format(
-      "# A study by Kerf: what lies in a drawer of files, for a person to look through and correct.\n"
-      "# Then 'kerf study run' with this file. docs/studies.md has the format.\n"
-      "version = {}\n\n"
-      "# The drawer, from the folder of this file.\nfolder = {}\n\n"
-      "# Columns of text files, as 'kerf import --map' has them; \"\" is unknown. A file may have a map of "
-      "its own.\n"
-      "map = {}\n\n"
-      "# Laws to be fitted; 'kerf laws' lists them.\nlaws = {}\n\n"
-      "# \"good\": cycles that 'kerf inspect' flags do not count. \"all\": they do.\ncycles = \"{}\"\n\n"
-      "# \"increasing\" or \"decreasing\": which way the tool closes; \"\": the way that costs more work.\n"
-      "closing = {}\n\n"
-      "# What tissues and speeds are compared by: \"peak\" and \"work\" of a closing, or \"LAW.PARAMETER\". "
-      "All\n# comparisons are corrected for each other, so that fewer tell more.\ncompare = {}\n\n"
-      "# Who may use the data (a URL), and whose they are; nothing is assumed.\nlicence = {}\npeople = {}\n\n"
-      "# Every file. Names and folders suggest tissue, speed and specimen: put right what is wrong. A blank "
-      "is the tool\n"
-      "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
-      "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\".\n",
-      StudyPlan::version, toml_quoted(study.folder.generic_string()), toml_quoted(study.map),
-      toml_list(study.laws), study.all_cycles ? "all" : "good", toml_quoted(study.closing),
-      toml_list(study.compare), toml_quoted(study.licence), toml_list(study.people));
-  for (const DrawerFile& file : study.files) text += file_text(file);
-  return text;
-}
-
 StudyPlan read_study(const fs::path& file) {
   const toml::table root = parse_toml(read_named_file(file), file.string());
   const Place place(file.string());
   const toml::node* const version = root.get("version");
   if (version == nullptr || version->value<int>() != StudyPlan::version)
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
-  place.allow_only(
-      root, {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people", "file"},
-      "a study");
+  place.allow_only(root,
+                   {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
+                    "file", "layout"},
+                   "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");
   if (folder.empty()) place.refuse(root, "a study needs 'folder', where its files lie");
@@ -206,8 +152,32 @@ StudyPlan read_study(const fs::path& file) {
   study.people = texts_of(place, root, "people");
   read_laws(place, root, study);
   read_compare(place, root, study);
+  read_layouts(place, root, study);
   read_files(place, root, study);
   return study;
+}
+
+void require_drawer_size(const fs::path& file) {
+  const std::uintmax_t bytes = fs::file_size(file);
+  if (bytes > largest_drawer_file)
+    throw std::invalid_argument(fmt::format("{:.1f} GB: a file of a study holds {} MB at most",
+                                            1e-9 * static_cast<double>(bytes), largest_drawer_file >> 20U));
+}
+
+const std::string& StudyPlan::map_of(const DrawerFile& file) const {
+  if (!file.map.empty()) return file.map;
+  const auto layout = std::ranges::find_if(layouts, [&](const StudyLayout& one) {
+    return ::fnmatch(one.files.c_str(), file.path.c_str(), 0) == 0;
+  });
+  return layout == layouts.end() ? map : layout->map;
+}
+
+std::vector<std::string> StudyPlan::named_maps() const {
+  std::vector<std::string> maps{map};
+  for (const StudyLayout& layout : layouts) maps.push_back(layout.map);
+  for (const DrawerFile& file : files) maps.push_back(file.map);
+  std::erase(maps, "");
+  return maps;
 }
 
 std::vector<std::string> recording_names(const StudyPlan& study) {

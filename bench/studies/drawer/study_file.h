@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@ struct DrawerFile {
   std::string sha256;       ///< when the drawer was looked at; empty: too large to be read
   std::string found;        ///< what it holds, in words
   std::string ignored;      ///< why it takes no part; empty: it does
-  std::string map;          ///< of its own; empty: that of the study
+  std::string map;          ///< of its own, or an import file; empty: that of its layout or of the study
   std::string sheet{};      ///< of a workbook; empty: the first with numbers
   std::size_t stretch = 0;  ///< of a clock that starts anew, from 1; 0: it does not
   std::string tissue;
@@ -24,12 +25,25 @@ struct DrawerFile {
   std::string numbers;   ///< numbers and time stamps of its name, which are no factor
 };
 
+/// A text of more is no recording of a study but a log [bytes].
+inline constexpr std::uintmax_t largest_drawer_file = std::uintmax_t{512} << 20U;
+
+/// @throws std::invalid_argument for a file beyond it.
+void require_drawer_size(const std::filesystem::path& file);
+
+/// Files of a drawer whose columns are alike.
+struct StudyLayout {
+  std::string files;  ///< pattern of their paths: "rig2/*.csv"; '*' stands for folders too
+  std::string map;    ///< as `kerf import --map`, or an import file from the study's folder
+};
+
 /// What `kerf study run` goes by: a drawer of files, looked at and corrected by a person.
 struct StudyPlan {
   static constexpr int version = 1;
 
   std::filesystem::path folder;  ///< the drawer; in the file relative to the study's folder
-  std::string map;               ///< of text files, as `kerf import --map`; empty: unknown
+  std::string map;               ///< of text files, or an import file from the study's folder; empty: unknown
+  std::vector<StudyLayout> layouts{};
   std::vector<std::string> laws;
   bool all_cycles = false;  ///< flagged cycles count too
   std::string closing;      ///< "increasing" or "decreasing"; empty: the direction that costs more work
@@ -37,6 +51,11 @@ struct StudyPlan {
   std::string licence;               ///< of the data, a URL or a name; empty: none was given
   std::vector<std::string> people;
   std::vector<DrawerFile> files;
+
+  /// The map of a file: its own, else that of the first layout that it fits, else the study's.
+  [[nodiscard]] const std::string& map_of(const DrawerFile& file) const;
+  /// Every map that is named, in the order of the file; some more than once.
+  [[nodiscard]] std::vector<std::string> named_maps() const;
 };
 
 /// Laws to begin with: the usual ones but those of which a fit takes one more arm while held-out data pay for

@@ -56,6 +56,12 @@ std::vector<std::string> files_of(const fs::path& folder) {
   return files;
 }
 
+/// Copies of what lay elsewhere, study.toml, and import files that lie beside it.
+bool is_input(const std::string& name) {
+  return name.starts_with("inputs/") || name.starts_with("imports/") ||
+         (name.find('/') == std::string::npos && name.ends_with(".toml"));
+}
+
 json file_entity(const fs::path& folder, const std::string& name) {
   json entity{{"@id", url_of(name)},
               {"@type", "File"},
@@ -64,6 +70,7 @@ json file_entity(const fs::path& folder, const std::string& name) {
               {"contentSize", fmt::format("{}", fs::file_size(folder / name))},
               {"sha256", sha256_of(folder / name)}};
   if (name == "study.toml") entity["description"] = "What the study goes by: files, columns, factors, laws";
+  if (name.starts_with("imports/")) entity["description"] = "Columns of text files, as an import takes them";
   if (name == "report.html") entity["description"] = "Report of the study";
   if (name == "tables/data_dictionary.csv") entity["description"] = "What each column of each table is";
   return entity;
@@ -92,7 +99,7 @@ json study_crate(const StudyResults& results, const fs::path& folder) {
   json made = json::array();
   for (const std::string& name : files) {
     parts.push_back(reference(url_of(name)));
-    (name.starts_with("inputs/") || name == "study.toml" ? inputs : made).push_back(reference(url_of(name)));
+    (is_input(name) ? inputs : made).push_back(reference(url_of(name)));
   }
   json people = json::array();
   for (std::size_t i = 0; i < results.plan.people.size(); ++i)

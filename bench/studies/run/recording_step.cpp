@@ -34,20 +34,11 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* first_result = "1";  // of what result.json holds: a number more makes all anew
 
-const std::string& map_of(const RecordingStep& step) {
-  return step.file->map.empty() ? step.plan->map : step.file->map;
-}
-
 schema::Recording imported_or_read(const RecordingStep& step, StudiedRecording& result) {
   if (step.source.extension() == ".h5") return read_whole_recording(step.source);
-  const std::string& map = map_of(step);
-  if (map.empty()) throw std::invalid_argument("its columns are unknown: give it, or the study, a map");
-  ImportOptions options;
-  options.map = parse_map(map);
-  options.sheet = step.file->sheet;
-  options.stretch = step.file->stretch;
-  options.max_bytes = std::size_t{512} << 20U;
-  Imported imported = import_text(step.source, options);
+  if (step.import.map.empty())
+    throw std::invalid_argument("its columns are unknown: give it, or the study, a map");
+  Imported imported = import_text(step.source, step.import.options);
   result.warnings = std::move(imported.warnings);
   return std::move(imported.recording);
 }
@@ -177,15 +168,27 @@ void fit_laws(const RecordingStep& step, const schema::Recording& recording, con
   result.why_chosen = fit.choice.why;
 }
 
+json as_json(const ImportFile& import) {
+  const ImportOptions& options = import.options;
+  return {{"map", import.map},
+          {"sheet", options.sheet},
+          {"stretch", options.stretch},
+          {"rate", options.rate_hz},
+          {"resample", options.resample_hz},
+          {"velocity_window", options.velocity_window_s},
+          {"origin", options.places.origin_m},
+          {"point", options.places.point_m ? json(*options.places.point_m) : json(nullptr)},
+          {"strict", options.strict}};
+}
+
 }  // namespace
 
 std::string key_of(const RecordingStep& step) {
   const StudyPlan& plan = *step.plan;
   const json all{
-      {"result", first_result},   {"program", software()},         {"source", sha256_of(step.source)},
-      {"map", map_of(step)},      {"sheet", step.file->sheet},     {"stretch", step.file->stretch},
-      {"laws", plan.laws},        {"all_cycles", plan.all_cycles}, {"closing", plan.closing},
-      {"blank", step.file->blank}};
+      {"result", first_result},         {"program", software()},    {"source", sha256_of(step.source)},
+      {"import", as_json(step.import)}, {"laws", plan.laws},        {"all_cycles", plan.all_cycles},
+      {"closing", plan.closing},        {"blank", step.file->blank}};
   return sha256_of(std::string_view(all.dump()));
 }
 

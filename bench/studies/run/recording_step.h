@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drawer/study_file.h"
+#include "imports/import_file.h"
 #include "run/studied_recording.h"
 
 namespace kerf::bench {
@@ -14,9 +15,10 @@ struct RecordingStep {
   const StudyPlan* plan = nullptr;
   const DrawerFile* file = nullptr;
   std::filesystem::path source;  ///< the file itself, or the study's copy of it
+  ImportFile import{};           ///< of what is no recording
 };
 
-/// What stands for a recording and all that it is made of: SHA-256 over the file's, its map, what is asked
+/// What stands for a recording and all that it is made of: SHA-256 over the file's, its import, what is asked
 /// for, and the program. @throws as MappedFile does.
 [[nodiscard]] std::string key_of(const RecordingStep& step);
 

@@ -18,6 +18,8 @@
 #include "files/named_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
+#include "inputs/copied_input.h"
+#include "inputs/study_imports.h"
 #include "page/study_page.h"
 #include "recordings/provenance.h"
 #include "results/crate.h"
@@ -57,8 +59,8 @@ void require_maps(const fs::path& file, const StudyPlan& plan) {
   std::size_t unknown = 0;
   std::string first;
   for (const DrawerFile& one : plan.files) {
-    if (!one.ignored.empty() || !one.map.empty() || fs::path(one.path).extension() == ".h5") continue;
-    if (!plan.map.empty()) continue;
+    if (!one.ignored.empty() || fs::path(one.path).extension() == ".h5") continue;
+    if (!plan.map_of(one).empty()) continue;
     if (unknown++ == 0) first = one.path;
   }
   if (unknown > 0)
@@ -66,25 +68,6 @@ void require_maps(const fs::path& file, const StudyPlan& plan) {
         fmt::format("{}: the columns of {} files are unknown, the first is {}; write a 'map' such as "
                     "\"time=1[s],position=2[mm],force=3[N]\" into it",
                     file.string(), unknown, first));
-}
-
-/// The study's own copy of a file of the drawer, so that the study can be handed on.
-fs::path copied_input(const StudyPlan& plan, const DrawerFile& file, const fs::path& folder) {
-  const fs::path source = plan.folder / fs::path(file.path);
-  const fs::path copy = folder / "inputs" / fs::path(file.path);
-  const bool in_drawer = fs::exists(source);
-  if (!in_drawer && fs::exists(copy)) return copy;  // handed on without the drawer
-  const std::string sha256 = sha256_of(source);
-  if (!file.sha256.empty() && sha256 != file.sha256)
-    throw std::invalid_argument(
-        "it is no longer the file that study.toml names by its sha256: look at it, and put the new one "
-        "there");
-  if (fs::exists(copy) && sha256_of(copy) == sha256) return copy;
-  fs::create_directories(copy.parent_path());
-  const fs::path unfinished = copy.string() + fmt::format(".writing-{}", ::getpid());
-  fs::copy_file(source, unfinished, fs::copy_options::overwrite_existing);
-  fs::rename(unfinished, copy);
-  return copy;
 }
 
 std::optional<StudiedRecording> kept_result(const fs::path& folder, const std::string& key) {
@@ -121,6 +104,7 @@ void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& fold
   RecordingStep step{.plan = &plan, .file = &one.file, .source = plan.folder / fs::path(one.file.path)};
   try {
     step.source = copied_input(plan, one.file, folder);
+    step.import = import_of(plan, one.file, folder);
     one.result = made_or_kept(step, one.name, folder, stop);
   } catch (const std::system_error&) {
     throw;  // a disk, or Ctrl-C: no fault of the file
@@ -202,6 +186,7 @@ StudyResults run_study(const fs::path& file, const StudyRunOptions& options, con
   const StudyPlan& plan = results.plan;
   if (!options.only_report) {
     require_maps(file, plan);
+    take_imports(plan, folder);
     for (const char* output : {"study.json", "report.html", crate_file})
       require_output(folder / output, true);
   }

@@ -22,7 +22,9 @@ class Drawer : public testing::Test {
  protected:
   std::map<std::string, DrawerFile> look(const std::string& map = "") {
     std::map<std::string, DrawerFile> found;
-    for (DrawerFile& file : look_into(folder_.path(), map)) found.emplace(file.path, file);
+    std::vector<OfferedMap> maps;
+    if (!map.empty()) maps.push_back({.name = map, .import = {.map = map, .options = {}}});
+    for (DrawerFile& file : look_into(folder_.path(), maps)) found.emplace(file.path, file);
     return found;
   }
   test::TemporaryFolder folder_;
@@ -63,6 +65,21 @@ TEST_F(Drawer, LeavesOutWhatDoesNotFitTheMap) {
   EXPECT_THAT(found.at("two.txt").ignored, HasSubstr("3"));
 }
 
+TEST_F(Drawer, OfSeveralLayoutsHasForEachFileTheFirstMapThatItFits) {
+  test::write_text(folder_ / "new.csv", "t,x,f\n0,1,2\n1,2,3\n2,3,4\n");
+  test::write_text(folder_ / "old.csv", "F;way;clock\n0;1;2\n1;2;3\n2;3;5\n");
+  const std::string new_rig = "time=t[s],position=x[mm],force=f[N]";
+  const std::string old_rig = "time=clock[s],position=way[mm],force=F[N]";
+  std::map<std::string, DrawerFile> found;
+  for (DrawerFile& file :
+       look_into(folder_.path(), {{.name = "new", .import = {.map = new_rig, .options = {}}},
+                                  {.name = "old", .import = {.map = old_rig, .options = {}}}}))
+    found.emplace(file.path, file);
+  EXPECT_EQ(found.at("new.csv").map, "");
+  EXPECT_EQ(found.at("old.csv").map, "old");
+  EXPECT_EQ(found.at("old.csv").ignored, "");
+}
+
 TEST_F(Drawer, SuggestsTheMapThatHeadingsWithUnitsGive) {
   test::write_text(folder_ / "a.csv", "Time [ms],Position [mm],Force [N]\n0,1,2\n1,2,3\n2,3,4\n");
   test::write_text(folder_ / "b.csv", "Time [ms],Position,Force [N]\n0,1,2\n1,2,3\n2,3,5\n");
@@ -72,8 +89,9 @@ TEST_F(Drawer, SuggestsTheMapThatHeadingsWithUnitsGive) {
 }
 
 TEST_F(Drawer, ThatIsNotThereIsRefused) {
-  EXPECT_THROW((void)look_into(folder_ / "nowhere", ""), std::invalid_argument);
-  EXPECT_THROW((void)look_into(folder_.path(), "time"), std::invalid_argument);
+  EXPECT_THROW((void)look_into(folder_ / "nowhere", {}), std::invalid_argument);
+  EXPECT_THROW((void)look_into(folder_.path(), {{.name = "time", .import = {.map = "time", .options = {}}}}),
+               std::invalid_argument);
 }
 
 }  // namespace

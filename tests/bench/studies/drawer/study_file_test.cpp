@@ -19,6 +19,7 @@ StudyPlan some_plan() {
   plan.laws = {"kelvin", "exponential"};
   plan.closing = "increasing";
   plan.compare = {"peak", "kelvin.damping"};
+  plan.layouts = {{.files = "rig2/*.csv", .map = "../rig2.import.toml"}};
   plan.licence = "https://creativecommons.org/licenses/by/4.0/";
   plan.people = {"A \"B\" C"};
   plan.files = {{.path = "a\tb.txt",
@@ -69,6 +70,9 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.files[0].sheet, "Run 2");
   EXPECT_EQ(again.files[0].accepted, "looked through");
   EXPECT_EQ(again.files[1].ignored, "no text");
+  ASSERT_EQ(again.layouts.size(), 1U);
+  EXPECT_EQ(again.layouts[0].files, "rig2/*.csv");
+  EXPECT_EQ(again.layouts[0].map, "../rig2.import.toml");
 }
 
 TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
@@ -86,7 +90,19 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"../picture.png\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"pictures/\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
+  EXPECT_THAT(with("files = \"rig2/*.csv\"\n", ""), HasSubstr("needs 'files'"));
   EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
+}
+
+// The narrower word wins: a file's own, then the first layout whose pattern it fits, then the study's.
+TEST(StudyMap, IsTheFilesOwnElseOfItsLayoutElseOfTheStudy) {
+  StudyPlan plan;
+  plan.map = "study";
+  plan.layouts = {{.files = "rig2/*.csv", .map = "rig2"}, {.files = "*.csv", .map = "any"}};
+  EXPECT_EQ(plan.map_of({.path = "rig2/a/b.csv", .map = "own"}), "own");
+  EXPECT_EQ(plan.map_of({.path = "rig2/a/b.csv"}), "rig2");
+  EXPECT_EQ(plan.map_of({.path = "rig1/b.csv"}), "any");
+  EXPECT_EQ(plan.map_of({.path = "rig2/b.txt"}), "study");
 }
 
 TEST(RecordingNames, AreOfTheFilesThatTakePartAndDiffer) {

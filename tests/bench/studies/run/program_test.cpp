@@ -113,6 +113,40 @@ TEST_F(StudyProgram, ComputesOnlyWhatChanged) {
   EXPECT_EQ(made("skin_s4"), skin);
 }
 
+// The import file of one layout changes: what it describes is made anew, and nothing else. It goes with the
+// study, which is verified without the drawer and without the file.
+TEST_F(StudyProgram, TakesImportFilesForItsLayouts) {
+  for (const char* other : {"liver_s2.txt", "liver_s3.txt", "skin_s5.txt", "skin_s6.txt"})
+    fs::remove(drawer() / other);
+  const fs::path import = folder_ / "punch.import.toml";
+  test::write_text(import,
+                   "map = [\"time=1[s]\", \"position=2[mm]\", \"force=3[N]\"]\nvelocity_window = 0.02\n");
+  ASSERT_EQ(run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "--map", import.string(), "-o",
+                      study().string()})
+                .exit_status,
+            0);
+  edit("map = \"../punch.import.toml\"", "map = \"time=1[s],position=2[mm],force=3[N]\"");
+  edit("\n[[file]]", "\n[[layout]]\nfiles = \"liver*\"\nmap = \"../punch.import.toml\"\n\n[[file]]");
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  const auto liver = made("liver_s1");
+  const auto skin = made("skin_s4");
+  test::write_text(import, "map = \"time=1[s],position=2[mm],force=3[N]\"\nvelocity_window = 0.05\n");
+  ASSERT_EQ(run_it().exit_status, 0);
+  EXPECT_NE(made("liver_s1"), liver);
+  EXPECT_EQ(made("skin_s4"), skin);
+  EXPECT_EQ(test::read_text(study() / "imports/punch.import.toml"), test::read_text(import));
+  EXPECT_THAT(test::read_text(study() / "ro-crate-metadata.json"), HasSubstr("imports/punch.import.toml"));
+  fs::remove(import);
+  fs::remove_all(drawer());
+  const Outcome verified = run_kerf({"study", "verify", study().string(), "--rerun", "liver_s1,skin_s4"});
+  EXPECT_EQ(verified.exit_status, 0) << verified.output << verified.errors;
+  test::write_text(import, "map = \"time=1[s],position=2[mm],force=3[N]\"\nvelocity_windows = 0.05\n");
+  const Outcome bad = run_it();
+  EXPECT_EQ(bad.exit_status, 2);
+  EXPECT_THAT(bad.errors, HasSubstr("punch.import.toml:2: "));
+}
+
 TEST_F(StudyProgram, DoesNotDependOnTheNumberOfJobs) {
   ASSERT_EQ(make().exit_status, 0);
   ASSERT_EQ(run_it({"-j", "1"}).exit_status, 0);
