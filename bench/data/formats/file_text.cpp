@@ -12,15 +12,13 @@
 #include "formats/run_apart.h"
 #include "formats/utf16.h"
 #include "formats/workbook.h"
+#include "formats/xls.h"
 
 namespace kerf::bench {
 namespace {
 
 /// Formats that are known and not read, each with what to do.
 void refuse_what_cannot_be_read(std::string_view bytes, const std::string& name) {
-  if (bytes.starts_with("\xD0\xCF\x11\xE0"))
-    throw std::invalid_argument(
-        fmt::format("{}: an Excel workbook of before 2007 (xls); save it as xlsx or as CSV", name));
   if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xFF\xD8\xFF") || bytes.starts_with("GIF8"))
     throw std::invalid_argument(fmt::format("{}: a picture, not a file of numbers", name));
   if (bytes.starts_with("TDSm"))
@@ -73,12 +71,14 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
     take(gunzip(text(), {.name = name_, .at_most = options.max_bytes}));
     notes_.push_back("unpacked by gzip");
   }
-  if (!options.sheet.empty() && !is_zip(text()))
-    throw std::invalid_argument(fmt::format("{}: --sheet is for a workbook (xlsx), which it is not", name_));
-  if (is_zip(text())) {
+  if (!options.sheet.empty() && !is_zip(text()) && !is_xls(text()))
+    throw std::invalid_argument(
+        fmt::format("{}: --sheet is for a workbook (xlsx, xls), which it is not", name_));
+  if (is_zip(text()) || is_xls(text())) {
     const UnpackedLimits limits{.name = name_, .at_most = options.max_bytes};
     Made made = made_apart(limits, [&]() -> Made {
-      Sheet sheet = Workbook(text(), limits).sheet(options.sheet);
+      Sheet sheet = is_xls(text()) ? xls_sheet(text(), options.sheet, limits)
+                                   : Workbook(text(), limits).sheet(options.sheet);
       return {.sheet = std::move(sheet.name), .notes = std::move(sheet.notes), .text = std::move(sheet.text)};
     });
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());

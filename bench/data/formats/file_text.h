@@ -17,7 +17,7 @@ struct FileTextOptions {
 
 /// A file of numbers as text in which each line is a row, whatever it was: text as it stands; what gzip
 /// packed; UTF-16 as UTF-8; a LabVIEW file (lvm) without
-/// its headers; a sheet of a workbook (xlsx), or the variables of a MAT-file, as columns with
+/// its headers; a sheet of a workbook (xlsx, xls), or the variables of a MAT-file, as columns with
 /// tabs between them and a row of names. Numbers of the two latter lose nothing. What a file is is told by
 /// its first bytes, not by its name, and of gzip by what is in it.
 class FileText {

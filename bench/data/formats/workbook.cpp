@@ -18,7 +18,6 @@ namespace {
 
 constexpr std::size_t most_columns = 16384;  // that a sheet can have
 constexpr std::size_t most_rows = 1'048'576;
-constexpr double seconds_a_day = 86400.0;
 
 /// A name without the prefix of its namespace: some programs write x:row.
 std::string_view local(const char* name) {
@@ -56,26 +55,12 @@ std::string text_of(const pugi::xml_node& item) {
   return text;
 }
 
-std::optional<double> cell_number(std::string_view text) {
-  double value = 0.0;
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 /// A whole number that is not negative.
 std::optional<std::size_t> whole_in(std::string_view text) {
   std::size_t value = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || rest != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-/// "1,25" as "1.25", where it is a number by that.
-std::optional<std::string> with_a_point(std::string text) {
-  if (std::ranges::count(text, ',') != 1 || text.find('.') != std::string::npos) return std::nullopt;
-  std::ranges::replace(text, ',', '.');
-  return cell_number(text) ? std::optional(text) : std::nullopt;
 }
 
 /// The column of a reference, from 0: 27 of AB7.
@@ -137,53 +122,13 @@ class Workbook::Parts {
   ~Parts() { zip_discard(archive_); }
 
   Sheet sheet(const std::string& asked) {
-    if (!asked.empty()) return read(asked_for(asked));
-    std::string others;
-    for (const SheetPlace& place : sheets_) {
-      if (place.hidden) continue;
-      Sheet sheet = read(place);
-      if (!has_numbers_) continue;
-      for (const SheetPlace& other : sheets_) {
-        if (&other != &place)
-          others += fmt::format("{}'{}'{}", others.empty() ? "" : ", ", other.name,
-                                other.hidden ? " (hidden)" : "");
-      }
-      if (!others.empty())
-        sheet.notes.push_back(fmt::format(
-            "sheet '{}' is taken, the first with numbers; --sheet takes another: {}", sheet.name, others));
-      return sheet;
-    }
-    refuse(fmt::format("no sheet with numbers; there are {}", names()));
+    return taken_sheet(sheets_, asked, limits_.name,
+                       [&](std::size_t place, CellCounts& counts) { return read(place, counts); });
   }
 
  private:
-  struct SheetPlace {
-    std::string name;
-    std::string part;
-    bool hidden = false;
-  };
-
   [[noreturn]] void refuse(const std::string& why) const {
     throw std::invalid_argument(fmt::format("{}: {}", limits_.name, why));
-  }
-
-  [[nodiscard]] std::string names() const {
-    std::string text;
-    for (const SheetPlace& one : sheets_)
-      text += fmt::format("{}'{}'{}", text.empty() ? "" : ", ", one.name, one.hidden ? " (hidden)" : "");
-    return text;
-  }
-
-  const SheetPlace& asked_for(const std::string& asked) const {
-    for (const SheetPlace& one : sheets_) {
-      if (one.name == asked) return one;
-    }
-    std::size_t number = 0;
-    const auto [rest, error] = std::from_chars(asked.data(), asked.data() + asked.size(), number);
-    if (error == std::errc{} && rest == asked.data() + asked.size() && number >= 1 &&
-        number <= sheets_.size())
-      return sheets_[number - 1];
-    refuse(fmt::format("--sheet: there is no sheet '{}'; there are {}", asked, names()));
   }
 
   [[nodiscard]] bool has(const std::string& part) const {
@@ -253,8 +198,8 @@ class Workbook::Parts {
     each_child(child(root, "sheets"), "sheet", [&](const pugi::xml_node& one) {
       const auto found = parts.find(std::string(attribute_of_relation(one)));
       if (found == parts.end()) return;
+      parts_.push_back(found->second);
       sheets_.push_back({.name = std::string(attribute(one, "name")),
-                         .part = found->second,
                          .hidden = attribute(one, "state").find("idden") != std::string_view::npos});
     });
     if (sheets_.empty()) refuse("a workbook without a sheet");
@@ -295,31 +240,18 @@ class Workbook::Parts {
     });
   }
 
-  /// A row with what stands in it, by its column.
-  struct Row {
-    std::size_t number = 0;  ///< from 1
-    std::map<std::size_t, std::string> cells;
-  };
-
-  struct Counts {
-    std::string comma{};  ///< the first number with one
-    std::size_t dates = 0;
-    std::size_t commas = 0;
-    std::size_t formulas = 0;
-    std::size_t numbers = 0;
-  };
-
   /// A cell as the text has it.
-  std::string value_of(const pugi::xml_node& cell, const std::string& sheet, Counts& counts) const {
+  std::string value_of(const pugi::xml_node& cell, const std::string& sheet, std::size_t row,
+                       CellCounts& counts) const {
     const std::string_view type = attribute(cell, "t");
     const std::string value = child(cell, "v").text().get();
-    if (type == "inlineStr") return string_value(text_of(child(cell, "is")), counts);
-    if (type == "str") return string_value(value, counts);
+    if (type == "inlineStr") return text_cell(text_of(child(cell, "is")), row, counts);
+    if (type == "str") return text_cell(value, row, counts);
     if (type == "s") {
       const auto place = whole_in(value);
       if (!place || *place >= strings_.size())
         refuse(fmt::format("sheet '{}', cell {}: there is no text {}", sheet, attribute(cell, "r"), value));
-      return string_value(strings_[*place], counts);
+      return text_cell(strings_[*place], row, counts);
     }
     if (value.empty()) {
       counts.formulas += child(cell, "f") ? 1 : 0;
@@ -329,98 +261,52 @@ class Workbook::Parts {
     const std::size_t style = whole_in(attribute(cell, "s")).value_or(0);
     const auto number = cell_number(value);
     counts.numbers += number ? 1 : 0;
-    if (type != "b" && number && style < is_date_.size() && is_date_[style]) {
-      ++counts.dates;
-      return fmt::format("{}", seconds_a_day * *number);
-    }
+    if (type != "b" && number && style < is_date_.size() && is_date_[style])
+      return date_cell(*number, counts);
     return value;
   }
 
-  static std::string string_value(std::string text, Counts& counts) {
-    if (auto number = with_a_point(text)) {
-      if (counts.commas++ == 0) counts.comma = text;
-      return *number;
-    }
-    counts.numbers += cell_number(text) ? 1 : 0;
-    for (char& c : text) {
-      if (c == '\t' || c == '\n' || c == '\r') c = ' ';
-    }
-    return text;
-  }
-
-  Sheet read(const SheetPlace& place) {
+  Sheet read(std::size_t place, CellCounts& counts) {
     read_shared();
-    const std::string content = part(place.part);
+    const std::string& name = sheets_[place].name;
+    const std::string content = part(parts_[place]);
     pugi::xml_document document;
-    const pugi::xml_node root = root_of(document, place.part, content);
-    Counts counts;
-    std::vector<Row> rows;
+    const pugi::xml_node root = root_of(document, parts_[place], content);
+    std::vector<SheetRow> rows;
     std::size_t width = 0;
     each_child(child(root, "sheetData"), "row", [&](const pugi::xml_node& row) {
       const std::string_view reference = attribute(row, "r");
       const std::size_t last = rows.empty() ? 0 : rows.back().number;
       const std::size_t number = reference.empty() ? last + 1 : whole_in(reference).value_or(0);
       if (number <= last || number > most_rows)
-        refuse(fmt::format("sheet '{}': row '{}' after row {}", place.name, reference, last));
+        refuse(fmt::format("sheet '{}': row '{}' after row {}", name, reference, last));
       rows.push_back({.number = number, .cells = {}});
       std::size_t next = 0;
       each_child(row, "c", [&](const pugi::xml_node& cell) {
         const std::string_view at = attribute(cell, "r");
         const auto column = at.empty() ? std::optional(next) : column_of(at);
         if (!column || *column >= most_columns)
-          refuse(fmt::format("sheet '{}', row {}: '{}' is no cell", place.name, number, at));
+          refuse(fmt::format("sheet '{}', row {}: '{}' is no cell", name, number, at));
         next = *column + 1;
-        if (std::string value = value_of(cell, place.name, counts); !value.empty()) {
+        if (std::string value = value_of(cell, name, number, counts); !value.empty()) {
           rows.back().cells[*column] = std::move(value);
           width = std::max(width, next);
         }
       });
     });
-    has_numbers_ = counts.numbers + counts.commas > 0;
-    return {.name = place.name, .text = as_text(rows, width), .notes = notes_of(counts, root)};
+    return {.name = name,
+            .text = rows_as_text(rows, width, limits_),
+            .notes = cell_notes(name, counts, epoch_1904_, merged_in(root))};
   }
 
-  /// A line a row, also for those that are not there, with a field a column.
-  [[nodiscard]] std::string as_text(const std::vector<Row>& rows, std::size_t width) const {
-    std::string text;
-    std::size_t lines = 0;
-    for (const Row& row : rows) {
-      text.append(row.number - lines - 1, '\n');
-      lines = row.number;
-      std::size_t column = 0;
-      for (const auto& [at, value] : row.cells) {
-        text.append(at - column, '\t');
-        text += value;
-        column = at;
-      }
-      if (!row.cells.empty()) text.append(width - 1 - column, '\t');
-      text += '\n';
-      if (text.size() > limits_.at_most)
-        refuse(fmt::format("a sheet of more than {} bytes (--max-bytes)", limits_.at_most));
-    }
-    return text;
-  }
-
-  [[nodiscard]] std::vector<std::string> notes_of(const Counts& counts, const pugi::xml_node& root) const {
-    std::vector<std::string> notes;
-    if (counts.dates > 0)
-      notes.push_back(fmt::format("{} cells are dates or times: they are taken in seconds, since {}",
-                                  counts.dates, epoch_1904_ ? "1904-01-01" : "1899-12-30"));
-    if (counts.commas > 0)
-      notes.push_back(fmt::format("{} numbers were written as text, with a decimal comma, '{}' is the first",
-                                  counts.commas, counts.comma));
-    if (counts.formulas > 0)
-      notes.push_back(
-          fmt::format("{} formulas have no value in the file: open and save it in a spreadsheet program",
-                      counts.formulas));
+  static std::string merged_in(const pugi::xml_node& root) {
+    constexpr std::size_t enough = 60;  // bytes of a message
     std::string merged;
     each_child(child(root, "mergeCells"), "mergeCell", [&](const pugi::xml_node& one) {
-      if (merged.size() < 60)
+      if (merged.size() < enough)
         merged += fmt::format("{}{}", merged.empty() ? "" : ", ", attribute(one, "ref"));
     });
-    if (!merged.empty())
-      notes.push_back(fmt::format("merged cells hold their value in the first of them alone: {}", merged));
-    return notes;
+    return merged;
   }
 
   UnpackedLimits limits_;
@@ -429,8 +315,8 @@ class Workbook::Parts {
   std::string book_;
   bool epoch_1904_ = false;
   bool shared_read_ = false;
-  bool has_numbers_ = false;  ///< the sheet read last
-  std::vector<SheetPlace> sheets_;
+  std::vector<SheetName> sheets_;
+  std::vector<std::string> parts_;  ///< of the sheets
   std::vector<std::string> strings_;
   std::vector<bool> is_date_;  ///< by style
 };

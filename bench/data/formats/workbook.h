@@ -3,18 +3,11 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "formats/sheet_cells.h"
 #include "formats/unpacked_limits.h"
 
 namespace kerf::bench {
-
-/// A sheet as text: one line a row, from row 1, and a tab between columns, from column A.
-struct Sheet {
-  std::string name;
-  std::string text;
-  std::vector<std::string> notes;
-};
 
 [[nodiscard]] bool is_zip(std::string_view bytes) noexcept;
 

@@ -1,4 +1,4 @@
-"""Makes the files of this folder: python3 make.py (with openpyxl, NumPy, SciPy, h5py, hdf5storage, gzip and iconv of Debian 12)."""
+"""Makes the files of this folder: python3 make.py (with openpyxl, NumPy, SciPy, h5py, hdf5storage, LibreOffice, gzip and iconv of Debian 12)."""
 
 import datetime
 import pathlib
@@ -44,6 +44,7 @@ second = book.create_sheet("Run 2")
 for t in time[:10]:
     second.append([float(t), 0.001 * float(t), 2.0])
 book.save("punch.xlsx")
+subprocess.run(["soffice", "--headless", "--convert-to", "xls", "punch.xlsx"], check=True)  # which computes the formulas
 
 scipy.io.savemat("punch.mat", {"t": time, "run": {"x": position, "f": force.astype(np.float32), "gain": 3.0, "who": "nobody"},
                                "counts": np.arange(80, dtype=np.int16).reshape(40, 2), "short": np.arange(7.0)}, do_compression=True)
