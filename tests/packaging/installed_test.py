@@ -74,8 +74,11 @@ class Installed(unittest.TestCase):
             self.assertNotIn(os.fsencode(BUILD), program.read_bytes(), program)
             self.assertTrue(program.stat().st_mode & stat.S_IXOTH, program)
 
-    def test_brings_what_its_help_points_to(self):
+    def test_brings_its_manual_and_what_its_help_points_to(self):
         documents = self.prefix / "share/doc/kerf"
+        for name in ["man/man1/kerf.1.gz", "man/man1/kerf-session-new.1.gz", "man/man1/kerf-emulate.1.gz",
+                     "bash-completion/completions/kerf", "zsh/site-functions/_kerf", "fish/vendor_completions.d/kerf.fish"]:
+            self.assertTrue((self.prefix / "share" / name).is_file(), name)
         for name in ["docs/devices.md", "docs/charts.md", "drivers/README.md", "examples/blade.law.toml", "README.md"]:
             self.assertTrue((documents / name).is_file(), name)
         self.assertTrue((self.prefix / "lib/udev/rules.d/70-kerf.rules").is_file())
