@@ -27,9 +27,11 @@ Connection connection(int type) noexcept {
   return {.ours = Descriptor(ends[0]), .theirs = Descriptor(ends[1])};
 }
 
-std::filesystem::path beside_this_program(std::string_view name) {
+std::filesystem::path helper_program(std::string_view name) {
   std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / name;
+  const auto programs = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const auto helpers = (programs / KERF_HELPERS_FROM_PROGRAMS).lexically_normal();
+  return (std::filesystem::is_directory(helpers, error) ? helpers : programs) / name;
 }
 
 int start(const std::filesystem::path& program, std::span<const int> descriptors, pid_t& process) {

@@ -50,14 +50,20 @@ std::vector<Group> groups() {
           {"replay", {add_replay, add_regress}},
           {"experiment", {add_session}},
           {"study", {add_study}},
-          {"share", {add_report}}};
+          {"share", {add_report}},
+          {"", {add_pages}}};  // hidden: for the build
+}
+
+/// The verbs of an app that people are told of.
+std::vector<const CLI::App*> shown_verbs(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* verb) { return !verb->get_group().empty(); });
 }
 
 /// `kerf --help`: every verb in a line, by group.
 std::string overview(const CLI::App& app) {
   std::string text = fmt::format("{}\nUsage: kerf VERB [OPTIONS]\n\n", app.get_description());
   std::string group;
-  for (const CLI::App* const verb : app.get_subcommands({})) {
+  for (const CLI::App* const verb : shown_verbs(app)) {
     text += fmt::format("{:12}{:11}{}\n", verb->get_group() == group ? "" : verb->get_group(),
                         verb->get_name(), verb->get_description());
     group = verb->get_group();
@@ -81,7 +87,7 @@ void add_verbs(CLI::App& app, Context& context) {
 
 std::vector<std::string> verbs_of(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* const verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  for (const CLI::App* const verb : shown_verbs(app)) names.push_back(verb->get_name());
   return names;
 }
 

@@ -14,7 +14,8 @@ namespace kerf::bench {
 struct Context;
 
 /// An option of a verb while it is declared; each call says one thing more about it. The library that reads
-/// command lines is included in verb.cpp and app.cpp alone: it costs every file that includes it seconds.
+/// command lines is included in verb.cpp, app.cpp and described.cpp alone: it costs every file that includes
+/// it seconds.
 class Option {
  public:
   explicit Option(CLI::Option& option) : option_(option) {}

@@ -20,6 +20,7 @@ void add_laws(CLI::App& app, Context& context);
 void add_prepare(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);
 void add_regress(CLI::App& app, Context& context);
+void add_pages(CLI::App& app, Context& context);
 void add_repair(CLI::App& app, Context& context);
 void add_replay(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);

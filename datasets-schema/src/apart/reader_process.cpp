@@ -58,7 +58,7 @@ processes::Descriptor new_window() {
 }  // namespace
 
 ReaderProcess::ReaderProcess(const std::filesystem::path& file, std::string_view expected) : file_(file) {
-  const auto reader = processes::beside_this_program("kerf-reader");
+  const auto reader = processes::helper_program("kerf-reader");
   const auto descriptor = opened(file, expected);
   struct stat status {};
   if (::fstat(descriptor.number(), &status) != 0) refuse_start(file, reader, errno);

@@ -16,8 +16,8 @@
 
 namespace kerf::schema::apart {
 
-/// A process of its own, `kerf-reader` beside this program, that reads one file with HDF5: what a damaged
-/// file does to HDF5, it does there. For one thread at a time.
+/// A process of its own, `kerf-reader`, that reads one file with HDF5: what a damaged file does to HDF5, it
+/// does there. For one thread at a time.
 class ReaderProcess {
  public:
   /// @throws std::invalid_argument (there is no such file, or it may not be read), std::system_error (the

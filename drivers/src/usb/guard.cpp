@@ -35,7 +35,7 @@ constexpr std::int64_t look_ns = 10'000'000;
 }  // namespace
 
 Guard::Guard(std::string_view what, int descriptor, const LettingGo& letting_go) {
-  const std::string guard = processes::beside_this_program("kerf-guard");
+  const std::string guard = processes::helper_program("kerf-guard");
   const processes::Descriptor page(memfd_create("kerf-guard", MFD_CLOEXEC));
   if (page.number() < 0 || ftruncate(page.number(), sizeof(GuardPage)) != 0) refuse(what, guard, errno);
   auto [program, its_own] = processes::connection(SOCK_STREAM);

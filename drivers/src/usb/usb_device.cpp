@@ -6,6 +6,9 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <string_view>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -70,10 +73,26 @@ void for_each(libusb_context* context, std::uint16_t vendor, std::uint16_t produ
 
 }  // namespace
 
+std::string permission_mend(std::span<const std::filesystem::path> rules_folders) {
+  constexpr std::string_view rules = "70-kerf.rules";
+  for (const auto& folder : rules_folders) {
+    std::error_code error;
+    if (std::filesystem::exists(folder / rules, error))
+      return fmt::format(
+          "{} is installed: plug it in again, or, who does not sit at this machine, join the group plugdev "
+          "('sudo adduser NAME plugdev') and log in again",
+          rules);
+  }
+  return fmt::format(
+      "copy drivers/udev/{} to /etc/udev/rules.d, run 'udevadm control --reload', and plug it in again",
+      rules);
+}
+
 std::string permission_mend() {
-  return "copy drivers/udev/70-kerf.rules to /etc/udev/rules.d, run 'udevadm control --reload', and plug it "
-         "in "
-         "again";
+  // Where udev looks.
+  const std::array<std::filesystem::path, 3> folders{"/etc/udev/rules.d", "/usr/local/lib/udev/rules.d",
+                                                     "/usr/lib/udev/rules.d"};
+  return permission_mend(folders);
 }
 
 bool is_emulated(const std::string& sys_folder) {

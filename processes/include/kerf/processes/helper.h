@@ -38,8 +38,10 @@ struct Connection {
 /// none.
 [[nodiscard]] Connection connection(int type) noexcept;
 
-/// Where a program lies that belongs to this one.
-[[nodiscard]] std::filesystem::path beside_this_program(std::string_view name);
+/// Where a program lies that belongs to this one: in their own folder (libexec/kerf) of where both were
+/// installed, or beside this one, where there is no such folder. Nothing that merely lies beside an installed
+/// program is taken for one of them.
+[[nodiscard]] std::filesystem::path helper_program(std::string_view name);
 
 /// The first descriptor that a helper is given; further ones follow it.
 inline constexpr int first_descriptor = 3;

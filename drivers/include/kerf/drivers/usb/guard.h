@@ -12,9 +12,9 @@ namespace kerf::drivers::usb {
 
 struct GuardPage;
 
-/// A process of its own, `kerf-guard` beside this program, that lets a device's motors go when this program
-/// has died, however it did, or has not renewed hold_until() in time. It holds a duplicate of the device's
-/// descriptor, so that the interface stays claimed until it has done so.
+/// A process of its own, `kerf-guard`, that lets a device's motors go when this program has died, however it
+/// did, or has not renewed hold_until() in time. It holds a duplicate of the device's descriptor, so that the
+/// interface stays claimed until it has done so.
 class Guard {
  public:
   /// How long a force stands without a sign of life of the thread that speaks to the device.

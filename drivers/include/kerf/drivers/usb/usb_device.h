@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -33,8 +34,10 @@ struct Attached {
   bool emulated = false;  ///< it hangs on a virtual bus (USB/IP)
 };
 
-/// How to obtain the permission to open a node, in half a sentence.
+/// How to obtain the permission to open a node, in half a sentence: by the udev rules, or where these stand
+/// in one of the folders that udev looks in, by the group that they name.
 [[nodiscard]] std::string permission_mend();
+[[nodiscard]] std::string permission_mend(std::span<const std::filesystem::path> rules_folders);
 /// Whether a device, by its folder in /sys, hangs on a virtual bus.
 [[nodiscard]] bool is_emulated(const std::string& sys_folder);
 
