@@ -111,6 +111,7 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
     file.tissue = factors.tissue;
     file.speed = factors.speed;
     file.specimen = factors.specimen;
+    file.rig = factors.rig;
     file.blank = factors.blank;
     file.numbers = factors.numbers;
   } catch (const std::exception& error) {

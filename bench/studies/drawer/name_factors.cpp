@@ -61,6 +61,12 @@ bool is_specimen_word(std::string_view word) {
   return !prefix.empty() && is_one_of(prefix, prefixes);
 }
 
+bool is_rig_word(std::string_view word) {
+  constexpr std::array<std::string_view, 4> prefixes{"rig", "setup", "tool", "device"};
+  const std::string_view prefix = prefix_of_number(word);
+  return !prefix.empty() && is_one_of(prefix, prefixes);
+}
+
 bool is_number_word(std::string_view word) {
   if (std::ranges::all_of(word, is_digit)) return true;
   constexpr std::array<std::string_view, 8> prefixes{"t", "r", "trial", "run", "rep", "test", "no", "v"};
@@ -83,6 +89,8 @@ NameFactors name_factors(const std::filesystem::path& path) {
       append_word(factors.speed, word);
     } else if (is_specimen_word(word)) {
       append_word(factors.specimen, word);
+    } else if (is_rig_word(word)) {
+      append_word(factors.rig, word);
     } else if (is_number_word(word)) {
       append_word(factors.numbers, word);
     } else {

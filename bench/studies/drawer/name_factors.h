@@ -10,6 +10,7 @@ struct NameFactors {
   std::string tissue;    ///< the words that are nothing else, with blanks between
   std::string speed;     ///< slow, fast and the like, or a number with a unit of speed: "5mms"
   std::string specimen;  ///< "s3", "specimen2", "donor4": such a word and a number in one
+  std::string rig;       ///< "rig2", "tool1": such a word and a number in one
   bool blank = false;    ///< blank, empty, air, idle, unloaded
   std::string numbers;   ///< numbers, time stamps and repetitions: "14 1853"
 };

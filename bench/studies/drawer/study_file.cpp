@@ -35,7 +35,7 @@ std::vector<std::string> texts_of(const Place& place, const toml::table& root, s
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
   place.allow_only(table,
                    {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank",
-                    "accepted", "numbers", "sheet", "stretch"},
+                    "accepted", "numbers", "sheet", "stretch", "rig"},
                    "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
@@ -56,6 +56,7 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.tissue = place.text(table, "tissue", "");
   file.speed = place.text(table, "speed", "");
   file.specimen = place.text(table, "specimen", "");
+  file.rig = place.text(table, "rig", "");
   file.blank = place.flag(table, "blank", false);
   file.accepted = place.text(table, "accepted", "");
   file.numbers = place.text(table, "numbers", "");
@@ -73,6 +74,17 @@ void read_files(const Place& place, const toml::table& root, StudyPlan& study) {
       place.refuse(node, "'{}' is here a second time", file.path);
     study.files.push_back(std::move(file));
   }
+}
+
+void read_prepare(const Place& place, const toml::table& root, StudyPlan& study) {
+  if (root.get("prepare") == nullptr) return;  // of an earlier version
+  const toml::table& prepare = place.table(root, "prepare");
+  place.allow_only(prepare, {"blank", "why"}, "[prepare]");
+  const std::string blank = place.text(prepare, "blank", "leave");
+  if (blank != "leave" && blank != "subtract")
+    place.refuse(*prepare.get("blank"), "'blank' is \"subtract\" or \"leave\", not \"{}\"", blank);
+  study.subtracts_blanks = blank == "subtract";
+  study.why_blanks = place.text(prepare, "why", "");
 }
 
 void read_layouts(const Place& place, const toml::table& root, StudyPlan& study) {
@@ -133,7 +145,7 @@ StudyPlan read_study(const fs::path& file) {
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
   place.allow_only(root,
                    {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
-                    "file", "layout"},
+                    "file", "layout", "prepare"},
                    "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");
@@ -152,6 +164,7 @@ StudyPlan read_study(const fs::path& file) {
   study.people = texts_of(place, root, "people");
   read_laws(place, root, study);
   read_compare(place, root, study);
+  read_prepare(place, root, study);
   read_layouts(place, root, study);
   read_files(place, root, study);
   return study;

@@ -20,6 +20,7 @@ struct DrawerFile {
   std::string tissue;
   std::string speed;
   std::string specimen;
+  std::string rig{};     ///< that it was recorded with, where there are several
   bool blank = false;    ///< the tool without a tissue
   std::string accepted;  ///< why it counts whatever is doubted of it; empty: a doubt leaves it out
   std::string numbers;   ///< numbers and time stamps of its name, which are no factor
@@ -50,6 +51,8 @@ struct StudyPlan {
   std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
   std::string licence;               ///< of the data, a URL or a name; empty: none was given
   std::vector<std::string> people;
+  bool subtracts_blanks = false;  ///< from the recordings of their rig and speed
+  std::string why_blanks{};       ///< why that, or why not
   std::vector<DrawerFile> files;
 
   /// The map of a file: its own, else that of the first layout that it fits, else the study's.

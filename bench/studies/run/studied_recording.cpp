@@ -74,7 +74,40 @@ StudiedCycle studied_cycle(const json& from) {
           .reason = from.at("reason")};
 }
 
+StudiedBlank studied_blank(const json& from) {
+  StudiedBlank blank;
+  if (from.at("blank").is_null()) {
+    blank.why_none = from.at("why_none");
+    return blank;
+  }
+  blank.name = from.at("blank");
+  blank.rows = from.at("rows");
+  blank.covered = from.at("rows_covered");
+  blank.cycles = from.at("cycles");
+  blank.force_rms = from.at("force_rms");
+  blank.taken_rms = from.at("taken_rms");
+  blank.spread_rms = from.at("spread_rms");
+  blank.negative_before = from.at("negative_before");
+  blank.negative_after = from.at("negative_after");
+  blank.pulling_share = from.at("pulling_share");
+  return blank;
+}
+
 }  // namespace
+
+json as_json(const StudiedBlank& blank) {
+  if (!blank.is_taken()) return {{"blank", nullptr}, {"why_none", blank.why_none}};
+  return {{"blank", blank.name},
+          {"rows", blank.rows},
+          {"rows_covered", blank.covered},
+          {"cycles", blank.cycles},
+          {"force_rms", blank.force_rms},
+          {"taken_rms", blank.taken_rms},
+          {"spread_rms", blank.spread_rms},
+          {"negative_before", blank.negative_before},
+          {"negative_after", blank.negative_after},
+          {"pulling_share", blank.pulling_share}};
+}
 
 std::vector<double> of_cycles(const StudiedRecording& recording, double StudiedCycle::*quantity,
                               bool all_cycles) {
@@ -113,6 +146,7 @@ json as_json(const StudiedRecording& recording) {
               {"chosen", recording.chosen},
               {"why_chosen", recording.why_chosen},
               {"not_fitted", recording.not_fitted}});
+  if (recording.blank) all["blank_taken_off"] = as_json(*recording.blank);
   return all;
 }
 
@@ -137,6 +171,7 @@ StudiedRecording studied_recording(const json& from) {
   recording.clipped_at = number_or(from.at("clipped_at"), no_number);
   recording.clipped_rows = from.at("clipped_rows");
   recording.least_shown = number_or(from.at("least_shown"), no_number);
+  if (from.contains("blank_taken_off")) recording.blank = studied_blank(from.at("blank_taken_off"));
   recording.warnings = from.at("warnings");
   for (const json& cycle : from.at("cycles")) recording.cycles.push_back(studied_cycle(cycle));
   for (const json& law : from.at("laws")) recording.laws.push_back(studied_law(law));
