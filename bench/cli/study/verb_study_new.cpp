@@ -82,6 +82,10 @@ void say_drawer(const StudyPlan& plan, Context& context) {
     } else {
       context.say(fmt::format("  {:44} {:24} {:10} {:10} {}", file.path, file.blank ? "(blank)" : file.tissue,
                               file.speed, file.specimen, file.found));
+      if (!file.join_suggested.empty())
+        context.say(
+            fmt::format("    one recording by two clocks with {}? Then its join_suggested becomes join",
+                        file.join_suggested));
     }
   }
 }
@@ -89,15 +93,18 @@ void say_drawer(const StudyPlan& plan, Context& context) {
 nlohmann::ordered_json drawer_as_json(const StudyPlan& plan, const fs::path& file) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const DrawerFile& one : plan.files)
-    files.push_back({{"path", one.path},
-                     {"ignored", one.ignored.empty() ? nlohmann::ordered_json(nullptr)
-                                                     : nlohmann::ordered_json(one.ignored)},
-                     {"found", one.found},
-                     {"tissue", one.tissue},
-                     {"speed", one.speed},
-                     {"specimen", one.specimen},
-                     {"rig", one.rig},
-                     {"blank", one.blank}});
+    files.push_back(
+        {{"path", one.path},
+         {"ignored",
+          one.ignored.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(one.ignored)},
+         {"found", one.found},
+         {"tissue", one.tissue},
+         {"speed", one.speed},
+         {"specimen", one.specimen},
+         {"join_suggested", one.join_suggested.empty() ? nlohmann::ordered_json(nullptr)
+                                                       : nlohmann::ordered_json(one.join_suggested)},
+         {"rig", one.rig},
+         {"blank", one.blank}});
   return {{"study", file.string()},
           {"blanks", {{"subtract", plan.subtracts_blanks}, {"why", plan.why_blanks}}},
           {"files", files}};
@@ -140,7 +147,9 @@ void add_study_new(CLI::App& study, Context& context) {
       "  kerf study new drawer --map new.import.toml --map old.import.toml -o S\n\n"
       "Words of names and folders are taken for tissue, speed, specimen (s3, donor2), rig (rig2) and blanks, "
       "which are\nread to say whether they are to be taken off. "
-      "Nothing in\nthe folder is changed.",
+      "Two files "
+      "of one recording (s1_position, s1_force) are\nsuggested, for a person to confirm. Nothing in the "
+      "folder is changed.",
       [arguments, &context] { run_study_new(*arguments, context); });
   verb.add_option("FOLDER", arguments->drawer,
                   "The drawer: text, workbooks, MAT-files, recordings, in folders or not")

@@ -11,21 +11,6 @@ namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-std::vector<std::string> words_of(const std::filesystem::path& path) {
-  std::filesystem::path stem = path;
-  stem.replace_extension();
-  std::vector<std::string> words(1);
-  for (const char c : stem.generic_string()) {
-    if (std::string_view("_-. /()[],+").find(c) != std::string_view::npos) {
-      words.emplace_back();
-    } else {
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  std::erase(words, "");
-  return words;
-}
-
 template <std::size_t Count>
 bool is_one_of(std::string_view word, const std::array<std::string_view, Count>& words) {
   return std::ranges::find(words, word) != words.end();
@@ -80,9 +65,24 @@ void append_word(std::string& text, const std::string& word) { text += (text.emp
 
 }  // namespace
 
+std::vector<std::string> words_of_name(const std::filesystem::path& path) {
+  std::filesystem::path stem = path;
+  stem.replace_extension();
+  std::vector<std::string> words(1);
+  for (const char c : stem.generic_string()) {
+    if (std::string_view("_-. /()[],+").find(c) != std::string_view::npos) {
+      words.emplace_back();
+    } else {
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  std::erase(words, "");
+  return words;
+}
+
 NameFactors name_factors(const std::filesystem::path& path) {
   NameFactors factors;
-  for (const std::string& word : words_of(path)) {
+  for (const std::string& word : words_of_name(path)) {
     if (is_blank_word(word)) {
       factors.blank = true;
     } else if (is_speed_word(word)) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace kerf::bench {
 
@@ -14,6 +15,9 @@ struct NameFactors {
   bool blank = false;    ///< blank, empty, air, idle, unloaded
   std::string numbers;   ///< numbers, time stamps and repetitions: "14 1853"
 };
+
+/// The words of a name without its extension, in lower case.
+[[nodiscard]] std::vector<std::string> words_of_name(const std::filesystem::path& path);
 
 /// Words end at '_', '-', '.', blanks, brackets and folders; case does not count. The path is below the
 /// drawer.

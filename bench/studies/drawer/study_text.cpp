@@ -42,10 +42,17 @@ std::string file_text(const DrawerFile& file) {
   if (!file.map.empty()) add("map", file.map);
   if (!file.sheet.empty()) add("sheet", file.sheet);
   if (file.stretch > 0) text += fmt::format("stretch = {}\n", file.stretch);
+  const auto add_known = [&](const char* key, const std::string& value) {
+    if (!value.empty()) add(key, value);
+  };
+  add_known("join", file.join);
+  add_known("join_suggested", file.join_suggested);
+  add_known("join_map", file.join_map);
+  add_known("join_on", file.join_on);
   add("tissue", file.tissue);
   add("speed", file.speed);
   add("specimen", file.specimen);
-  if (!file.rig.empty()) add("rig", file.rig);
+  add_known("rig", file.rig);
   text += fmt::format("blank = {}\n", file.blank);
   if (!file.accepted.empty()) add("accepted", file.accepted);
   if (!file.numbers.empty()) add("numbers", file.numbers);
@@ -86,7 +93,9 @@ std::string study_text(const StudyPlan& study) {
       "blank "
       "is the tool\n"
       "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
-      "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\".\n";
+      "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\". Where a file "
+      "is to be\n# taken together with another one of its own clock, join_suggested becomes join, with "
+      "join_map and join_on.\n";
   for (const DrawerFile& file : study.files) text += file_text(file);
   return text;
 }

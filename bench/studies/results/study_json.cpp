@@ -90,6 +90,7 @@ json of_recording(const DrawerRecording& one) {
           {"specimen", one.file.specimen.empty() ? json(nullptr) : json(one.file.specimen)},
           {"blank", one.file.blank},
           {"rig", one.file.rig.empty() ? json(nullptr) : json(one.file.rig)},
+          {"joined", one.result.join ? as_json(*one.result.join) : json(nullptr)},
           {"blank_taken_off", one.result.blank ? as_json(*one.result.blank) : json(nullptr)},
           {"counts", one.counts()},
           {"failure", one.result.failure.empty() ? json(nullptr) : json(one.result.failure)},

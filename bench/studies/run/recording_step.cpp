@@ -19,9 +19,11 @@
 #include "fits/fit_series.h"
 #include "fits/row_doubts.h"
 #include "import/import.h"
+#include "import/join.h"
 #include "inputs/study_imports.h"
 #include "inspect/flagged_cycles.h"
 #include "inspect/inspection.h"
+#include "prepare/rows.h"
 #include "recordings/axes.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
@@ -37,11 +39,61 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* first_result = "2";  // of what result.json holds: a number more makes all anew
 
+StudiedJoin studied(const Joined& joined, const std::string& file, std::size_t rows_left_out) {
+  const auto known = [&](double value) {
+    return joined.is_one_clock ? std::numeric_limits<double>::quiet_NaN() : value;
+  };
+  return {.file = file,
+          .on = joined.on,
+          .shift_s = joined.clock.shift_s,
+          .shift_error_s = known(joined.clock.shift_error_s),
+          .skew = joined.clock.skew,
+          .skew_error = known(joined.clock.skew_error),
+          .correlation = known(joined.clock.correlation),
+          .rows_left_out = rows_left_out};
+}
+
+/// Takes in what the other file measured; rows where it has nothing are no part of the recording.
+void join_other(const StepJoin& other, Imported& imported, StudiedRecording& result) {
+  schema::Recording& recording = imported.recording;
+  try {
+    const Joined joined =
+        join(imported, {.file = other.source, .map = other.import.options.map, .on = other.on},
+             other.import.options);
+    const std::vector<bool> finite = finite_rows(recording);
+    const auto left_out = static_cast<std::size_t>(std::ranges::count(finite, false));
+    keep_rows(recording, finite);
+    result.join = studied(joined, other.name, left_out);
+    for (const std::string& warning : joined.warnings)
+      imported.warnings.push_back(other.name + ": " + warning);
+    imported.warnings.push_back(joined_line(joined));
+  } catch (const std::invalid_argument& error) {
+    std::string message = error.what();
+    const std::string source = other.source.string();
+    if (message.starts_with(source)) message.replace(0, source.size(), other.name);
+    throw std::invalid_argument(message);
+  }
+}
+
+void refuse_what_waits_for_a_word(const DrawerFile& file) {
+  if (file.join_suggested.empty() || !file.join.empty()) return;
+  throw std::invalid_argument(
+      fmt::format("by its name {} is of the same recording: if so, make join_suggested join, with join_map "
+                  "and join_on; if "
+                  "not, take it away",
+                  file.join_suggested));
+}
+
 schema::Recording imported_or_read(const RecordingStep& step, StudiedRecording& result) {
+  refuse_what_waits_for_a_word(*step.file);
+  if (step.join && step.source.extension() == ".h5")
+    throw std::invalid_argument(
+        "'join' takes a file to a text, a workbook or a MAT-file, not to a recording");
   if (step.source.extension() == ".h5") return read_whole_recording(step.source);
   if (step.import.map.empty())
     throw std::invalid_argument("its columns are unknown: give it, or the study, a map");
   Imported imported = import_text(step.source, step.import.options);
+  if (step.join) join_other(*step.join, imported, result);
   result.warnings = std::move(imported.warnings);
   return std::move(imported.recording);
 }
@@ -216,6 +268,11 @@ json as_json(const ImportFile& import) {
           {"strict", options.strict}};
 }
 
+json as_json(const std::optional<StepJoin>& join) {
+  if (!join) return nullptr;
+  return {{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+}
+
 json as_json(const std::optional<StudyBlanks>& blanks) {
   if (!blanks) return nullptr;
   json all = json::array();
@@ -253,6 +310,11 @@ RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file, const fs::p
                      .file = &file,
                      .source = folder / "inputs" / fs::path(file.path),
                      .import = import_of(plan, file, folder)};
+  if (!file.join.empty())
+    step.join = {.name = file.join,
+                 .source = folder / "inputs" / fs::path(file.join),
+                 .import = import_named(file.join_map, plan, folder),
+                 .on = file.join_on};
   if (plan.subtracts_blanks && !file.blank) step.blanks = blanks_of(plan, file, folder);
   return step;
 }
@@ -262,7 +324,8 @@ std::string key_of(const RecordingStep& step) {
   const json all{
       {"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
       {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
-      {"closing", plan.closing},        {"blank", step.file->blank}, {"blanks", as_json(step.blanks)}};
+      {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
+      {"blanks", as_json(step.blanks)}};
   return sha256_of(std::string_view(all.dump()));
 }
 

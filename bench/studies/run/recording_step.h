@@ -11,12 +11,21 @@
 
 namespace kerf::bench {
 
+/// Another file with its own clock that is taken into a recording.
+struct StepJoin {
+  std::string name;              ///< below the drawer's folder
+  std::filesystem::path source;  ///< the study's copy
+  ImportFile import;
+  std::string on;
+};
+
 /// One file of a drawer and where what is made of it goes.
 struct RecordingStep {
   const StudyPlan* plan = nullptr;
   const DrawerFile* file = nullptr;
-  std::filesystem::path source;         ///< the file itself, or the study's copy of it
-  ImportFile import{};                  ///< of what is no recording
+  std::filesystem::path source;  ///< the file itself, or the study's copy of it
+  ImportFile import{};           ///< of what is no recording
+  std::optional<StepJoin> join{};
   std::optional<StudyBlanks> blanks{};  ///< one of which is to be taken off
 };
 

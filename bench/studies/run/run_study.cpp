@@ -60,7 +60,7 @@ void require_maps(const fs::path& file, const StudyPlan& plan) {
   std::string first;
   for (const DrawerFile& one : plan.files) {
     if (!one.ignored.empty() || fs::path(one.path).extension() == ".h5") continue;
-    if (!plan.map_of(one).empty()) continue;
+    if (!plan.map_of(one).empty() || !one.join_suggested.empty()) continue;
     if (unknown++ == 0) first = one.path;
   }
   if (unknown > 0)
@@ -93,6 +93,7 @@ void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& fold
   fs::path source = plan.folder / fs::path(one.file.path);
   try {
     source = copied_input(plan, one.file, folder);
+    if (!one.file.join.empty()) (void)copied_input(plan, plan.file_called(one.file.join), folder);
     one.result = made_or_kept(step_of(plan, one.file, folder), one.name, folder, stop);
   } catch (const std::system_error&) {
     throw;  // a disk, or Ctrl-C: no fault of the file

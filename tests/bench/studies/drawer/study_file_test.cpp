@@ -29,6 +29,9 @@ StudyPlan some_plan() {
                  .found = "3 columns",
                  .sheet = "Run 2",
                  .stretch = 2,
+                 .join = "a_force.txt",
+                 .join_map = "time=1[s],position=2[mm],force=3[N]",
+                 .join_on = "position",
                  .tissue = "liver",
                  .speed = "slow",
                  .specimen = "s1",
@@ -70,6 +73,9 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.files[0].path, plan.files[0].path);
   EXPECT_EQ(again.files[0].specimen, "s1");
   EXPECT_EQ(again.files[0].rig, "rig2");
+  EXPECT_EQ(again.files[0].join, "a_force.txt");
+  EXPECT_EQ(again.files[0].join_map, plan.files[0].join_map);
+  EXPECT_EQ(again.files[0].join_on, "position");
   EXPECT_EQ(again.files[0].stretch, 2U);
   EXPECT_TRUE(again.subtracts_blanks);
   EXPECT_EQ(again.why_blanks, plan.why_blanks);
@@ -96,6 +102,10 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"../picture.png\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"pictures/\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
+  EXPECT_THAT(with("join_on = \"position\"\n", ""), HasSubstr("needs 'join_map'"));
+  EXPECT_THAT(with("join = \"a_force.txt\"", "join = \"../a_force.txt\""), HasSubstr("below the drawer"));
+  EXPECT_THAT(with("path = \"picture.png\"\nignored = \"no text\"", "path = \"a_force.txt\""),
+              HasSubstr("takes part itself"));
   EXPECT_THAT(with("blank = \"subtract\"", "blank = \"off\""), HasSubstr("not \"off\""));
   EXPECT_THAT(with("files = \"rig2/*.csv\"\n", ""), HasSubstr("needs 'files'"));
   EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
