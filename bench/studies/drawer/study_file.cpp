@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -189,8 +190,9 @@ StudyPlan read_study(const fs::path& file) {
 }
 
 void require_drawer_size(const fs::path& file) {
-  const std::uintmax_t bytes = fs::file_size(file);
-  if (bytes > largest_drawer_file)
+  std::error_code unknown;  // of what is no file, which is told where it is read
+  const std::uintmax_t bytes = fs::file_size(file, unknown);
+  if (!unknown && bytes > largest_drawer_file)
     throw std::invalid_argument(fmt::format("{:.1f} GB: a file of a study holds {} MB at most",
                                             1e-9 * static_cast<double>(bytes), largest_drawer_file >> 20U));
 }

@@ -13,6 +13,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "files/disk_room.h"
 #include "files/json_file.h"
 #include "files/named_file.h"
 #include "files/whole_file.h"
@@ -207,6 +208,8 @@ StudyResults run_study(const fs::path& file, const StudyRunOptions& options, con
       results.recordings.push_back({.name = names[i], .file = plan.files[i], .result = {}});
   if (results.recordings.empty())
     throw std::invalid_argument(fmt::format("{}: no file takes part in this study", file.string()));
+  require_disk(folder / "recordings", bytes_of_run(plan, folder),
+               fmt::format("a study of {} files", results.recordings.size()));
   if (options.only_report) {
     take_kept(results.recordings, folder);
   } else {
