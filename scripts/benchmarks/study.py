@@ -1,9 +1,12 @@
 # peers: python3-scipy python3-numpy
-"""How often a study of a simulated drawer holds the truth, by the whole way from text files to study.json.
+"""How often a study of a simulated drawer holds the truth, by the whole way from text files to study.json, and how long one takes.
 
 A drawer: 3 tissues x 2 speeds x 5 specimens, Kelvin elements whose parameters differ by 0.1 from specimen to specimen and by 0.05 from
 recording to recording (standard deviations of logarithms); liver and skin are alike, cartilage is 1.5 times as stiff. One recording is
-clipped, one is in gram-force under a map that says N, one has two clocks.
+clipped, one is in gram-force under a map that says N, of one the clock starts anew, and one is two files with a clock each.
+
+    study.py HOUSE [SEEDS]   SEEDS drawers (2,000)
+    study.py HOUSE time      a drawer of 19 recordings of 18,000 rows, from files to report
 """
 
 import collections
@@ -12,9 +15,12 @@ import json
 import math
 import os
 import pathlib
+import re
+import resource
 import subprocess
 import sys
 import tempfile
+import time
 
 import numpy
 from scipy.stats import beta
@@ -37,37 +43,99 @@ def exact(held, trials, level=0.999):
     return (beta.ppf(tail, held, trials - held + 1) if held else 0.0, beta.ppf(1.0 - tail, held + 1, trials - held) if held < trials else 1.0)
 
 
+FINE = 20  # steps a row, so that the simulation's own error is far below a standard error
+
+
+def simulated(parameters, rates, chirps, rows):
+    """Positions [m] and forces [N] at FINE steps a row of Kelvin elements, each pushed `rates` times a second, faster by `chirps` a second."""
+    k1, k2, b = numpy.array(parameters).T
+    rates, chirps = numpy.array(rates), numpy.array(chirps)
+    step = 1.0 / (RATE * FINE)
+    arm = numpy.zeros(len(rates))
+    decay = numpy.exp(-k2 / b * step)
+    force = numpy.zeros((rows * FINE, len(rates)))
+    position = numpy.zeros((rows * FINE, len(rates)))
+    for i in range(rows * FINE):
+        time = i * step
+        position[i] = 0.5 * DEPTH * (1.0 - numpy.cos(2.0 * math.pi * rates * (time + 0.5 * chirps * time * time)))
+        force[i] = k1 * position[i] + arm
+        time += 0.5 * step
+        turns = rates * (time + 0.5 * chirps * time * time)
+        speed = math.pi * DEPTH * rates * (1.0 + chirps * time) * numpy.sin(2.0 * math.pi * turns)
+        arm = arm * decay + b * speed * (1.0 - decay)
+    return position, numpy.maximum(force, 0.0)
+
+
+def specimens_of(random, specimens, speeds):
+    """Names, parameters and strokes a second of every tissue, specimen and speed."""
+    names, parameters, rates = [], [], []
+    for place, (tissue, factor) in enumerate(TISSUES.items()):
+        for specimen in range(specimens):
+            of_specimen = random.normal(0.0, BETWEEN, 3)
+            for speed, rate in speeds.items():
+                names.append("%s_%s_s%d" % (tissue, speed, specimens * place + specimen + 1))
+                parameters.append(numpy.array(list(MEANS.values())) * factor * numpy.exp(of_specimen + random.normal(0.0, WITHIN, 3)))
+                rates.append(rate)
+    return names, parameters, rates
+
+
+def write_table(file, *columns):
+    numpy.savetxt(file, numpy.column_stack(columns), fmt="%.7f", delimiter="\t")
+
+
+def write_two_clocks(folder, name, random, position, force):
+    """The motion by one clock and the forces by another one, t = shift + (1 + skew) t_other, with the wire by which both are found together."""
+    shift, skew = random.uniform(0.1, 0.4), random.uniform(-3e-4, 3e-4)
+    fine = numpy.arange(len(position)) / (RATE * FINE)
+    time = numpy.arange(len(position) // FINE) / RATE
+    write_table(folder / (name + "_position.txt"), time, 1e3 * position[::FINE])
+    other = numpy.arange(int((fine[-1] - shift) / (1.0 + skew) * RATE)) / RATE
+    at = shift + (1.0 + skew) * other
+    wire = numpy.interp(at, fine, position) + random.normal(0.0, 1e-6, len(at))
+    write_table(folder / (name + "_force.txt"), other, 1e3 * wire, numpy.interp(at, fine, force) + random.normal(0.0, NOISE, len(at)))
+    return {"name": name + "_position", "shift_s": shift, "skew": skew}
+
+
 def drawer(folder, seed):
     """Text files of all recordings; the names of those that something is wrong with."""
     random = numpy.random.default_rng(seed)
-    names, parameters, rates = [], [], []
-    for place, (tissue, factor) in enumerate(TISSUES.items()):
-        for specimen in range(5):
-            of_specimen = random.normal(0.0, BETWEEN, 3)
-            for speed, rate in SPEEDS.items():
-                values = numpy.array(list(MEANS.values())) * factor * numpy.exp(of_specimen + random.normal(0.0, WITHIN, 3))
-                names.append("%s_%s_s%d" % (tissue, speed, 5 * place + specimen + 1))
-                parameters.append(values)
-                rates.append(rate)
-    k1, k2, b = numpy.array(parameters).T
-    rates = numpy.array(rates)
+    names, parameters, rates = specimens_of(random, 5, SPEEDS)
+    clipped, gram, anew, two_clocks = random.choice(len(names), 4, replace=False)
+    chirps = numpy.zeros(len(names))
+    chirps[two_clocks] = 0.15  # strokes that are all alike tell no shift
     rows = int(SECONDS * RATE)
-    time = numpy.arange(rows) / RATE
-    # The arm's force f of x = D/2 (1 - cos wt) solves f' = k2 x' - (k2 / b) f, f(0) = 0.
-    omega, a, phase = 2.0 * math.pi * rates, k2 / b, 2.0 * math.pi * time[:, None] * rates
-    position = 0.5 * DEPTH * (1.0 - numpy.cos(phase))
-    arm = (0.5 * k2 * DEPTH * omega / (a**2 + omega**2)
-           * (a * numpy.sin(phase) + omega * (numpy.exp(-a * time[:, None]) - numpy.cos(phase))))
-    force = k1 * position + arm
-    force = numpy.maximum(force, 0.0) + random.normal(0.0, NOISE, force.shape)
-    clipped, gram, two_clocks = random.choice(len(names), 3, replace=False)
+    fine_position, fine_force = simulated(parameters, rates, chirps, rows)
+    position = fine_position[::FINE]
+    force = fine_force[::FINE] + random.normal(0.0, NOISE, position.shape)
     force[:, clipped] = numpy.minimum(force[:, clipped], 0.9 * force[:, clipped].max())
     force[:, gram] /= 9.80665e-3
+    time = numpy.arange(rows) / RATE
+    wrong = {"clipped": names[clipped], "gram": names[gram], "anew": names[anew]}
     for at, name in enumerate(names):
-        clock = numpy.where(time < SECONDS / 2, time, time - SECONDS / 2) if at == two_clocks else time
-        table = numpy.column_stack([clock, 1e3 * position[:, at], force[:, at]])
-        numpy.savetxt(folder / (name + ".txt"), table, fmt="%.6f", delimiter="\t")
-    return {"clipped": names[clipped], "gram": names[gram], "two clocks": names[two_clocks]}
+        if at == two_clocks:
+            wrong["two clocks"] = write_two_clocks(folder, name, random, fine_position[:, at], fine_force[:, at])
+        else:
+            clock = numpy.where(time < SECONDS / 2, time, time - SECONDS / 2) if at == anew else time
+            write_table(folder / (name + ".txt"), clock, 1e3 * position[:, at], force[:, at])
+    return wrong
+
+
+def confirmed(text):
+    """study.toml as a person corrects it: what is compared, and the two files that are one recording."""
+    text = text.replace('compare = ["peak"]', 'compare = ["kelvin.parallel_stiffness"]')
+    return re.sub(r"join_suggested = (.*)", r'join = \1\njoin_map = "%s"\njoin_on = "position"\nmap = "time=1[s],position=2[mm]"' % MAP, text)
+
+
+def count_clocks(counts, truth, recordings):
+    """Whether the shift and the skew of the two files lie within their 95 % intervals (t of 15 degrees of freedom)."""
+    found = recordings[truth["name"]]
+    if not found["joined"]:
+        return
+    counts["joined"] += 1
+    for what in ("shift", "skew"):
+        key = "shift_s" if what == "shift" else "skew"
+        error = found["joined"]["shift_std_error_s" if what == "shift" else "skew_std_error"]
+        counts[what, "held"] += abs(found["joined"][key] - truth[key]) <= 2.131 * error
 
 
 def one_seed(arguments):
@@ -80,16 +148,17 @@ def one_seed(arguments):
         study = folder / "S"
         run = lambda *words: subprocess.run([program, "study", *words], capture_output=True, text=True)
         run("new", str(folder / "drawer"), "--map", MAP, "--laws", "kelvin", "-o", str(study))
-        text = (study / "study.toml").read_text().replace('compare = ["peak"]', 'compare = ["kelvin.parallel_stiffness"]')
-        (study / "study.toml").write_text(text)
+        text = (study / "study.toml").read_text()
+        counts["pair suggested"] += 'join_suggested = "%s' % wrong["two clocks"]["name"].removesuffix("position") in text
+        (study / "study.toml").write_text(confirmed(text))
         ran = run("run", str(study / "study.toml"), "-j", "1")
         found = json.loads((study / "study.json").read_text())
         recordings = {one["name"]: one for one in found["recordings"]}
         counts["unit found"] += any("gf taken for N" in doubt for doubt in recordings[wrong["gram"]]["doubts"])
-        counts["clock found"] += "anew" in (recordings[wrong["two clocks"]]["failure"] or "")
+        counts["clock found"] += "anew" in (recordings[wrong["anew"]]["failure"] or "")
+        count_clocks(counts, wrong["two clocks"], recordings)
         counts["clipping found"] += any("clipped" in line for line in recordings[wrong["clipped"]]["warnings"])
-        counts["wrongly doubted"] += sum(bool(one["doubts"]) for name, one in recordings.items()
-                                         if name not in wrong.values())
+        counts["wrongly doubted"] += sum(bool(one["doubts"]) for name, one in recordings.items() if name not in (wrong["gram"], wrong["clipped"]))
         together = math.hypot(BETWEEN, WITHIN)
         for group in found["groups"]:
             for quantity in group["quantities"]:
@@ -113,13 +182,14 @@ def one_seed(arguments):
                 alarm = alarm or differ
         counts["studies with a false alarm"] += alarm
         counts["seeds"] += 1
-        assert ran.returncode == 1, ran.stderr  # the file with two clocks
+        assert ran.returncode == 1, ran.stderr  # the file whose clock starts anew
     return counts
 
 
 def table(counts):
     seeds = counts["seeds"]
-    lines = ["%d simulated drawers of 30 text files (3 tissues x 2 speeds x 5 specimens; one clipped, one in gf under N, one with two clocks), "
+    lines = ["%d simulated drawers of 30 text files (3 tissues x 2 speeds x 5 specimens; one clipped, one in gf under N, one whose clock starts anew, one in two "
+             "files with a clock each), "
              "from files to `study.json`, law `kelvin`. Low or high: the exact 99.9 %% interval of the share does not touch %.0f to %.0f %%." % (
                  seeds, 100 * LEAST, 100 * MOST), "",
              "| 95 % interval of | mean of a group [%] | spread of a group [%] |", "|---|---|---|"]
@@ -132,8 +202,10 @@ def table(counts):
         lines.append("| %s | %s | %s |" % (parameter, *cells))
     differences = counts["differences"]
     lines += ["", "| found | of |", "|---|---|"]
-    for what in ("unit found", "clock found", "clipping found"):
+    for what in ("unit found", "clock found", "clipping found", "pair suggested", "joined"):
         lines.append("| %s: %d | %d |" % (what, counts[what], seeds))
+    for what in ("shift", "skew"):
+        lines.append("| %s of the two clocks within its 95 %% interval: %d | %d |" % (what, counts[what, "held"], counts["joined"]))
     lines.append("| recordings doubted without a reason: %d | %d |" % (counts["wrongly doubted"], 27 * seeds))
     for verdict in ("differ", "not told apart", "cannot be told"):
         lines.append("| cartilage and another tissue (1.5 times): %s: %d | %d |" % (verdict, counts["differences", verdict], differences))
@@ -141,8 +213,39 @@ def table(counts):
     return lines
 
 
+def time_one(house):
+    """Seconds from 19 files of 18,000 rows to the report, on two processors."""
+    program = str(house / "build/release/bin/kerf")
+    random = numpy.random.default_rng(1)
+    names, parameters, rates = specimens_of(random, 3, {"slow": 1.0 / 3.0, "fast": 2.0 / 3.0})
+    position, force = (values[::FINE] for values in simulated(parameters + [numpy.array([1.0, 1.0, 20.0])], rates + [1.0 / 3.0], [0.0] * 19, 18000))
+    force = force + random.normal(0.0, NOISE, force.shape)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        (folder / "drawer").mkdir()
+        for at, name in enumerate(names + ["blank_slow"]):
+            write_table(folder / "drawer" / (name + ".txt"), numpy.arange(18000) / RATE, 1e3 * position[:, at], force[:, at])
+        seconds, processor = [], []
+        for words in (["new", str(folder / "drawer"), "--map", MAP, "-o", str(folder / "S")], ["run", str(folder / "S/study.toml"), "-j", "2"]):
+            begin = time.monotonic()
+            subprocess.run([program, "study", *words], check=True, capture_output=True)
+            seconds.append(time.monotonic() - begin)
+            used = resource.getrusage(resource.RUSAGE_CHILDREN)
+            processor.append(used.ru_utime + used.ru_stime - sum(processor))
+    return ["19 recordings of 18,000 rows (18 punches of three tissues at two speeds and a blank, 12 and 24 cycles each), the usual four laws, "
+            "on two processors (`-j 2`):", "", "| step | seconds | of which processor, both together |", "|---|---|---|",
+            "| `kerf study new` | %.1f | %.1f |" % (seconds[0], processor[0]),
+            "| `kerf study run`, from files to report | %.1f | %.1f |" % (seconds[1], processor[1]), "",
+            "The machine also did other work: %.1f processes were ready to run on average." % os.getloadavg()[0]]
+
+
 def main():
     house = pathlib.Path(sys.argv[1])
+    if sys.argv[2:] == ["time"]:
+        body = "\n".join(time_one(house))
+        print(body)
+        replace_section(house / "docs/benchmarks.md", "study-time", "How long a study takes", body)
+        return
     seeds = int(sys.argv[2]) if len(sys.argv) > 2 else SEEDS
     program = str(house / "build/release/bin/kerf")
     counts = collections.Counter()

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "files/disk_room.h"
 #include "files/file_names.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
@@ -34,6 +35,7 @@ std::vector<std::string> names_of(const std::vector<std::string>& files) {
 void run_together(const FitArguments& arguments, Context& context) {
   const fs::path folder = arguments.output;
   if (!arguments.force) refuse_to_replace_fits(arguments.options, folder);
+  require_disk(folder, bytes_of_results, "law files and tables");
   const auto names = names_of(arguments.recordings);
   std::vector<schema::Recording> recordings;
   std::vector<FitSource> sources;
@@ -80,6 +82,8 @@ void run_batch_of(const FitArguments& arguments, Context& context) {
   const fs::path folder = arguments.output;
   for (const auto* table : {"batch.csv", "batch.json"}) require_output(folder / table, arguments.force);
   const auto recordings = recordings_in(arguments.batch);
+  require_disk(folder, recordings.size() * bytes_of_results,
+               fmt::format("law files and tables of {} recordings", recordings.size()));
   const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
   const BatchOptions options{
       .folder = arguments.batch,

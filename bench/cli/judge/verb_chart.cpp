@@ -13,6 +13,7 @@
 #include "chart/chart_files.h"
 #include "chart/limit_cycle_check.h"
 #include "chart/speed_accuracy.h"
+#include "files/disk_room.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "fits/row_doubts.h"
@@ -50,6 +51,7 @@ void check(const ChartVerbArguments& arguments) {
   if (!arguments.scene.empty() && (!arguments.axis.empty() || arguments.no_folds)) {
     throw std::invalid_argument("--axis and --no-folds are for a recording, not for a scene");
   }
+  if (!arguments.output.empty()) require_disk(arguments.output, bytes_of_results, "charts and tables");
   for (const auto* name : names) {
     if (!arguments.output.empty()) require_output(fs::path(arguments.output) / name, arguments.force);
   }

@@ -14,6 +14,7 @@
 #include "choose/fidelity.h"
 #include "choose/loop_checks.h"
 #include "choose/scene_cut.h"
+#include "files/disk_room.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "fits/row_doubts.h"
@@ -168,6 +169,8 @@ void run_choose(const ChooseVerbArguments& arguments, Context& context) {
   if (arguments.recording.empty() == arguments.scene.empty())
     throw std::invalid_argument("name a recording, or a scene with --scene to make one of");
   if (!arguments.output.empty()) refuse_to_replace_choice(arguments.output, arguments.force);
+  if (!arguments.output.empty())
+    require_disk(arguments.output, bytes_of_results, "a law file and its reasons");
   Output output;
   if (!arguments.output.empty()) output.emplace(arguments.output, schema::existing_if(arguments.force));
   const StopOnSignal signals;

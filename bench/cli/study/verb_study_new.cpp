@@ -11,6 +11,7 @@
 
 #include "drawer/look.h"
 #include "drawer/study_file.h"
+#include "drawer/suggest_blank.h"
 #include "files/whole_file.h"
 #include "study/verb_study.h"
 
@@ -55,6 +56,24 @@ std::vector<OfferedMap> offered_maps(const StudyNewArguments& arguments, const f
   return offered;
 }
 
+/// How a file is imported, while what study.toml will name is not copied yet.
+ImportFile offered_import(const DrawerFile& file, const std::vector<OfferedMap>& maps) {
+  ImportFile import{.map = file.map, .options = {}};
+  for (const OfferedMap& one : maps)
+    if (one.name == file.map || (file.map.empty() && &one == &maps.front())) import = one.import;
+  if (!import.map.empty()) import.options.map = parse_map(import.map);
+  import.options.max_bytes = largest_drawer_file;
+  return import;
+}
+
+void suggest_blanks(StudyPlan& plan, const fs::path& drawer, const std::vector<OfferedMap>& maps) {
+  plan.folder = drawer;
+  const BlankSuggestion blanks =
+      suggest_blank(plan, [&](const DrawerFile& file) { return offered_import(file, maps); });
+  plan.subtracts_blanks = blanks.subtract;
+  plan.why_blanks = blanks.why;
+}
+
 void say_drawer(const StudyPlan& plan, Context& context) {
   context.say(fmt::format("  {:44} {:24} {:10} {:10} {}", "file", "tissue", "speed", "specimen", ""));
   for (const DrawerFile& file : plan.files) {
@@ -63,6 +82,10 @@ void say_drawer(const StudyPlan& plan, Context& context) {
     } else {
       context.say(fmt::format("  {:44} {:24} {:10} {:10} {}", file.path, file.blank ? "(blank)" : file.tissue,
                               file.speed, file.specimen, file.found));
+      if (!file.join_suggested.empty())
+        context.say(
+            fmt::format("    one recording by two clocks with {}? Then its join_suggested becomes join",
+                        file.join_suggested));
     }
   }
 }
@@ -70,15 +93,21 @@ void say_drawer(const StudyPlan& plan, Context& context) {
 nlohmann::ordered_json drawer_as_json(const StudyPlan& plan, const fs::path& file) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const DrawerFile& one : plan.files)
-    files.push_back({{"path", one.path},
-                     {"ignored", one.ignored.empty() ? nlohmann::ordered_json(nullptr)
-                                                     : nlohmann::ordered_json(one.ignored)},
-                     {"found", one.found},
-                     {"tissue", one.tissue},
-                     {"speed", one.speed},
-                     {"specimen", one.specimen},
-                     {"blank", one.blank}});
-  return {{"study", file.string()}, {"files", files}};
+    files.push_back(
+        {{"path", one.path},
+         {"ignored",
+          one.ignored.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(one.ignored)},
+         {"found", one.found},
+         {"tissue", one.tissue},
+         {"speed", one.speed},
+         {"specimen", one.specimen},
+         {"join_suggested", one.join_suggested.empty() ? nlohmann::ordered_json(nullptr)
+                                                       : nlohmann::ordered_json(one.join_suggested)},
+         {"rig", one.rig},
+         {"blank", one.blank}});
+  return {{"study", file.string()},
+          {"blanks", {{"subtract", plan.subtracts_blanks}, {"why", plan.why_blanks}}},
+          {"files", files}};
 }
 
 void run_study_new(const StudyNewArguments& arguments, Context& context) {
@@ -92,6 +121,7 @@ void run_study_new(const StudyNewArguments& arguments, Context& context) {
   plan.laws = arguments.laws.empty() ? laws_to_begin_with() : arguments.laws;
   for (const std::string& law : plan.laws) fitting::check_model(law);
   plan.compare = {"peak"};
+  suggest_blanks(plan, arguments.drawer, maps);
   fs::create_directories(folder);
   plan.folder = from_study(arguments.drawer, folder);
   write_whole_file(file, study_text(plan), schema::existing_if(arguments.force));
@@ -99,6 +129,9 @@ void run_study_new(const StudyNewArguments& arguments, Context& context) {
   say_drawer(plan, context);
   const auto taken =
       std::ranges::count_if(plan.files, [](const DrawerFile& one) { return one.ignored.empty(); });
+  if (std::ranges::any_of(plan.files, &DrawerFile::blank))
+    context.say(fmt::format("blanks are {}: {}", plan.subtracts_blanks ? "to be taken off" : "only told of",
+                            plan.why_blanks));
   context.say(
       fmt::format("{} of {} files take part; look through {} and correct it, then 'kerf study run {}'", taken,
                   plan.files.size(), file.string(), file.string()));
@@ -108,13 +141,16 @@ void run_study_new(const StudyNewArguments& arguments, Context& context) {
 
 void add_study_new(CLI::App& study, Context& context) {
   auto arguments = std::make_shared<StudyNewArguments>();
-  Verb verb =
-      add_verb(study, context, "new", "Look into a folder of files and write a study.toml to correct",
-               "kerf study new drawer --map 'time=1[s],position=2[mm],force=3[N]' -o S\n"
-               "  kerf study new drawer --map new.import.toml --map old.import.toml -o S\n\n"
-               "Words of names and folders are taken for tissue, speed, specimen (s3, donor2) and blanks. "
-               "Nothing in\nthe folder is changed.",
-               [arguments, &context] { run_study_new(*arguments, context); });
+  Verb verb = add_verb(
+      study, context, "new", "Look into a folder of files and write a study.toml to correct",
+      "kerf study new drawer --map 'time=1[s],position=2[mm],force=3[N]' -o S\n"
+      "  kerf study new drawer --map new.import.toml --map old.import.toml -o S\n\n"
+      "Words of names and folders are taken for tissue, speed, specimen (s3, donor2), rig (rig2) and blanks, "
+      "which are\nread to say whether they are to be taken off. "
+      "Two files "
+      "of one recording (s1_position, s1_force) are\nsuggested, for a person to confirm. Nothing in the "
+      "folder is changed.",
+      [arguments, &context] { run_study_new(*arguments, context); });
   verb.add_option("FOLDER", arguments->drawer,
                   "The drawer: text, workbooks, MAT-files, recordings, in folders or not")
       .required();

@@ -11,4 +11,7 @@ namespace kerf::bench {
 /// @throws std::system_error (ENOSPC) that says how much is needed for what, and how much there is.
 void require_disk(const std::filesystem::path& file, std::uintmax_t bytes, std::string_view needed_for);
 
+/// What the results of one recording take at most, about [bytes]: law files, tables, charts.
+inline constexpr std::uintmax_t bytes_of_results = std::uintmax_t{1} << 20U;
+
 }  // namespace kerf::bench

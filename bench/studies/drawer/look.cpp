@@ -9,6 +9,7 @@
 #include <kerf/schema/recording_file.h>
 
 #include "drawer/name_factors.h"
+#include "drawer/pair_files.h"
 #include "files/named_file.h"
 #include "formats/file_text.h"
 #include "import/column_map.h"
@@ -111,6 +112,7 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
     file.tissue = factors.tissue;
     file.speed = factors.speed;
     file.specimen = factors.specimen;
+    file.rig = factors.rig;
     file.blank = factors.blank;
     file.numbers = factors.numbers;
   } catch (const std::exception& error) {
@@ -142,6 +144,7 @@ std::vector<DrawerFile> look_into(const fs::path& folder, const std::vector<Offe
   std::ranges::sort(paths);
   std::vector<DrawerFile> files;
   for (const fs::path& path : paths) files.push_back(looked_at(path, folder, maps));
+  suggest_pairs(files, folder);
   ignore_copies(files);
   return files;
 }

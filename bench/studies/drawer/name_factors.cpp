@@ -11,21 +11,6 @@ namespace {
 
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
-std::vector<std::string> words_of(const std::filesystem::path& path) {
-  std::filesystem::path stem = path;
-  stem.replace_extension();
-  std::vector<std::string> words(1);
-  for (const char c : stem.generic_string()) {
-    if (std::string_view("_-. /()[],+").find(c) != std::string_view::npos) {
-      words.emplace_back();
-    } else {
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  std::erase(words, "");
-  return words;
-}
-
 template <std::size_t Count>
 bool is_one_of(std::string_view word, const std::array<std::string_view, Count>& words) {
   return std::ranges::find(words, word) != words.end();
@@ -61,6 +46,12 @@ bool is_specimen_word(std::string_view word) {
   return !prefix.empty() && is_one_of(prefix, prefixes);
 }
 
+bool is_rig_word(std::string_view word) {
+  constexpr std::array<std::string_view, 4> prefixes{"rig", "setup", "tool", "device"};
+  const std::string_view prefix = prefix_of_number(word);
+  return !prefix.empty() && is_one_of(prefix, prefixes);
+}
+
 bool is_number_word(std::string_view word) {
   if (std::ranges::all_of(word, is_digit)) return true;
   constexpr std::array<std::string_view, 8> prefixes{"t", "r", "trial", "run", "rep", "test", "no", "v"};
@@ -74,15 +65,32 @@ void append_word(std::string& text, const std::string& word) { text += (text.emp
 
 }  // namespace
 
+std::vector<std::string> words_of_name(const std::filesystem::path& path) {
+  std::filesystem::path stem = path;
+  stem.replace_extension();
+  std::vector<std::string> words(1);
+  for (const char c : stem.generic_string()) {
+    if (std::string_view("_-. /()[],+").find(c) != std::string_view::npos) {
+      words.emplace_back();
+    } else {
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+  }
+  std::erase(words, "");
+  return words;
+}
+
 NameFactors name_factors(const std::filesystem::path& path) {
   NameFactors factors;
-  for (const std::string& word : words_of(path)) {
+  for (const std::string& word : words_of_name(path)) {
     if (is_blank_word(word)) {
       factors.blank = true;
     } else if (is_speed_word(word)) {
       append_word(factors.speed, word);
     } else if (is_specimen_word(word)) {
       append_word(factors.specimen, word);
+    } else if (is_rig_word(word)) {
+      append_word(factors.rig, word);
     } else if (is_number_word(word)) {
       append_word(factors.numbers, word);
     } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
@@ -32,17 +33,20 @@ std::vector<std::string> texts_of(const Place& place, const toml::table& root, s
   return texts;
 }
 
+bool is_below_drawer(const fs::path& path) {
+  const bool leaves = std::ranges::any_of(path, [](const fs::path& part) { return part == ".."; });
+  return path.has_filename() && path.filename() != "." && !path.is_absolute() && !leaves;
+}
+
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
-  place.allow_only(table,
-                   {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank",
-                    "accepted", "numbers", "sheet", "stretch"},
-                   "[[file]]");
+  place.allow_only(
+      table,
+      {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank", "accepted",
+       "numbers", "sheet", "stretch", "rig", "join", "join_map", "join_on", "join_suggested"},
+      "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
-  const fs::path path(file.path);
-  const bool leaves = std::ranges::any_of(path, [](const fs::path& part) { return part == ".."; });
-  if (!path.has_filename() || path.filename() == "." || path.is_absolute() || leaves)
-    place.refuse(table, "a [[file]] needs a 'path' below the drawer's folder");
+  if (!is_below_drawer(file.path)) place.refuse(table, "a [[file]] needs a 'path' below the drawer's folder");
   file.sha256 = place.text(table, "sha256", "");
   file.found = place.text(table, "found", "");
   file.ignored = place.text(table, "ignored", "");
@@ -53,9 +57,20 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
     if (number < 1) place.refuse(*stretch, "'stretch' is a number from 1");
     file.stretch = static_cast<std::size_t>(number);
   }
+  file.join = place.text(table, "join", "");
+  file.join_map = place.text(table, "join_map", "");
+  file.join_on = place.text(table, "join_on", "");
+  file.join_suggested = place.text(table, "join_suggested", "");
+  if (!file.join.empty() && (!is_below_drawer(file.join) || file.join == file.path))
+    place.refuse(*table.get("join"), "'join' names another file below the drawer's folder");
+  if (!file.join.empty() && (file.join_map.empty() || file.join_on.empty()))
+    place.refuse(*table.get("join"),
+                 "'join' needs 'join_map', such as \"time=1[s],position=2[mm],force=3[N]\", and 'join_on', a "
+                 "channel of both or \"time\"");
   file.tissue = place.text(table, "tissue", "");
   file.speed = place.text(table, "speed", "");
   file.specimen = place.text(table, "specimen", "");
+  file.rig = place.text(table, "rig", "");
   file.blank = place.flag(table, "blank", false);
   file.accepted = place.text(table, "accepted", "");
   file.numbers = place.text(table, "numbers", "");
@@ -73,6 +88,22 @@ void read_files(const Place& place, const toml::table& root, StudyPlan& study) {
       place.refuse(node, "'{}' is here a second time", file.path);
     study.files.push_back(std::move(file));
   }
+  for (const DrawerFile& file : study.files)
+    if (!file.join.empty() && file.ignored.empty() && study.file_called(file.join).ignored.empty() &&
+        std::ranges::find(study.files, file.join, &DrawerFile::path) != study.files.end())
+      place.refuse(*files, "'{}' is joined to '{}' and takes part itself: give it ignored = \"why\"",
+                   file.join, file.path);
+}
+
+void read_prepare(const Place& place, const toml::table& root, StudyPlan& study) {
+  if (root.get("prepare") == nullptr) return;  // of an earlier version
+  const toml::table& prepare = place.table(root, "prepare");
+  place.allow_only(prepare, {"blank", "why"}, "[prepare]");
+  const std::string blank = place.text(prepare, "blank", "leave");
+  if (blank != "leave" && blank != "subtract")
+    place.refuse(*prepare.get("blank"), "'blank' is \"subtract\" or \"leave\", not \"{}\"", blank);
+  study.subtracts_blanks = blank == "subtract";
+  study.why_blanks = place.text(prepare, "why", "");
 }
 
 void read_layouts(const Place& place, const toml::table& root, StudyPlan& study) {
@@ -133,7 +164,7 @@ StudyPlan read_study(const fs::path& file) {
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
   place.allow_only(root,
                    {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
-                    "file", "layout"},
+                    "file", "layout", "prepare"},
                    "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");
@@ -152,14 +183,16 @@ StudyPlan read_study(const fs::path& file) {
   study.people = texts_of(place, root, "people");
   read_laws(place, root, study);
   read_compare(place, root, study);
+  read_prepare(place, root, study);
   read_layouts(place, root, study);
   read_files(place, root, study);
   return study;
 }
 
 void require_drawer_size(const fs::path& file) {
-  const std::uintmax_t bytes = fs::file_size(file);
-  if (bytes > largest_drawer_file)
+  std::error_code unknown;  // of what is no file, which is told where it is read
+  const std::uintmax_t bytes = fs::file_size(file, unknown);
+  if (!unknown && bytes > largest_drawer_file)
     throw std::invalid_argument(fmt::format("{:.1f} GB: a file of a study holds {} MB at most",
                                             1e-9 * static_cast<double>(bytes), largest_drawer_file >> 20U));
 }
@@ -172,10 +205,21 @@ const std::string& StudyPlan::map_of(const DrawerFile& file) const {
   return layout == layouts.end() ? map : layout->map;
 }
 
+DrawerFile StudyPlan::file_called(const std::string& path) const {
+  const auto found = std::ranges::find(files, path, &DrawerFile::path);
+  if (found != files.end()) return *found;
+  DrawerFile none;
+  none.path = path;
+  return none;
+}
+
 std::vector<std::string> StudyPlan::named_maps() const {
   std::vector<std::string> maps{map};
   for (const StudyLayout& layout : layouts) maps.push_back(layout.map);
-  for (const DrawerFile& file : files) maps.push_back(file.map);
+  for (const DrawerFile& file : files) {
+    maps.push_back(file.map);
+    maps.push_back(file.join_map);
+  }
   std::erase(maps, "");
   return maps;
 }

@@ -10,16 +10,21 @@ namespace kerf::bench {
 
 /// One file of a drawer, as study.toml has it.
 struct DrawerFile {
-  std::string path;         ///< below the drawer's folder
-  std::string sha256;       ///< when the drawer was looked at; empty: too large to be read
-  std::string found;        ///< what it holds, in words
-  std::string ignored;      ///< why it takes no part; empty: it does
-  std::string map;          ///< of its own, or an import file; empty: that of its layout or of the study
-  std::string sheet{};      ///< of a workbook; empty: the first with numbers
-  std::size_t stretch = 0;  ///< of a clock that starts anew, from 1; 0: it does not
+  std::string path;              ///< below the drawer's folder
+  std::string sha256;            ///< when the drawer was looked at; empty: too large to be read
+  std::string found;             ///< what it holds, in words
+  std::string ignored;           ///< why it takes no part; empty: it does
+  std::string map;               ///< of its own, or an import file; empty: that of its layout or of the study
+  std::string sheet{};           ///< of a workbook; empty: the first with numbers
+  std::size_t stretch = 0;       ///< of a clock that starts anew, from 1; 0: it does not
+  std::string join{};            ///< another file with its own clock, below the drawer's folder
+  std::string join_map{};        ///< its columns, or an import file
+  std::string join_on{};         ///< channel of both that brings the clocks together, or "time"
+  std::string join_suggested{};  ///< by names, for a person to confirm: until then nothing is made of it
   std::string tissue;
   std::string speed;
   std::string specimen;
+  std::string rig{};     ///< that it was recorded with, where there are several
   bool blank = false;    ///< the tool without a tissue
   std::string accepted;  ///< why it counts whatever is doubted of it; empty: a doubt leaves it out
   std::string numbers;   ///< numbers and time stamps of its name, which are no factor
@@ -50,10 +55,14 @@ struct StudyPlan {
   std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
   std::string licence;               ///< of the data, a URL or a name; empty: none was given
   std::vector<std::string> people;
+  bool subtracts_blanks = false;  ///< from the recordings of their rig and speed
+  std::string why_blanks{};       ///< why that, or why not
   std::vector<DrawerFile> files;
 
   /// The map of a file: its own, else that of the first layout that it fits, else the study's.
   [[nodiscard]] const std::string& map_of(const DrawerFile& file) const;
+  /// The entry of a file; one with its path alone if there is none.
+  [[nodiscard]] DrawerFile file_called(const std::string& path) const;
   /// Every map that is named, in the order of the file; some more than once.
   [[nodiscard]] std::vector<std::string> named_maps() const;
 };

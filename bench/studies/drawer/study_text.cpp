@@ -42,9 +42,17 @@ std::string file_text(const DrawerFile& file) {
   if (!file.map.empty()) add("map", file.map);
   if (!file.sheet.empty()) add("sheet", file.sheet);
   if (file.stretch > 0) text += fmt::format("stretch = {}\n", file.stretch);
+  const auto add_known = [&](const char* key, const std::string& value) {
+    if (!value.empty()) add(key, value);
+  };
+  add_known("join", file.join);
+  add_known("join_suggested", file.join_suggested);
+  add_known("join_map", file.join_map);
+  add_known("join_on", file.join_on);
   add("tissue", file.tissue);
   add("speed", file.speed);
   add("specimen", file.specimen);
+  add_known("rig", file.rig);
   text += fmt::format("blank = {}\n", file.blank);
   if (!file.accepted.empty()) add("accepted", file.accepted);
   if (!file.numbers.empty()) add("numbers", file.numbers);
@@ -68,17 +76,26 @@ std::string study_text(const StudyPlan& study) {
       "closing = {}\n\n"
       "# What tissues and speeds are compared by: \"peak\" and \"work\" of a closing, or \"LAW.PARAMETER\". "
       "All\n# comparisons are corrected for each other, so that fewer tell more.\ncompare = {}\n\n"
-      "# Who may use the data (a URL), and whose they are; nothing is assumed.\nlicence = {}\npeople = {}\n\n"
-      "# Every file. Names and folders suggest tissue, speed and specimen: put right what is wrong. A blank "
-      "is the tool\n"
-      "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
-      "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\".\n",
+      "# Who may use the data (a URL), and whose they are; nothing is assumed.\nlicence = {}\npeople = {}\n",
       StudyPlan::version, toml_quoted(study.folder.generic_string()), toml_quoted(study.map),
       toml_list(study.laws), study.all_cycles ? "all" : "good", toml_quoted(study.closing),
       toml_list(study.compare), toml_quoted(study.licence), toml_list(study.people));
+  text += fmt::format(
+      "\n# \"subtract\": what the tool does without a tissue is taken off the recordings of its rig and "
+      "speed, as\n# 'kerf prepare --blank' does, before they are segmented and fitted. \"leave\": it is only "
+      "told of.\n[prepare]\nblank = \"{}\"\nwhy = {}\n",
+      study.subtracts_blanks ? "subtract" : "leave", toml_quoted(study.why_blanks));
   for (const StudyLayout& layout : study.layouts)
     text += fmt::format("\n[[layout]]\nfiles = {}\nmap = {}\n", toml_quoted(layout.files),
                         toml_quoted(layout.map));
+  text +=
+      "\n# Every file. Names and folders suggest tissue, speed and specimen: put right what is wrong. A "
+      "blank "
+      "is the tool\n"
+      "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
+      "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\". Where a file "
+      "is to be\n# taken together with another one of its own clock, join_suggested becomes join, with "
+      "join_map and join_on.\n";
   for (const DrawerFile& file : study.files) text += file_text(file);
   return text;
 }

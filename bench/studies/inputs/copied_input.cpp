@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -28,6 +30,33 @@ fs::path copied_input(const StudyPlan& plan, const DrawerFile& file, const fs::p
   fs::copy_file(source, unfinished, fs::copy_options::overwrite_existing);
   fs::rename(unfinished, copy);
   return copy;
+}
+
+std::uintmax_t bytes_of_run(const StudyPlan& plan, const fs::path& folder) {
+  constexpr std::uintmax_t packing = 4;  // numbers in text, by gzip
+  const std::vector<std::string> names = recording_names(plan);
+  const auto size_of = [](const fs::path& file) {
+    std::error_code none;
+    const std::uintmax_t bytes = fs::file_size(file, none);
+    return none ? 0 : bytes;
+  };
+  std::uintmax_t bytes = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) continue;
+    for (const std::string& path : {plan.files[i].path, plan.files[i].join}) {
+      if (path.empty()) continue;
+      const fs::path copy = folder / "inputs" / fs::path(path);
+      const bool is_copied = fs::exists(copy);
+      const std::uintmax_t size = size_of(is_copied ? copy : plan.folder / fs::path(path));
+      const std::string extension = copy.extension().string();
+      const bool is_packed = extension == ".gz" || extension == ".xlsx" || extension == ".mat";
+      const std::uintmax_t as_text = is_packed ? packing * size : size;
+      bytes += is_copied ? 0 : size;
+      bytes += fs::exists(folder / "recordings" / names[i] / "result.json") ? 0 : 2 * as_text;
+      bytes += as_text;
+    }
+  }
+  return bytes;
 }
 
 }  // namespace kerf::bench

@@ -37,7 +37,8 @@ std::string drawer_section(const StudyResults& results, const std::filesystem::p
   std::string html = "<h2>The drawer at a glance</h2>\n<div class=\"pair\">\n";
   for (const std::string& svg : draw_all(charts)) html += html_figure(svg);
   html += "</div>\n";
-  Rows rows{{"recording", "tissue", "speed", "specimen", "good cycles", "law", "held out [JND]", "counts"}};
+  Rows rows{{"recording", "tissue", "speed", "specimen", "less the blank", "good cycles", "law",
+             "held out [JND]", "counts"}};
   for (const DrawerRecording& one : results.recordings) {
     const StudiedRecording& found = one.result;
     const auto good =
@@ -45,6 +46,7 @@ std::string drawer_section(const StudyResults& results, const std::filesystem::p
     const auto law = std::ranges::find(found.laws, found.chosen, &StudiedLaw::model);
     rows.push_back({one.name, one.file.blank ? "blank" : one.file.tissue, one.file.speed,
                     one.file.specimen.empty() ? "not named" : one.file.specimen,
+                    found.blank && found.blank->is_taken() ? found.blank->name : "-",
                     found.failure.empty() ? fmt::format("{} of {}", good, found.cycles.size()) : "-",
                     found.chosen.empty() ? "-" : found.chosen,
                     law == found.laws.end() ? "-" : jnd_cell(law->held_out, found.jnd),
@@ -128,6 +130,8 @@ std::string files_section(const StudyResults& results) {
   const auto add = [&](const std::string& file, const std::string& text) { rows.push_back({file, text}); };
   for (const DrawerRecording& one : results.recordings) {
     if (!one.result.failure.empty()) add(one.file.path, "could not be used: " + one.result.failure);
+    if (one.result.blank && !one.result.blank->is_taken())
+      add(one.file.path, "no blank is taken off it: " + one.result.blank->why_none);
     for (const std::string& doubt : one.doubts) add(one.file.path, "doubted: " + doubt);
     if (!one.file.accepted.empty()) add(one.file.path, "counts all the same: " + one.file.accepted);
     if (!one.result.not_fitted.empty()) add(one.file.path, "not fitted: " + one.result.not_fitted);
@@ -138,7 +142,13 @@ std::string files_section(const StudyResults& results) {
   }
   for (const DrawerFile& file : results.plan.files)
     if (!file.ignored.empty()) add(file.path, "takes no part: " + file.ignored);
-  return "<h2>What is to be known of each file</h2>\n" + html_table(rows);
+  const std::string blanks =
+      results.plan.why_blanks.empty()
+          ? ""
+          : fmt::format("<p class=\"soft\">Blanks are {}: {}.</p>\n",
+                        results.plan.subtracts_blanks ? "taken off" : "only told of, not taken off",
+                        escaped(results.plan.why_blanks));
+  return "<h2>What is to be known of each file</h2>\n" + blanks + html_table(rows);
 }
 
 }  // namespace

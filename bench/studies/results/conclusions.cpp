@@ -113,6 +113,45 @@ void add_share_of_tool(const StudyResults& results, std::vector<Conclusion>& all
                                fmt::join(shares, ", "))});
 }
 
+std::string blank_in_words(const std::string& name, const StudiedRecording& result) {
+  const StudiedBlank& blank = *result.blank;
+  const std::string& unit = result.force_unit;
+  return fmt::format(
+      "{} off {} ({:.3g} of {:.3g} {} rms, from {} cycles that differ by {:.3g} {}; {:.0f} % of the rows are "
+      "covered, of which {:.0f} % are below zero then, {:.0f} % before, and {:.1f} % by more than two "
+      "spreads)",
+      blank.name, name, blank.taken_rms, blank.force_rms, unit, blank.cycles, blank.spread_rms, unit,
+      100.0 * static_cast<double>(blank.covered) / static_cast<double>(blank.rows),
+      100.0 * blank.negative_after, 100.0 * blank.negative_before, 100.0 * blank.pulling_share);
+}
+
+/// Which blank was taken off what, and what nothing was taken off.
+void add_blanks(const StudyResults& results, std::vector<Conclusion>& all) {
+  std::vector<std::string> taken;
+  std::vector<std::string> hardly;
+  std::vector<std::string> none;
+  for (const DrawerRecording& one : results.recordings) {
+    if (!one.result.blank || !one.result.failure.empty()) continue;
+    if (one.result.blank->is_taken()) {
+      taken.push_back(blank_in_words(one.name, one.result));
+      if (one.result.blank->is_hardly_known()) hardly.push_back(one.name);
+    } else {
+      none.push_back(fmt::format("{} ({})", one.name, one.result.blank->why_none));
+    }
+  }
+  if (!taken.empty())
+    all.push_back({.says = hardly.empty() ? Says::yes : Says::partly,
+                   .sentence = fmt::format("Blanks were taken off: {}.", fmt::join(taken, "; "))});
+  if (!hardly.empty())
+    all.push_back({.says = Says::partly,
+                   .sentence = fmt::format("What was taken off {} is hardly known: the blank differs from "
+                                           "cycle to cycle by more than half of it.",
+                                           fmt::join(hardly, ", "))});
+  if (!none.empty())
+    all.push_back(
+        {.says = Says::partly, .sentence = fmt::format("No blank was taken off {}.", fmt::join(none, ", "))});
+}
+
 /// What is blamed most often, without its numbers' sake: the sentence of the recording that errs most.
 std::string blame_of(const StudyResults& results, const StudiedGroup& group, const std::string& model) {
   std::string blame;
@@ -251,6 +290,7 @@ std::vector<Conclusion> conclusions_of(const StudyResults& results) {
   }
   add_cycles_left_out(results, all);
   add_sensors(results, all);
+  add_blanks(results, all);
   add_share_of_tool(results, all);
   for (const StudiedGroup& group : results.groups) all.push_back(law_in_words(results, group));
   for (Conclusion& one : on_others_in_words(results)) all.push_back(std::move(one));

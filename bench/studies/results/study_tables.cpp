@@ -59,6 +59,11 @@ StudyTable recordings_table(const StudyResults& results) {
                     {"speed", "", "as study.toml has it"},
                     {"specimen", "", "empty: not known"},
                     {"blank", "", "the tool without a tissue"},
+                    {"blank_taken_off", "", "name of the blank; empty: none"},
+                    {"blank_rows", "1", "samples that it covers"},
+                    {"blank_rms", "column force_unit", "what was taken off, root mean square"},
+                    {"blank_spread", "column force_unit", "of it from cycle to cycle of the blank"},
+                    {"negative_after", "1", "share of these samples below zero then"},
                     {"counts", "", "in what is said of its tissue and speed"},
                     {"why_not", "", "failure, doubts or why no law was fitted"},
                     {"rows", "1", "samples"},
@@ -84,6 +89,9 @@ StudyTable recordings_table(const StudyResults& results) {
     std::vector<std::string> why = one.doubts;
     if (!found.failure.empty()) why.push_back(found.failure);
     if (!found.not_fitted.empty()) why.push_back(found.not_fitted);
+    const auto of_blank = [&](std::string (*what)(const StudiedBlank&)) {
+      return found.blank && found.blank->is_taken() ? what(*found.blank) : std::string();
+    };
     const auto known = [&](const std::string& text) { return is_there ? text : std::string(); };
     table.add({cell(one.name),
                cell(one.file.path),
@@ -93,6 +101,11 @@ StudyTable recordings_table(const StudyResults& results) {
                cell(one.file.speed),
                cell(one.file.specimen),
                cell(one.file.blank),
+               of_blank([](const StudiedBlank& blank) { return cell(blank.name); }),
+               of_blank([](const StudiedBlank& blank) { return cell(std::size_t{blank.covered}); }),
+               of_blank([](const StudiedBlank& blank) { return csv_number(blank.taken_rms); }),
+               of_blank([](const StudiedBlank& blank) { return csv_number(blank.spread_rms); }),
+               of_blank([](const StudiedBlank& blank) { return csv_number(blank.negative_after); }),
                cell(one.counts()),
                csv_text(fmt::format("{}", fmt::join(why, " | "))),
                known(cell(std::size_t{found.rows})),

@@ -9,7 +9,6 @@
 #include "files/named_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
-#include "inputs/study_imports.h"
 #include "recordings/provenance.h"
 #include "results/crate.h"
 #include "run/recording_step.h"
@@ -59,10 +58,7 @@ void rerun_one(const StudyPlan& plan, const DrawerFile& file, const std::string&
   try {
     const std::string before = read_named_file(made / "result.json", LargestInput::table);
     const MadeAgain again(folder);
-    const RecordingStep step{.plan = &plan,
-                             .file = &file,
-                             .source = folder / "inputs" / fs::path(file.path),
-                             .import = import_of(plan, file, folder)};
+    const RecordingStep step = step_of(plan, file, folder);
     (void)run_recording_step(step, again.path(), stop);
     if (content_sha256_of(made / "recording.h5") != content_sha256_of(again.path() / "recording.h5")) {
       check.not_alike.push_back(name + ": its samples differ");

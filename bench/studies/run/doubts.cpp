@@ -137,6 +137,22 @@ void doubt_closing(std::vector<DrawerRecording>& recordings) {
   }
 }
 
+/// What is less a blank and what is not are no recordings of one kind.
+void doubt_blanks(std::vector<DrawerRecording>& recordings) {
+  const auto is_less = [](const DrawerRecording& one) {
+    return one.result.blank && one.result.blank->is_taken();
+  };
+  for (DrawerRecording& one : recordings) {
+    if (!one.result.blank || is_less(one)) continue;
+    const auto others = std::ranges::count_if(recordings, [&](const DrawerRecording& other) {
+      return other.file.tissue == one.file.tissue && other.file.speed == one.file.speed && is_less(other);
+    });
+    if (others > 0)
+      one.doubts.push_back(fmt::format("no blank was taken off it, but off {} of its tissue and speed ({})",
+                                       others, one.result.blank->why_none));
+  }
+}
+
 double mean_peak(const StudiedRecording& result) {
   const std::vector<double> peaks = of_cycles(result, &StudiedCycle::peak);
   if (peaks.empty()) return result.peak;
@@ -150,6 +166,7 @@ void hold_to_blanks(std::vector<DrawerRecording>& recordings) {
   };
   for (DrawerRecording& one : recordings) {
     if (one.file.blank || !one.result.failure.empty()) continue;
+    if (one.result.blank && one.result.blank->is_taken()) continue;
     const bool has_own = std::ranges::any_of(recordings, [&](const DrawerRecording& other) {
       return is_blank(other) && other.file.speed == one.file.speed;
     });
@@ -177,6 +194,7 @@ void doubt_recordings(std::vector<DrawerRecording>& recordings, bool all_cycles)
   if (!all_cycles) doubt_cycles(recordings);
   doubt_kind_of_axis(recordings);
   doubt_closing(recordings);
+  doubt_blanks(recordings);
   hold_to_blanks(recordings);
 }
 

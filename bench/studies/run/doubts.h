@@ -14,9 +14,9 @@ struct DrawerRecording {
   std::string name;
   DrawerFile file{};
   StudiedRecording result;
-  std::vector<std::string> doubts{};  ///< why it may not be one like the others
-  std::optional<double>
-      share_of_tool{};  ///< peak of a blank of its speed to its own, where that is beyond 0.3
+  std::vector<std::string> doubts{};      ///< why it may not be one like the others
+  std::optional<double> share_of_tool{};  ///< peak of a blank of its speed to its own, where that is beyond
+                                          ///< 0.3 and not taken off
 
   /// Whether it counts in what is said of its tissue.
   [[nodiscard]] bool counts() const {
@@ -36,6 +36,7 @@ struct DrawerRecording {
 ///     the axis   a law of an angle and a torque says nothing of a length and a force: most decide
 ///     cycles     none is good (unless all count)
 ///     closing    it closes the other way round than most
+///     blank      none was taken off it, but off others of its tissue and speed
 ///
 /// And whether a blank of its speed (any, where no speed is the same) meets a large share of its peak: no
 /// reason to leave it out, but what is fitted is then tool and tissue together.

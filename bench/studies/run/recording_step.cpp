@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -18,12 +19,16 @@
 #include "fits/fit_series.h"
 #include "fits/row_doubts.h"
 #include "import/import.h"
+#include "import/join.h"
+#include "inputs/study_imports.h"
 #include "inspect/flagged_cycles.h"
 #include "inspect/inspection.h"
+#include "prepare/rows.h"
 #include "recordings/axes.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
 #include "recordings/whole_recording.h"
+#include "run/kept_recording.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -32,39 +37,122 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr const char* first_result = "1";  // of what result.json holds: a number more makes all anew
+constexpr const char* first_result = "2";  // of what result.json holds: a number more makes all anew
+
+StudiedJoin studied(const Joined& joined, const std::string& file, std::size_t rows_left_out) {
+  const auto known = [&](double value) {
+    return joined.is_one_clock ? std::numeric_limits<double>::quiet_NaN() : value;
+  };
+  return {.file = file,
+          .on = joined.on,
+          .shift_s = joined.clock.shift_s,
+          .shift_error_s = known(joined.clock.shift_error_s),
+          .skew = joined.clock.skew,
+          .skew_error = known(joined.clock.skew_error),
+          .correlation = known(joined.clock.correlation),
+          .rows_left_out = rows_left_out};
+}
+
+/// Takes in what the other file measured; rows where it has nothing are no part of the recording.
+void join_other(const StepJoin& other, Imported& imported, StudiedRecording& result) {
+  schema::Recording& recording = imported.recording;
+  try {
+    const Joined joined =
+        join(imported, {.file = other.source, .map = other.import.options.map, .on = other.on},
+             other.import.options);
+    const std::vector<bool> finite = finite_rows(recording);
+    const auto left_out = static_cast<std::size_t>(std::ranges::count(finite, false));
+    keep_rows(recording, finite);
+    result.join = studied(joined, other.name, left_out);
+    for (const std::string& warning : joined.warnings)
+      imported.warnings.push_back(other.name + ": " + warning);
+    imported.warnings.push_back(joined_line(joined));
+  } catch (const std::invalid_argument& error) {
+    std::string message = error.what();
+    const std::string source = other.source.string();
+    if (message.starts_with(source)) message.replace(0, source.size(), other.name);
+    throw std::invalid_argument(message);
+  }
+}
+
+void refuse_what_waits_for_a_word(const DrawerFile& file) {
+  if (file.join_suggested.empty() || !file.join.empty()) return;
+  throw std::invalid_argument(
+      fmt::format("by its name {} is of the same recording: if so, make join_suggested join, with join_map "
+                  "and join_on; if "
+                  "not, take it away",
+                  file.join_suggested));
+}
 
 schema::Recording imported_or_read(const RecordingStep& step, StudiedRecording& result) {
+  refuse_what_waits_for_a_word(*step.file);
+  if (step.join && step.source.extension() == ".h5")
+    throw std::invalid_argument(
+        "'join' takes a file to a text, a workbook or a MAT-file, not to a recording");
   if (step.source.extension() == ".h5") return read_whole_recording(step.source);
   if (step.import.map.empty())
     throw std::invalid_argument("its columns are unknown: give it, or the study, a map");
   Imported imported = import_text(step.source, step.import.options);
+  if (step.join) join_other(*step.join, imported, result);
   result.warnings = std::move(imported.warnings);
   return std::move(imported.recording);
 }
 
 double felt_along(const schema::Axis& axis) { return fitting::jnd_of(axis.force_unit, axis.lever).threshold; }
 
-/// Cycles that the recording has stay, with what a person said of them.
-void find_and_flag(const RecordingStep& step, schema::Recording& recording, StudiedRecording& result) {
-  const schema::RowsInMemory rows(recording);
+SegmentOptions segment_options(const StudyPlan& plan) {
+  SegmentOptions options;
+  if (!plan.closing.empty()) options.closing_direction = plan.closing == "increasing" ? 1.0 : -1.0;
+  return options;
+}
+
+/// Cycles that the recording has stay.
+void find_cycles_of(const RecordingStep& step, schema::Recording& recording, StudiedRecording& result) {
+  if (recording.cycles) return;
+  try {
+    segment_recording(recording, schema::RowsInMemory(recording), segment_options(*step.plan),
+                      step.file->path);
+  } catch (const std::invalid_argument& error) {
+    result.warnings.push_back(fmt::format("it has no cycles: {}", error.what()));
+  }
+}
+
+std::vector<FlaggedCycle> flags_of(const schema::Recording& recording) {
+  const schema::Cycles& cycles = *recording.cycles;
+  std::vector<FlaggedCycle> flagged =
+      flagged_cycles(schema::RowsInMemory(recording), cycles, felt_along(recording.axes[cycles.axis]));
+  if (recording.cycle_flags) add_what_was_said(flagged, *recording.cycle_flags);
+  return flagged;
+}
+
+/// A sensor at its end is seen in what it said, not in what is left of that.
+void add_clipped(std::vector<FlaggedCycle>& cycles, const std::vector<FlaggedCycle>& measured) {
+  const auto is_clipped = [](const CycleFlag& flag) { return flag.fault == CycleFault::clipped; };
+  for (std::size_t i = 0; i < std::min(cycles.size(), measured.size()); ++i) {
+    std::erase_if(cycles[i].flags, is_clipped);
+    std::ranges::copy_if(measured[i].flags, std::back_inserter(cycles[i].flags), is_clipped);
+  }
+}
+
+/// Takes a blank off where that is asked for, and flags the cycles by what is left.
+std::vector<FlaggedCycle> less_the_blank(const RecordingStep& step, schema::Recording& recording,
+                                         StudiedRecording& result) {
   if (!recording.cycles) {
-    SegmentOptions options;
-    if (!step.plan->closing.empty())
-      options.closing_direction = step.plan->closing == "increasing" ? 1.0 : -1.0;
-    try {
-      segment_recording(recording, rows, options, step.file->path);
-    } catch (const std::invalid_argument& error) {
-      result.warnings.push_back(fmt::format("it has no cycles: {}", error.what()));
-      return;
+    if (step.blanks) result.blank.emplace().why_none = "it has no cycles";
+    return {};
+  }
+  std::vector<FlaggedCycle> flagged = flags_of(recording);
+  if (step.blanks) {
+    result.blank = take_blank_off(recording, *step.blanks, result.warnings);
+    if (result.blank->is_taken()) {
+      const std::vector<FlaggedCycle> measured = std::move(flagged);
+      flagged = flags_of(recording);
+      add_clipped(flagged, measured);
     }
   }
-  const schema::Cycles& cycles = *recording.cycles;
-  const double felt = felt_along(recording.axes[cycles.axis]);
-  std::vector<FlaggedCycle> flagged = flagged_cycles(rows, cycles, felt);
-  if (recording.cycle_flags) add_what_was_said(flagged, *recording.cycle_flags);
-  recording.cycle_flags = stored_flags(flagged, felt);
-  result.closing_direction = cycles.closing_direction;
+  recording.cycle_flags = stored_flags(flagged, felt_along(recording.axes[recording.cycles->axis]));
+  result.closing_direction = recording.cycles->closing_direction;
+  return flagged;
 }
 
 /// What the sensor along which contact is told cannot say.
@@ -81,8 +169,8 @@ void take_sensor(const Inspection& inspection, StudiedRecording& result) {
   }
 }
 
-void take_cycles(const Inspection& inspection, StudiedRecording& result) {
-  for (const FlaggedCycle& cycle : inspection.cycles.cycles) {
+void take_cycles(const std::vector<FlaggedCycle>& cycles, StudiedRecording& result) {
+  for (const FlaggedCycle& cycle : cycles) {
     result.cycles.push_back({.number = cycle.facts.number,
                              .begin_s = cycle.facts.begin_s,
                              .closing_s = cycle.facts.closing_s,
@@ -93,12 +181,12 @@ void take_cycles(const Inspection& inspection, StudiedRecording& result) {
   }
 }
 
+/// What it holds as it was measured.
 void look_at_rows(const schema::Recording& recording, std::size_t axis, StudiedRecording& result) {
   const schema::RowsInMemory rows(recording);
   const schema::Axis& along = recording.axes[axis];
   const RowFigures figures = figures_of(rows);
   const ValueRange& positions = figures.columns.at(schema::Column::position).at(axis);
-  result.content = content_sha256_of(rows);
   result.rows = figures.rows;
   result.duration_s = figures.last_s - figures.first_s;
   result.period_s = figures.period_s;
@@ -109,7 +197,6 @@ void look_at_rows(const schema::Recording& recording, std::size_t axis, StudiedR
   const Inspection inspection = inspect(rows, {.axis = axis, .felt = felt_along(along)});
   for (std::string& warning : warnings_of(inspection)) result.warnings.push_back(std::move(warning));
   take_sensor(inspection, result);
-  take_cycles(inspection, result);
 }
 
 StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
@@ -181,14 +268,64 @@ json as_json(const ImportFile& import) {
           {"strict", options.strict}};
 }
 
+json as_json(const std::optional<StepJoin>& join) {
+  if (!join) return nullptr;
+  return {{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+}
+
+json as_json(const std::optional<StudyBlanks>& blanks) {
+  if (!blanks) return nullptr;
+  json all = json::array();
+  for (const StudyBlank& blank : blanks->all) all.push_back({blank.name, blank.key});
+  return all;
+}
+
+/// Blanks that were made already; one that was not could not be used.
+StudyBlanks blanks_of(const StudyPlan& plan, const DrawerFile& file, const fs::path& folder) {
+  const std::vector<std::string> names = recording_names(plan);
+  StudyBlanks blanks;
+  for (const std::size_t at : fitting_blanks(plan, file)) {
+    StudyBlank blank{.name = names[at], .recording = {}, .key = ""};
+    const fs::path place = folder / "recordings" / blank.name;
+    try {
+      const std::string key = key_of(step_of(plan, plan.files[at], folder));
+      if (kept_recording(place, key))
+        blank = {.name = names[at], .recording = place / "recording.h5", .key = key};
+    } catch (const std::invalid_argument&) {
+      blank.key.clear();  // its file is missing, or its import: that costs a line of its own
+    }
+    blanks.all.push_back(std::move(blank));
+  }
+  if (blanks.all.empty())
+    blanks.why_none =
+        fmt::format("no blank is of its speed{}{}{}", file.speed.empty() ? "" : ", " + file.speed,
+                    file.rig.empty() ? "" : ", and rig, ", file.rig);
+  return blanks;
+}
+
 }  // namespace
+
+RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file, const fs::path& folder) {
+  RecordingStep step{.plan = &plan,
+                     .file = &file,
+                     .source = folder / "inputs" / fs::path(file.path),
+                     .import = import_of(plan, file, folder)};
+  if (!file.join.empty())
+    step.join = {.name = file.join,
+                 .source = folder / "inputs" / fs::path(file.join),
+                 .import = import_named(file.join_map, plan, folder),
+                 .on = file.join_on};
+  if (plan.subtracts_blanks && !file.blank) step.blanks = blanks_of(plan, file, folder);
+  return step;
+}
 
 std::string key_of(const RecordingStep& step) {
   const StudyPlan& plan = *step.plan;
   const json all{
-      {"result", first_result},         {"program", software()},    {"source", sha256_of(step.source)},
-      {"import", as_json(step.import)}, {"laws", plan.laws},        {"all_cycles", plan.all_cycles},
-      {"closing", plan.closing},        {"blank", step.file->blank}};
+      {"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
+      {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
+      {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
+      {"blanks", as_json(step.blanks)}};
   return sha256_of(std::string_view(all.dump()));
 }
 
@@ -197,9 +334,11 @@ StudiedRecording run_recording_step(const RecordingStep& step, const fs::path& f
   StudiedRecording result;
   result.key = key_of(step);
   schema::Recording recording = imported_or_read(step, result);
-  find_and_flag(step, recording, result);
+  find_cycles_of(step, recording, result);
   const std::size_t axis = find_cut_axis(recording, "");
   look_at_rows(recording, axis, result);
+  take_cycles(less_the_blank(step, recording, result), result);
+  result.content = content_sha256_of(schema::RowsInMemory(recording));
   schema::write_recording(folder / "recording.h5", recording, schema::Existing::replace);
   fit_laws(step, recording, folder, axis, stop, result);
   write_json_file(folder / "result.json", as_json(result));

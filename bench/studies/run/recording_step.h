@@ -2,13 +2,22 @@
 
 #include <atomic>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "drawer/study_file.h"
 #include "imports/import_file.h"
-#include "run/studied_recording.h"
+#include "run/study_blanks.h"
 
 namespace kerf::bench {
+
+/// Another file with its own clock that is taken into a recording.
+struct StepJoin {
+  std::string name;              ///< below the drawer's folder
+  std::filesystem::path source;  ///< the study's copy
+  ImportFile import;
+  std::string on;
+};
 
 /// One file of a drawer and where what is made of it goes.
 struct RecordingStep {
@@ -16,14 +25,22 @@ struct RecordingStep {
   const DrawerFile* file = nullptr;
   std::filesystem::path source;  ///< the file itself, or the study's copy of it
   ImportFile import{};           ///< of what is no recording
+  std::optional<StepJoin> join{};
+  std::optional<StudyBlanks> blanks{};  ///< one of which is to be taken off
 };
 
 /// What stands for a recording and all that it is made of: SHA-256 over the file's, its import, what is asked
 /// for, and the program. @throws as MappedFile does.
 [[nodiscard]] std::string key_of(const RecordingStep& step);
 
-/// Imports (or takes over) the recording, finds and flags its cycles, inspects it and fits the study's laws;
-/// blanks are not fitted. Writes recording.h5, result.json and fits/ into a folder that is there.
+/// The step of a file that takes part, by the study's own copies.
+/// @throws std::invalid_argument as import_of() does.
+[[nodiscard]] RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file,
+                                    const std::filesystem::path& folder);
+
+/// Imports (or takes over) the recording, takes a blank off it where that is asked for (the sensor is judged
+/// before), finds and flags its cycles, inspects it and fits the study's laws; blanks are not fitted. Writes
+/// recording.h5, result.json and fits/ into a folder that is there.
 /// @throws std::invalid_argument and schema::FormatError for a file that cannot be used; std::system_error,
 ///         also if it was stopped.
 StudiedRecording run_recording_step(const RecordingStep& step, const std::filesystem::path& folder,

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <system_error>
@@ -14,6 +13,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "files/disk_room.h"
 #include "files/json_file.h"
 #include "files/named_file.h"
 #include "files/whole_file.h"
@@ -25,6 +25,7 @@
 #include "results/crate.h"
 #include "results/study_tables.h"
 #include "run/held_out.h"
+#include "run/kept_recording.h"
 #include "run/recording_step.h"
 #include "threads/for_each_index.h"
 
@@ -60,7 +61,7 @@ void require_maps(const fs::path& file, const StudyPlan& plan) {
   std::string first;
   for (const DrawerFile& one : plan.files) {
     if (!one.ignored.empty() || fs::path(one.path).extension() == ".h5") continue;
-    if (!plan.map_of(one).empty()) continue;
+    if (!plan.map_of(one).empty() || !one.join_suggested.empty()) continue;
     if (unknown++ == 0) first = one.path;
   }
   if (unknown > 0)
@@ -68,17 +69,6 @@ void require_maps(const fs::path& file, const StudyPlan& plan) {
         fmt::format("{}: the columns of {} files are unknown, the first is {}; write a 'map' such as "
                     "\"time=1[s],position=2[mm],force=3[N]\" into it",
                     file.string(), unknown, first));
-}
-
-std::optional<StudiedRecording> kept_result(const fs::path& folder, const std::string& key) {
-  try {
-    StudiedRecording kept =
-        studied_recording(json::parse(read_named_file(folder / "result.json", LargestInput::table)));
-    if ((key.empty() || kept.key == key) && fs::exists(folder / "recording.h5")) return kept;
-  } catch (const std::exception&) {
-    return std::nullopt;  // none, or one that is made anew
-  }
-  return std::nullopt;
 }
 
 /// One line, without the path of the copy that was read: "line 7: ...".
@@ -92,7 +82,7 @@ std::string in_one_line(const std::string& message, const fs::path& source) {
 StudiedRecording made_or_kept(const RecordingStep& step, const std::string& name, const fs::path& folder,
                               const std::atomic<bool>& stop) {
   const fs::path place = folder / "recordings" / name;
-  if (auto kept = kept_result(place, key_of(step))) return std::move(*kept);
+  if (auto kept = kept_recording(place, key_of(step))) return std::move(*kept);
   WholeFolder whole(place, schema::Existing::replace);
   StudiedRecording result = run_recording_step(step, whole.path(), stop);
   whole.commit();
@@ -101,37 +91,59 @@ StudiedRecording made_or_kept(const RecordingStep& step, const std::string& name
 
 void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& folder,
                const std::atomic<bool>& stop) {
-  RecordingStep step{.plan = &plan, .file = &one.file, .source = plan.folder / fs::path(one.file.path)};
+  fs::path source = plan.folder / fs::path(one.file.path);
   try {
-    step.source = copied_input(plan, one.file, folder);
-    step.import = import_of(plan, one.file, folder);
-    one.result = made_or_kept(step, one.name, folder, stop);
+    source = copied_input(plan, one.file, folder);
+    if (!one.file.join.empty()) (void)copied_input(plan, plan.file_called(one.file.join), folder);
+    one.result = made_or_kept(step_of(plan, one.file, folder), one.name, folder, stop);
   } catch (const std::system_error&) {
     throw;  // a disk, or Ctrl-C: no fault of the file
   } catch (const std::bad_alloc&) {
     one.result.failure = "there was not enough memory";
   } catch (const std::exception& error) {
-    one.result.failure = in_one_line(error.what(), step.source);
+    one.result.failure = in_one_line(error.what(), source);
   }
 }
 
-void study_all(const StudyPlan& plan, std::vector<DrawerRecording>& recordings, const fs::path& folder,
-               const StudyRunOptions& options, const std::atomic<bool>& stop) {
+/// What is to be said of a recording at once; empty if there is nothing.
+std::string line_of(const DrawerRecording& one) {
+  const StudiedRecording& result = one.result;
+  if (!result.failure.empty()) return fmt::format("{}: {}", one.file.path, result.failure);
+  if (result.blank && !result.blank->is_taken())
+    return fmt::format("{}: no blank is taken off it: {}", one.file.path, result.blank->why_none);
+  return "";
+}
+
+void study_those(const std::vector<std::size_t>& places, const StudyPlan& plan,
+                 std::vector<DrawerRecording>& recordings, const fs::path& folder,
+                 const StudyRunOptions& options, const std::atomic<bool>& stop) {
   std::mutex says;
-  for_each_index(recordings.size(), options.jobs, [&](std::size_t i) {
+  for_each_index(places.size(), options.jobs, [&](std::size_t i) {
     if (stop) throw std::system_error(std::make_error_code(std::errc::interrupted), "the study was stopped");
-    study_one(plan, recordings[i], folder, stop);
-    if (!recordings[i].result.failure.empty() && options.warn) {
+    DrawerRecording& one = recordings[places[i]];
+    study_one(plan, one, folder, stop);
+    if (const std::string line = line_of(one); !line.empty() && options.warn) {
       const std::scoped_lock lock(says);
-      options.warn(fmt::format("{}: {}", recordings[i].file.path, recordings[i].result.failure));
+      options.warn(line);
     }
     if (options.done != nullptr) ++*options.done;
   });
 }
 
+/// Blanks first, which are taken off the others.
+void study_all(const StudyPlan& plan, std::vector<DrawerRecording>& recordings, const fs::path& folder,
+               const StudyRunOptions& options, const std::atomic<bool>& stop) {
+  std::vector<std::size_t> blanks;
+  std::vector<std::size_t> others;
+  for (std::size_t i = 0; i < recordings.size(); ++i)
+    (recordings[i].file.blank ? blanks : others).push_back(i);
+  study_those(blanks, plan, recordings, folder, options, stop);
+  study_those(others, plan, recordings, folder, options, stop);
+}
+
 void take_kept(std::vector<DrawerRecording>& recordings, const fs::path& folder) {
   for (DrawerRecording& one : recordings) {
-    if (auto kept = kept_result(folder / "recordings" / one.name, "")) {
+    if (auto kept = kept_recording(folder / "recordings" / one.name, "")) {
       one.result = std::move(*kept);
     } else {
       one.result.failure = "nothing was computed of it yet";
@@ -196,6 +208,8 @@ StudyResults run_study(const fs::path& file, const StudyRunOptions& options, con
       results.recordings.push_back({.name = names[i], .file = plan.files[i], .result = {}});
   if (results.recordings.empty())
     throw std::invalid_argument(fmt::format("{}: no file takes part in this study", file.string()));
+  require_disk(folder / "recordings", bytes_of_run(plan, folder),
+               fmt::format("a study of {} files", results.recordings.size()));
   if (options.only_report) {
     take_kept(results.recordings, folder);
   } else {

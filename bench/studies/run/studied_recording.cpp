@@ -74,7 +74,62 @@ StudiedCycle studied_cycle(const json& from) {
           .reason = from.at("reason")};
 }
 
+StudiedBlank studied_blank(const json& from) {
+  StudiedBlank blank;
+  if (from.at("blank").is_null()) {
+    blank.why_none = from.at("why_none");
+    return blank;
+  }
+  blank.name = from.at("blank");
+  blank.rows = from.at("rows");
+  blank.covered = from.at("rows_covered");
+  blank.cycles = from.at("cycles");
+  blank.force_rms = from.at("force_rms");
+  blank.taken_rms = from.at("taken_rms");
+  blank.spread_rms = from.at("spread_rms");
+  blank.negative_before = from.at("negative_before");
+  blank.negative_after = from.at("negative_after");
+  blank.pulling_share = from.at("pulling_share");
+  return blank;
+}
+
+StudiedJoin studied_join(const json& from) {
+  return {.file = from.at("file"),
+          .on = from.at("on"),
+          .shift_s = from.at("shift_s"),
+          .shift_error_s = number_or(from.at("shift_std_error_s"), no_number),
+          .skew = from.at("skew"),
+          .skew_error = number_or(from.at("skew_std_error"), no_number),
+          .correlation = number_or(from.at("correlation"), no_number),
+          .rows_left_out = from.at("rows_left_out")};
+}
+
 }  // namespace
+
+json as_json(const StudiedJoin& join) {
+  return {{"file", join.file},
+          {"on", join.on},
+          {"shift_s", join.shift_s},
+          {"shift_std_error_s", number_or_null(join.shift_error_s)},
+          {"skew", join.skew},
+          {"skew_std_error", number_or_null(join.skew_error)},
+          {"correlation", number_or_null(join.correlation)},
+          {"rows_left_out", join.rows_left_out}};
+}
+
+json as_json(const StudiedBlank& blank) {
+  if (!blank.is_taken()) return {{"blank", nullptr}, {"why_none", blank.why_none}};
+  return {{"blank", blank.name},
+          {"rows", blank.rows},
+          {"rows_covered", blank.covered},
+          {"cycles", blank.cycles},
+          {"force_rms", blank.force_rms},
+          {"taken_rms", blank.taken_rms},
+          {"spread_rms", blank.spread_rms},
+          {"negative_before", blank.negative_before},
+          {"negative_after", blank.negative_after},
+          {"pulling_share", blank.pulling_share}};
+}
 
 std::vector<double> of_cycles(const StudiedRecording& recording, double StudiedCycle::*quantity,
                               bool all_cycles) {
@@ -113,6 +168,8 @@ json as_json(const StudiedRecording& recording) {
               {"chosen", recording.chosen},
               {"why_chosen", recording.why_chosen},
               {"not_fitted", recording.not_fitted}});
+  if (recording.join) all["joined"] = as_json(*recording.join);
+  if (recording.blank) all["blank_taken_off"] = as_json(*recording.blank);
   return all;
 }
 
@@ -137,6 +194,8 @@ StudiedRecording studied_recording(const json& from) {
   recording.clipped_at = number_or(from.at("clipped_at"), no_number);
   recording.clipped_rows = from.at("clipped_rows");
   recording.least_shown = number_or(from.at("least_shown"), no_number);
+  if (from.contains("joined")) recording.join = studied_join(from.at("joined"));
+  if (from.contains("blank_taken_off")) recording.blank = studied_blank(from.at("blank_taken_off"));
   recording.warnings = from.at("warnings");
   for (const json& cycle : from.at("cycles")) recording.cycles.push_back(studied_cycle(cycle));
   for (const json& law : from.at("laws")) recording.laws.push_back(studied_law(law));

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,37 @@ struct StudiedCycle {
   std::string reason;  ///< why it is not, or what was found and accepted
 };
 
+/// What a blank took off a recording; root mean squares over the rows that it covers, in the force's unit.
+struct StudiedBlank {
+  std::string name;      ///< of the blank in the study; empty: none was taken off
+  std::string why_none;  ///< why not
+  std::uint64_t rows = 0;
+  std::uint64_t covered = 0;
+  std::size_t cycles = 0;  ///< of the blank
+  double force_rms = 0.0;  ///< before
+  double taken_rms = 0.0;
+  double spread_rms = 0.0;       ///< of the blank from cycle to cycle
+  double negative_before = 0.0;  ///< share of the rows below zero
+  double negative_after = 0.0;
+  double pulling_share = 0.0;  ///< below zero by more than two spreads and what is felt, after
+
+  [[nodiscard]] bool is_taken() const { return !name.empty(); }
+  /// What was taken off differs by more than half of itself from one cycle of the blank to the next.
+  [[nodiscard]] bool is_hardly_known() const { return spread_rms > 0.5 * taken_rms; }
+};
+
+/// Another file with its own clock, t = shift + (1 + skew) t_other, that was taken into a recording.
+struct StudiedJoin {
+  std::string file;  ///< below the drawer's folder
+  std::string on;
+  double shift_s = 0.0;
+  double shift_error_s = 0.0;  ///< standard error; NaN: it is one clock
+  double skew = 0.0;
+  double skew_error = 0.0;
+  double correlation = 0.0;
+  std::uint64_t rows_left_out = 0;  ///< where one of both has nothing
+};
+
 /// All that a study knows of one recording. The same recording and settings give the same, to the last bit.
 struct StudiedRecording {
   std::string key;      ///< of what it was made of: source, settings, program
@@ -60,6 +92,8 @@ struct StudiedRecording {
   double clipped_at = 0.0;         ///< force at which the sensor is clipped; NaN: it is not
   std::uint64_t clipped_rows = 0;
   double least_shown = 0.0;  ///< smallest force beside exact zeros, of a sensor with a dead zone; NaN: none
+  std::optional<StudiedJoin> join;    ///< nothing: it is one file
+  std::optional<StudiedBlank> blank;  ///< nothing: none was to be taken off
   std::vector<std::string> warnings;
   std::vector<StudiedCycle> cycles;
   std::vector<StudiedLaw> laws;
@@ -73,6 +107,8 @@ struct StudiedRecording {
                                             bool all_cycles = false);
 
 [[nodiscard]] nlohmann::ordered_json as_json(const StudiedRecording& recording);
+[[nodiscard]] nlohmann::ordered_json as_json(const StudiedJoin& join);
+[[nodiscard]] nlohmann::ordered_json as_json(const StudiedBlank& blank);
 /// @throws nlohmann::json::exception for what as_json() did not write.
 [[nodiscard]] StudiedRecording studied_recording(const nlohmann::ordered_json& json);
 

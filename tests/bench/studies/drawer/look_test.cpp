@@ -88,6 +88,30 @@ TEST_F(Drawer, SuggestsTheMapThatHeadingsWithUnitsGive) {
   EXPECT_EQ(found.at("b.csv").map, "");
 }
 
+// A suggestion only: whether they are is for a person to say.
+TEST_F(Drawer, SuggestsFilesOfOneRecordingByTheirNames) {
+  fs::create_directory(folder_ / "a");
+  const std::string motion = "t [s],x [mm]\n0,1\n1,2\n2,4\n";
+  const std::string force = "t [s],wire [mm],F [N]\n0,1,5\n1,2,6\n2,4,7\n";
+  test::write_text(folder_ / "a/liver_slow_s1_position.csv", motion);
+  test::write_text(folder_ / "a/liver_slow_s1_force.csv", force);
+  test::write_text(folder_ / "a/liver_slow_s2_position.csv", motion + "3,5\n");
+  test::write_text(folder_ / "liver_slow_s2_force.csv", force + "3,5,6\n");  // of another folder
+  const auto found = look("time=1[s],position=2[mm],force=3[N]");
+  const DrawerFile& one = found.at("a/liver_slow_s1_position.csv");
+  EXPECT_EQ(one.ignored, "");
+  EXPECT_EQ(one.join_suggested, "a/liver_slow_s1_force.csv");
+  EXPECT_EQ(one.join, "");
+  EXPECT_EQ(one.map, "time=1[s],position=2[mm]");
+  EXPECT_EQ(one.join_map, "time=1[s],position=2[mm],force=3[N]");
+  EXPECT_EQ(one.join_on, "position");
+  EXPECT_EQ(one.tissue, "a liver");
+  EXPECT_EQ(one.specimen, "s1");
+  EXPECT_THAT(found.at("a/liver_slow_s1_force.csv").ignored, HasSubstr("liver_slow_s1_position.csv"));
+  EXPECT_EQ(found.at("a/liver_slow_s2_position.csv").join_suggested, "");
+  EXPECT_EQ(found.at("liver_slow_s2_force.csv").ignored, "");
+}
+
 TEST_F(Drawer, ThatIsNotThereIsRefused) {
   EXPECT_THROW((void)look_into(folder_ / "nowhere", {}), std::invalid_argument);
   EXPECT_THROW((void)look_into(folder_.path(), {{.name = "time", .import = {.map = "time", .options = {}}}}),

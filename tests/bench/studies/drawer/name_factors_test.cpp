@@ -27,6 +27,12 @@ TEST(NameFactors, OfFoldersCountToo) {
   EXPECT_EQ(liver.numbers, "run03");
 }
 
+TEST(NameFactors, NameTheRig) {
+  const NameFactors liver = name_factors("rig2/liver_slow.csv");
+  EXPECT_EQ(liver.rig, "rig2");
+  EXPECT_EQ(liver.tissue, "liver");
+}
+
 TEST(NameFactors, TakeASpecimenWordAlone) {
   EXPECT_EQ(name_factors("skin_s3.txt").specimen, "s3");
   EXPECT_EQ(name_factors("skin_s.txt").tissue, "skin s");

@@ -19,6 +19,8 @@ StudyPlan some_plan() {
   plan.laws = {"kelvin", "exponential"};
   plan.closing = "increasing";
   plan.compare = {"peak", "kelvin.damping"};
+  plan.subtracts_blanks = true;
+  plan.why_blanks = "friction is \"large\"";
   plan.layouts = {{.files = "rig2/*.csv", .map = "../rig2.import.toml"}};
   plan.licence = "https://creativecommons.org/licenses/by/4.0/";
   plan.people = {"A \"B\" C"};
@@ -27,9 +29,13 @@ StudyPlan some_plan() {
                  .found = "3 columns",
                  .sheet = "Run 2",
                  .stretch = 2,
+                 .join = "a_force.txt",
+                 .join_map = "time=1[s],position=2[mm],force=3[N]",
+                 .join_on = "position",
                  .tissue = "liver",
                  .speed = "slow",
                  .specimen = "s1",
+                 .rig = "rig2",
                  .accepted = "looked through",
                  .numbers = "7"},
                 {.path = "picture.png", .ignored = "no text"}};
@@ -66,7 +72,13 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   ASSERT_EQ(again.files.size(), 2U);
   EXPECT_EQ(again.files[0].path, plan.files[0].path);
   EXPECT_EQ(again.files[0].specimen, "s1");
+  EXPECT_EQ(again.files[0].rig, "rig2");
+  EXPECT_EQ(again.files[0].join, "a_force.txt");
+  EXPECT_EQ(again.files[0].join_map, plan.files[0].join_map);
+  EXPECT_EQ(again.files[0].join_on, "position");
   EXPECT_EQ(again.files[0].stretch, 2U);
+  EXPECT_TRUE(again.subtracts_blanks);
+  EXPECT_EQ(again.why_blanks, plan.why_blanks);
   EXPECT_EQ(again.files[0].sheet, "Run 2");
   EXPECT_EQ(again.files[0].accepted, "looked through");
   EXPECT_EQ(again.files[1].ignored, "no text");
@@ -90,8 +102,21 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"../picture.png\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"pictures/\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
+  EXPECT_THAT(with("join_on = \"position\"\n", ""), HasSubstr("needs 'join_map'"));
+  EXPECT_THAT(with("join = \"a_force.txt\"", "join = \"../a_force.txt\""), HasSubstr("below the drawer"));
+  EXPECT_THAT(with("path = \"picture.png\"\nignored = \"no text\"", "path = \"a_force.txt\""),
+              HasSubstr("takes part itself"));
+  EXPECT_THAT(with("blank = \"subtract\"", "blank = \"off\""), HasSubstr("not \"off\""));
   EXPECT_THAT(with("files = \"rig2/*.csv\"\n", ""), HasSubstr("needs 'files'"));
   EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
+}
+
+// Files of an earlier version say nothing of it.
+TEST_F(StudyFile, LeavesBlanksWhereItDoesNotSay) {
+  std::string text = study_text(some_plan());
+  const auto prepare = text.find("[prepare]");
+  text.erase(prepare, text.find("[[layout]]", prepare) - prepare);
+  EXPECT_FALSE(read(text).subtracts_blanks);
 }
 
 // The narrower word wins: a file's own, then the first layout whose pattern it fits, then the study's.

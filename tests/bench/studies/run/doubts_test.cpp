@@ -65,6 +65,23 @@ TEST(Doubts, AreOfARecordingWithoutAGoodCycle) {
   EXPECT_THAT(all_count[0].doubts, IsEmpty());
 }
 
+TEST(Doubts, AreOfWhatNoBlankWasTakenOffBesideThoseThatAreLessOne) {
+  auto recordings = five_specimens("liver", 1.0);
+  for (DrawerRecording& one : five_specimens("skin", 1.0)) recordings.push_back(std::move(one));
+  recordings.push_back(test::studied({.name = "blank", .tissue = "", .peak = 0.9}));
+  recordings.back().file.blank = true;
+  for (DrawerRecording& one : recordings)
+    if (!one.file.blank) one.result.blank.emplace().why_none = "it covers no row";
+  for (const std::size_t less : {0U, 1U, 3U}) recordings[less].result.blank->name = "blank";
+  doubt_recordings(recordings);
+  EXPECT_THAT(recordings[0].doubts, IsEmpty());
+  EXPECT_FALSE(recordings[0].share_of_tool.has_value());  // it was taken off
+  EXPECT_THAT(recordings[2].doubts,
+              ElementsAre(HasSubstr("off 3 of its tissue and speed (it covers no row)")));
+  EXPECT_TRUE(recordings[2].share_of_tool.has_value());
+  EXPECT_THAT(recordings[5].doubts, IsEmpty());  // none was taken off any skin
+}
+
 TEST(Doubts, OfBlanksAreNoneAndTheirShareIsKnown) {
   auto recordings = five_specimens("liver", 1.0);
   recordings.push_back(test::studied({.name = "blank", .tissue = "", .peak = 0.5}));

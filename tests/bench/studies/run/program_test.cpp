@@ -1,5 +1,6 @@
 #include "support/program.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -165,6 +166,45 @@ TEST_F(StudyProgram, GoesOnAfterAFileThatIsNone) {
   EXPECT_THAT(ran.errors, HasSubstr("liver_s2.txt: it is no longer the file"));
   EXPECT_THAT(ran.output, HasSubstr("could not be used: 1"));
   EXPECT_EQ(found().at("groups")[0].at("recordings").size(), 2U);
+}
+
+// What a drawer holds besides: each costs a line with its reason, and where a person takes it in all the same
+// one line of the run.
+TEST_F(StudyProgram, GoesOnAmongRubbish) {
+  fs::remove(drawer() / "liver_s3.txt");
+  fs::remove(drawer() / "skin_s6.txt");
+  fs::create_directories(drawer() / "again");
+  write_punch("again/liver_s1.txt", 215.0, 11);  // a name that is there already
+  test::write_text(drawer() / "log.csv", "");
+  fs::resize_file(drawer() / "log.csv", std::uintmax_t{2} << 30U);
+  fs::create_directory_symlink(drawer(), drawer() / "again/loop");
+  test::write_text(drawer() / "empty.txt", "");
+  test::write_text(drawer() / "picture.txt", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 17));
+  test::write_text(drawer() / "mixed.txt", test::read_text(drawer() / "liver_s1.txt").substr(0, 3000) +
+                                               std::string("\x00\xff\xfe\x01 what is this\n", 18));
+  const Outcome looked = make();
+  ASSERT_EQ(looked.exit_status, 0) << looked.errors;
+  for (const char* line : {"log.csv", "loop", "empty.txt", "picture.txt", "mixed.txt", "notes.md"})
+    EXPECT_THAT(looked.output, testing::ContainsRegex(std::string(line) + " +takes no part: [^\n]+\n"))
+        << line;
+  edit("ignored = \"2.1 GB", "numbers = \"2.1 GB");
+  edit("ignored = \"it is empty", "numbers = \"it is empty");
+  edit("ignored = \"a link to a folder", "numbers = \"a link to a folder");
+  const std::string text = test::read_text(study() / "study.toml");
+  const auto picture = text.find("ignored", text.find("path = \"picture.txt\""));
+  test::write_text(study() / "study.toml", text.substr(0, picture) + "numbers" + text.substr(picture + 7));
+  edit("map = \"\"", "map = \"time=1[s],position=2[mm],force=3[N]\"");
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 1);
+  for (const char* line : {"log.csv: 2.1 GB", "again/loop: ", "empty.txt: ", "picture.txt: "})
+    EXPECT_THAT(ran.errors, HasSubstr(line));
+  EXPECT_EQ(std::ranges::count(ran.errors, '\n'), 4) << ran.errors;
+  std::size_t counted = 0;
+  const json results = found();
+  for (const json& group : results.at("groups")) counted += group.at("recordings").size();
+  EXPECT_EQ(counted, 5U) << ran.output;
+  EXPECT_TRUE(fs::exists(study() / "recordings/liver_s1-2/recording.h5"));
+  EXPECT_FALSE(fs::exists(study() / "inputs/log.csv"));
 }
 
 TEST_F(StudyProgram, LeavesOutAFileInAnotherUnit) {

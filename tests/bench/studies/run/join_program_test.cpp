@@ -1,0 +1,102 @@
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "bench/studies/rubbed.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+
+constexpr double shift_s = 0.5;  // the forces' clock begins at its first row, half a second later
+constexpr double skew = 2e-4;
+
+/// A drawer of two livers, one of them in two files with a clock each: t = shift + (1 + skew) t_other.
+class JoinInStudy : public testing::Test {
+ protected:
+  JoinInStudy() {
+    fs::create_directory(drawer());
+    test::write_text(drawer() / "liver_slow_s2.txt",
+                     test::as_text(test::punch({.parallel_stiffness = 320.0, .seconds = 6.0, .seed = 2})));
+    const schema::Recording both = test::punch({.parallel_stiffness = 300.0, .seconds = 6.0});
+    std::string motion = "Time [s]\tPosition [mm]\n";
+    std::string forces = "Clock [s]\tWire [mm]\tForce [N]\n";
+    for (std::size_t i = 0; i < both.rows(); i += 2)
+      motion += fmt::format("{:.6f}\t{:.6f}\n", both.time[i], 1e3 * both.position[i]);
+    for (std::size_t i = 500; i < both.rows(); ++i)
+      forces += fmt::format("{:.7f}\t{:.6f}\t{:.6f}\n", 12.0 + (both.time[i] - shift_s) / (1.0 + skew),
+                            3.0 + 2e3 * both.position[i], both.force_measured[i]);
+    test::write_text(drawer() / "liver_slow_s1_position.txt", motion);
+    test::write_text(drawer() / "liver_slow_s1_force.txt", forces);
+  }
+  [[nodiscard]] fs::path drawer() const { return folder_ / "drawer"; }
+  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
+  Outcome run_it() const { return run_kerf({"study", "run", (study() / "study.toml").string()}); }
+  void edit(const std::string& from, const std::string& to) const {
+    std::string text = test::read_text(study() / "study.toml");
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(study() / "study.toml", text);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(JoinInStudy, IsMadeOfTwoFilesOnceAPersonSaysSo) {
+  const Outcome looked =
+      run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()});
+  ASSERT_EQ(looked.exit_status, 0) << looked.errors;
+  EXPECT_THAT(looked.output, HasSubstr("one recording by two clocks with liver_slow_s1_force.txt?"));
+  const Outcome waits = run_it();
+  EXPECT_EQ(waits.exit_status, 1);
+  EXPECT_THAT(waits.errors,
+              HasSubstr("liver_slow_s1_position.txt: by its name liver_slow_s1_force.txt is of the "
+                        "same recording"));
+  EXPECT_THAT(waits.output, HasSubstr("liver, slow: kelvin serves"));  // the rest goes on
+  edit("join_suggested = ", "join = ");
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  const json found = json::parse(test::read_text(study() / "study.json"));
+  const json& one = found.at("recordings").at(0);
+  ASSERT_EQ(one.at("name"), "liver_slow_s1_position");
+  EXPECT_EQ(one.at("tissue"), "liver");
+  const json& joined = one.at("joined");
+  EXPECT_NEAR(joined.at("shift_s").get<double>(), shift_s,
+              5.0 * joined.at("shift_std_error_s").get<double>() + 1e-4);
+  EXPECT_NEAR(joined.at("skew").get<double>(), skew, 5.0 * joined.at("skew_std_error").get<double>() + 2e-5);
+  EXPECT_NEAR(joined.at("rows_left_out").get<double>(), 250.0, 1.0);  // half a second
+  const std::string law = test::read_text(study() / "recordings/liver_slow_s1_position/fits/kelvin.law.toml");
+  const auto stiffness = law.find("parallel_stiffness = { value = ");
+  ASSERT_NE(stiffness, std::string::npos);
+  EXPECT_NEAR(std::stod(law.substr(stiffness + 31)), 300.0, 3.0);
+  EXPECT_TRUE(fs::exists(study() / "inputs/liver_slow_s1_force.txt"));
+  fs::remove_all(drawer());
+  const Outcome again = run_kerf({"study", "verify", study().string(), "--rerun", "all"});
+  EXPECT_EQ(again.exit_status, 0) << again.output << again.errors;
+}
+
+TEST_F(JoinInStudy, OfWhatHasNothingInCommonCostsOneLine) {
+  ASSERT_EQ(
+      run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()}).exit_status,
+      0);
+  edit("join_suggested = ", "join = ");
+  edit("join_on = \"position\"", "join_on = \"pressure\"");
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 1);
+  EXPECT_THAT(ran.errors, HasSubstr("liver_slow_s1_position.txt: "));
+  EXPECT_THAT(ran.errors, HasSubstr("pressure"));
+  EXPECT_THAT(ran.output, HasSubstr("liver, slow: kelvin serves"));
+}
+
+}  // namespace
+}  // namespace kerf::bench
