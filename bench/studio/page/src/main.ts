@@ -1,6 +1,6 @@
 import "./studio.css";
 
-import { Api } from "./api";
+import { Api } from "./api/api";
 import { ForceBar } from "./ui/force/force_bar";
 import { help, pageKeys } from "./ui/help";
 import { element } from "./ui/dom";

@@ -1,4 +1,5 @@
-import type { Recording, Workspace } from "../api";
+import type { Recording } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { button, element } from "../ui/dom";
 import { withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";

@@ -1,4 +1,5 @@
-import type { Api, CycleSpan, Recording, Trace } from "../api";
+import type { Api } from "../api/api";
+import type { CycleSpan, Recording, Trace } from "../api/recordings";
 import { element } from "../ui/dom";
 import { dashes } from "../ui/palette";
 import { StretchLoader } from "../ui/time/stretch_loader";

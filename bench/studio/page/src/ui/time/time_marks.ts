@@ -1,4 +1,4 @@
-import type { KerfEvent } from "../../api";
+import type { KerfEvent } from "../../api/recordings";
 import type { Mapping } from "./time_line";
 import { palette } from "../palette";
 
