@@ -6,6 +6,7 @@ import { gzipSync } from "node:zlib";
 
 import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+import { makeStudy } from "./study_pages.mjs";
 
 /** A workspace in which every page has something to show. */
 async function furnish(studio) {
@@ -14,6 +15,7 @@ async function furnish(studio) {
   studio.kerfOrThrow("session", "key", "keeper.key");
   const protocol = new URL("../../../../examples/sessions/abx.protocol.toml", import.meta.url).pathname;
   studio.makeSession(protocol);
+  await makeStudy(studio);
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
   const recording = await studio.id("recordings", "cut.h5");
   const work = async (path, body) => {
@@ -32,6 +34,7 @@ async function furnish(studio) {
   };
   return {
     recording,
+    study: (await studio.api("/api/studies")).json[0].id,
     fit: await work("/api/fit", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise"], folds: 2 }),
     chart: await work("/api/chart", { recording, axis: "theta", models: ["kelvin", "exponential"] }),
     stability: await work("/api/stability", { device: "sim:scissors", rate_hz: 1000, grip: "light", cells: 40 }),
@@ -59,6 +62,8 @@ export const tests = {
       chart: `chart/${ids.chart}`,
       stability: `stability/${ids.stability}`,
       sessions: "sessions",
+      studies: "studies",
+      study: `studies/${ids.study}`,
     };
     const complaints = [];
     for (const colorScheme of ["light", "dark"]) {

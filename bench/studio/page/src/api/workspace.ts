@@ -36,7 +36,7 @@ export interface WorkspaceSession {
 export interface WorkspaceFile {
   id: string;
   name: string;
-  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol";
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study";
 }
 
 export interface Workspace {
