@@ -6,8 +6,11 @@ import { join } from "node:path";
 import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 
-/** A punch of a spring that gets stiffer, in and out eight times; `put_down`: the last time it stays in, out of contact. */
-function punch(stiffness, { put_down = false } = {}) {
+/**
+ * A punch of a spring that gets stiffer, in and out eight times; `put_down`: the last time it stays in, out of contact;
+ * `limit`: the fifth goes deeper, and no force is larger.
+ */
+export function punch(stiffness, { put_down = false, limit = Infinity } = {}) {
   const rows = ["Time [s]\tPosition [mm]\tForce [N]"];
   const period = 0.5;
   const moved = 8 * period;
@@ -15,10 +18,11 @@ function punch(stiffness, { put_down = false } = {}) {
   for (let i = 0; i < end * 200; ++i) {
     const time = i / 200;
     const last = put_down && time > moved - period / 2;
-    const depth = last ? 5 : 2.5 * (1 - Math.cos((2 * Math.PI * time) / period));
+    const deepest = limit < Infinity && Math.floor(time / period) === 4 ? 5.5 : 5;
+    const depth = last ? 5 : (deepest / 2) * (1 - Math.cos((2 * Math.PI * time) / period));
     const noise = 0.002 * Math.sin(1.7 * i * i);
     const force = last && time > moved ? noise : (stiffness * depth) / 1000 + 0.02 * depth * depth + noise;
-    rows.push(`${time.toFixed(3)}\t${depth.toFixed(5)}\t${force.toFixed(5)}`);
+    rows.push(`${time.toFixed(3)}\t${depth.toFixed(5)}\t${Math.min(force, limit).toFixed(5)}`);
   }
   return `${rows.join("\n")}\n`;
 }
@@ -58,14 +62,13 @@ async function openStudy(page, studio) {
 const found = async (studio) => JSON.parse(await readFile(join(studio.folder, "cuts/study.json"), "utf8"));
 
 export const tests = {
-  async ListsStudiesWithTheirState({ browser, studio, screenshots }) {
+  async ListsStudiesWithTheirState({ browser, studio }) {
     const page = await prepare({ browser, studio });
     await page.goto(studio.page("studies"));
     await page.waitForSelector("table.studies");
     const cells = await page.locator("table.studies tbody tr :is(th, td)").allTextContents();
     expectEqual(cells.slice(0, 5), ["cuts", "● run", "6", "1", "0"], "name, state, recordings, failed, doubted");
     expectEqual(cells[5], "liver, skin", "tissues");
-    await page.screenshot({ path: `${screenshots}/studies.png` });
     await appendFile(join(studio.folder, "cuts/study.toml"), "# a word\n");
     await page.reload();
     await until("it has changed", async () => (await page.textContent("table.studies td")) === "◐ changed since");

@@ -189,6 +189,7 @@ TEST_F(StudioUnderAttack, LeadsNowhereByAnyParameterOfAnAddress) {
   start_the_loop();
   const std::vector<std::string> targets{"/api/recording?id={}",
                                          "/api/recording/view?id={}&traces=0&from=0&to=1&columns=10",
+                                         "/api/recording/inspection?id={}",
                                          "/api/recording/loops?id={}&axis=0&first=1&count=1",
                                          "/api/editor/curve?id={}&axis=0",
                                          "/api/editor/law?id={}",

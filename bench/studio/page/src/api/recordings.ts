@@ -43,7 +43,13 @@ export interface Recording {
   events_in_all: number;
   gaps: [number, number][];
   gaps_in_all: number;
-  cycles: { axis: number; closing_direction: number; contact_position: number; spans: CycleSpan[] } | null;
+  cycles: {
+    axis: number;
+    closing_direction: number;
+    contact_position: number;
+    spans: CycleSpan[];
+    flags: StoredFlag[] | null; // null: nobody has looked
+  } | null;
 }
 
 export interface Loops {
@@ -62,4 +68,82 @@ export interface TraceView {
   rowsPerColumn: number;
   time: Float64Array;
   traces: { smallest: Float32Array; largest: Float32Array }[];
+}
+
+/** What is wrong with a cycle; "accepted": it is good whatever else is said of it. */
+export interface StoredFlag {
+  cycle: number;
+  kind: string;
+  reason: string;
+}
+/** The end of a signal's range. */
+interface SignalEnd {
+  value: number | null;
+  rows: number;
+  clipped: boolean | null;
+}
+export interface InspectedSignal {
+  unit: string;
+  not_finite: number;
+  quantum: number | null;
+  noise: number | null;
+  noise_idle?: number | null; // this and what may be missing: of forces
+  noise_contact?: number | null;
+  drift?: { over_all: number | null } | null;
+  dead_zone?: boolean | null;
+  zeros: { rows: number; nearest: number | null };
+  least: SignalEnd;
+  most: SignalEnd;
+  outliers: number | null;
+}
+export interface InspectedCycle {
+  number: number;
+  begin_s: number;
+  duration_s: number;
+  wait_s: number;
+  closing_s: number;
+  hold_s: number;
+  opening_s: number | null;
+  peak: number | null;
+  work: number | null;
+  clipped_rows: number;
+  good: boolean;
+  accepted: string | null;
+  flags: { kind: string; reason: string }[];
+}
+/** What `kerf inspect --json` says; null: not known. */
+export interface Inspection {
+  axis: string;
+  rows: number;
+  sampling: {
+    duration_s: number | null;
+    period_s: number | null;
+    true_rate_hz: number | null;
+    jitter_s: number | null;
+    shortest_step_s: number | null;
+    longest_step_s: number | null;
+    resolution_s: number | null;
+    gaps: number;
+    repeated: number;
+    backward: number;
+    not_finite: number;
+  };
+  signals: Record<string, InspectedSignal>;
+  contact: { felt: number; least: number; rows: number; stretches: unknown[] } | null;
+  lag: { seconds: number; correlation: number; correlation_now: number } | null;
+  cycles: { stored: boolean; good: string; list: InspectedCycle[] } | null;
+  warnings: string[];
+}
+export interface ClippedRun {
+  signal: string;
+  unit: string;
+  value: number;
+  rows: number;
+  from_s: number;
+  to_s: number;
+}
+export interface RecordingInspection {
+  inspection: Inspection | null;
+  why_none: string;
+  clipped: ClippedRun[] | null;
 }
