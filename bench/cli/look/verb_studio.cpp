@@ -63,8 +63,8 @@ void add_studio(CLI::App& app, Context& context) {
       app, context, "studio", "See, draw and judge in a browser",
       "kerf studio lab --open\n\n"
       "Serves the recordings, laws and sessions of a folder to a browser of this machine: live scope,\n"
-      "recordings, the segment editor, fits, charts and sessions. Whoever has the printed address can use\n"
-      "it. docs/studio.md says more.",
+      "recordings, the segment editor, fits, charts, studies and sessions. Whoever has the printed\n"
+      "address can use it. docs/studio.md says more.",
       [arguments, &context] { run_studio(*arguments, context); });
   verb.add_option("DIR", arguments->folder, "The folder to work in").with_default();
   verb.add_option("--device", arguments->device,

@@ -16,6 +16,7 @@
 #include "server/session_host.h"
 #include "server/session_routes.h"
 #include "server/studio_page.h"
+#include "studies/study_routes.h"
 #include "views/recording_routes.h"
 #include "views/recording_views.h"
 #include "workspace/page_uri.h"
@@ -48,6 +49,7 @@ class Studio::State {
                          [this](const std::string& id) { return path_of(id, FileKind::recording); });
     add_editor_routes(routes_, workspace_, [this](const LawFile& law) { render(law); });
     add_result_routes(routes_, workspace_, jobs_);
+    add_study_routes(routes_, workspace_);
     add_session_routes(routes_, workspace_, sessions_,
                        {.key_file = options.key_file,
                         .uri_of = [this](const std::string& uri) { return uri_of(uri); },

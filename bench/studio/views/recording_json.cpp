@@ -86,6 +86,17 @@ class TimesInOrder {
   std::vector<double> time_s_;
 };
 
+/// What is said of cycles in the file; null: nobody has looked.
+ordered_json flags_of(const schema::Recording& about) {
+  if (!about.cycle_flags) return nullptr;
+  ordered_json flags = ordered_json::array();
+  for (const schema::CycleFlag& flag : about.cycle_flags->flags) {
+    if (flags.size() == max_spans) break;
+    flags.push_back({{"cycle", flag.cycle}, {"kind", flag.fault}, {"reason", flag.reason}});
+  }
+  return flags;
+}
+
 ordered_json cycles_of(const RecordingView& recording) {
   const auto& cycles = recording.file().about().cycles;
   if (!cycles) return nullptr;
@@ -102,7 +113,8 @@ ordered_json cycles_of(const RecordingView& recording) {
   return {{"axis", cycles->axis},
           {"closing_direction", json_number(cycles->closing_direction)},
           {"contact_position", json_number(cycles->contact_position)},
-          {"spans", std::move(spans)}};
+          {"spans", std::move(spans)},
+          {"flags", flags_of(recording.file().about())}};
 }
 
 }  // namespace

@@ -50,6 +50,9 @@ void add_recording_routes(Routes& routes, RecordingViews& views,
   routes.get("/api/recording/view", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return stretch(request, *views.opened(file_of(request)));
   });
+  routes.get("/api/recording/inspection", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
+    return json_text(views.opened(file_of(request))->inspection());
+  });
   routes.get("/api/recording/loops", Routes::Pace::slow, [&views, file_of](const HttpRequest& request) {
     return loops(request, *views.opened(file_of(request)));
   });

@@ -9,7 +9,8 @@
 
 namespace kerf::bench {
 
-/// Recordings for the page: GET /api/recording, /api/recording/view and /api/recording/loops. `path_of` gives
+/// Recordings for the page: GET /api/recording, /api/recording/view, /api/recording/loops and
+/// /api/recording/inspection. `path_of` gives
 /// the file of an id and throws RequestError for one that is not known; `views` has to outlive the routes.
 ///
 /// While a recording is written, /api/recording tells of it as it is now, and the others go on with what was

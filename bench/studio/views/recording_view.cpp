@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "views/recording_inspection.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -148,6 +150,12 @@ const Pyramids& RecordingView::pyramids_of(std::size_t at) {
   }
   bytes_ += pyramids->numbers().size_bytes();
   return *pyramids;
+}
+
+const std::string& RecordingView::inspection() {
+  const std::lock_guard lock(mutex_);
+  if (inspection_.empty()) inspection_ = recording_inspection_json(file_);
+  return inspection_;
 }
 
 const AxisCycles& RecordingView::cycles_along(std::size_t axis) {

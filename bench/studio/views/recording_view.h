@@ -63,6 +63,9 @@ class RecordingView {
   /// The cycles along an axis; sought once if the recording was not segmented. @throws FormatError.
   [[nodiscard]] const AxisCycles& cycles_along(std::size_t axis);
 
+  /// What it is worth, as recording_inspection_json() has it; looked at once. @throws FormatError.
+  [[nodiscard]] const std::string& inspection();
+
   /// Memory that the pyramids take.
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
 
@@ -93,6 +96,7 @@ class RecordingView {
   std::optional<RowIndex> rows_;
   std::mutex mutex_;  ///< of all below
   std::map<std::size_t, AxisCycles> cycles_;
+  std::string inspection_;                         ///< empty: nobody has asked
   std::vector<std::optional<Pyramids>> pyramids_;  ///< of each source
   std::atomic<std::size_t> bytes_ = 0;
 };

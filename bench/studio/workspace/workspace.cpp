@@ -33,7 +33,8 @@ constexpr std::array endings{Ending{".law.toml", FileKind::law}, Ending{".suite.
                              Ending{".protocol.toml", FileKind::protocol}};
 constexpr std::array whole_names{Ending{"fit.json", FileKind::fit}, Ending{"chart.json", FileKind::chart},
                                  Ending{"choose.json", FileKind::choice},
-                                 Ending{"stability.json", FileKind::stability}};
+                                 Ending{"stability.json", FileKind::stability},
+                                 Ending{"study.toml", FileKind::study}};
 
 /// By its name; a file of HDF5 is taken for a recording until it was looked into.
 std::optional<FileKind> kind_of(const std::string& name) {
@@ -61,8 +62,9 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 10> names{"recording", "law",       "session", "fit",   "chart",
-                                                   "choice",    "stability", "suite",   "scene", "protocol"};
+  constexpr std::array<std::string_view, 11> names{"recording", "law",      "session",   "fit",
+                                                   "chart",     "choice",   "stability", "suite",
+                                                   "scene",     "protocol", "study"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -21,7 +21,8 @@ enum class FileKind : std::uint8_t {
   stability,  ///< stability.json
   suite,      ///< .suite.toml
   scene,      ///< .scene.toml
-  protocol    ///< .protocol.toml
+  protocol,   ///< .protocol.toml
+  study       ///< study.toml
 };
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 

@@ -69,9 +69,12 @@ http::response<http::string_body> serialise_response(const HttpResponse& respons
   http::response<http::string_body> message(static_cast<http::status>(response.status), 11);
   message.set(http::field::connection, "close");
   message.set(http::field::cache_control, "no-store");
-  message.set("Content-Security-Policy",
-              "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
-              "form-action 'none'; frame-ancestors 'none'; base-uri 'none'");
+  message.set(
+      "Content-Security-Policy",
+      fmt::format("default-src 'none'; {}; form-action 'none'; frame-ancestors 'none'; base-uri 'none'",
+                  response.is_document
+                      ? "style-src 'unsafe-inline'; img-src data:"
+                      : "script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'"));
   message.set("Cross-Origin-Opener-Policy", "same-origin");
   message.set("Cross-Origin-Resource-Policy", "same-origin");
   message.set("Referrer-Policy", "no-referrer");

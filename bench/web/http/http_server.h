@@ -32,6 +32,9 @@ struct HttpResponse {
   int status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string body;
+  /// A page of its own, such as a report from a file: may hold its styles and pictures, and loads and runs
+  /// nothing, whatever else is in it.
+  bool is_document = false;
   /// What comes after the body, such as server-sent events: asked for after every wake() once what came
   /// before has been taken; empty if there is nothing new. The connection stays open until the browser leaves
   /// or takes nothing for 5 s. None: the body is all. Called from the server's thread; must not throw.

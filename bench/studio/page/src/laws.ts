@@ -1,4 +1,5 @@
-import type { Axis, Workspace, WorkspaceLaw } from "./api";
+import type { Axis } from "./api/recordings";
+import type { Workspace, WorkspaceLaw } from "./api/workspace";
 
 /** The laws that a person picks from: without those of a chart's points, of which there are dozens. */
 export function lawsToPick(workspace: Workspace): WorkspaceLaw[] {

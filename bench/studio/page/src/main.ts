@@ -1,6 +1,6 @@
 import "./studio.css";
 
-import { Api } from "./api";
+import { Api } from "./api/api";
 import { ForceBar } from "./ui/force/force_bar";
 import { help, pageKeys } from "./ui/help";
 import { element } from "./ui/dom";
@@ -12,8 +12,9 @@ import { recordings } from "./views/recordings";
 import { scope } from "./views/scope";
 import { sessions } from "./views/sessions";
 import { stability } from "./views/stability";
+import { studies } from "./views/studies";
 
-const views: readonly View[] = [scope, recordings, editor, fits, chart, stability, sessions];
+const views: readonly View[] = [scope, recordings, editor, fits, chart, stability, sessions, studies];
 
 function byId(id: string): HTMLElement {
   const node = document.getElementById(id);

@@ -1,7 +1,11 @@
 // Recordings: the list, a recording over time at every zoom, its cycles as loops, several laid over each other.
 
+import { writeFile } from "node:fs/promises";
+import { join } from "node:path";
+
 import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
+import { punch } from "./study_pages.mjs";
 
 async function prepare({ browser, studio }, options = {}) {
   if (!studio.process) {
@@ -26,6 +30,42 @@ const views = (page) => {
   });
   return asked;
 };
+
+/** A recording punch.h5: once the sensor is clipped, and at the end the tool is put down. */
+export async function makePunch(studio) {
+  await writeFile(join(studio.folder, "punch.txt"), punch(400, { put_down: true, limit: 2.6 }));
+  studio.kerfOrThrow("import", "punch.txt", "--map", "time=1[s],position=2[mm],force=3[N]", "-o", "punch.h5");
+  studio.kerfOrThrow("segment", "punch.h5");
+}
+
+async function preparePunch({ browser, studio }, options = {}) {
+  if (!studio.process) {
+    await makePunch(studio);
+    await studio.serve();
+  }
+  return openPage(browser, options);
+}
+
+/** What lies under the lines of a plot at a time, so many pixels from its top or (negative) its bottom. */
+function ground(page, plot, at_s, pixels) {
+  return page.evaluate(
+    ([k, time, y]) => {
+      const canvas = document.querySelectorAll(".time_plot")[k].querySelector("canvas.time_layer");
+      const [from, to] = document
+        .querySelector(".time_reading")
+        .textContent.match(/[\d.]+/g)
+        .map(Number);
+      const row = y < 0 ? canvas.height + y : y;
+      const x = Math.round(((time - from) / (to - from)) * canvas.width);
+      return [...canvas.getContext("2d").getImageData(x, row, 1, 1).data];
+    },
+    [plot, at_s, pixels],
+  );
+}
+/** But for what mixing it with what lies below has rounded. */
+const isColour = (found, wanted) => found.every((it, i) => Math.abs(it - wanted[i]) <= 3);
+const vermillion = [193, 77, 0, 255];
+const ink = [23, 33, 43, 255];
 
 export const tests = {
   async ListsAndFiltersRecordings({ browser, studio }) {
@@ -90,6 +130,88 @@ export const tests = {
     expectNoComplaints(page);
   },
 
+  async DrawsCyclesWithTheirFlagsAndClippedRows({ browser, studio }) {
+    const page = await preparePunch({ browser, studio });
+    await openRecording(page, studio, "punch.h5");
+    const id = await studio.id("recordings", "punch.h5");
+    const { inspection, clipped } = (await studio.api(`/api/recording/inspection?id=${id}`)).json;
+    const { list } = inspection.cycles;
+    const flagged = list.filter((it) => !it.good);
+    expectEqual(
+      flagged.map((it) => it.number),
+      [5, 8],
+      "flagged cycles",
+    );
+    expectEqual(clipped.length, 1, "runs of clipped rows");
+    const middle = (it) => it.begin_s + it.duration_s / 2;
+    const last = flagged.at(-1);
+    await until("it is hatched", async () => isColour(await ground(page, 0, middle(last), -3), vermillion));
+    for (const it of list.filter((each) => each.good)) {
+      expect(!isColour(await ground(page, 0, middle(it), -3), vermillion), `cycle ${it.number} is not flagged`);
+    }
+    const plots = await page.locator(".time_plot").evaluateAll((all) => all.map((it) => it.textContent));
+    const force = plots.findIndex((it) => it.includes("force"));
+    const run = clipped[0];
+    const clippedAt = (plot) => ground(page, plot, (run.from_s + run.to_s) / 2, 8);
+    expect(isColour(await clippedAt(force), ink), "clipped rows in the plot of the force");
+    expect(!isColour(await clippedAt(0), ink), "and not in that of the position");
+    const said = await page.locator(".recording_flags li.flagged").allTextContents();
+    expectEqual(said.length, flagged.length, "flagged cycles in words");
+    for (const { reason } of last.flags) expect(said.at(-1).includes(reason), `${reason} in ${said.at(-1)}`);
+    expect(said.at(-1).includes("tool put down"), said.at(-1));
+    const whole = await reading(page);
+    await page.locator(".recording_flags li.flagged button").last().click();
+    await until("it is shown", async () => {
+      const [from, to] = (await reading(page)).match(/[\d.]+/g).map(Number);
+      return (await reading(page)) !== whole && from < last.begin_s && to >= last.begin_s + last.duration_s - 0.01;
+    });
+    expectNoComplaints(page);
+  },
+
+  async SaysWhatARecordingIsWorthAsKerfInspectDoes({ browser, studio }) {
+    const page = await preparePunch({ browser, studio });
+    const verb = JSON.parse(studio.kerfOrThrow("inspect", "punch.h5", "--json").stdout);
+    await openRecording(page, studio, "punch.h5");
+    const id = await studio.id("recordings", "punch.h5");
+    const { inspection } = (await studio.api(`/api/recording/inspection?id=${id}`)).json;
+    for (const [name, value] of Object.entries(inspection)) expectEqual(value, verb[name], name);
+    await page.click("#tab_worth");
+    await page.waitForSelector(".inspection table");
+    const warnings = await page.locator(".warnings li span:last-child").allTextContents();
+    expectEqual(warnings, verb.warnings, "warnings, which come first");
+    const cells = await page
+      .locator(".inspection .signals tbody tr")
+      .last()
+      .locator("td")
+      .evaluateAll((all) => all.map((it) => it.title || it.textContent));
+    const force = verb.signals.force_measured;
+    const exact = (value) => (value === null ? "not known" : String(value));
+    expectEqual(
+      [cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[10]],
+      [
+        force.least.value,
+        force.most.value,
+        force.quantum,
+        force.noise,
+        force.noise_idle,
+        force.noise_contact,
+        force.outliers,
+      ].map(exact),
+      "numbers of the force",
+    );
+    expectEqual(cells[9], `high, ${force.most.rows} rows`, "where it is clipped");
+    const rows = page.locator(".inspection .cycles tbody tr");
+    expectEqual(await rows.count(), verb.cycles.list.length, "cycles");
+    expectEqual(
+      await page.locator(".inspection .cycles tr.flagged").count(),
+      verb.cycles.list.filter((it) => !it.good).length,
+      "flagged ones",
+    );
+    await rows.last().locator("button").click();
+    await page.waitForSelector("#tab_time[aria-selected=true]");
+    expectNoComplaints(page);
+  },
+
   async LaysRecordingsOverEachOther({ browser, studio, screenshots }) {
     const page = await prepare({ browser, studio });
     const asked = views(page);
@@ -119,6 +241,9 @@ export const tests = {
       await page.click("#tab_loops");
       await page.waitForSelector(".loops_frame .curve");
       expectEqual(await audit(page), [], `complaints, ${colorScheme}, loops`);
+      await page.click("#tab_worth");
+      await page.waitForSelector(".inspection table");
+      expectEqual(await audit(page), [], `complaints, ${colorScheme}, inspected`);
     }
   },
 };

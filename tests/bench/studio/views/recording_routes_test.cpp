@@ -10,6 +10,8 @@
 
 #include "bench/studio/views/long_recording.h"
 #include "support/program.h"
+#include "support/recordings.h"
+#include "views/recording_inspection.h"
 
 namespace kerf::bench {
 namespace {
@@ -99,6 +101,61 @@ TEST(RecordingRoutes, TellOfPhasesAsSpansOfTime) {
   EXPECT_EQ(loops["loops"][0]["cycle"], 3);
   EXPECT_EQ(loops["loops"][0]["position"].size(), loops["loops"][0]["force"].size());
   EXPECT_EQ(loops["average"]["closing"], json::parse("[1, null]"));
+}
+
+TEST(RecordingRoutes, TellOfFlagsThatTheFileHas) {
+  schema::Recording rows = test::long_recording(1000);
+  rows.cycles = schema::Cycles{.axis = 0, .closing_direction = 1.0, .contact_position = 0.0};
+  rows.cycles->phases = {{.cycle = 1, .phase = schema::Phase::closing, .begin = 0, .end = 1000}};
+  EXPECT_TRUE(ServedRecording(rows).get_json("/api/recording", {{"id", "a"}})["cycles"]["flags"].is_null());
+  rows.cycle_flags =
+      schema::CycleFlags{.created = "2026-01-01T00:00:00Z",
+                         .software = "kerf test",
+                         .felt = 0.05,
+                         .flags = {{.cycle = 1, .fault = "by_hand", .reason = "it slipped"},
+                                   {.cycle = 1, .fault = "accepted", .reason = "it was meant to"}}};
+  const json flags = ServedRecording(rows).get_json("/api/recording", {{"id", "a"}})["cycles"]["flags"];
+  ASSERT_EQ(flags.size(), 2U);
+  EXPECT_EQ(flags[0], json({{"cycle", 1}, {"kind", "by_hand"}, {"reason", "it slipped"}}));
+  EXPECT_EQ(flags[1]["kind"], "accepted");
+}
+
+TEST(RecordingRoutes, SayWhatARecordingIsWorthAsTheVerbDoes) {
+  const schema::Recording rows = test::punch({.noise_n = 0.02, .limit_n = 2.0});
+  ServedRecording served(rows);
+  const json found = served.get_json("/api/recording/inspection", {{"id", "a"}});
+  EXPECT_EQ(found["why_none"], "");
+  const test::TemporaryFolder folder;
+  schema::write_recording(folder / "r.h5", rows);
+  const json verb = json::parse(test::run_kerf({"inspect", (folder / "r.h5").string(), "--json"}).output);
+  for (const auto& [name, value] : found["inspection"].items()) EXPECT_EQ(value, verb[name]) << name;
+  const json& most = verb["signals"]["force_measured"]["most"];
+  ASSERT_EQ(most["clipped"], true);
+  ASSERT_EQ(found["clipped"].size(), most["first_runs"].size());
+  const auto first = most["first_runs"][0]["first_row"].get<std::size_t>();
+  const auto count = most["first_runs"][0]["rows"].get<std::size_t>();
+  EXPECT_EQ(found["clipped"][0]["signal"], "force_measured");
+  EXPECT_EQ(found["clipped"][0]["value"], 2.0);
+  EXPECT_EQ(found["clipped"][0]["rows"], count);
+  EXPECT_EQ(found["clipped"][0]["from_s"], rows.time[first]);
+  EXPECT_EQ(found["clipped"][0]["to_s"], rows.time[first + count - 1]);
+}
+
+TEST(RecordingRoutes, LeaveALongRecordingToTheVerb) {
+  schema::Recording rows;
+  rows.header = schema::new_header("kerf test");
+  rows.axes = {schema::Axis{}};
+  const std::size_t count = max_rows_inspected + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    rows.time.push_back(1e-3 * static_cast<double>(i));
+    rows.tick.push_back(i);
+  }
+  rows.position.assign(count, 0.0);
+  rows.velocity.assign(count, 0.0);
+  const json found = ServedRecording(rows).get_json("/api/recording/inspection", {{"id", "a"}});
+  EXPECT_TRUE(found["inspection"].is_null());
+  EXPECT_TRUE(found["clipped"].is_null());
+  EXPECT_THAT(found["why_none"].get<std::string>(), HasSubstr("'kerf inspect'"));
 }
 
 TEST(RecordingRoutes, GiveAStretchAsBytes) {

@@ -53,10 +53,12 @@ TEST_F(WorkspaceOfALab, KnowsFilesByTheirNamesAndWhatIsInThem) {
   put(folder_.path() / "a.law.toml");
   put(folder_.path() / "cut.fit" / "fit.json");
   put(folder_.path() / "cut.h5.partial");
+  put(folder_.path() / "drawer" / "study.toml");
+  put(folder_.path() / "drawer" / "a.study.toml");
   put(folder_.path() / "notes.txt");
   put(folder_.path() / "not hdf5.h5");
   EXPECT_THAT(names(), ElementsAre("law a.law.toml", "recording b/cut.h5", "fit cut.fit/fit.json",
-                                   "recording cut.h5.partial"));
+                                   "recording cut.h5.partial", "study drawer/study.toml"));
 }
 
 TEST_F(WorkspaceOfALab, LeavesOutWhatIsHiddenUnfinishedDeepOrLeadsOutside) {

@@ -52,6 +52,20 @@ TEST(HttpServer, LetsNothingOfOthersBeLoadedFramedOrStored) {
   }
 }
 
+TEST(HttpServer, LetsADocumentRunAndLoadNothing) {
+  HttpServer server(0);
+  server.start([](const HttpRequest&, bool) {
+    return HttpResponse{.type = "text/html", .body = "<script src=/studio.js></script>", .is_document = true};
+  });
+  const std::string answer = answer_to(server.port(), question);
+  EXPECT_THAT(
+      answer,
+      HasSubstr("Content-Security-Policy: default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
+                "form-action 'none'; frame-ancestors 'none'; base-uri 'none'\r\n"));
+  EXPECT_THAT(answer, Not(HasSubstr("script-src")));
+  EXPECT_THAT(answer, HasSubstr("Cross-Origin-Opener-Policy: same-origin\r\n"));
+}
+
 TEST(HttpServer, TakesARequestInPieces) {
   HttpServer server(0);
   server.start(always("hello"));

@@ -1,4 +1,5 @@
-import type { LawError, Loops } from "../api";
+import type { LawError } from "../api/editor";
+import type { Loops } from "../api/recordings";
 import { drawn } from "../ui/dom";
 import { plain } from "../ui/numbers";
 import { XyPlot, type PlotLine } from "../ui/xy_plot";

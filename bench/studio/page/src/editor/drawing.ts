@@ -1,4 +1,4 @@
-import type { EditorCurve, Knots } from "../api";
+import type { EditorCurve, Knots } from "../api/editor";
 import { type History } from "./history";
 import { added, leastGap, moved, removed, withOpening, type Branch, type Spot } from "./knots";
 import { scaleFor, type Scale } from "./scale";

@@ -1,6 +1,6 @@
 // How far a law is from the averaged cycle: the same figures as the server's law_error(), while a knot is dragged.
 
-import type { EditorCurve, Knots, LawError } from "../api";
+import type { EditorCurve, Knots, LawError } from "../api/editor";
 import { forceAt, type Branch } from "./knots";
 
 /** What a person can feel of a force, in its unit. */

@@ -1,6 +1,6 @@
 // Breakpoints of a law of segments, as values: every change gives new ones.
 
-import type { EditorCurve, Knots } from "../api";
+import type { EditorCurve, Knots } from "../api/editor";
 
 export type Branch = "closing" | "opening";
 

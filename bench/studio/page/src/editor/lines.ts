@@ -1,4 +1,5 @@
-import type { EditorCurve, Knots, Loops } from "../api";
+import type { EditorCurve, Knots } from "../api/editor";
+import type { Loops } from "../api/recordings";
 import { XyPlot, type Limits, type PlotLine } from "../ui/xy_plot";
 import type { Drawing } from "./drawing";
 import { jndAt } from "./error";

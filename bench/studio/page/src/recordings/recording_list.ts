@@ -1,4 +1,4 @@
-import type { Workspace, WorkspaceRecording } from "../api";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
 import { element, labelled } from "../ui/dom";
 import { plain } from "../ui/numbers";
 

@@ -1,4 +1,5 @@
-import type { Api, Loops, Recording } from "../api";
+import type { Api } from "../api/api";
+import type { Loops, Recording } from "../api/recordings";
 import { button, element, labelled, select } from "../ui/dom";
 import { swatch } from "../ui/time/time_plot";
 import { XyPlot, type PlotLine } from "../ui/xy_plot";

@@ -1,4 +1,6 @@
-import type { Api, Recording, Workspace } from "../api";
+import type { Api } from "../api/api";
+import type { Recording } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
 import { swatch } from "../ui/time/time_plot";
 import { atMostDrawn, type Drawn } from "./recording_time";

@@ -1,14 +1,17 @@
-import type { Recording, Workspace } from "../api";
+import type { Recording, RecordingInspection } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { button, element } from "../ui/dom";
 import { withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";
+import { cyclesOf, FlaggedCycles } from "./cycle_flags";
+import { InspectionPanel } from "./inspection_panel";
 import { date, length } from "./recording_list";
 import { RecordingLoops } from "./recording_loops";
 import { RecordingOverlay } from "./recording_overlay";
 import { RecordingTime } from "./recording_time";
 import { firstTraces, traceChoice } from "./recording_traces";
 
-type Tab = "time" | "loops";
+type Tab = "time" | "loops" | "worth";
 
 /** One recording: over time, and as force against position. Gives back what ends it. */
 export function recordingPage(
@@ -25,18 +28,31 @@ export function recordingPage(
   let tab: Tab = "time";
   const show = (): void => {
     if (tab === "time") time.show(overlay.drawn, chosen);
-    else loops.show(overlay.drawn);
+    else if (tab === "loops") loops.show(overlay.drawn);
   };
   const overlay = new RecordingOverlay(api, recording, name, workspace, show, complain);
   const choice = traceChoice(recording.traces, chosen, show);
-  const events = eventList(recording, (at) => {
+  const lookAt = (from_s: number, to_s: number): void => {
     open("time");
-    time.showAt(at - 1, at + 1);
-  });
+    time.showAt(from_s - 1, to_s + 1);
+  };
+  const events = eventList(recording, (at) => lookAt(at, at));
+  const flags = new FlaggedCycles(lookAt);
+  const worth = new InspectionPanel(lookAt);
+
+  const side = element(
+    "aside",
+    { class: "recording_side", "aria-label": "What is drawn" },
+    choice,
+    overlay.root,
+    flags.root,
+    events,
+  );
 
   const tabs: readonly (readonly [Tab, HTMLButtonElement, HTMLElement])[] = [
     ["time", tabButton("Over time", "time"), time.root],
     ["loops", tabButton("Force against position", "loops"), loops.root],
+    ["worth", tabButton("Inspect", "worth"), worth.root],
   ];
   function tabButton(text: string, it: Tab): HTMLButtonElement {
     return button(text, () => open(it), { role: "tab", id: `tab_${it}`, "aria-controls": `panel_${it}` });
@@ -49,6 +65,7 @@ export function recordingPage(
       panel.hidden = it !== tab;
     }
     choice.hidden = tab !== "time";
+    side.hidden = tab === "worth";
     show();
   }
   const list = element(
@@ -58,7 +75,8 @@ export function recordingPage(
   );
   list.addEventListener("keydown", (event) => {
     if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
-    open(tab === "time" ? "loops" : "time");
+    const at = tabs.findIndex(([it]) => it === tab) + (event.key === "ArrowLeft" ? tabs.length - 1 : 1);
+    open(tabs[at % tabs.length]![0]);
     tabs.find(([it]) => it === tab)?.[1].focus();
   });
   for (const [it, , panel] of tabs) {
@@ -78,15 +96,34 @@ export function recordingPage(
     element(
       "div",
       { class: "recording_body" },
-      element("div", { class: "recording_main" }, list, time.root, loops.root),
-      element("aside", { class: "recording_side", "aria-label": "What is drawn" }, choice, overlay.root, events),
+      element("div", { class: "recording_main" }, list, time.root, loops.root, worth.root),
+      side,
     ),
   );
   open("time");
+  flags.show(cyclesOf(recording, null));
+  const gone = new AbortController();
+  inspect(context, recording, gone.signal).then(
+    (found) => {
+      time.inspected(found);
+      flags.show(cyclesOf(recording, found));
+      worth.show(found);
+    },
+    (error: unknown) => {
+      if (!gone.signal.aborted) worth.fail(error);
+    },
+  );
   return () => {
+    gone.abort();
     time.end();
     loops.end();
   };
+}
+
+/** After what is seen first: it takes a second where there are a million rows. */
+async function inspect(context: Context, recording: Recording, gone: AbortSignal): Promise<RecordingInspection> {
+  await new Promise((go) => setTimeout(go, 200));
+  return context.api.get<RecordingInspection>("/api/recording/inspection", { id: recording.id }, gone);
 }
 
 function links(id: string): HTMLElement[] {

@@ -1,10 +1,12 @@
-import type { Api, CycleSpan, Recording, Trace } from "../api";
+import type { Api } from "../api/api";
+import type { CycleSpan, Recording, RecordingInspection, Trace } from "../api/recordings";
 import { element } from "../ui/dom";
 import { dashes } from "../ui/palette";
 import { StretchLoader } from "../ui/time/stretch_loader";
 import type { Span, TimeMarks } from "../ui/time/time_marks";
 import type { TimeLine } from "../ui/time/time_line";
 import { TimeStack, type PlotOrder } from "../ui/time/time_stack";
+import { clippedMarks, cycleMarks, cyclesOf } from "./cycle_flags";
 import { emptyLine, inWords, plotsOf, takeView } from "./trace_groups";
 
 /** A recording that is drawn: the page's own first, then those laid over it. */
@@ -27,6 +29,7 @@ export class RecordingTime {
   readonly stack: TimeStack;
   private sources: Source[] = [];
   private first: Recording | null = null;
+  private found: RecordingInspection | null = null;
 
   constructor(
     private readonly api: Api,
@@ -51,6 +54,12 @@ export class RecordingTime {
     this.stack.build(drawn.length > 1 ? this.plotsForEach(traces) : plotsOf(traces, this.sources[0]?.lines ?? []));
     this.bound(drawn, own);
     this.want();
+  }
+
+  /** Cycles with their flags, and clipped rows, of the page's own recording. */
+  inspected(found: RecordingInspection): void {
+    this.found = found;
+    if (this.first) this.stack.marks = marksOf(this.first, found);
   }
 
   showAt(from_s: number, to_s: number): void {
@@ -109,7 +118,7 @@ export class RecordingTime {
       this.first = own;
       range.whole();
     } else range.show(range.from, range.to);
-    this.stack.marks = marksOf(own);
+    this.stack.marks = marksOf(own, this.found);
   }
 
   private want(): void {
@@ -124,12 +133,18 @@ const words: Record<CycleSpan["phase"], string> = {
   close_to_open: "",
 };
 
-function marksOf(recording: Recording): TimeMarks {
+function marksOf(recording: Recording, found: RecordingInspection | null): TimeMarks {
   const spans = (recording.cycles?.spans ?? []).map((it): Span => {
     const shade = it.phase === "closing" ? "blue" : it.phase === "opening" ? "orange" : "plain";
     return { from_s: it.from_s, to_s: it.to_s, shade, text: words[it.phase] && `${it.cycle} ${words[it.phase]}` };
   });
-  return { spans, gaps: recording.gaps, events: recording.events };
+  return {
+    spans,
+    gaps: recording.gaps,
+    events: recording.events,
+    cycles: cycleMarks(cyclesOf(recording, found)),
+    clipped: clippedMarks(found?.clipped ?? null),
+  };
 }
 
 function legend(): HTMLElement {
@@ -142,6 +157,9 @@ function legend(): HTMLElement {
     item("opening", "opening"),
     item("gap", "no rows"),
     item("event", "event"),
+    item("cycle", "cycle"),
+    item("flagged", "flagged cycle"),
+    item("clipped", "clipped rows"),
   );
 }
 

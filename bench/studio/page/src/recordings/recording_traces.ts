@@ -1,4 +1,4 @@
-import type { Recording, Trace } from "../api";
+import type { Recording, Trace } from "../api/recordings";
 import { element } from "../ui/dom";
 import { axisOf, inWords } from "./trace_groups";
 

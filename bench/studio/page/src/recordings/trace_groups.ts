@@ -1,4 +1,4 @@
-import type { Axis, Trace, TraceView } from "../api";
+import type { Axis, Trace, TraceView } from "../api/recordings";
 import { looks } from "../ui/palette";
 import type { TimeLine } from "../ui/time/time_line";
 import type { PlotOrder } from "../ui/time/time_stack";

@@ -1,4 +1,5 @@
-import type { ChartFile, ChartPoint, Workspace, WorkspaceFile } from "../api";
+import type { ChartFile, ChartPoint } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import { SortableTable } from "../ui/sortable_table";

@@ -1,4 +1,4 @@
-import type { ChartFile, ChartPoint } from "../api";
+import type { ChartFile, ChartPoint } from "../api/results";
 import { drawn, element } from "../ui/dom";
 import { FigurePlot } from "../ui/figure";
 import type { Spot } from "../ui/figure";

@@ -1,4 +1,5 @@
-import type { ChoiceCandidate, ChoiceFile, Workspace, WorkspaceFile } from "../api";
+import type { ChoiceCandidate, ChoiceFile } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { button, element, table } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";

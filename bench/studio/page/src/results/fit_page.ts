@@ -1,4 +1,5 @@
-import type { FitFile, LawFit, LawView, Residuals, Workspace, WorkspaceFile, WorkspaceLaw } from "../api";
+import type { FitFile, LawFit, LawView, Residuals } from "../api/results";
+import type { Workspace, WorkspaceFile, WorkspaceLaw } from "../api/workspace";
 import { element, labelled, select } from "../ui/dom";
 import { withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";

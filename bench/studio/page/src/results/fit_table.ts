@@ -1,4 +1,4 @@
-import type { FitFile, LawFit } from "../api";
+import type { FitFile, LawFit } from "../api/results";
 import { element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import { intervalBar, intervalOf, reachOf } from "./interval_bar";

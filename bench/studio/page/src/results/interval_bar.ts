@@ -1,4 +1,4 @@
-import type { Estimate } from "../api";
+import type { Estimate } from "../api/results";
 import { drawn } from "../ui/dom";
 
 /** The interval of an estimate, however confident it was asked to be. */

@@ -1,4 +1,4 @@
-import type { Job } from "../api";
+import type { Job } from "../api/results";
 import { button, element } from "../ui/dom";
 import type { Context } from "../ui/view";
 

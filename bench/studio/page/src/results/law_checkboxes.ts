@@ -1,4 +1,5 @@
-import type { Axis, FittedLaw } from "../api";
+import type { Axis } from "../api/recordings";
+import type { FittedLaw } from "../api/results";
 import { button, element } from "../ui/dom";
 
 /** Which laws to fit: those whose units fit the axis. */

@@ -1,4 +1,4 @@
-import type { LawView } from "../api";
+import type { LawView } from "../api/results";
 import { button, element, table } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";
 import type { Context } from "../ui/view";

@@ -1,4 +1,5 @@
-import type { ChartPoint, Workspace, WorkspaceFile, WorkspaceLaw, WorkspaceRecording } from "../api";
+import type { ChartPoint } from "../api/results";
+import type { Workspace, WorkspaceFile, WorkspaceLaw, WorkspaceRecording } from "../api/workspace";
 
 /** "day/cut.fit" of "day/cut.fit/fit.json". */
 export function folderOf(name: string): string {

@@ -1,4 +1,5 @@
-import type { Axis, Recording, Workspace, WorkspaceRecording } from "../api";
+import type { Axis, Recording } from "../api/recordings";
+import type { Workspace, WorkspaceRecording } from "../api/workspace";
 import { element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
 

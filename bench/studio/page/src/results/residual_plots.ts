@@ -1,4 +1,4 @@
-import type { Residuals } from "../api";
+import type { Residuals } from "../api/results";
 import { bandPath, jndBand } from "../ui/bands";
 import { drawn, element } from "../ui/dom";
 import { plain, withUnit } from "../ui/numbers";

@@ -1,4 +1,4 @@
-import type { Workspace } from "../api";
+import type { Workspace } from "../api/workspace";
 import { element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
 import type { JobList } from "./jobs";

@@ -1,4 +1,4 @@
-import type { StabilityFile } from "../api";
+import type { StabilityFile } from "../api/results";
 import type { Figure } from "../ui/figure_description";
 import { drawn, element } from "../ui/dom";
 import { FigurePlot } from "../ui/figure";

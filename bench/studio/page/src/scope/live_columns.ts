@@ -1,4 +1,4 @@
-import type { LiveFrame } from "../api";
+import type { LiveFrame } from "../api/loop";
 
 /**
  * The newest columns of the running loop, oldest first, in arrays that stay: column k holds the smallest and the

@@ -1,5 +1,7 @@
-import type { Api, KerfEvent, LiveFrame, LoopStatus } from "../api";
-import { ApiError } from "../api";
+import type { Api } from "../api/api";
+import type { LiveFrame, LoopStatus } from "../api/loop";
+import type { KerfEvent } from "../api/recordings";
+import { ApiError } from "../api/api";
 
 export interface LiveListener {
   frame: (frame: LiveFrame) => void;

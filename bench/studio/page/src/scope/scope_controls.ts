@@ -1,4 +1,5 @@
-import type { LoopStatus, Workspace } from "../api";
+import type { LoopStatus } from "../api/loop";
+import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
 import type { Context } from "../ui/view";
 import { lackingFor, lawsToPick, shortName } from "../laws";

@@ -1,4 +1,4 @@
-import type { LoopStatus, Percentiles } from "../api";
+import type { LoopStatus, Percentiles } from "../api/loop";
 import { element } from "../ui/dom";
 import { plain } from "../ui/numbers";
 

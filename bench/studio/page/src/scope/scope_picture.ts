@@ -1,4 +1,6 @@
-import type { Api, KerfEvent, LiveFrame, Trace } from "../api";
+import type { Api } from "../api/api";
+import type { LiveFrame } from "../api/loop";
+import type { KerfEvent, Trace } from "../api/recordings";
 import { StretchLoader } from "../ui/time/stretch_loader";
 import { TimeStack } from "../ui/time/time_stack";
 import type { TimeLine } from "../ui/time/time_line";

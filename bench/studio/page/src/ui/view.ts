@@ -1,4 +1,4 @@
-import type { Api } from "../api";
+import type { Api } from "../api/api";
 
 /** Where a page is: "#/editor/1f3a" is { view: "editor", id: "1f3a" }. */
 export interface Place {

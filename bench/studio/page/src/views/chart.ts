@@ -1,6 +1,7 @@
 import "./results.css";
 
-import type { ChartFile, FittedLaw, Workspace, WorkspaceFile } from "../api";
+import type { ChartFile, FittedLaw } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { ChartPage } from "../results/chart_page";
 import { ChoicePanel } from "../results/choice_panel";
 import { JobList } from "../results/jobs";

@@ -1,6 +1,8 @@
 import "./editor.css";
 
-import type { EditorCurve, Knots, Recording, Workspace } from "../api";
+import type { EditorCurve, Knots } from "../api/editor";
+import type { Recording } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { Canvas } from "../editor/canvas";
 import { chooser } from "../editor/panels/chooser";
 import { Drawing } from "../editor/drawing";

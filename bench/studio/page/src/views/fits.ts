@@ -1,6 +1,7 @@
 import "./results.css";
 
-import type { FitFile, FittedLaw, Workspace, WorkspaceFile } from "../api";
+import type { FitFile, FittedLaw } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { element, labelled } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 import { FitPage } from "../results/fit_page";

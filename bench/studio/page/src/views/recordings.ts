@@ -1,6 +1,7 @@
 import "./recordings.css";
 
-import type { Recording, Workspace } from "../api";
+import type { Recording } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { element } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 import { recordingList } from "../recordings/recording_list";

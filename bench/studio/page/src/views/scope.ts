@@ -1,6 +1,8 @@
 import "./scope.css";
 
-import type { LoopStatus, Trace, Workspace } from "../api";
+import type { LoopStatus } from "../api/loop";
+import type { Trace } from "../api/recordings";
+import type { Workspace } from "../api/workspace";
 import { button, element, labelled, select } from "../ui/dom";
 import { singleKeysOn } from "../ui/help";
 import { isTyping } from "../ui/keys";

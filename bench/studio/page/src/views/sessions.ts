@@ -1,6 +1,7 @@
 import "./sessions.css";
 
-import type { SessionState, Workspace, WorkspaceSession } from "../api";
+import type { SessionState } from "../api/sessions";
+import type { Workspace, WorkspaceSession } from "../api/workspace";
 import { button, element, labelled } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 

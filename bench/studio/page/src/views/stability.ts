@@ -1,6 +1,7 @@
 import "./results.css";
 
-import type { StabilityFile, Workspace, WorkspaceFile } from "../api";
+import type { StabilityFile } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
 import { JobList } from "../results/jobs";
 import { byName, resultName } from "../results/names";
 import { stabilityForm } from "../results/stability_form";

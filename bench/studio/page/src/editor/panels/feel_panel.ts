@@ -1,4 +1,4 @@
-import type { LoopStatus } from "../../api";
+import type { LoopStatus } from "../../api/loop";
 import { button, element } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { Drawing } from "../drawing";

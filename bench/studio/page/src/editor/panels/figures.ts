@@ -1,4 +1,4 @@
-import type { LawError } from "../../api";
+import type { LawError } from "../../api/editor";
 import { element } from "../../ui/dom";
 import { plain } from "../../ui/numbers";
 import type { Drawing } from "../drawing";

@@ -1,4 +1,4 @@
-import type { Knots } from "../../api";
+import type { Knots } from "../../api/editor";
 import { button, element } from "../../ui/dom";
 import type { Drawing } from "../drawing";
 import { faultOf } from "../knots";

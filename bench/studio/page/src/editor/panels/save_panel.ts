@@ -1,4 +1,5 @@
-import { ApiError, type DrawnLaw, type LawError } from "../../api";
+import { ApiError } from "../../api/api";
+import type { DrawnLaw, LawError } from "../../api/editor";
 import { button, element, labelled } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { Drawing } from "../drawing";

@@ -1,4 +1,5 @@
-import type { Knots, Workspace } from "../../api";
+import type { Knots } from "../../api/editor";
+import type { Workspace } from "../../api/workspace";
 import { element, labelled } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { Drawing } from "../drawing";

@@ -1,4 +1,5 @@
-import type { Knots, LawError, Loops } from "../../api";
+import type { Knots, LawError } from "../../api/editor";
+import type { Loops } from "../../api/recordings";
 import { button, element, labelled, select } from "../../ui/dom";
 import type { Context } from "../../ui/view";
 import type { Canvas } from "../canvas";

@@ -1,6 +1,7 @@
 import "./force_bar.css";
 
-import { ApiError, type Api, type LoopStatus } from "../../api";
+import { ApiError, type Api } from "../../api/api";
+import type { LoopStatus } from "../../api/loop";
 import { forceStates, type ForceState } from "./force_states";
 import { OtherTabs } from "./other_tabs";
 

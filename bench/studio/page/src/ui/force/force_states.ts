@@ -1,4 +1,4 @@
-import type { LoopStatus } from "../../api";
+import type { LoopStatus } from "../../api/loop";
 import { shortName } from "../../laws";
 
 /** What the bar says of a state, and the one thing that a person may want to do about it: an order to the studio. */

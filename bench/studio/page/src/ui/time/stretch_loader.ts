@@ -1,4 +1,4 @@
-import type { TraceView } from "../../api";
+import type { TraceView } from "../../api/recordings";
 import type { TimeRange } from "./time_range";
 
 const maxColumns = 4000; // that the server gives at once

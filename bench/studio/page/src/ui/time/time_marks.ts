@@ -1,6 +1,7 @@
-import type { KerfEvent } from "../../api";
+import type { KerfEvent } from "../../api/recordings";
 import type { Mapping } from "./time_line";
 import { palette } from "../palette";
+import type { ClippedMark, CycleMark } from "./cycle_marks";
 
 export type Shade = "blue" | "orange" | "plain";
 
@@ -16,6 +17,8 @@ export interface TimeMarks {
   spans: readonly Span[]; // in order, not overlapping
   gaps: readonly (readonly [number, number])[]; // without rows
   events: readonly KerfEvent[];
+  cycles?: readonly CycleMark[];
+  clipped?: readonly ClippedMark[];
 }
 
 export const noMarks: TimeMarks = { spans: [], gaps: [], events: [] };
@@ -84,7 +87,7 @@ export function drawEvents(context: CanvasRenderingContext2D, marks: TimeMarks, 
 }
 
 /** Left end and width within the plot; at least a pixel. */
-function within(map: Mapping, from: number, to: number): [number, number] {
+export function within(map: Mapping, from: number, to: number): [number, number] {
   const perSecond = map.width / (map.to - map.from);
   const left = Math.max(0, (from - map.from) * perSecond);
   const right = Math.min(map.width, (to - map.from) * perSecond);
@@ -104,7 +107,7 @@ function stripes(
   }
 }
 
-function hatch(
+export function hatch(
   context: CanvasRenderingContext2D,
   left: number,
   top: number,

@@ -5,6 +5,7 @@ import { linearTicks, plain, unitFor } from "../numbers";
 import { dashes, palette } from "../palette";
 import { calmLimits } from "./time_limits";
 import { columnAt, widen, type Mapping, type TimeLine } from "./time_line";
+import { drawCycleMarks } from "./cycle_marks";
 import { drawEvents, drawGround, noMarks, type TimeMarks } from "./time_marks";
 import { TimeRaster } from "./time_raster";
 import type { TimeRange } from "./time_range";
@@ -270,6 +271,7 @@ export class TimePlot {
     if (context && (this.marked || marks !== noMarks)) {
       context.clearRect(0, 0, map.width, map.height);
       drawGround(context, marks, map, true);
+      drawCycleMarks(context, marks, map, this.lines[0]?.unit);
       drawEvents(context, marks, map);
       this.marked = marks !== noMarks;
     }

@@ -1,0 +1,128 @@
+import { Requests } from "../requests";
+import type { LoopStatus } from "./loop";
+import type { TraceView } from "./recordings";
+
+// How the server is asked. What it answers stands beside this, by subject. Every request carries the token in a header
+// that no other site can send.
+
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    message: string,
+  ) {
+    super(message);
+  }
+}
+
+type Parameters = Record<string, string | number | readonly number[]>;
+
+export class Api {
+  private readonly requests = new Requests();
+
+  constructor(readonly token: string) {}
+
+  async get<Answer>(path: string, parameters: Parameters = {}, signal?: AbortSignal): Promise<Answer> {
+    return this.read(path, parameters, signal, async (answer) => (await answer.json()) as Answer);
+  }
+
+  async post<Answer = unknown>(path: string, body: unknown = {}): Promise<Answer> {
+    const answer = await this.send(path, {
+      method: "POST",
+      headers: { "Content-Type": "application/json" },
+      body: JSON.stringify(body),
+    });
+    return (await answer.json()) as Answer;
+  }
+
+  /** A stretch of traces: /api/live/view or /api/recording/view. */
+  async view(path: string, parameters: Parameters, signal?: AbortSignal): Promise<TraceView> {
+    return this.read(path, parameters, signal, async (answer) => traceView(await answer.arrayBuffer()));
+  }
+
+  /** Server-sent events; the browser connects again by itself. */
+  stream(path: string, parameters: Parameters = {}): EventSource {
+    return new EventSource(address(path, { ...parameters, token: this.token }));
+  }
+
+  /** Past what else is being read, so that only a studio that does not answer is late. */
+  async loopStatus(signal: AbortSignal): Promise<LoopStatus> {
+    return (await (await this.send("/api/live/status", { signal })).json()) as LoopStatus;
+  }
+
+  /**
+   * Asks for zero force until somebody has heard it: needs nothing that this page knows, not even the token. What else
+   * waits for an answer is given up first, since a browser opens only six connections to one server.
+   */
+  async zeroForce(): Promise<void> {
+    this.requests.giveUp();
+    for (let tries = 0; ; ++tries) {
+      const patience = new AbortController();
+      const timer = setTimeout(() => patience.abort(), 1000);
+      try {
+        await this.send("/api/live/zero", { method: "POST", keepalive: true, signal: patience.signal });
+        return;
+      } catch (error) {
+        if (tries >= 20 || (error instanceof ApiError && error.status === 403))
+          throw error instanceof ApiError ? error : silent();
+        await new Promise((go) => setTimeout(go, 100));
+      } finally {
+        clearTimeout(timer);
+      }
+    }
+  }
+
+  private read<Answer>(
+    path: string,
+    parameters: Parameters,
+    signal: AbortSignal | undefined,
+    take: (answer: Response) => Promise<Answer>,
+  ): Promise<Answer> {
+    return this.requests.take(async (own) => take(await this.send(address(path, parameters), { signal: own })), signal);
+  }
+
+  private async send(path: string, options: RequestInit): Promise<Response> {
+    const headers = { ...(options.headers as Record<string, string>), "X-Kerf-Token": this.token };
+    let answer: Response;
+    try {
+      answer = await fetch(path, { ...options, headers });
+    } catch (error) {
+      if (error instanceof DOMException && error.name === "AbortError") throw error;
+      throw silent();
+    }
+    if (answer.ok) return answer;
+    const text = await answer.text();
+    throw new ApiError(answer.status, errorIn(text) ?? `${answer.status} ${text.trim()}`);
+  }
+}
+
+function silent(): ApiError {
+  return new ApiError(0, "The studio does not answer. Is 'kerf studio' still running?");
+}
+
+function address(path: string, parameters: Parameters): string {
+  const parts = Object.entries(parameters).map(([name, value]) => `${name}=${String(value)}`);
+  return parts.length > 0 ? `${path}?${parts.join("&")}` : path;
+}
+
+function errorIn(text: string): string | null {
+  try {
+    const json = JSON.parse(text) as { error?: unknown };
+    return typeof json.error === "string" ? json.error : null;
+  } catch {
+    return null;
+  }
+}
+
+export function traceView(bytes: ArrayBuffer): TraceView {
+  const [columns = 0, count = 0] = new Uint32Array(bytes, 0, 2);
+  const rowsPerColumn = new Float64Array(bytes, 8, 1)[0] ?? 1;
+  const time = new Float64Array(bytes, 16, columns);
+  const traces = [];
+  for (let trace = 0, at = 16 + 8 * columns; trace < count; ++trace, at += 8 * columns) {
+    traces.push({
+      smallest: new Float32Array(bytes, at, columns),
+      largest: new Float32Array(bytes, at + 4 * columns, columns),
+    });
+  }
+  return { rowsPerColumn, time, traces };
+}

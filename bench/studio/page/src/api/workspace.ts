@@ -1,0 +1,50 @@
+import type { Axis } from "./recordings";
+
+// What is in the folder.
+
+export interface WorkspaceRecording {
+  id: string;
+  name: string; // path within the workspace
+  bytes: number;
+  modified: string; // ISO 8601
+  partial: boolean; // not closed: being written, or left by a crash
+  seconds?: number; // where the server knows it without opening the file
+}
+
+export interface WorkspaceLaw {
+  id: string;
+  name: string;
+  model: string;
+  axis: string;
+  position_unit: string;
+  force_unit: string;
+  breakpoints: boolean; // knots that the segment editor moves
+  axes: Axis[]; // that it acts on
+  error: string; // why it cannot be read; empty if it can
+}
+
+export interface WorkspaceSession {
+  id: string;
+  name: string;
+  subject: string; // a code
+  key: string; // "key file" or "passphrase"
+  finished: boolean;
+  answered: number;
+  error: string;
+}
+
+export interface WorkspaceFile {
+  id: string;
+  name: string;
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study";
+}
+
+export interface Workspace {
+  folder: string;
+  version: string;
+  device: string;
+  recordings: WorkspaceRecording[];
+  laws: WorkspaceLaw[];
+  sessions: WorkspaceSession[];
+  files: WorkspaceFile[];
+}
