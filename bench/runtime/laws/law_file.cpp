@@ -1,10 +1,13 @@
 #include "laws/law_file.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -13,9 +16,7 @@
 #include <kerf/version.h>
 
 #include "files/named_file.h"
-#include "files/whole_file.h"
 #include "laws/law_toml.h"
-#include "recordings/provenance.h"
 #include "units/units.h"
 
 namespace kerf::bench {
@@ -184,6 +185,30 @@ std::string parameters_text(const LawFile& file) {
   return text;
 }
 
+/// "0.3.0" for "0.3.0 (81988ff57a31)..."; three numbers in `numbers`.
+std::string take_version(std::string_view text, std::array<int, 3>& numbers) {
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != '.')) return "";
+    const auto [next, error] = std::from_chars(at, end, numbers[i]);
+    if (error != std::errc{}) return "";
+    at = next;
+  }
+  return {text.data(), at};
+}
+
+/// The version in the first line, "# kerf 0.3.0 (81988ff57a31)", if it is later than this one; else empty.
+std::string later_writer(std::string_view text) {
+  constexpr std::string_view before = "# kerf ";
+  std::array<int, 3> theirs{};
+  std::array<int, 3> ours{};
+  if (!text.starts_with(before)) return "";
+  std::string writer = take_version(text.substr(before.size()), theirs);
+  if (writer.empty() || take_version(version(), ours).empty() || theirs <= ours) return "";
+  return writer;
+}
+
 }  // namespace
 
 LawFile law_from_table(const toml::table& root, const std::string& name,
@@ -229,7 +254,14 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
 }
 
 LawFile parse_law_file(const std::string& text, const std::string& name) {
-  return law_from_table(parse_toml(text, name), name);
+  try {
+    return law_from_table(parse_toml(text, name), name);
+  } catch (const std::invalid_argument& refused) {
+    const std::string writer = later_writer(text);
+    if (writer.empty()) throw;
+    throw std::invalid_argument(
+        fmt::format("{} (kerf {} wrote the file, and this is {})", refused.what(), writer, version()));
+  }
 }
 
 LawFile read_law_file(const std::filesystem::path& file) {
@@ -254,15 +286,6 @@ std::string to_toml(const LawFile& file) {
                         toml_number(file.fit.rmse_n), toml_text(file.fit.date), toml_text(file.fit.software));
   }
   return text;
-}
-
-void name_recording(FitProvenance& fit, const std::filesystem::path& recording) {
-  fit.recording_sha256 = sha256_of(recording);
-  fit.recording_content = content_sha256_of(recording);
-}
-
-void write_law_file(const std::filesystem::path& file, const LawFile& law, schema::Existing existing) {
-  write_whole_file(file, fmt::format("# {}\n{}", software(), to_toml(law)), existing);
 }
 
 }  // namespace kerf::bench

@@ -36,7 +36,8 @@ struct LawFile {
 
 /// Reads a law file. Parameters may be given in any unit of the same kind ("N/mm", "N/deg").
 /// @throws std::invalid_argument with file, line, what was found and what was expected: an unknown key, a
-///         missing unit, a unit of another kind, a parameter out of its bounds.
+///         missing unit, a unit of another kind, a parameter out of its bounds; with the version that wrote
+///         the file, as its first line names it, if that is later than this one.
 /// @throws std::system_error if it cannot be read.
 [[nodiscard]] LawFile read_law_file(const std::filesystem::path& file);
 

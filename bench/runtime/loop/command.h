@@ -81,7 +81,7 @@ class LawRendering {
     const models::Motion motion = contact_.motion(position[axis], velocity[axis]);
     const models::Response response = law_.step(state_, motion, period_s);
     Command command;
-    command.force[axis] = -contact_.direction * response.force;
+    command.force[axis] = contact_.force_on_axis(response.force);
     if (response.fault) command.flags |= schema::flag_law_fault;
     return command;
   }

@@ -39,6 +39,8 @@ struct Contact {
   [[nodiscard]] Motion motion(double axis_position, double axis_velocity) const noexcept {
     return {.penetration = direction * (axis_position - position), .velocity = direction * axis_velocity};
   }
+  /// In the sense of the axis, for a force that is positive where the tissue resists.
+  [[nodiscard]] double force_on_axis(double resisting) const noexcept { return -direction * resisting; }
 };
 
 }  // namespace kerf::models
