@@ -73,7 +73,7 @@ PrepareOptions options_of(const PrepareVerbArguments& arguments) {
 
 /// The cycles of a recording as `kerf inspect` sees them. @throws std::invalid_argument if none is without a
 /// flag.
-std::vector<FlaggedCycle> flagged_cycles(const std::string& file) {
+std::vector<FlaggedCycle> cycles_flagged_in(const std::string& file) {
   const schema::RecordingFile rows(file);
   const auto& stored = rows.about().cycles;
   if (!stored)
@@ -113,7 +113,7 @@ void run_prepare(const PrepareVerbArguments& arguments, Context& context) {
   if (!arguments.filter_chart.empty()) require_output(arguments.filter_chart, arguments.force);
   std::vector<FlaggedCycle> cycles;
   if (arguments.cycles == good) {
-    cycles = flagged_cycles(arguments.recording);
+    cycles = cycles_flagged_in(arguments.recording);
     options.cycles = parse_cycles(good_cycles(cycles));
   }
   if (!arguments.blank.empty()) {

@@ -12,6 +12,7 @@
 #include "drawer/look.h"
 #include "drawer/study_file.h"
 #include "files/whole_file.h"
+#include "laws/plugin_laws.h"
 #include "study/verb_study.h"
 
 namespace kerf::bench {
@@ -72,7 +73,7 @@ void run_study_new(const StudyNewArguments& arguments, Context& context) {
   const fs::path file = folder / "study.toml";
   require_output(file, arguments.force);
   plan.map = arguments.map;
-  plan.laws = arguments.laws.empty() ? laws_to_begin_with() : arguments.laws;
+  plan.laws = arguments.laws.empty() ? laws_to_begin_with() : laws_named(arguments.laws);
   for (const std::string& law : plan.laws) fitting::check_model(law);
   plan.compare = {"peak"};
   fs::create_directories(folder);
@@ -97,6 +98,7 @@ void add_study_new(CLI::App& study, Context& context) {
                "Words of names and folders are taken for tissue, speed, specimen (s3, donor2) and blanks. "
                "Nothing in\nthe folder is changed.",
                [arguments, &context] { run_study_new(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FOLDER", arguments->drawer,
                   "The drawer: text, workbooks, MAT-files, recordings, in folders or not")
       .required();
