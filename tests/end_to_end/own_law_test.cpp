@@ -118,11 +118,20 @@ TEST_F(OwnLaw, IsFittedToEightDigitsAsThatOfTheHouseIsInCAndAsAHeader) {
       0);
   const json fits = json::parse(test::read_text(folder_ / "fits/fit.json")).at("fits");
   ASSERT_EQ(fits.size(), 3U);
-  for (const json& own : fits) {
-    for (std::size_t i = 0; i < 5; ++i) {
-      const double value = own.at("parameters").at(i).at("value").get<double>();
-      const double house = fits.at(0).at("parameters").at(i).at("value").get<double>();
-      EXPECT_NEAR(value, house, 1e-8 * std::abs(house)) << own.at("model") << ' ' << i;
+  const auto parameters_of = [&](const std::string& model) {
+    for (const json& fit : fits) {
+      if (fit.at("model") == model) return fit.at("parameters");
+    }
+    return json();
+  };
+  const json house = parameters_of("friction");
+  ASSERT_EQ(house.size(), 5U);
+  for (const char* const model : {"coulomb_spring", "coulomb_spring_header"}) {
+    const json own = parameters_of(model);
+    for (const auto& [name, of_house] : house.items()) {
+      const double value = of_house.at("value").get<double>();
+      EXPECT_NEAR(own.at(name).at("value").get<double>(), value, 1e-8 * std::abs(value))
+          << model << ' ' << name;
     }
   }
 }
