@@ -154,8 +154,9 @@ void fit_one(const std::string& law, const std::string& path, int turns, bool wh
 void fit_all(const std::string& path) {
   const Recording recording = read(path);
   std::cout << '[';
-  for (const auto law : fitting::fitted_laws()) {
-    std::cout << (law == fitting::fitted_laws().front() ? "\n" : ",\n") << " {\"law\": \"" << law << '"';
+  const auto laws = fitting::fitted_laws();
+  for (const auto law : laws) {
+    std::cout << (law == laws.front() ? "\n" : ",\n") << " {\"law\": \"" << law << '"';
     try {
       fitting::FitResult result;
       const double seconds =

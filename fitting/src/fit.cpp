@@ -192,25 +192,21 @@ models::Law FitResult::law(std::size_t recording) const {
   return models::Law::make(model, values, law_options);
 }
 
-const std::vector<std::string_view>& fitted_laws() {
-  static const std::vector<std::string_view> laws = [] {
-    std::vector<std::string_view> scalar;
-    for (const models::LawInfo& law : models::registry()) {
-      if (models::Law::axes(law.name).empty()) scalar.push_back(law.name);
-    }
-    return scalar;
-  }();
-  return laws;
+std::vector<std::string_view> fitted_laws() {
+  std::vector<std::string_view> scalar;
+  for (const models::LawInfo& law : models::registry()) {
+    if (models::Law::axes(law.name).empty()) scalar.push_back(law.name);
+  }
+  return scalar;
 }
 
 void check_model(std::string_view model) {
   (void)models::Law::options(model);  // an unknown law is told as such
-  if (std::find(fitted_laws().begin(), fitted_laws().end(), model) != fitted_laws().end()) return;
+  const std::vector<std::string_view> laws = fitted_laws();
+  if (std::find(laws.begin(), laws.end(), model) != laws.end()) return;
   std::string message = "law '" + std::string(model) +
                         "' acts on several axes and cannot be fitted along one; those that can are";
-  for (const std::string_view law : fitted_laws()) {
-    message += (law == fitted_laws().front() ? " " : ", ") + std::string(law);
-  }
+  for (const std::string_view law : laws) message += (law == laws.front() ? " " : ", ") + std::string(law);
   throw std::invalid_argument(message);
 }
 

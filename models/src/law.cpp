@@ -12,40 +12,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "any_law.h"
+#include "kerf/models/foreign.h"
 #include "kerf/models/registry.h"
 
 namespace kerf::models {
-
-/// Place of a law in the registry.
-using Place = std::size_t;
-
-struct AnyState {
-  explicit AnyState(Place of) noexcept : law(of) {}
-  AnyState(const AnyState&) = default;
-  AnyState& operator=(const AnyState&) = delete;
-  virtual ~AnyState() = default;
-  [[nodiscard]] virtual std::unique_ptr<AnyState> copy() const = 0;
-  /// Only of a state of the same law.
-  virtual void assign(const AnyState& other) = 0;
-
-  const Place law;
-};
-
-struct AnyLaw {
-  AnyLaw() = default;
-  AnyLaw(const AnyLaw&) = delete;
-  AnyLaw& operator=(const AnyLaw&) = delete;
-  virtual ~AnyLaw() = default;
-  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
-  [[nodiscard]] virtual std::unique_ptr<AnyState> initial_state() const = 0;
-  // Not a number: a fault, also if the state is another law's or the law of the other kind.
-  [[nodiscard]] virtual double step(AnyState& state, const Motion& motion,
-                                    double period_s) const noexcept = 0;
-  [[nodiscard]] virtual AxisValues step(AnyState& state, const SpatialMotion& motion,
-                                        double period_s) const noexcept = 0;
-  /// Not a number: the law has none, or the state is another law's.
-  [[nodiscard]] virtual double stored_energy(const AnyState& state) const noexcept = 0;
-};
 
 namespace {
 
@@ -65,6 +36,7 @@ auto dispatch(std::string_view model, F&& f, std::index_sequence<I...>) {
     std::ostringstream message;
     message << "unknown law '" << model << "'; the laws are";
     ((message << (I ? ", " : " ") << LawAt<I>::name), ...);
+    for (const ForeignLaw* const foreign : foreign_laws()) message << ", " << foreign->info().name;
     throw std::invalid_argument(message.str());
   }
   return *std::move(result);
@@ -176,21 +148,29 @@ LawInfo info_of() {
 }  // namespace
 
 std::vector<LawInfo> registry() {
-  return []<std::size_t... I>(std::index_sequence<I...>) {
+  auto laws = []<std::size_t... I>(std::index_sequence<I...>) {
     return std::vector<LawInfo>{info_of<LawAt<I>>()...};
   }
   (std::make_index_sequence<law_count>{});
+  for (const ForeignLaw* const foreign : foreign_laws()) laws.push_back(foreign->info());
+  return laws;
 }
 
 LawInfo law_info(std::string_view model) {
+  if (const ForeignLaw* const foreign = foreign_law(model)) return foreign->info();
   return dispatch(model, []<Place I>() { return info_of<LawAt<I>>(); });
 }
 
 const LawFacts& law_facts(std::string_view model) {
+  if (const ForeignLaw* const foreign = foreign_law(model)) return foreign->facts();
   return *dispatch(model, []<Place I>() { return &LawAt<I>::facts; });
 }
 
 std::vector<ParameterInfo> Law::parameters(std::string_view model, const Options& options) {
+  if (const ForeignLaw* const foreign = foreign_law(model)) {
+    const OptionReader refuses_all(model, {}, options);
+    return foreign->parameters();
+  }
   return dispatch(model, [&]<Place I>() {
     using L = LawAt<I>;
     const OptionReader refuses_unknown(L::name, L::options(), options);
@@ -199,10 +179,12 @@ std::vector<ParameterInfo> Law::parameters(std::string_view model, const Options
 }
 
 std::vector<OptionInfo> Law::options(std::string_view model) {
+  if (foreign_law(model) != nullptr) return {};
   return dispatch(model, []<Place I>() { return LawAt<I>::options(); });
 }
 
 std::vector<LawAxis> Law::axes(std::string_view model) {
+  if (const ForeignLaw* const foreign = foreign_law(model)) return foreign->axes();
   return dispatch(model, []<Place I>() {
     if constexpr (SpatialLaw<LawAt<I>>) return LawAt<I>::axes();
     return std::vector<LawAxis>{};
@@ -229,6 +211,8 @@ Law::Law(std::shared_ptr<const AnyLaw> law, std::vector<double> values, Options 
 
 Law Law::make(std::string_view model, std::span<const double> values, const Options& options) {
   check_values(model, parameters(model, options), values);
+  if (const ForeignLaw* const foreign = foreign_law(model))
+    return {made_of(*foreign, values), {values.begin(), values.end()}, options};
   auto law = dispatch(
       model, [&]<Place I>() -> std::shared_ptr<const AnyLaw> { return registered<I>(values, options); });
   return {std::move(law), {values.begin(), values.end()}, options};

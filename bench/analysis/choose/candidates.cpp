@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/models/foreign.h>
+
 #include "fits/law_options.h"
 
 namespace kerf::bench {
@@ -16,6 +18,11 @@ namespace {
 std::size_t searched(const CandidateLaw& law) {
   const models::LawFacts& facts = models::law_facts(law.model);
   const auto all = models::Law::parameters(law.model, options_of_law(law.model, law.law_options));
+  if (const models::ForeignLaw* const foreign = models::foreign_law(law.model)) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) count += foreign->is_searched(i) ? 1 : 0;
+    return count;
+  }
   const auto free = std::ranges::count_if(all, [&](const models::ParameterInfo& info) {
     return std::ranges::none_of(facts.held,
                                 [&](std::string_view name) { return info.name.starts_with(name); });

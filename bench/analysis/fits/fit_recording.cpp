@@ -221,7 +221,7 @@ std::string RecordingFit::refusal() const {
 }
 
 std::vector<std::string> usual_laws() {
-  std::map<int, std::string> usual;
+  std::multimap<int, std::string> usual;
   for (const models::LawInfo& law : models::registry()) {
     if (const int place = models::law_facts(law.name).usual; place > 0) usual.emplace(place, law.name);
   }

@@ -11,6 +11,7 @@
 #include "files/named_file.h"
 #include "laws/law_toml.h"
 #include "laws/placement.h"
+#include "laws/plugin_laws.h"
 #include "scene/read_motion.h"
 
 namespace kerf::bench {
@@ -111,6 +112,22 @@ void require_tolerances(const Place& place, const toml::table& table, const Regr
   }
 }
 
+/// Laws of shared objects that cases need, as they are found from here.
+void read_plugins(const Place& place, const toml::table& root, const fs::path& folder) {
+  const toml::node* const node = root.get("plugins");
+  if (node == nullptr) return;
+  const toml::array* const all = node->as_array();
+  if (all == nullptr || !all->is_homogeneous<std::string>())
+    place.refuse(*node, "'plugins' must be a list of files, such as [\"mylaw.so\"]");
+  for (const toml::node& one : *all) {
+    try {
+      (void)load_plugin(folder / **one.as_string());
+    } catch (const std::invalid_argument& error) {
+      place.refuse(one, "{}", error.what());
+    }
+  }
+}
+
 RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
                          const RegressionCase& defaults) {
   const auto keys = with_settings("name", "law", "recording", "scene", "motion");
@@ -145,7 +162,8 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());
   const toml::table root = parse_toml(read_named_file(file), file.string());
-  place.allow_only(root, {"name", "defaults", "case"}, "a suite");
+  place.allow_only(root, {"name", "plugins", "defaults", "case"}, "a suite");
+  read_plugins(place, root, file.parent_path());
   Suite suite{
       .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};
   suite.stored.replace_extension(".h5");

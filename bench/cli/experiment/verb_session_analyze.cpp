@@ -134,6 +134,7 @@ void add_session_analyze(CLI::App& session, Context& context) {
       "a study, before its first session. docs/sessions-analysis.md and docs/psychophysics.md have the "
       "equations.",
       [arguments, &context] { analyze(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FILES", arguments->files, "Session files, or one table of answers (.csv)").required();
   add_key_options(verb, arguments->key);
   verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");

@@ -157,6 +157,7 @@ void add_session_new(CLI::App& session, Context& context) {
       "Sessions of one study made together are counterbalanced over its subjects. Protocol and laws\n"
       "are copied into the session; docs/sessions.md has the protocol's format.",
       [arguments, &context] { make_sessions(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
   verb.add_option("--subject", arguments->subject,
                   "Code of the subject, no name: letters, digits, _ and -, 16 at most");

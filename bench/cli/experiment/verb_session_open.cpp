@@ -46,6 +46,7 @@ void add_session_open(CLI::App& session, Context& context) {
       "Before a session is finished it takes a --reason, and the file keeps both: every analysis of\n"
       "it says that it was opened early.",
       [arguments, &context] { open(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FILE", arguments->file, "The session").required();
   verb.add_option("-o,--output", arguments->output, "Folder for trials.csv and the recordings").required();
   verb.add_option("--reason", arguments->reason, "Why it is opened before its end; kept in the file");

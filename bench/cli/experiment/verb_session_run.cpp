@@ -187,6 +187,7 @@ void add_session_run(CLI::App& session, Context& context) {
       "printed at the end finds later whether the file was replaced, cut short or restored: see\n"
       "'kerf session analyze --receipt'.",
       [arguments, &context] { run(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FILE", arguments->file, "The session").required();
   verb.add_option("--device", arguments->device, "Device URI (default: the protocol's)");
   verb.add_option("--sensor", arguments->loop.sensor_uri, "URI of a force sensor beside the device");

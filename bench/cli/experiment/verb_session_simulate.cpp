@@ -109,6 +109,7 @@ void add_session_simulate(CLI::App& session, Context& context) {
       "found, how many trials does it take, do intervals cover the truth, are false alarms as rare as\n"
       "the test says.",
       [arguments, &context] { run(*arguments, context); });
+  verb.takes_laws(context);
   Observer& observer = arguments->simulation.observer;
   verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
   verb.add_option("--jnd", arguments->jnd_percent, "The observers' JND of force [%]")

@@ -14,6 +14,7 @@
 #include "fit/fit_table.h"
 #include "fits/batch.h"
 #include "fits/fit_files.h"
+#include "laws/plugin_laws.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "recordings/whole_recording.h"
@@ -121,6 +122,7 @@ void add_fit(CLI::App& app, Context& context) {
       "no fit. A batch goes on after a failure and lists it; Ctrl-C ends it with the recordings that\n"
       "are underway.",
       [arguments, &context] {
+        arguments->options.models = laws_named(std::move(arguments->options.models));
         check(*arguments);
         if (arguments->batch.empty()) {
           arguments->options.fit.threads = std::max(1U, std::thread::hardware_concurrency());
@@ -129,6 +131,7 @@ void add_fit(CLI::App& app, Context& context) {
           run_batch_of(*arguments, context);
         }
       });
+  verb.takes_laws(context);
   add_fit_options(verb, *arguments);
 }
 

@@ -7,6 +7,7 @@
 #include <kerf/fitting/fit.h>
 #include <kerf/models/law.h>
 
+#include "laws/plugin_laws.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {
@@ -27,7 +28,7 @@ nlohmann::ordered_json to_json(const models::OptionValue& value) {
 }
 
 bool can_be_fitted(std::string_view law) {
-  const auto& laws = fitting::fitted_laws();
+  const auto laws = fitting::fitted_laws();
   return std::find(laws.begin(), laws.end(), law) != laws.end();
 }
 
@@ -80,12 +81,15 @@ void add_laws(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<LawsVerbArguments>();
   Verb verb = add_verb(app, context, "laws", "List the force laws, or the parameters and options of one",
                        "kerf laws blade", [arguments, &context] {
+                         if (is_plugin(arguments->law))
+                           arguments->law = load_plugin(arguments->law).info().name;
                          if (arguments->law.empty()) {
                            list_laws(context);
                          } else {
                            describe_law(arguments->law, context);
                          }
                        });
+  verb.takes_laws(context);
   verb.add_option("NAME", arguments->law, "Law");
 }
 

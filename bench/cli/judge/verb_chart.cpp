@@ -17,6 +17,7 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "fits/row_doubts.h"
+#include "laws/plugin_laws.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "recordings/whole_recording.h"
@@ -132,7 +133,7 @@ void run_chart(const ChartVerbArguments& arguments, Context& context) {
   SpeedAccuracy chart;
   {
     Progress progress("charting", chart_steps);
-    ChartOptions options{.models = arguments.laws};
+    ChartOptions options{.models = laws_named(arguments.laws)};
     if (arguments.rate_hz > 0.0) options.rate_hz = arguments.rate_hz;
     options.threads = std::max(1U, std::thread::hardware_concurrency());
     options.stop = &signals.requested();
@@ -171,6 +172,7 @@ void add_chart(CLI::App& app, Context& context) {
       "tissue's law is computed at every fidelity, and judged by the finest. docs/charts.md says more.\n"
       "Costs are measured: leave the machine in peace meanwhile. Ctrl-C ends it without files.",
       [arguments, &context] { run_chart(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording");
   verb.add_option("--scene", arguments->scene, "Scene, in place of a recording");
   verb.add_option("--laws", arguments->laws, "Laws to fit, or all (default: those that suit any axis)")

@@ -7,6 +7,7 @@
 
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "laws/plugin_laws.h"
 #include "program/confirm_on_enter.h"
 #include "program/contact_arguments.h"
 #include "program/loop_arguments.h"
@@ -58,6 +59,8 @@ void run_check(const CheckVerbArguments& arguments, Context& context) {
   const Verdict verdict = judge(result);
   context.result = check_as_json(result, verdict);
   context.result["law"] = std::string(options.law->law.model());
+  if (const std::string plugin = plugin_in_words(options.law->law); !plugin.empty())
+    context.result["plugin"] = plugin;
   const std::string& fitted_to = options.law->fit.recording_uuid;
   context.result["law_of_recording"] =
       fitted_to.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(fitted_to);
@@ -83,6 +86,7 @@ void add_check(CLI::App& app, Context& context) {
                "law or device failed; the verdict says whose doing it was. An empty loop is measured\n"
                "first, so that a late machine is not taken for a slow law. docs/real-time.md says more.",
                [arguments, &context] { run_check(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("LAW", arguments->law, "Law file (default: the tissue of --scene)");
   add_loop_options(verb, arguments->loop,
                    "Scene file: its device, hand and trajectory; the law is felt in place of its tissue");

@@ -201,6 +201,7 @@ void add_choose(CLI::App& app, Context& context) {
       "is said. Segment a recording of cycles first. Exit status 1 if no law serves. docs/choosing.md says "
       "more.",
       [arguments, &context] { run_choose(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
   verb.add_option("--scene", arguments->scene, "Make a recording of this scene first, in virtual time");
   verb.add_option("-o,--output", arguments->output,

@@ -84,6 +84,7 @@ void add_stability(CLI::App& app, Context& context) {
       "hold with it.\n"
       "docs/stability.md says what is simulated and what the lines mean.",
       [arguments, &context] { run_stability(*arguments, context); });
+  verb.takes_laws(context);
   AxisRequest& on = arguments->study.on;
   verb.add_option("LAW", arguments->law, "Law file; without one, a virtual wall is mapped");
   verb.add_flag("--cases", arguments->all_cases,

@@ -66,6 +66,7 @@ void add_studio(CLI::App& app, Context& context) {
       "recordings, the segment editor, fits, charts, studies and sessions. Whoever has the printed\n"
       "address can use it. docs/studio.md says more.",
       [arguments, &context] { run_studio(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("DIR", arguments->folder, "The folder to work in").with_default();
   verb.add_option("--device", arguments->device,
                   "Device URI to offer (default: sim:scissors); it is opened from the page");

@@ -22,6 +22,7 @@
 #include "files/for_terminal.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
+#include "laws/plugin_laws.h"
 #include "program/nearest_word.h"
 #include "program/standard_streams.h"
 #include "program/verbs.h"
@@ -45,7 +46,7 @@ std::vector<Group> groups() {
             add_studio
 #endif
            }},
-          {"fit", {add_laws, add_fit, add_blade, add_train}},
+          {"fit", {add_laws, add_law, add_fit, add_blade, add_train}},
           {"judge", {add_choose, add_check, add_chart, add_stability, add_reproduce}},
           {"replay", {add_replay, add_regress}},
           {"experiment", {add_session}},
@@ -69,7 +70,7 @@ std::string overview(const CLI::App& app) {
     group = verb->get_group();
   }
   return text +
-         "\n'kerf help VERB' says more of a verb; all have --json. 'kerf --version' names version and "
+         "'kerf help VERB' says more of a verb; all have --json. 'kerf --version' names version and "
          "commit.\n";
 }
 
@@ -237,11 +238,16 @@ void note(std::string_view line) { write_error_text(fmt::format("{}\n", for_term
 
 void warn(std::string_view line) { write_error_text(fmt::format("warning: {}\n", for_terminal(line))); }
 
+void say_plugin_notes() {
+  for (const std::string& line : take_plugin_notes()) warn(line);
+}
+
 std::string read_command_line(const std::vector<std::string>& words) { return Program(false).take(words); }
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();
   const int status = run_caught({argv + 1, argv + argc});
+  say_plugin_notes();
   for (const auto& left : take_removed_leftovers())
     note(fmt::format("{}: removed; a run that was killed had left it unfinished", left.string()));
   finish_standard_streams();

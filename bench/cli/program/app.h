@@ -15,12 +15,13 @@ enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error 
 /// What every verb is given beside its own options.
 // NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw
 struct Context {
-  bool runs = true;               ///< false: command lines are read, and no verb does anything
-  bool json = false;              ///< print one JSON object on standard output and nothing else there
-  std::uint64_t seed = 1;         ///< of every random choice
-  bool seed_given = false;        ///< by --seed
-  Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
-  nlohmann::ordered_json result;  ///< printed at the end with --json
+  bool runs = true;                  ///< false: command lines are read, and no verb does anything
+  bool json = false;                 ///< print one JSON object on standard output and nothing else there
+  std::uint64_t seed = 1;            ///< of every random choice
+  bool seed_given = false;           ///< by --seed
+  std::vector<std::string> plugins;  ///< laws of shared objects, by --plugin
+  Exit exit = Exit::done;            ///< a verb sets check_failed when a check did not pass
+  nlohmann::ordered_json result;     ///< printed at the end with --json
   /// What could not be written though the result stands: said after it, and the exit status is file_error.
   std::string not_written;
 
@@ -36,6 +37,9 @@ void print(std::string_view text);
 void note(std::string_view line);
 /// A warning, likewise.
 void warn(std::string_view line);
+
+/// Warns of what is to be told of laws of shared objects, once.
+void say_plugin_notes();
 
 /// Reads the words of a command line as run_program() does, and runs no verb. What it would print before any:
 /// of --help and --version. @throws std::invalid_argument in one line for what is no command line.

@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "laws/plugin_laws.h"
 #include "program/app.h"
 
 namespace kerf::bench {
@@ -95,6 +96,13 @@ Option Verb::add_flag(const std::string& name, bool& variable, const std::string
   return Option(*verb_.add_flag(name, variable, description));
 }
 
+Verb& Verb::takes_laws(Context& context) {
+  add_option("--plugin", context.plugins,
+             "MYLAW.so: a law of your own, from now on known by its name; may be repeated (docs/own-law.md)")
+      .one_value_each();
+  return *this;
+}
+
 Verb add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
               const std::string& example, std::function<void()> action) {
   CLI::App* const subcommand = app.add_subcommand(name, description);
@@ -105,7 +113,10 @@ Verb add_verb(CLI::App& app, Context& context, const std::string& name, const st
       subcommand->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
   subcommand->callback([&context, seed, run = std::move(action)] {
     context.seed_given = seed->count() > 0;
-    if (context.runs) run();
+    if (!context.runs) return;
+    for (const std::string& file : context.plugins) (void)load_plugin(file);
+    say_plugin_notes();  // before a device moves
+    run();
   });
   return verb;
 }

@@ -48,6 +48,8 @@ class Verb {
   template <typename Value>
   Option add_option(const std::string& name, Value& variable, const std::string& description);
   Option add_flag(const std::string& name, bool& variable, const std::string& description);
+  /// Adds --plugin: laws of shared objects, which are loaded before the verb's action runs.
+  Verb& takes_laws(Context& context);
 
  private:
   CLI::App& verb_;

@@ -65,6 +65,7 @@ void add_record(CLI::App& app, Context& context) {
                "'kerf info --follow' shows it from another terminal, and after a crash 'kerf repair' closes\n"
                "it.",
                [arguments, &context] { run_record(*arguments, context); });
+  verb.takes_laws(context);
   add_loop_options(verb, arguments->loop,
                    "Scene file: the tissue that a simulated device meets, the hand on it and what that does");
   verb.add_option("--law", arguments->law, "Law file to render while recording");

@@ -156,6 +156,7 @@ void add_regress(CLI::App& app, Context& context) {
                "not as it was. 'update' says what would change and why, and asks before it writes.\n"
                "docs/regress.md says more.",
                [arguments, &context] { run_regress(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("ACTION", arguments->action, "run or update").required().one_of({"run", "update"});
   verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
   verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();

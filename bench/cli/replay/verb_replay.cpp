@@ -246,6 +246,7 @@ void add_replay(CLI::App& app, Context& context) {
       "forces with the recorded one; --as table renders the recorded forces themselves on a device;\n"
       "--as path pulls a device along the recorded positions. docs/replay.md says more.",
       [arguments, &context] { run_replay(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to play").required();
   verb.add_option("--as", arguments->as, "table or path").one_of({"table", "path"});
   verb.add_option("--through", arguments->through, "Law file; may be repeated").one_value_each();

@@ -67,6 +67,7 @@ void add_report(CLI::App& app, Context& context) {
       "choose, chart, stability, replay, check and inspect. Which it is, is told by what is in it; of a\n"
       "folder only what is of this recording is taken. docs/reports.md says what is on the page.",
       [arguments, &context] { run_report(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording").required();
   verb.add_option("RESULTS", arguments->results, "JSON of other verbs, or folders that hold such");
   verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");

@@ -13,6 +13,7 @@
 #include "drawer/study_file.h"
 #include "drawer/suggest_blank.h"
 #include "files/whole_file.h"
+#include "laws/plugin_laws.h"
 #include "study/verb_study.h"
 
 namespace kerf::bench {
@@ -118,7 +119,7 @@ void run_study_new(const StudyNewArguments& arguments, Context& context) {
   const fs::path file = folder / "study.toml";
   require_output(file, arguments.force);
   if (!maps.empty()) plan.map = maps.front().name;
-  plan.laws = arguments.laws.empty() ? laws_to_begin_with() : arguments.laws;
+  plan.laws = arguments.laws.empty() ? laws_to_begin_with() : laws_named(arguments.laws);
   for (const std::string& law : plan.laws) fitting::check_model(law);
   plan.compare = {"peak"};
   suggest_blanks(plan, arguments.drawer, maps);
@@ -151,6 +152,7 @@ void add_study_new(CLI::App& study, Context& context) {
       "of one recording (s1_position, s1_force) are\nsuggested, for a person to confirm. Nothing in the "
       "folder is changed.",
       [arguments, &context] { run_study_new(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FOLDER", arguments->drawer,
                   "The drawer: text, workbooks, MAT-files, recordings, in folders or not")
       .required();

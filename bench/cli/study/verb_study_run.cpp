@@ -58,6 +58,7 @@ void add_study_run(CLI::App& study, Context& context) {
                "status 1; the\nothers go on. Ctrl-C ends it with what is underway, and the next run goes on "
                "from there.",
                [arguments, &context] { run_whole_study(*arguments, false, context); });
+  verb.takes_laws(context);
   add_study_file(verb, *arguments);
 }
 
@@ -67,6 +68,7 @@ void add_study_report(CLI::App& study, Context& context) {
                        "kerf study report S/study.toml\n\n"
                        "For instance after tissues or specimens were corrected in study.toml.",
                        [arguments, &context] { run_whole_study(*arguments, true, context); });
+  verb.takes_laws(context);
   add_study_file(verb, *arguments);
 }
 

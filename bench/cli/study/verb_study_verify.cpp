@@ -43,6 +43,7 @@ void add_study_verify(CLI::App& study, Context& context) {
   Verb verb = add_verb(
       study, context, "verify", "Recompute the hashes of a study, and what is asked to be made again",
       "kerf study verify S --rerun all", [arguments, &context] { run_study_verify(*arguments, context); });
+  verb.takes_laws(context);
   verb.add_option("FOLDER", arguments->folder, "The study's folder").required();
   verb.add_option("--rerun", arguments->rerun,
                   "Recordings, separated by commas, or all: each must come out the same, bit for bit")

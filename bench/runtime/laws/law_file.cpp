@@ -15,8 +15,8 @@
 #include <kerf/drivers/toml_text.h>
 #include <kerf/version.h>
 
-#include "files/named_file.h"
 #include "laws/law_toml.h"
+#include "laws/plugin_mention.h"
 #include "units/units.h"
 
 namespace kerf::bench {
@@ -214,12 +214,13 @@ std::string later_writer(std::string_view text) {
 LawFile law_from_table(const toml::table& root, const std::string& name,
                        std::initializer_list<std::string_view> beside) {
   const Place place(name);
-  std::vector<std::string_view> known{"model",   "axis",       "position_unit", "force_unit",
-                                      "contact", "parameters", "fidelity",      "fit"};
+  std::vector<std::string_view> known{"model",      "axis",     "position_unit", "force_unit", "contact",
+                                      "parameters", "fidelity", "fit",           "plugin"};
   known.insert(known.end(), beside);
   place.allow_only(root, known, "a law");
   const std::string model = place.text(root, "model", "");
   if (model.empty()) place.refuse(root, "no 'model'; expected for example model = \"kelvin\"");
+  require_plugin(place, root, model);
   // What a law says of its options or parameters has the line of their table.
   const auto at = [&](std::string_view key, const auto& action) {
     try {
@@ -264,10 +265,6 @@ LawFile parse_law_file(const std::string& text, const std::string& name) {
   }
 }
 
-LawFile read_law_file(const std::filesystem::path& file) {
-  return parse_law_file(read_named_file(file), file.string());
-}
-
 std::string to_toml(const LawFile& file) {
   std::string text = fmt::format("model = \"{}\"\n", file.law.model());
   if (!file.law.is_spatial()) text += contact_text(file);
@@ -277,6 +274,7 @@ std::string to_toml(const LawFile& file) {
     for (const auto& [name, value] : file.law.options())
       text += fmt::format("{} = {}\n", name, option_text(value));
   }
+  text += plugin_text(file.law);
   if (!file.fit.recording_uuid.empty()) {
     text += fmt::format("\n[fit]\nrecording = {}\nsha256 = {}\n", toml_text(file.fit.recording_uuid),
                         toml_text(file.fit.recording_sha256));

@@ -34,7 +34,8 @@ struct LawFile {
   std::string name{};              ///< of the file, for messages; empty if it was not read from one
 };
 
-/// Reads a law file. Parameters may be given in any unit of the same kind ("N/mm", "N/deg").
+/// Reads a law file; of a plug-in, NAME.so, its law with its initial parameters (plugin_laws.h). Parameters
+/// may be given in any unit of the same kind ("N/mm", "N/deg").
 /// @throws std::invalid_argument with file, line, what was found and what was expected: an unknown key, a
 ///         missing unit, a unit of another kind, a parameter out of its bounds; with the version that wrote
 ///         the file, as its first line names it, if that is later than this one.

@@ -35,6 +35,7 @@ struct Measured {
 class Place {
  public:
   explicit Place(std::string file) : file_(std::move(file)) {}
+  [[nodiscard]] const std::string& file() const noexcept { return file_; }
 
   template <typename... Arguments>
   [[noreturn]] void refuse(const toml::node& node, fmt::format_string<Arguments...> format,

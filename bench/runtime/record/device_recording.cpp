@@ -31,11 +31,13 @@ std::size_t recorded_row_bytes(const drivers::DeviceInfo& device) {
 
 schema::RecordingWriter begin_device_recording(const std::filesystem::path& file,
                                                const drivers::DeviceInfo& device,
-                                               const std::optional<Scene>& scene, bool replace) {
+                                               const std::optional<Scene>& scene, bool replace,
+                                               std::string_view plugins) {
   schema::Header header = schema::new_header(software());
   header.device_uri = device.uri;
   header.device_toml = device.configuration;
   if (scene) header.scene_toml = scene->toml;
+  if (!plugins.empty()) add_history(header, fmt::format("rendered with {}", plugins));
   return {file, header, axes_of(device),
           schema::RecordingWriter::Options{
               .measures_force = device.measures_force, .channels = channels_of(device), .replace = replace}};

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <kerf/drivers/device.h>
@@ -18,11 +19,12 @@ namespace kerf::bench {
 [[nodiscard]] std::size_t recorded_row_bytes(const drivers::DeviceInfo& device);
 
 /// Begins the file of what a device does: a header that names device, configuration and scene, its axes and
-/// channels.
+/// channels; in its history which laws of plug-ins were rendered.
 /// @throws std::invalid_argument, std::system_error as schema::RecordingWriter does.
 [[nodiscard]] schema::RecordingWriter begin_device_recording(const std::filesystem::path& file,
                                                              const drivers::DeviceInfo& device,
-                                                             const std::optional<Scene>& scene, bool replace);
+                                                             const std::optional<Scene>& scene, bool replace,
+                                                             std::string_view plugins = {});
 
 /// How many deadlines a run missed, and by which stages: the text of an event.
 [[nodiscard]] std::string missed_in_words(const LoopReport& report);

@@ -5,17 +5,20 @@
 #include <cmath>
 #include <csignal>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <thread>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <kerf/drivers/sensed_device.h>
 
 #include "files/disk_room.h"
 #include "files/whole_file.h"
 #include "laws/placement.h"
+#include "laws/plugin_laws.h"
 #include "loop/clock.h"
 #include "loop/law_switch.h"
 #include "probe/kept_probes.h"
@@ -184,6 +187,15 @@ class Run {
     return all;
   }
 
+  /// Of the laws that are rendered.
+  [[nodiscard]] std::string plugins() const {
+    std::set<std::string> words;
+    if (options_.law) words.insert(plugin_in_words(options_.law->law));
+    for (const LawChange& change : options_.changes) words.insert(plugin_in_words(change.law.law));
+    words.erase("");
+    return fmt::format("{}", fmt::join(words, " and "));
+  }
+
   void measure_host() {
     if (options_.floor_s > 0.0)
       result_.floor = host_floor(options_.rate_hz, options_.floor_s, options_.floor_anew);
@@ -201,7 +213,7 @@ class Run {
     if (!options_.record) return nullptr;
     if (!options_.rendering) require_room_for_rows();  // what renders itself ends before its time
     schema::RecordingWriter writer =
-        begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace);
+        begin_device_recording(*options_.record, result_.device, options_.scene, options_.replace, plugins());
     const drivers::DeviceInfo& device = result_.device;
     tally_.emplace(device.axes.size(), device.channels.size(), device.measures_force);
     return std::make_unique<Recorder>(

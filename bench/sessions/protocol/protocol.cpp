@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "files/named_file.h"
+#include "laws/plugin_laws.h"
 #include "protocol/protocol_parts.h"
 #include "replay/table.h"
 #include "scene/read_motion.h"
@@ -215,6 +216,7 @@ Protocol read_protocol(const fs::path& file) {
   };
   const auto law_text = [&](const std::string& named) {
     const fs::path found = existing(named);
+    if (is_plugin(found.string())) return to_toml(law_of_plugin(found));
     if (found.extension() != ".h5") return read_named_file(found);
     return to_toml(table_of(schema::read_recording(found), found.string()).file);
   };

@@ -1,6 +1,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/foreign_kernel.h"
 #include "kernels/law_kernel_share.h"
 
 namespace kerf::fitting {
@@ -15,6 +16,7 @@ RunView view_of(const Samples& samples, const Weights& weights, std::size_t run)
 }
 
 const LawKernel& kernel_of(std::string_view model) {
+  if (const models::ForeignLaw* const foreign = models::foreign_law(model)) return kernel_of(*foreign);
   const LawKernel* kernel = kernel_in_share<0>(model);
   if (kernel == nullptr) kernel = kernel_in_share_2(model);
   if (kernel == nullptr) throw std::invalid_argument("law '" + std::string(model) + "' has no fit");

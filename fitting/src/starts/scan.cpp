@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "starts/foreign_starts.h"
 #include "starts/prony.h"
 
 namespace kerf::fitting {
@@ -97,6 +98,8 @@ std::vector<LinearFamily> grid(const Problem& problem, const Samples& samples) {
 
 std::vector<LinearFamily> families_of(const Problem& problem, const Samples& samples,
                                       const Weights& weights) {
+  if (const models::ForeignLaw* const foreign = models::foreign_law(problem.model))
+    return foreign_families(problem, *foreign);
   switch (problem.facts().scan.over) {
     case models::Scan::values:
       return grid(problem, samples);
@@ -155,6 +158,7 @@ Start best_of_family(const Problem& problem, const Samples& samples, const Weigh
     all.normal += part.normal;
   }
   if (!all.normal.allFinite() || !all.score.allFinite()) return start;
+  if (ones.size() == 0) return {.values = values, .sum_of_squares = all.squares};
   const Eigen::MatrixXd normal = family.directions.transpose() * all.normal * family.directions;
   const Eigen::VectorXd score = family.directions.transpose() * all.score;
   const Eigen::VectorXd best = solve_bounded(normal, normal * ones - score, family.bounds);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <kerf/models/foreign.h>
+
 #include "segmented/segmented_law.h"
 #include "starts/fracture_fit.h"
 #include "starts/scan.h"
@@ -141,6 +143,9 @@ Problem make_problem(std::string_view model, const FitOptions& given, const Samp
   problem.own = own_parameters(problem, given.per_recording);
   if (segmented) hold_knots(problem, !given.breakpoints.empty());
   for (const std::string_view name : facts.held) hold(problem, name);
+  const models::ForeignLaw* const foreign = models::foreign_law(model);
+  for (std::size_t i = 0; foreign != nullptr && i < problem.free.size(); ++i)
+    problem.free[i] = foreign->is_searched(i);
   const bool differs = std::find(problem.own.begin(), problem.own.end(), true) != problem.own.end();
   if (differs && facts.search != models::Search::descent) {
     throw std::invalid_argument("law '" + std::string(model) +

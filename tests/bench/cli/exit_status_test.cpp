@@ -31,7 +31,7 @@ using Words = std::vector<std::string>;
 // The words of commands: INPUT and OUTPUT stand for what is wrong, FOLDER/ for a folder of good files.
 
 // Verbs that read no file: what they need is in the program, or on the USB.
-const std::set<Words> without_input{{"devices"}, {"laws"}, {"reproduce"}, {"session", "key"}};
+const std::set<Words> without_input{{"devices"}, {"laws"}, {"law", "new"}, {"reproduce"}, {"session", "key"}};
 // Verbs that write no file, or one only where it was named as their input.
 const std::set<Words> without_output{
     {"devices"}, {"laws"},           {"info"},         {"inspect"},         {"validate"},
@@ -55,7 +55,9 @@ const std::vector<Words> with_input{
     {"validate", "INPUT"},
     {"studio", "FOLDER/k.law.toml"},
     {"studio", "FOLDER/nowhere"},
+    {"law", "build", "INPUT", "-o", "FOLDER/out.so"},
     {"fit", "INPUT", "-o", "FOLDER/out"},
+    {"fit", "FOLDER/r.h5", "--plugin", "INPUT", "-o", "FOLDER/out"},
     {"fit", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out"},
     {"fit", "--batch", "FOLDER/nowhere", "-o", "FOLDER/out"},
     {"fit", "--batch", "FOLDER/k.law.toml", "-o", "FOLDER/out"},
@@ -105,6 +107,8 @@ const std::vector<Words> with_output{
     {"prepare", "FOLDER/r.h5", "--filter", "butterworth2:20", "--filter-chart", "OUTPUT", "-o",
      "FOLDER/out.h5"},
     {"segment", "FOLDER/r.h5", "-o", "BELOW"},
+    {"law", "new", "mylaw", "-o", "BELOW"},
+    {"law", "build", KERF_SOURCE_DIR "/tests/models/plugins/coulomb_spring.h", "-o", "BELOW.so"},
     {"fit", "FOLDER/r.h5", "-o", "BELOW"},
     {"blade", "FOLDER/blade.h5", "--shape", KERF_SOURCE_DIR "/examples/blade.law.toml", "-o", "BELOW"},
     {"train", "--example", "-o", "OUTPUT"},

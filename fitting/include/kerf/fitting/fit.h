@@ -180,8 +180,8 @@ struct FitResult {
   [[nodiscard]] models::Law law(std::size_t recording = 0) const;
 };
 
-/// The laws that can be fitted to a series: every scalar law of the registry.
-[[nodiscard]] const std::vector<std::string_view>& fitted_laws();
+/// The laws that can be fitted to a series: every scalar law of the registry, and of plug-ins.
+[[nodiscard]] std::vector<std::string_view> fitted_laws();
 /// @throws std::invalid_argument for an unknown law, or one that is not among fitted_laws().
 void check_model(std::string_view model);
 

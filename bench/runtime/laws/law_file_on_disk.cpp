@@ -2,11 +2,18 @@
 
 #include <kerf/version.h>
 
+#include "files/named_file.h"
 #include "files/whole_file.h"
 #include "laws/law_file.h"
+#include "laws/plugin_laws.h"
 #include "recordings/provenance.h"
 
 namespace kerf::bench {
+
+LawFile read_law_file(const std::filesystem::path& file) {
+  if (is_plugin(file.string())) return law_of_plugin(file);
+  return parse_law_file(read_named_file(file), file.string());
+}
 
 void name_recording(FitProvenance& fit, const std::filesystem::path& recording) {
   fit.recording_sha256 = sha256_of(recording);

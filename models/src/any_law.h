@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "kerf/models/law.h"
+
+namespace kerf::models {
+
+class ForeignLaw;
+
+/// Place of a law in the registry, those of plug-ins behind it.
+using Place = std::size_t;
+
+struct AnyState {
+  explicit AnyState(Place of) noexcept : law(of) {}
+  AnyState(const AnyState&) = default;
+  AnyState& operator=(const AnyState&) = delete;
+  virtual ~AnyState() = default;
+  [[nodiscard]] virtual std::unique_ptr<AnyState> copy() const = 0;
+  /// Only of a state of the same law.
+  virtual void assign(const AnyState& other) = 0;
+
+  const Place law;
+};
+
+struct AnyLaw {
+  AnyLaw() = default;
+  AnyLaw(const AnyLaw&) = delete;
+  AnyLaw& operator=(const AnyLaw&) = delete;
+  virtual ~AnyLaw() = default;
+  [[nodiscard]] virtual std::string_view name() const noexcept = 0;
+  [[nodiscard]] virtual std::unique_ptr<AnyState> initial_state() const = 0;
+  // Not a number: a fault, also if the state is another law's or the law of the other kind.
+  [[nodiscard]] virtual double step(AnyState& state, const Motion& motion,
+                                    double period_s) const noexcept = 0;
+  [[nodiscard]] virtual AxisValues step(AnyState& state, const SpatialMotion& motion,
+                                        double period_s) const noexcept = 0;
+  /// Not a number: the law has none, or the state is another law's.
+  [[nodiscard]] virtual double stored_energy(const AnyState& state) const noexcept = 0;
+};
+
+/// A plug-in's law with its parameters. @throws std::invalid_argument where they make no law.
+[[nodiscard]] std::shared_ptr<const AnyLaw> made_of(const ForeignLaw& law, std::span<const double> values);
+
+}  // namespace kerf::models
