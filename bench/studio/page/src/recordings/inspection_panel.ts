@@ -156,7 +156,10 @@ function times(inspection: Inspection): HTMLElement {
       "Times that repeat, go back, are no number",
       [sampling.repeated, sampling.backward, sampling.not_finite].join(", "),
     ),
-    fact("In contact", contact ? `${contact.rows} rows${share}, in stretches: ${contact.stretches.length}` : "not known"),
+    fact(
+      "In contact",
+      contact ? `${contact.rows} rows${share}, in stretches: ${contact.stretches.length}` : "not known",
+    ),
     fact("Lag of the force", lag ? `${seconds(lag.seconds)} (correlation ${plain(lag.correlation)})` : "not known"),
   );
 }

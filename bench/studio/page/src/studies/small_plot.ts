@@ -33,6 +33,19 @@ export class SmallPlot {
     const y = (value: number): number => margin.top + ((upper - value) / (upper - lower)) * high;
     this.axes(context, linearTicks(left, right, 4), linearTicks(lower, upper, 4), x, y);
     for (const curve of this.figure.curves) points(context, curve, x, y);
+    this.units(context);
+  }
+
+  /** In the corners where the axes end. */
+  private units(context: CanvasRenderingContext2D): void {
+    const unit = (label: string): string => /\[.*\]/.exec(label)?.[0] ?? label;
+    context.fillStyle = palette().ink;
+    context.textAlign = "left";
+    context.textBaseline = "top";
+    context.fillText(unit(this.figure.y_label), margin.left + 4, margin.top + 3);
+    context.textAlign = "right";
+    context.textBaseline = "bottom";
+    context.fillText(unit(this.figure.x_label), size.width - margin.right - 4, size.height - margin.bottom - 12);
   }
 
   private axes(
