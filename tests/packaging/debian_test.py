@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""The Debian packages of a build folder, as lintian and dpkg see them. Arguments: the program cpack, the build folder.
+
+That they install, serve and leave nothing behind is tried by scripts/package --try, which needs an empty Debian.
+"""
+
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CPACK, BUILD = sys.argv[1], Path(sys.argv[2])
+
+
+def output_of(*command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, check=False, **options)
+    return done.stdout + done.stderr
+
+
+class Debian(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        # Beside a package that somebody keeps, none of it: packed for speed and not for size.
+        done = subprocess.run([CPACK, "--config", BUILD / "CPackConfig.cmake", "-B", cls.folder.name,
+                               "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip"],
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise RuntimeError(done.stdout + done.stderr)
+        cls.packages = sorted(Path(cls.folder.name).glob("*.deb"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def package(self, name):
+        return next(path for path in self.packages if path.name.startswith(name + "_"))
+
+    def test_pass_lintian_but_for_what_is_explained(self):
+        self.assertEqual(output_of("lintian", "--allow-root", "--suppress-tags", "uses-no-compression-for-data-tarball",
+                                   *self.packages), "")
+
+    def test_depend_on_what_they_link(self):
+        depends = output_of("dpkg-deb", "--field", self.package("kerf"), "Depends")
+        for name in ["libc6 (>=", "libstdc++6 (>=", "libusb-1.0-0", "libhdf5-103"]:
+            self.assertIn(name, depends)
+        self.assertIn("gnuplot", output_of("dpkg-deb", "--field", self.package("kerf"), "Recommends"))
+
+    def test_have_files_of_their_own_only(self):
+        owner = {}
+        for package in self.packages:
+            for line in output_of("dpkg-deb", "--contents", package).splitlines():
+                words = line.split()
+                self.assertEqual(words[1], "root/root", line)
+                if not words[5].endswith("/"):
+                    self.assertNotIn(words[5], owner, package.name)
+                    owner[words[5]] = package.name
+        self.assertEqual(owner["./usr/bin/kerf"], self.package("kerf").name)
+        self.assertTrue(all(path.startswith("./usr/") for path in owner))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
