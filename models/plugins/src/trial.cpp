@@ -105,7 +105,7 @@ Trial try_law(const std::filesystem::path& file, std::chrono::milliseconds patie
     throw std::invalid_argument(file.string() + ": " + why);
   };
   processes::Connection connection = processes::connection(SOCK_STREAM);
-  const auto program = processes::beside_this_program("kerf-law-trial");
+  const auto program = processes::helper_program("kerf-law-trial");
   pid_t started = 0;
   const std::array descriptors{connection.theirs.number()};
   if (const int error = processes::start(program, descriptors, started); error != 0)
