@@ -49,9 +49,10 @@ void by_law(benchmark::State& bench, const std::string& model) {
   const bench::LawFile file = bench::read_law_file(file_of(model));
   const auto path = stroke(file);
   auto state = file.law.initial_state();
+  const bool spatial = file.law.is_spatial();
   std::size_t i = 0;
   for (auto _ : bench) {
-    if (file.law.is_spatial()) {
+    if (spatial) {
       benchmark::DoNotOptimize(
           file.law.step(state, models::SpatialMotion{path[i].position, path[i].velocity}, period_s));
     } else {
