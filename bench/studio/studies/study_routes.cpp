@@ -85,16 +85,15 @@ HttpResponse drawn(const HttpRequest& request, Workspace& workspace) {
 }  // namespace
 
 void add_study_routes(Routes& routes, Workspace& workspace) {
-  using Pace = Routes::Pace;
-  routes.get("/api/studies", Pace::slow,
+  routes.get("/api/studies", Routes::Pace::slow,
              [&workspace](const HttpRequest&) { return json_response(studies_of(workspace)); });
-  routes.get("/api/study", Pace::slow,
+  routes.get("/api/study", Routes::Pace::slow,
              [&workspace](const HttpRequest& request) { return study(request, workspace); });
-  routes.get("/api/study/drawn", Pace::slow,
+  routes.get("/api/study/drawn", Routes::Pace::slow,
              [&workspace](const HttpRequest& request) { return drawn(request, workspace); });
-  routes.get("/api/study/report", Pace::slow,
+  routes.get("/api/study/report", Routes::Pace::slow,
              [&workspace](const HttpRequest& request) { return report(request, workspace); });
-  routes.get("/api/study/table", Pace::slow,
+  routes.get("/api/study/table", Routes::Pace::slow,
              [&workspace](const HttpRequest& request) { return table(request, workspace); });
 }
 

@@ -56,7 +56,7 @@ class StudiedLab {
                    .compare = {"peak"},
                    .licence = "",
                    .people = {},
-                   .files = look_into(folder_ / "drawer", "time=1[s],position=2[mm],force=3[N]")};
+                   .files = look_into(folder_ / "drawer", {})};
     test::write_text(folder_ / "day/S/study.toml", study_text(plan));
     test::write_text(folder_ / "drawer/blank_slow.txt", "gone\n");
     (void)run_study(folder_ / "day/S/study.toml", {}, std::atomic<bool>{false});
