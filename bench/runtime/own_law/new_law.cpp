@@ -13,7 +13,8 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::string_view header = R"(// A law of our own: 'kerf law build %NAME%.h' makes a plug-in of it.
+constexpr std::string_view header_of_law =
+    R"(// A law of our own: 'kerf law build %NAME%.h' makes a plug-in of it.
 #pragma once
 
 #include <cmath>
@@ -75,7 +76,7 @@ struct %TYPE% {
 KERF_LAW(%TYPE%);
 )";
 
-constexpr std::string_view test =
+constexpr std::string_view test_of_law =
     R"(// What is true of the law, whatever its numbers: a program that ends with 0 where it holds.
 #include <cmath>
 #include <cstdio>
@@ -97,7 +98,7 @@ int main() {
 }
 )";
 
-constexpr std::string_view cmake =
+constexpr std::string_view cmake_of_law =
     R"(# For who builds the law within a project; 'kerf law build %NAME%.h' needs none of it.
 cmake_minimum_required(VERSION 3.25)
 project(%NAME% LANGUAGES CXX)
@@ -155,9 +156,9 @@ NewLaw new_law(std::string_view name) {
       throw std::invalid_argument(fmt::format("'{}' is a law of Kerf's own; give yours another name", name));
   }
   const std::string include = headers_for_laws().string();
-  return {.header = with_names(header, name, include),
-          .test = with_names(test, name, include),
-          .cmake = with_names(cmake, name, include)};
+  return {.header = with_names(header_of_law, name, include),
+          .test = with_names(test_of_law, name, include),
+          .cmake = with_names(cmake_of_law, name, include)};
 }
 
 }  // namespace kerf::bench
