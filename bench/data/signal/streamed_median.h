@@ -11,8 +11,8 @@
 
 namespace kerf::bench {
 
-/// The median of values that are gone through four times instead of being kept: exactly what median() gives,
-/// in 65 MB however many there are. A few are kept after all, in 1 MB and one pass.
+/// The median of values that are gone through five times instead of being kept: exactly what median() gives,
+/// in 2 MB however many there are. A few are kept after all, in one pass.
 ///
 /// Numbers ordered as their bits are: each pass counts by further bits those that begin as the median does,
 /// as far as that is known.
@@ -31,7 +31,7 @@ class StreamedMedian {
     if (count <= few) return middle_of(kept);
     std::array<Searched, 2> middle{Searched{.rank = (count - 1) / 2}, Searched{.rank = count / 2}};
     unsigned known_bits = 0;
-    for (const unsigned bits : {22U, 21U, 21U}) {
+    for (const unsigned bits : {16U, 16U, 16U, 16U}) {
       for (Searched& one : middle) one.counts.assign(std::size_t{1} << bits, 0);
       for_each([&](double value) {
         const std::uint64_t ordered = ordered_bits(value);
