@@ -111,7 +111,8 @@ TEST_F(KerfSafety, TakesARepeatedPositionForTheSameReport) {
   const kerf_safety_options slow{
       .period_s = period_s, .soft_start_s = 0.25, .stall_s = 0.01, .report_s = 4e-3};
   const auto jumps = [&](int tick) {
-    return (step(0.004 * (tick / 4)) & (KERF_POSITION_JUMP | KERF_ZERO_HELD)) != 0;
+    const int report = tick / 4;
+    return (step(0.004 * report) & (KERF_POSITION_JUMP | KERF_ZERO_HELD)) != 0;
   };
   safety = safety_for(law, &slow);
   for (int tick = 0; tick < 400; ++tick) ASSERT_FALSE(jumps(tick)) << tick;
