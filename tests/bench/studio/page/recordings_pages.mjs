@@ -153,7 +153,7 @@ export const tests = {
     const force = plots.findIndex((it) => it.includes("force"));
     const run = clipped[0];
     const clippedAt = (plot) => ground(page, plot, (run.from_s + run.to_s) / 2, 8);
-    expect(isColour(await clippedAt(force), ink), "clipped rows in the plot of the force");
+    await until("clipped rows are in the plot of the force", async () => isColour(await clippedAt(force), ink));
     expect(!isColour(await clippedAt(0), ink), "and not in that of the position");
     const said = await page.locator(".recording_flags li.flagged").allTextContents();
     expectEqual(said.length, flagged.length, "flagged cycles in words");
