@@ -26,6 +26,7 @@ enum class Mood {
   slow
 };
 
+constexpr Mood born = KERF_TEST_MOOD;
 constexpr double depth = 0.002;
 
 double remembered = 0.0;  // where no law may remember anything
@@ -84,14 +85,14 @@ void step_derivatives(const double* p, void* state, const double* x, const doubl
 
 const kerf_law_parameter_v1 parameters[] = {
     {"stiffness", "N/m", "of a spring", 0.0, 1e6, 100.0, KERF_SEARCHED | KERF_LINEAR},
-    {"mood", "1", "what it does below 2 mm", 0.0, 20.0, static_cast<double>(KERF_TEST_MOOD), 0}};
+    {"mood", "1", "what it does below 2 mm", 0.0, 20.0, static_cast<double>(born), 0}};
 
 }  // namespace
 
 extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_law() {
   static const kerf_law_v1 law = [] {
     kerf_law_v1 made{};
-    made.abi = KERF_TEST_MOOD == Mood::other_version ? 2 : KERF_LAW_ABI;
+    made.abi = born == Mood::other_version ? 2 : KERF_LAW_ABI;
     made.size = sizeof(kerf_law_v1);
     made.name = "moody";
     made.equation = "F = k x";
@@ -100,7 +101,7 @@ extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_law() {
     made.state_size = sizeof(double);
     made.state_alignment = alignof(double);
     made.step = step;
-    if (KERF_TEST_MOOD == Mood::wrong_derivative) {
+    if (born == Mood::wrong_derivative) {
       made.derivatives_state_size = sizeof(double);
       made.derivatives_state_alignment = alignof(double);
       made.step_derivatives = step_derivatives;
