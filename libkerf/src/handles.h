@@ -28,6 +28,7 @@ struct OpenedLaw {
   models::Law::State initial;
   std::vector<models::LawAxis> axes;
   std::vector<models::ParameterInfo> parameters;
+  std::vector<models::OptionInfo> options;
   std::vector<std::string> units;  ///< one a parameter
   std::string model;
   std::string equation;

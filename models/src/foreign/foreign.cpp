@@ -138,7 +138,8 @@ LawFacts facts_of(const kerf_law_v1& law) {
   return facts;
 }
 
-thread_local const ForeignLaw* running = nullptr;
+// Of the memory that a thread begins with: a library that is loaded later would take it at the first step.
+[[gnu::tls_model("initial-exec")]] thread_local const ForeignLaw* running = nullptr;
 
 /// While a plug-in's code runs.
 class Running {
