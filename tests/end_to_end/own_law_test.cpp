@@ -16,6 +16,7 @@
 #include <kerf/models/law.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/recording_writer.h>
+#include <kerf/schema/session.h>
 
 #include "bench/sessions/protocol/written_protocol.h"
 #include "support/program.h"
@@ -216,6 +217,10 @@ TEST_F(OwnLaw, IsTheSampleOfASession) {
   EXPECT_THAT(without.errors, HasSubstr("--plugin PATH/moody.so"));
   run.insert(run.end(), {"--plugin", plugin("moody")});
   expect(run_kerf(run), 0);
+  std::string happened;
+  for (const schema::SessionEntry& entry : schema::read_session_facts(folder_ / "s.h5").entries)
+    happened += fmt::format("{}: {}\n", entry.kind, entry.text);
+  EXPECT_THAT(happened, HasSubstr("\nplugin: the plug-in moody.so, SHA-256 "));
 }
 
 /// Starts a studio in a folder, with a program and a plug-in, feels the law of own.json and records it.
@@ -268,7 +273,7 @@ TEST_F(OwnLaw, IsWhatAStudyFitsAndJudges) {
 }
 
 TEST_F(OwnLaw, ThatIsSlowMissesDeadlinesInTheClosedLoop) {
-  std::string law = moody_law(13);  // 1.5 ms a step
+  std::string law = moody_law(13);         // 1.5 ms a step
   law.replace(law.find("0.5"), 3, "2.0");  // met from the first tick on
   test::write_text(at("slow.law.toml"), law);
   const Outcome outcome = run_kerf({"check", at("slow.law.toml"), "--plugin", plugin("moody"), "--seconds",
