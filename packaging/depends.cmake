@@ -2,7 +2,7 @@
 # with a library, which call ldconfig; Debian has that done by a trigger (packages.cmake).
 set(work ${CPACK_TEMPORARY_DIRECTORY}/depends)
 file(WRITE ${work}/debian/control "")
-file(GLOB library ${CPACK_TEMPORARY_DIRECTORY}/libkerf1${CPACK_PACKAGING_INSTALL_PREFIX}/lib*/*/libkerf.so.1.*)
+file(GLOB_RECURSE library ${CPACK_TEMPORARY_DIRECTORY}/libkerf1/libkerf.so.1.*)
 execute_process(
   COMMAND dpkg-shlibdeps -O ${library}
   WORKING_DIRECTORY ${work}

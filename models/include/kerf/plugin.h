@@ -116,12 +116,12 @@ class Described {
   /// Room for the most parameters; to clear all of it at each step would take longer than most steps.
   union Duals {
     Duals() {}
-    std::array<Dual, 32> all;
+    Dual all[32];
   };
   /// With derivatives by the parameters of one pass.
   static Law<Dual> made(const double* values, std::size_t pass) {
     Duals room;
-    Dual* const first = room.all.data();
+    Dual* const first = room.all;
     for (std::size_t i = 0; i < count; ++i) {
       Dual* const one = new (first + i) Dual(values[i]);
       if (i / width == pass) one->v[i % width] = 1.0;
