@@ -90,7 +90,8 @@ void by_library(benchmark::State& bench, const std::string& model, bool none) {
 }
 
 const auto registered = [] {
-  for (const std::string model : {"kelvin", "exponential", "piecewise", "fuzzy_kelvin_3d"}) {
+  for (const models::LawInfo& info : models::registry()) {
+    const std::string model(info.name);
     benchmark::RegisterBenchmark((model + "_law").c_str(), [model](auto& bench) { by_law(bench, model); });
     benchmark::RegisterBenchmark((model + "_library").c_str(),
                                  [model](auto& bench) { by_library(bench, model, false); });

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <limits>
+#include <variant>
 
 #include <kerf/schema/recording.h>
 #include <kerf/version.h>
 
 #include "handles.h"
+#include "plugins.h"
 
 // What can be asked of the library and of a law.
 
@@ -32,6 +34,20 @@ const std::vector<std::string> model_names = [] {
   for (const kerf::models::LawInfo& info : kerf::models::registry()) names.emplace_back(info.name);
   return names;
 }();
+
+kerf_option as_option(const std::string& name, const kerf::models::OptionValue& value) {
+  kerf_option option{.name = name.c_str(), .kind = KERF_OPTION_NUMBER, .number = 0.0, .text = nullptr};
+  if (const bool* const flag = std::get_if<bool>(&value)) {
+    option.kind = KERF_OPTION_FLAG;
+    option.number = *flag ? 1.0 : 0.0;
+  } else if (const std::string* const text = std::get_if<std::string>(&value)) {
+    option.kind = KERF_OPTION_TEXT;
+    option.text = text->c_str();
+  } else {
+    option.number = std::get<double>(value);
+  }
+  return option;
+}
 
 }  // namespace
 
@@ -61,9 +77,10 @@ const char* kerf_flag_text(uint32_t flag) {
   return nullptr;
 }
 
-size_t kerf_model_count() { return model_names.size(); }
+size_t kerf_model_count() { return model_names.size() + kerf::plugin_count(); }
 const char* kerf_model_name(size_t model) {
-  return model < model_names.size() ? model_names[model].c_str() : nullptr;
+  if (model < model_names.size()) return model_names[model].c_str();
+  return kerf::plugin_model(model - model_names.size());
 }
 
 const char* kerf_law_model(const kerf_law* law) { return law->opened->model.c_str(); }
@@ -99,5 +116,18 @@ kerf_status kerf_law_parameter(const kerf_law* law, size_t index, kerf_parameter
                 .lower = info.lower,
                 .upper = info.upper,
                 .std_error = of.file.std_errors.empty() ? kerf_none() : of.file.std_errors[index]};
+  return KERF_OK;
+}
+
+size_t kerf_law_option_count(const kerf_law* law) { return law->opened->options.size(); }
+kerf_status kerf_law_option(const kerf_law* law, size_t index, kerf_option_info* option) {
+  const kerf::OpenedLaw& of = *law->opened;
+  if (index >= of.options.size()) return KERF_BAD_INPUT;
+  const kerf::models::OptionInfo& info = of.options[index];
+  const kerf::models::Options& given = of.file.law.options();
+  const auto found = given.find(info.name);
+  *option = {.meaning = info.meaning.c_str(),
+             .value = as_option(info.name, found == given.end() ? info.standard : found->second),
+             .standard = as_option(info.name, info.standard)};
   return KERF_OK;
 }

@@ -28,6 +28,7 @@ struct OpenedLaw {
   models::Law::State initial;
   std::vector<models::LawAxis> axes;
   std::vector<models::ParameterInfo> parameters;
+  std::vector<models::OptionInfo> options;
   std::vector<std::string> units;  ///< one a parameter
   std::string model;
   std::string equation;
@@ -80,7 +81,7 @@ struct kerf_law {
 
 struct kerf_state {
   explicit kerf_state(std::shared_ptr<const kerf::OpenedLaw> of)
-      : opened(std::move(of)), memory(opened->initial) {}
+      : opened(std::move(of)), axes(opened->axes.size()), memory(opened->initial) {}
 
   /// The time of a step, from the library's clock where the host has none.
   [[nodiscard]] double elapse(double elapsed_s) noexcept {
@@ -90,17 +91,20 @@ struct kerf_state {
   }
 
   std::shared_ptr<const kerf::OpenedLaw> opened;
+  std::size_t axes;  ///< how many
   kerf::models::Law::State memory;
   kerf::drivers::VelocityFilter filter{};
-  double now_s = 0.0;  ///< the sum of the elapsed times
+  kerf::models::SpatialMotion motion{};  ///< of the last step by axes; those that the law has not stay zero
+  double now_s = 0.0;                    ///< the sum of the elapsed times
   kerf::StepClock clock{};
 };
 
 namespace kerf {
 
-/// The motion of a state's axes, with the velocities that the host lacks. `velocity` may be null.
-[[nodiscard]] models::SpatialMotion motion_of(kerf_state& state, const double* position,
-                                              const double* velocity) noexcept;
+/// The motion of a state's axes, with the velocities that the host lacks. `velocity` may be null. It is kept
+/// in the state: to clear one anew takes longer than to step some laws.
+const models::SpatialMotion& motion_of(kerf_state& state, const double* position,
+                                       const double* velocity) noexcept;
 
 /// One tick along the state's axes; the time has been taken by elapse().
 [[nodiscard]] std::uint32_t step_axes(kerf_state& state, const models::SpatialMotion& motion,

@@ -10,7 +10,9 @@
 
 #include "files/named_file.h"
 #include "handles.h"
+#include "laws/law_toml.h"
 #include "laws/placement.h"
+#include "plugins.h"
 
 namespace kerf {
 namespace {
@@ -24,7 +26,9 @@ std::string sha256_digits(std::string_view text) {
 }
 
 kerf_law* open_text(std::string text, const std::string& name) {
-  bench::LawFile file = bench::parse_law_file(text, name);
+  bench::LawFile file = bench::parse_law_file(
+      text, name,
+      {.advice = "which is not loaded: first kerf_plugin_load() of PATH/", .of_any_content = false});
   return new kerf_law{std::make_shared<const OpenedLaw>(std::move(file), std::move(text))};
 }
 
@@ -89,8 +93,8 @@ bench::LawFile made_by_name(std::string_view model, std::span<const kerf_value> 
   return file;
 }
 
-template <typename Action>
-kerf_status opened_by(kerf_law** law, char* error, std::size_t size, Action&& action) noexcept {
+template <typename Handle, typename Action>
+kerf_status opened_by(Handle** law, char* error, std::size_t size, Action&& action) noexcept {
   *law = nullptr;
   return at_set_up(error, size, [&] { *law = action(); });
 }
@@ -113,6 +117,7 @@ OpenedLaw::OpenedLaw(bench::LawFile read, std::string from)
       initial(file.law.initial_state()),
       axes(bench::axes_of(file)),
       parameters(file.law.parameters()),
+      options(models::Law::options(file.law.model())),
       model(file.law.model()),
       equation(models::law_info(model).equation),
       text(std::move(from)),
@@ -162,6 +167,14 @@ kerf_status kerf_law_make(const char* model, const kerf_value* values, size_t va
                                        options_of(span_of(options, option_count)));
     std::string text = bench::to_toml(file);
     return new kerf_law{std::make_shared<const OpenedLaw>(std::move(file), std::move(text))};
+  });
+}
+
+kerf_status kerf_plugin_load(const char* path, const char** model, char* error, size_t error_size) {
+  const char* unasked = nullptr;
+  return opened_by(model == nullptr ? &unasked : model, error, error_size, [&] {
+    const std::string file = required(path, "the path of a plug-in");
+    return loaded_plugin(file, sha256_digits(bench::read_named_file(file, bench::LargestInput::table)));
   });
 }
 

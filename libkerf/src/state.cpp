@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <ctime>
+#include <limits>
 
 #include "handles.h"
 
@@ -30,27 +31,34 @@ double velocity_of(kerf_state& state, double position, double velocity) noexcept
   return filtered;
 }
 
+constexpr double no_velocity = std::numeric_limits<double>::quiet_NaN();
+
+/// Those along the axes of a state that the host lacks. Apart: its loop would slow down who has all.
+[[gnu::noinline]] void fill_velocities(kerf_state& state) noexcept {
+  models::SpatialMotion& motion = state.motion;
+  const bool finite = std::all_of(motion.position.begin(), motion.position.end(),
+                                  [](double position) { return std::isfinite(position); });
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
+    const double filtered = finite ? state.filter.update(axis, motion.position[axis], state.now_s) : 0.0;
+    if (std::isnan(motion.velocity[axis])) motion.velocity[axis] = filtered;
+  }
+  if (finite) state.filter.advance(state.now_s);
+}
+
 std::uint32_t flag_of(bool fault) noexcept { return fault ? std::uint32_t{KERF_LAW_FAULT} : 0U; }
 
 }  // namespace
 
-models::SpatialMotion motion_of(kerf_state& state, const double* position, const double* velocity) noexcept {
-  const std::size_t axes = state.opened->axes.size();
-  models::SpatialMotion motion;
+const models::SpatialMotion& motion_of(kerf_state& state, const double* position,
+                                       const double* velocity) noexcept {
+  models::SpatialMotion& motion = state.motion;
   bool lacking = false;
-  bool finite = true;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
+  for (std::size_t axis = 0; axis < state.axes; ++axis) {
     motion.position[axis] = position[axis];
-    motion.velocity[axis] = velocity == nullptr ? kerf_none() : velocity[axis];
+    motion.velocity[axis] = velocity == nullptr ? no_velocity : velocity[axis];
     lacking |= std::isnan(motion.velocity[axis]);
-    finite &= std::isfinite(position[axis]);
   }
-  if (!lacking) return motion;
-  for (std::size_t axis = 0; axis < axes; ++axis) {
-    const double filtered = finite ? state.filter.update(axis, position[axis], state.now_s) : 0.0;
-    if (std::isnan(motion.velocity[axis])) motion.velocity[axis] = filtered;
-  }
-  if (finite) state.filter.advance(state.now_s);
+  if (lacking) fill_velocities(state);
   return motion;
 }
 
@@ -65,7 +73,10 @@ std::uint32_t step_axes(kerf_state& state, const models::SpatialMotion& motion, 
     return flag_of(response.fault);
   }
   const models::SpatialResponse response = law.file.law.step(state.memory, motion, elapsed_s);
-  std::copy_n(response.force.begin(), law.axes.size(), force);
+  // A call of memmove() takes longer than these few numbers.
+  for (std::size_t axis = 0; axis < models::max_law_axes; ++axis) {
+    if (axis < state.axes) force[axis] = response.force[axis];
+  }
   return flag_of(response.fault);
 }
 

@@ -16,6 +16,7 @@
 #include <kerf/models/law.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/recording_writer.h>
+#include <kerf/schema/session.h>
 
 #include "bench/sessions/protocol/written_protocol.h"
 #include "support/program.h"
@@ -34,9 +35,10 @@ using testing::HasSubstr;
 std::string plugin(const std::string& name) { return KERF_TEST_PLUGINS "/" + name + ".so"; }
 
 /// The punch of other tests, into a spring with dry friction.
-schema::Recording punch_with_friction(double seconds = 4.0) {
+schema::Recording punch_with_friction(double seconds = 4.0, unsigned specimen = 1) {
   schema::Recording recording = test::punch({.seconds = seconds});
-  const models::Law law = models::Law::make("friction", std::vector{0.05, 400.0, 0.5, 0.3, 2e-4});
+  const models::Law law =
+      models::Law::make("friction", std::vector{0.05, 390.0 + 10.0 * specimen, 0.5, 0.3, 2e-4});
   models::Law::State state = law.initial_state();
   for (std::size_t i = 0; i < recording.rows(); ++i) {
     const models::Motion motion{.penetration = recording.position[i], .velocity = recording.velocity[i]};
@@ -198,7 +200,8 @@ TEST_F(OwnLaw, IsTheSampleOfASession) {
   test::write_text(folder_ / "own.law.toml", moody_law(0));
   test::write_text(folder_ / "p.protocol.toml",
                    test::protocol_text("design = \"abx\"\ntrials = 4\ndevice = \"sim:scissors\"\n"));
-  test::write_text(folder_ / "soft.law.toml", moody_law(0));
+  test::write_text(folder_ / "soft.law.toml",
+                   moody_law(0) + "[plugin]\nname = \"moody.so\"\nsha256 = \"of another one\"\n");
   for (const char* law : {"stiff.law.toml", "third.law.toml", "still.law.toml"})
     test::write_text(folder_ / law, test::law_called(law));
   const std::vector<std::string> words{
@@ -208,6 +211,77 @@ TEST_F(OwnLaw, IsTheSampleOfASession) {
   expect(run_kerf({"session", "key", at("key")}), 0);
   with.insert(with.end(), {"--key-file", at("key")});
   expect(run_kerf(with), 0);
+  std::vector<std::string> run{"session", "run", at("s.h5"), "--rehearse", "--key-file", at("key")};
+  const Outcome without = run_kerf(run);
+  expect(without, 2);
+  EXPECT_THAT(without.errors, HasSubstr("--plugin PATH/moody.so"));
+  run.insert(run.end(), {"--plugin", plugin("moody")});
+  expect(run_kerf(run), 0);
+  std::string happened;
+  for (const schema::SessionEntry& entry : schema::read_session_facts(folder_ / "s.h5").entries)
+    happened += fmt::format("{}: {}\n", entry.kind, entry.text);
+  EXPECT_THAT(happened, HasSubstr("\nplugin: the plug-in moody.so, SHA-256 "));
+}
+
+/// Starts a studio in a folder, with a program and a plug-in, feels the law of own.json and records it.
+constexpr auto felt_in_studio = R"sh(
+cd "$1"
+"$2" studio . --plugin "$3" 2>said &
+trap 'kill $!' EXIT
+for ((i = 0; i < 200; ++i)); do
+  url=$(grep -o 'http://[^ ]*' said) && break
+  sleep 0.05
+done
+ask() {
+  curl --silent --show-error --fail --output answer --header "X-Kerf-Token: ${url##*token=}" \
+    --header 'Content-Type: application/json' --data "$2" "${url%%/\?*}/api/live/$1"
+}
+ask start '{"device": "sim:scissors", "sensor": ""}'
+ask feel @own.json
+sleep 0.2
+ask record '{"name": "felt"}'
+sleep 0.2
+ask record/stop '{}'
+)sh";
+
+TEST_F(OwnLaw, IsFeltAndRecordedInTheStudioByItsName) {
+  test::write_text(at("own.json"), json{{"toml", moody_law(0)}}.dump());
+  expect(
+      test::run({"bash", "-ec", felt_in_studio, "", folder_.path().string(), KERF_PROGRAM, plugin("moody")}),
+      0);
+  const schema::Recording recording = schema::read_recording(folder_ / "felt.h5");
+  EXPECT_THAT(recording.header.history, HasSubstr("rendered with the plug-in moody.so, SHA-256"));
+  EXPECT_GT(recording.rows(), 50U);
+}
+
+TEST_F(OwnLaw, IsWhatAStudyFitsAndJudges) {
+  fs::create_directory(folder_ / "drawer");
+  for (unsigned specimen = 1; specimen <= 2; ++specimen) {
+    const schema::Recording recording = punch_with_friction(2.0, specimen);
+    std::string text = "Time [s]\tPosition [mm]\tForce [N]\n";
+    for (std::size_t i = 0; i < recording.rows(); i += 2)
+      text += fmt::format("{:.3f}\t{:.6f}\t{:.6f}\n", recording.time[i], 1e3 * recording.position[i],
+                          recording.force_measured[i]);
+    test::write_text(folder_ / fmt::format("drawer/liver_s{}.txt", specimen), text);
+  }
+  const std::string own = plugin("coulomb_spring");
+  expect(run_kerf({"study", "new", at("drawer"), "--laws", "coulomb_spring", "--plugin", own, "-o", at("S")}),
+         0);
+  EXPECT_EQ(run_kerf({"study", "run", at("S/study.toml")}).exit_status, 2);
+  expect(run_kerf({"study", "run", at("S/study.toml"), "--plugin", own}), 0);
+  EXPECT_THAT(test::read_text(folder_ / "S/study.json"), HasSubstr("coulomb_spring.stiffness"));
+}
+
+TEST_F(OwnLaw, ThatIsSlowMissesDeadlinesInTheClosedLoop) {
+  std::string law = moody_law(13);         // 1.5 ms a step
+  law.replace(law.find("0.5"), 3, "2.0");  // met from the first tick on
+  test::write_text(at("slow.law.toml"), law);
+  const Outcome outcome = run_kerf({"check", at("slow.law.toml"), "--plugin", plugin("moody"), "--seconds",
+                                    "0.2", "--floor", "0", "--json"});
+  expect(outcome, 1);
+  const json result = json::parse(outcome.output);
+  EXPECT_EQ(result.at("verdict"), "fail") << outcome.output;
+  EXPECT_THAT(result.at("reasons").dump(), HasSubstr("deadline"));
 }
 
 TEST_F(OwnLaw, ThatGivesNoNumberOrThrowsGivesZeroForceAndIsAFault) {

@@ -83,6 +83,25 @@ TEST(ForeignFit, FindsWhatIsNotLinearFarFromItsInitialValues) {
   EXPECT_NEAR(result.parameters[1].value, 0.2, 1e-6);
 }
 
+TEST(ForeignFit, FindsWhatIsLinearAtItsUpperBound) {
+  static std::vector<kerf_law_parameter_v1> bounded(std::begin(test::foreign_friction::parameters),
+                                                    std::end(test::foreign_friction::parameters));
+  bounded[1].initial = 2.0;
+  bounded[1].upper = 3.0;  // and the data say 4
+  kerf_law_v1 with_derivatives = described("bounded", true);
+  kerf_law_v1 without = described("bounded_by_differences", false);
+  for (kerf_law_v1* const law : {&with_derivatives, &without}) {
+    law->parameters = bounded.data();
+    models::register_law(*law, {.path = "./b.so", .name = "b.so", .sha256 = law->name});
+  }
+  const Strokes strokes(4000, 0.01, Law::make("friction", values));
+  const FitResult own = fit("bounded", strokes.series(), {.folds = 0});
+  EXPECT_NEAR(own.parameters[1].value, 3.0, 1e-9);
+  const FitResult by_differences = fit("bounded_by_differences", strokes.series(), {.folds = 0});
+  for (std::size_t i = 0; i < own.parameters.size(); ++i)
+    EXPECT_NEAR(by_differences.parameters[i].value, own.parameters[i].value, 1e-6) << i;
+}
+
 TEST(ForeignFit, SharesParametersAmongRecordingsAndKeepsTheirOwn) {
   const Strokes slow(3000, 0.01, Law::make("friction", values));
   const Strokes stiff(3000, 0.01, Law::make("friction", std::vector{0.3, 8.0, -0.2, 0.5, 0.01}));

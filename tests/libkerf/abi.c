@@ -28,6 +28,9 @@ static int32_t (*const law_axis)(const kerf_law*, size_t, kerf_axis*) = kerf_law
 static int32_t (*const law_is_spatial)(const kerf_law*) = kerf_law_is_spatial;
 static kerf_contact (*const law_contact)(const kerf_law*) = kerf_law_contact;
 static int32_t (*const law_parameter)(const kerf_law*, size_t, kerf_parameter*) = kerf_law_parameter;
+static size_t (*const law_option_count)(const kerf_law*) = kerf_law_option_count;
+static int32_t (*const law_option)(const kerf_law*, size_t, kerf_option_info*) = kerf_law_option;
+static int32_t (*const plugin_load)(const char*, const char**, char*, size_t) = kerf_plugin_load;
 static int32_t (*const state_create)(const kerf_law*, kerf_state**, char*, size_t) = kerf_state_create;
 static int32_t (*const state_copy)(const kerf_state*, kerf_state**, char*, size_t) = kerf_state_copy;
 static int32_t (*const state_assign)(kerf_state*, const kerf_state*) = kerf_state_assign;
@@ -70,6 +73,9 @@ HOLDS(layout_of_parameter,
           offsetof(kerf_parameter, value) == IN_WORDS(3) && offsetof(kerf_parameter, lower) == IN_WORDS(4) &&
           offsetof(kerf_parameter, upper) == IN_WORDS(5) &&
           offsetof(kerf_parameter, std_error) == IN_WORDS(6));
+HOLDS(layout_of_option_info, sizeof(kerf_option_info) == IN_WORDS(9) &&
+                                 offsetof(kerf_option_info, value) == IN_WORDS(1) &&
+                                 offsetof(kerf_option_info, standard) == IN_WORDS(5));
 HOLDS(layout_of_limits, sizeof(kerf_limits) == IN_WORDS(5) && offsetof(kerf_limits, slew) == IN_WORDS(1) &&
                             offsetof(kerf_limits, speed) == IN_WORDS(2) &&
                             offsetof(kerf_limits, acceleration) == IN_WORDS(3) &&
@@ -80,12 +86,14 @@ HOLDS(layout_of_safety_options, sizeof(kerf_safety_options) == IN_WORDS(4) &&
                                     offsetof(kerf_safety_options, report_s) == IN_WORDS(3));
 
 int main(void) {
-  const void* const unused[] = {&version,      &software,     &status_text,   &flag_text,   &none,
-                                &model_name,   &law_open,     &law_parse,     &law_make,    &law_close,
-                                law_texts,     law_counts,    &law_axis,      &law_contact, &law_parameter,
-                                &state_create, &state_copy,   &state_assign,  state_ends,   &state_energy,
-                                steps,         &step_axes,    &safety_create, safety_ends,  &step_safely,
-                                &safety_judge, &safety_apply, &law_is_spatial};
+  const void* const unused[] = {
+      &version,      &software,     &status_text,    &flag_text,        &none,
+      &model_name,   &law_open,     &law_parse,      &law_make,         &law_close,
+      law_texts,     law_counts,    &law_axis,       &law_contact,      &law_parameter,
+      &state_create, &state_copy,   &state_assign,   state_ends,        &state_energy,
+      steps,         &step_axes,    &safety_create,  safety_ends,       &step_safely,
+      &safety_judge, &safety_apply, &law_is_spatial, &law_option_count, &law_option,
+      &plugin_load};
   printf("%u functions in tables, %u models\n", (unsigned)(sizeof unused / sizeof unused[0]),
          (unsigned)model_count());
   return abi_version() == KERF_ABI_VERSION ? 0 : 1;

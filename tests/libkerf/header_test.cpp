@@ -38,6 +38,15 @@ TEST(KerfForCpp, ThrowsAtSetUpWithTheLine) {
   }
   const Law law = Law::parse(test::wall, "wall.law.toml");
   EXPECT_THROW(Safety(law, {}), Error);
+  EXPECT_THROW((void)load_plugin("/nowhere/mylaw.so"), Error);
+}
+
+TEST(KerfForCpp, TellsTheOptionsOfALaw) {
+  const Law law = Law::open(test::example_file("friction"));
+  EXPECT_THROW((void)law.option(law.option_count()), Error);
+  const Law kelvin = Law::open(test::example_file("kelvin"));
+  ASSERT_GT(kelvin.option_count(), 0U);
+  EXPECT_STRNE(kelvin.option(0).meaning, "");
 }
 
 TEST(KerfForCpp, CopiesAndAssignsStates) {

@@ -112,6 +112,28 @@ TEST(KerfLawOpen, CutsAMessageThatDoesNotFitBetweenCharacters) {
   }
 }
 
+models::OptionValue value_of(const kerf_option& option) {
+  if (option.kind == KERF_OPTION_FLAG) return option.number != 0.0;
+  if (option.kind == KERF_OPTION_TEXT) return std::string(option.text);
+  return option.number;
+}
+
+/// All options of the model, set to what was given.
+void expect_options(const kerf_law* law, const std::vector<models::OptionInfo>& of_model,
+                    const models::Options& given) {
+  ASSERT_EQ(kerf_law_option_count(law), of_model.size());
+  kerf_option_info option{};
+  for (std::size_t i = 0; i < of_model.size(); ++i) {
+    ASSERT_EQ(kerf_law_option(law, i, &option), KERF_OK);
+    EXPECT_THAT(option.value.name, StrEq(of_model[i].name));
+    EXPECT_THAT(option.meaning, StrEq(of_model[i].meaning));
+    EXPECT_EQ(value_of(option.standard), of_model[i].standard);
+    const auto found = given.find(of_model[i].name);
+    EXPECT_EQ(value_of(option.value), found == given.end() ? of_model[i].standard : found->second);
+  }
+  EXPECT_EQ(kerf_law_option(law, of_model.size(), &option), KERF_BAD_INPUT);
+}
+
 TEST(KerfLawMake, GivesEveryLawOfTheRegistryByNameAsItsFileDoes) {
   std::set<std::string> names;
   for (std::size_t model = 0; model < kerf_model_count(); ++model) {
@@ -157,6 +179,7 @@ TEST(KerfLawMake, GivesEveryLawOfTheRegistryByNameAsItsFileDoes) {
       EXPECT_STREQ(read.unit, one.unit);
     }
     EXPECT_STREQ(kerf_law_sha256(again.get()), kerf_law_sha256(made));
+    expect_options(made, models::Law::options(name), like.options());
   }
   EXPECT_EQ(names.size(), models::registry().size());
   EXPECT_EQ(kerf_model_name(kerf_model_count()), nullptr);

@@ -45,7 +45,23 @@ class Debian(unittest.TestCase):
         depends = output_of("dpkg-deb", "--field", self.package("kerf"), "Depends")
         for name in ["libc6 (>=", "libstdc++6 (>=", "libusb-1.0-0", "libhdf5-103"]:
             self.assertIn(name, depends)
+        self.assertIn("libsodium23", output_of("dpkg-deb", "--field", self.package("libkerf1"), "Depends"))
+        version = output_of("dpkg-deb", "--field", self.package("libkerf1"), "Version").strip()
+        self.assertIn("libkerf1 (= %s)" % version, output_of("dpkg-deb", "--field", self.package("libkerf-dev"), "Depends"))
         self.assertIn("gnuplot", output_of("dpkg-deb", "--field", self.package("kerf"), "Recommends"))
+
+    def test_tell_what_the_library_shows_and_has_the_linker_told_by_a_trigger(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(output_of("dpkg-deb", "--raw-extract", self.package("libkerf1"), folder), "")
+            control = Path(folder, "DEBIAN")
+            self.assertEqual({path.name for path in control.iterdir()}, {"control", "md5sums", "shlibs", "symbols", "triggers"})
+            self.assertRegex((control / "shlibs").read_text(), r"^libkerf 1 libkerf1 \(>= [0-9.]+\)\n$")
+            self.assertEqual((control / "triggers").read_text(), "activate-noawait ldconfig\n")
+            library = next(Path(folder, "usr/lib").glob("*/libkerf.so.1.*"))
+            found = subprocess.run(["dpkg-gensymbols", "-c4", "-plibkerf1", "-v0.1.0", "-I" + str(control / "symbols"),
+                                    "-e" + str(library), "-O" + str(Path(folder, "symbols"))],
+                                   capture_output=True, text=True, check=False, cwd=folder)
+            self.assertEqual((found.returncode, found.stdout + found.stderr), (0, ""))
 
     def test_have_files_of_their_own_only(self):
         owner = {}
@@ -57,6 +73,8 @@ class Debian(unittest.TestCase):
                     self.assertNotIn(words[5], owner, package.name)
                     owner[words[5]] = package.name
         self.assertEqual(owner["./usr/bin/kerf"], self.package("kerf").name)
+        for header in ["kerf.h", "kerf.hpp", "law.h", "plugin.h"]:
+            self.assertEqual(owner["./usr/include/kerf/" + header], self.package("libkerf-dev").name)
         self.assertTrue(all(path.startswith("./usr/") for path in owner))
 
 

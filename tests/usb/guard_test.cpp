@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -84,17 +85,25 @@ Ends ends_of(const std::vector<Told>& told) {
   return ends;
 }
 
+/// What is rendered, and what has to be said of it.
+struct Wall {
+  std::string law;
+  std::vector<std::string> words{};
+};
+Wall wall_of(const Guarded& device) { return {wall_below(device.wall_m, "1")}; }
+
 /// `kerf record` of a wall, while the object lives.
 class HeldWall {
  public:
-  HeldWall(const Guarded& device, const TemporaryFolder& folder, double seconds) {
-    write_text(folder / "wall.law.toml", wall_below(device.wall_m, "1"));
+  HeldWall(const Guarded& device, const Wall& wall, const TemporaryFolder& folder, double seconds) {
+    write_text(folder / "wall.law.toml", wall.law);
     std::vector<std::string> words{KERF_PROGRAM,      "record",
                                    "--device",        device.uri,
                                    "--law",           folder / "wall.law.toml",
                                    "--seconds",       std::to_string(seconds),
                                    "--force",         "-o",
                                    folder / "wall.h5"};
+    words.insert(words.end(), wall.words.begin(), wall.words.end());
     std::vector<char*> arguments;
     for (std::string& one : words) arguments.push_back(one.data());
     arguments.push_back(nullptr);
@@ -145,13 +154,13 @@ void rest_for(double seconds) { std::this_thread::sleep_for(std::chrono::duratio
 /// What the motors were told while the wall was held, something was done to the program, and 0.2 s more: less
 /// than the half second after which a WoodenHaptics lets go by itself.
 template <typename F>
-std::vector<Told> told_when(const Guarded& device, F act, double seconds = 60.0) {
+std::vector<Told> told_when(const Guarded& device, const Wall& wall, F act) {
   const TemporaryFolder folder;
   const auto trace = folder / "trace.csv";
   {
     const Emulator emulator(device.emulator + "&trace=" + trace.string());
     EXPECT_TRUE(becomes_attached(device.uri));
-    HeldWall recording(device, folder, seconds);
+    HeldWall recording(device, wall, folder, 60.0);
     rest_for(1.0);
     EXPECT_EQ(guards().size(), 1U) << read_text(folder / "said");
     act(recording);
@@ -159,6 +168,10 @@ std::vector<Told> told_when(const Guarded& device, F act, double seconds = 60.0)
     EXPECT_TRUE(guards().empty());
   }
   return read_told(device, trace);
+}
+template <typename F>
+std::vector<Told> told_when(const Guarded& device, F act) {
+  return told_when(device, wall_of(device), act);
 }
 
 /// The last order was given at most a millisecond before the program was hit.
@@ -185,6 +198,26 @@ TEST(Guard, LetsGoWhenTheProgramDies) {
                       EXPECT_EQ(WTERMSIG(recording.end()), death.number);
                     }));
     }
+  }
+}
+
+TEST(Guard, LetsGoWhenTheLawOfAPluginCrashes) {
+  for (const Guarded& device : guarded()) {
+    SCOPED_TRACE(device.name);
+    const Wall wall{.law = fmt::format(R"(model = "late_crash"
+axis = "z"
+contact = {{ position = {{ value = {}, unit = "m" }}, direction = "decreasing" }}
+[parameters]
+stiffness = {{ value = 400, unit = "N/m" }}
+life = {{ value = 1.2, unit = "s" }}
+)",
+                                       device.wall_m),
+                    .words = {"--plugin", KERF_TEST_PLUGINS "/late_crash.so"}};
+    expect_let_go(device, "a plug-in's abort()", told_when(device, wall, [](HeldWall& recording) {
+                    const int status = recording.end();
+                    EXPECT_TRUE(WIFEXITED(status));
+                    EXPECT_EQ(WEXITSTATUS(status), 4);
+                  }));
   }
 }
 
@@ -267,7 +300,7 @@ TEST(GuardLife, TheNextProgramHasTheDeviceAtOnce) {
       recording.signal(SIGKILL);
       (void)recording.end();
       const TemporaryFolder another;
-      HeldWall next(device, another, 0.5);
+      HeldWall next(device, wall_of(device), another, 0.5);
       const int status = next.end();
       EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << read_text(another / "said");
     });
@@ -323,7 +356,7 @@ TEST(GuardLife, ARecordingShowsThatItHasDied) {
   const TemporaryFolder folder;
   const Emulator emulator(device.emulator);
   ASSERT_TRUE(becomes_attached(device.uri));
-  HeldWall recording(device, folder, 2.0);
+  HeldWall recording(device, wall_of(device), folder, 2.0);
   rest_for(1.0);
   for (const pid_t guard : guards()) kill(guard, SIGKILL);
   const int status = recording.end();

@@ -212,7 +212,7 @@ std::string later_writer(std::string_view text) {
 }  // namespace
 
 LawFile law_from_table(const toml::table& root, const std::string& name,
-                       std::initializer_list<std::string_view> beside) {
+                       std::initializer_list<std::string_view> beside, const PluginTerms& terms) {
   const Place place(name);
   std::vector<std::string_view> known{"model",      "axis",     "position_unit", "force_unit", "contact",
                                       "parameters", "fidelity", "fit",           "plugin"};
@@ -220,7 +220,7 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
   place.allow_only(root, known, "a law");
   const std::string model = place.text(root, "model", "");
   if (model.empty()) place.refuse(root, "no 'model'; expected for example model = \"kelvin\"");
-  require_plugin(place, root, model);
+  require_plugin(place, root, model, terms);
   // What a law says of its options or parameters has the line of their table.
   const auto at = [&](std::string_view key, const auto& action) {
     try {
@@ -254,15 +254,19 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
           .name = name};
 }
 
-LawFile parse_law_file(const std::string& text, const std::string& name) {
+LawFile parse_law_file(const std::string& text, const std::string& name, const PluginTerms& terms) {
   try {
-    return law_from_table(parse_toml(text, name), name);
+    return law_from_table(parse_toml(text, name), name, {}, terms);
   } catch (const std::invalid_argument& refused) {
     const std::string writer = later_writer(text);
     if (writer.empty()) throw;
     throw std::invalid_argument(
         fmt::format("{} (kerf {} wrote the file, and this is {})", refused.what(), writer, version()));
   }
+}
+
+LawFile parse_law_file(const std::string& text, const std::string& name) {
+  return parse_law_file(text, name, {});
 }
 
 std::string to_toml(const LawFile& file) {

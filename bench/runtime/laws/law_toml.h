@@ -19,10 +19,21 @@ namespace kerf::bench {
 /// Parses TOML. @throws std::invalid_argument with `name` and the line.
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& name);
 
+/// On which terms a law file takes the plug-in that it names.
+struct PluginTerms {
+  std::string_view advice = "which is not given: --plugin PATH/";  ///< where it is missing, before its name
+  bool of_any_content = true;  ///< another content of the same law is told among take_plugin_notes()
+};
+
+/// As parse_law_file() of law_file.h, on other terms.
+[[nodiscard]] LawFile parse_law_file(const std::string& text, const std::string& name,
+                                     const PluginTerms& terms);
+
 /// A law that stands in a table of a larger file, such as the tissue of a scene, with keys that the larger
 /// file has `beside` it. Messages as in parse_law_file().
 [[nodiscard]] LawFile law_from_table(const toml::table& table, const std::string& name,
-                                     std::initializer_list<std::string_view> beside = {});
+                                     std::initializer_list<std::string_view> beside = {},
+                                     const PluginTerms& terms = {});
 
 /// Numbers with their unit, in SI.
 struct Measured {

@@ -37,7 +37,8 @@ std::string plugin_in_words(const models::Law& law) {
   return fmt::format("the plug-in {}, SHA-256 {}", foreign->plugin().name, foreign->plugin().sha256);
 }
 
-void require_plugin(const Place& place, const toml::table& root, std::string_view model) {
+void require_plugin(const Place& place, const toml::table& root, std::string_view model,
+                    const PluginTerms& terms) {
   if (root.get("plugin") == nullptr) return;
   const toml::table& table = place.table(root, "plugin");
   place.allow_only(table, {"name", "sha256"}, "[plugin]");
@@ -45,10 +46,17 @@ void require_plugin(const Place& place, const toml::table& root, std::string_vie
   const std::string sha256 = place.text(table, "sha256", "");
   const models::ForeignLaw* const foreign = models::foreign_law(model);
   if (foreign == nullptr) {
-    place.refuse(table, "law '{}' is of the plug-in {} (SHA-256 {}...), which is not given: --plugin PATH/{}",
-                 model, name, in_short(sha256), name);
+    place.refuse(table, "law '{}' is of the plug-in {} (SHA-256 {}...), {}{}", model, name, in_short(sha256),
+                 terms.advice, name);
   }
   if (foreign->plugin().sha256 == sha256) return;
+  if (!terms.of_any_content) {
+    place.refuse(
+        table,
+        "law '{}' is of the plug-in {} of SHA-256 {}..., and {} is of {}...: load the one that it was "
+        "made with, or fit the law anew",
+        model, name, in_short(sha256), foreign->plugin().path, in_short(foreign->plugin().sha256));
+  }
   note_of_plugin(fmt::format(
       "{}: made with the plug-in {} of SHA-256 {}..., and {} is of {}...: its forces may be others",
       place.file(), name, in_short(sha256), foreign->plugin().path, in_short(foreign->plugin().sha256)));

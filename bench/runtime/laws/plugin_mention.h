@@ -18,9 +18,10 @@ namespace kerf::bench {
 /// "the plug-in mylaw.so, SHA-256 ..."; empty likewise.
 [[nodiscard]] std::string plugin_in_words(const models::Law& law);
 
-/// Holds that against what is loaded. Another content of the same law is told among take_plugin_notes().
-/// @throws std::invalid_argument where the law needs a plug-in that is not given.
-void require_plugin(const Place& place, const toml::table& root, std::string_view model);
+/// Holds what a law file says of its plug-in against what is loaded.
+/// @throws std::invalid_argument where the law needs a plug-in that is not given, or one of another content.
+void require_plugin(const Place& place, const toml::table& root, std::string_view model,
+                    const PluginTerms& terms);
 
 /// Keeps a line that is to be told of plug-ins, once.
 void note_of_plugin(std::string note);

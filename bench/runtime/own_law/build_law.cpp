@@ -117,7 +117,7 @@ BuiltLaw build_law(const fs::path& header, const fs::path& plugin, schema::Exist
   std::vector<std::string> words = compiler();
   const std::string name = fmt::format("{}", fmt::join(words, " "));
   // As Kerf itself is compiled: no product is joined with a sum, so that numbers are the same.
-  for (const char* const option : {"-std=c++20", "-O2", "-Wall", "-ffp-contract=off", "-fPIC", "-shared",
+  for (const char* const option : {"-std=c++20", "-O3", "-Wall", "-ffp-contract=off", "-fPIC", "-shared",
                                    "-fvisibility=hidden", "-DKERF_BUILD_LAW", "-I"})
     words.emplace_back(option);
   words.push_back(headers_for_laws().string());

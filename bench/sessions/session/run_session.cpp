@@ -3,11 +3,14 @@
 #include <chrono>
 #include <exception>
 #include <optional>
+#include <set>
+#include <string>
 #include <thread>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "laws/plugin_mention.h"
 #include "session/blind_rendering.h"
 
 namespace kerf::bench {
@@ -65,11 +68,21 @@ class SessionRun {
     director_.emplace(store_, rendering_, subject_, device,
                       Director::Options{.period_s = period_s, .progress = options_.progress});
     store_.note("run", options_.loop.device_uri);
+    note_plugins();
     if (!options_.loop.virtual_time)
       asking_ = std::jthread([this](const std::stop_token& stop) { ask(stop); });
     return {
         .step = [this](const drivers::Sample& sample, double elapsed_s) { return step(sample, elapsed_s); },
         .finished = [this] { return done_.load(std::memory_order_acquire); }};
+  }
+
+  /// Of all samples, whichever the subject is given: it tells nothing of the order.
+  void note_plugins() {
+    std::set<std::string> plugins;
+    for (const SessionSample& sample : store_.protocol().samples)
+      plugins.insert(plugin_in_words(sample.law.law));
+    plugins.erase("");
+    for (const std::string& plugin : plugins) store_.note("plugin", plugin);
   }
 
   Command step(const drivers::Sample& sample, double elapsed_s) noexcept {

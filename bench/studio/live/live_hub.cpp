@@ -12,8 +12,9 @@
 namespace kerf::bench {
 namespace {
 
-std::string law_in_words(const std::string& law) {
-  return law.empty() ? std::string("none: the device moves freely") : law;
+std::string in_words(const LiveHub::Rendered& rendered) {
+  if (rendered.law.empty()) return "none: the device moves freely";
+  return rendered.plugin.empty() ? rendered.law : fmt::format("{}, by {}", rendered.law, rendered.plugin);
 }
 
 }  // namespace
@@ -72,38 +73,38 @@ schema::Event LiveHub::event_of(const LiveChange& change) {
     case LiveChange::Kind::law:
       break;
   }
-  law_ = change.law > 0 ? names_[change.law] : std::string();
-  names_.erase(names_.begin(), names_.lower_bound(change.law));
-  return {.time_s = change.time_s, .kind = "law", .text = law_in_words(law_)};
+  rendered_ = change.law > 0 ? offered_[change.law] : Rendered{};
+  offered_.erase(offered_.begin(), offered_.lower_bound(change.law));
+  return {.time_s = change.time_s, .kind = "law", .text = in_words(rendered_)};
 }
 
 void LiveHub::record(const schema::Row& row) {
   if (recording_->has_begun()) return recording_->push(row);
   recording_->push(row);
-  recording_->mark(row.tick, "law", law_in_words(law_));
+  recording_->mark(row.tick, "law", in_words(rendered_));
   if (is_released_) recording_->mark(row.tick, "zero", "zero force, by hand, since before the recording");
 }
 
-void LiveHub::offer(std::unique_ptr<LawRendering> rendering, const std::string& name) {
+void LiveHub::offer(std::unique_ptr<LawRendering> rendering, const Rendered& rendered) {
   const std::lock_guard lock(mutex_);  // the tick may take it before its name is noted
   const bool renders = rendering != nullptr;
   const std::uint64_t number = rendering_.offer(std::move(rendering));
-  if (renders) names_[number] = name;
+  if (renders) offered_[number] = rendered;
 }
 
 void LiveHub::start_recording(const std::filesystem::path& file, bool replace) {
+  RunningRecording::Options options{.period_s = history_.period_s(), .replace = replace, .plugins = {}};
   {
     const std::lock_guard lock(mutex_);
     if (recording_ || is_opening_) {
       throw std::invalid_argument("a recording is under way: stop it before another is begun");
     }
     is_opening_ = true;
+    options.plugins = rendered_.plugin;
   }
   std::unique_ptr<RunningRecording> recording;
   try {
-    recording = std::make_unique<RunningRecording>(
-        file, device_, scene_,
-        RunningRecording::Options{.period_s = history_.period_s(), .replace = replace});
+    recording = std::make_unique<RunningRecording>(file, device_, scene_, options);
   } catch (...) {
     const std::lock_guard lock(mutex_);
     is_opening_ = false;
@@ -155,7 +156,7 @@ void LiveHub::tell(LiveStatus& status) const {
   LoopTiming::Timing whole;
   {
     const std::lock_guard lock(mutex_);
-    status.law = law_;
+    status.law = rendered_.law;
     status.ticks = ticks_;
     const std::uint64_t missing = ticks_ - rows_;
     status.missed = missing - std::min(missing, status.rows_lost);

@@ -42,8 +42,13 @@ class LiveHub {
   /// if the loop was stopped.
   void end(const std::string& fault, const std::vector<drivers::Figure>& figures);
 
+  /// What is rendered, in words.
+  struct Rendered {
+    std::string law;     ///< its name; empty: none
+    std::string plugin;  ///< plugin_in_words() of it
+  };
   /// Offers a rendering under a name; none: nothing.
-  void offer(std::unique_ptr<LawRendering> rendering, const std::string& name);
+  void offer(std::unique_ptr<LawRendering> rendering, const Rendered& rendered);
 
   /// @throws std::invalid_argument: another recording is under way, or the file exists; std::system_error.
   void start_recording(const std::filesystem::path& file, bool replace);
@@ -74,8 +79,8 @@ class LiveHub {
   std::deque<LiveChange> changes_;  ///< whose rows have not come yet
 
   mutable std::mutex mutex_;  ///< of what follows; nothing slow is done under it
-  std::map<std::uint64_t, std::string> names_;
-  std::string law_;
+  std::map<std::uint64_t, Rendered> offered_;
+  Rendered rendered_;
   bool is_released_ = false;  ///< as of the last row
   LoopTiming timing_;
   std::uint64_t ticks_ = 0;

@@ -7,6 +7,7 @@
 
 #include "host/realtime.h"
 #include "laws/placement.h"
+#include "laws/plugin_mention.h"
 #include "loop/without_signals.h"
 
 namespace kerf::bench {
@@ -162,13 +163,14 @@ void LiveLoop::render(const LawFile& law, const std::string& name) {
   const std::lock_guard lock(mutex_);  // no other loop begins meanwhile
   require_running();
   const std::vector<std::size_t> axes = named_axes_for(law, hub_->device());
-  hub_->offer(std::make_unique<LawRendering>(law.law, law.contact, axes), name);
+  hub_->offer(std::make_unique<LawRendering>(law.law, law.contact, axes),
+              {.law = name, .plugin = plugin_in_words(law.law)});
 }
 
 void LiveLoop::render_nothing() {
   const std::lock_guard lock(mutex_);
   require_running();
-  hub_->offer(nullptr, "");
+  hub_->offer(nullptr, {});
 }
 
 void LiveLoop::start_recording(const std::filesystem::path& file, bool replace) {

@@ -19,7 +19,7 @@ RunningRecording::RunningRecording(std::filesystem::path file, const drivers::De
                                    const std::optional<Scene>& scene, const Options& options)
     : file_(std::move(file)),
       period_s_(options.period_s),
-      recorder_(begin_device_recording(file_, device, scene, options.replace),
+      recorder_(begin_device_recording(file_, device, scene, options.replace, options.plugins),
                 Recorder::Options{.ring_rows = ring_rows, .on_failure = [this](std::string_view why) {
                                     const std::lock_guard lock(mutex_);
                                     failure_ = fmt::format(

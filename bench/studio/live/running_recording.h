@@ -21,6 +21,7 @@ class RunningRecording {
   struct Options {
     double period_s = 1e-3;  ///< of the loop
     bool replace = false;    ///< an existing file may be replaced
+    std::string plugins;     ///< plugin_in_words() of the law that is rendered when it begins
   };
 
   /// @throws std::invalid_argument, std::system_error as schema::RecordingWriter does.

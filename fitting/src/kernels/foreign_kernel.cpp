@@ -58,77 +58,83 @@ class OwnDerivatives {
 };
 
 /// The same by differences: (f(v + h) - f(v - h)) / 2 h, with an error of h² f''' / 6, and at a bound
-/// (4 f(v + h) - 3 f(v) - f(v + 2 h)) / 2 h. What the law is linear in takes a large h, and loses nothing.
+/// (4 f(v + h) - 3 f(v) - f(v + 2 h)) / 2 h. What the law is linear in takes (f(v + h) - f(v)) / h with a
+/// large h, and loses nothing.
 class Differences {
  public:
   Differences(const ForeignLaw& law, const LawPoint& point)
-      : law_(law),
-        values_(point.values.begin(), point.values.end()),
-        state_(law, SteppedFor::forces, values_) {
+      : law_(law), middle_(beside(0, 0.0, 1.0, {point.values.begin(), point.values.end()})) {
     for (const Column& column : columns_of(point)) add(column);
   }
 
   double step(const Motion& motion, double period_s, double* row) {
-    const double force = force_of(values_, state_, motion, period_s);
-    for (std::size_t k = 0; k < both_.size(); ++k) {
-      Both& one = both_[k];
-      const double first = force_of(one.first, one.first_state, motion, period_s);
-      const double second = force_of(one.second, one.second_state, motion, period_s);
-      row[k] = one.slope * (one.of_first * first + one.of_middle * force + one.of_second * second);
+    const double force = force_of(middle_, motion, period_s);
+    for (std::size_t k = 0; k < differences_.size(); ++k) {
+      Difference& one = differences_[k];
+      double by = one.of_middle * force;
+      for (Beside& side : one.sides) by += side.factor * force_of(side, motion, period_s);
+      row[k] = by;
     }
     return force;
   }
 
  private:
-  struct Both {
-    std::vector<double> first, second;
-    ForeignState first_state, second_state;
-    double of_first, of_middle, of_second;
-    double slope;
+  /// The law with one value changed, and what its force counts.
+  struct Beside {
+    std::vector<double> values;
+    ForeignState state;
+    double factor;
+  };
+  struct Difference {
+    std::vector<Beside> sides;
+    double of_middle = 0.0;
   };
 
-  double force_of(const std::vector<double>& values, ForeignState& state, const Motion& motion,
-                  double period_s) {
+  double force_of(Beside& side, const Motion& motion, double period_s) const {
     double force = std::numeric_limits<double>::quiet_NaN();
-    law_.step(values.data(), state, &motion.penetration, &motion.velocity, period_s, &force);
+    law_.step(side.values.data(), side.state, &motion.penetration, &motion.velocity, period_s, &force);
     return force;
+  }
+
+  [[nodiscard]] Beside beside(std::size_t parameter, double change, double factor,
+                              std::vector<double> values) const {
+    values[parameter] += change;
+    ForeignState state(law_, SteppedFor::forces, values);
+    return {std::move(values), std::move(state), factor};
   }
 
   void add(const Column& column) {
     const std::size_t i = column.parameter;
     const models::ParameterInfo& info = law_.parameters()[i];
-    const double value = values_[i];
+    const bool linear = law_.is_linear(i);
+    const double value = middle_.values[i];
     const double size = std::max(std::abs(value), 0.01 * std::abs(law_.initial()[i]));
-    double change = law_.is_linear(i) ? 0.25 * size : 6e-6 * size;
-    if (change == 0.0) change = law_.is_linear(i) ? 1.0 : 6e-6;
-    change = std::min(change, (info.upper - info.lower) / 4.0);
-    double first = change;
-    double second = -change;
-    double of_middle = 0.0;
-    double of_first = 0.5 / change;
-    double of_second = -0.5 / change;
-    if (value - change < info.lower || value + change > info.upper) {
-      const double inwards = value - change < info.lower ? change : -change;
-      first = inwards;
-      second = 2.0 * inwards;
-      of_first = 2.0 / inwards;
-      of_middle = -1.5 / inwards;
-      of_second = -0.5 / inwards;
+    double h = linear ? 0.25 * size : 6e-6 * size;
+    if (h == 0.0) h = linear ? 1.0 : 6e-6;
+    h = std::min(h, (info.upper - info.lower) / 4.0);
+    const bool at_bound = value - h < info.lower || value + h > info.upper;
+    if (value + h > info.upper) h = -h;
+    Difference difference;
+    const auto side = [&](double change, double factor) {
+      difference.sides.push_back(beside(i, change, column.slope * factor, middle_.values));
+    };
+    if (linear) {
+      side(h, 1.0 / h);
+      difference.of_middle = -column.slope / h;
+    } else if (at_bound) {
+      side(h, 2.0 / h);
+      side(2.0 * h, -0.5 / h);
+      difference.of_middle = -1.5 * column.slope / h;
+    } else {
+      side(h, 0.5 / h);
+      side(-h, -0.5 / h);
     }
-    std::vector<double> at_first = values_;
-    std::vector<double> at_second = values_;
-    at_first[i] += first;
-    at_second[i] += second;
-    ForeignState first_state(law_, SteppedFor::forces, at_first);
-    ForeignState second_state(law_, SteppedFor::forces, at_second);
-    both_.push_back({std::move(at_first), std::move(at_second), std::move(first_state),
-                     std::move(second_state), of_first, of_middle, of_second, column.slope});
+    differences_.push_back(std::move(difference));
   }
 
   const ForeignLaw& law_;
-  std::vector<double> values_;
-  ForeignState state_;
-  std::vector<Both> both_;
+  Beside middle_;
+  std::vector<Difference> differences_;
 };
 
 class ForeignKernel final : public LawKernel {

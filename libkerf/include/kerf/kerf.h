@@ -17,8 +17,8 @@
  * safety belong to one thread at a time. Nothing is shared between two states.
  *
  * In the loop. kerf_step*(), kerf_safety_judge(), kerf_safety_apply(), kerf_state_assign() and
- * kerf_state_reset() allocate, lock, log and throw nothing. All else is for set-up. No function writes to a
- * stream, and none lets an exception out.
+ * kerf_state_reset() allocate, lock, log and throw nothing; a law of a plug-in, what it does itself. All else
+ * is for set-up. No function writes to a stream, and none lets an exception out.
  *
  * Arguments. Pointers are not NULL unless a function says that they may be; texts are UTF-8 and end in a
  * zero. What the library returns as text lives as long as the law, or for good.
@@ -28,6 +28,10 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+#ifdef KERF_LAW_H
+#error "kerf/law.h (plug-ins) and kerf/kerf.h (who renders laws) both have a kerf_law: not in one source"
+#endif
 
 #if defined(__GNUC__)
 #define KERF_API __attribute__((visibility("default")))
@@ -91,14 +95,15 @@ KERF_API double kerf_none(void);
 /** A law: immutable, shared by as many states and threads as one likes. */
 typedef struct kerf_law kerf_law;
 
-/** How many models the library knows, and the name of each, from 0 on; NULL beyond the last. */
+/** How many models the library knows, and the name of each, from 0 on; NULL beyond the last. Those of
+ * plug-ins follow the library's own, in the order in which they were loaded. */
 KERF_API size_t kerf_model_count(void);
 KERF_API const char* kerf_model_name(size_t model);
 
 /** Reads a law file of at most 16 MiB.
  *  Errors: KERF_BAD_INPUT with file and line: no such file, not TOML, an unknown law, a key that is not known
  * (with the version that wrote it if that is newer than this one), a unit of another kind, a parameter out of
- * its range. `law` is NULL then. */
+ * its range, a plug-in that is not loaded or of another content. `law` is NULL then. */
 KERF_API kerf_status kerf_law_open(const char* path, kerf_law** law, char* error, size_t error_size);
 
 /** Reads a law from `size` bytes of text in memory; `name` stands for the file in messages. Errors as
@@ -129,6 +134,18 @@ typedef struct kerf_option {
 KERF_API kerf_status kerf_law_make(const char* model, const kerf_value* values, size_t value_count,
                                    const kerf_option* options, size_t option_count, kerf_law** law,
                                    char* error, size_t error_size);
+
+/** Loads the law of a plug-in, a shared object as kerf/law.h describes it, for the rest of the program: law
+ * files that name it, with the SHA-256 of this very file, are opened from now on, and kerf_law_make() takes
+ * its name, which `model` is given; `model` may be NULL. A file that is loaded already is that one.
+ *
+ * The plug-in's code runs within the program and with its rights, and a crash in it is one of the program:
+ * let `kerf law build` or `kerf check` try it before. A step in which it throws, gives no finite number or
+ * writes behind its state is a KERF_LAW_FAULT. Not while another thread makes a law.
+ *
+ * Errors: KERF_BAD_INPUT with the file: no such file, no plug-in, another version of kerf/law.h, a
+ * description that makes no sense, the name of a law that there is already. `*model` is NULL then. */
+KERF_API kerf_status kerf_plugin_load(const char* path, const char** model, char* error, size_t error_size);
 
 /** Lets go of a law; its states may live on. NULL is allowed. */
 KERF_API void kerf_law_close(kerf_law* law);
@@ -179,6 +196,17 @@ KERF_API size_t kerf_law_parameter_count(const kerf_law* law);
  * was then.
  */
 KERF_API kerf_status kerf_law_parameter(const kerf_law* law, size_t index, kerf_parameter* parameter);
+
+/** An option as the law has it: what it is set to, and to what where a law file does not name it. The numbers
+ * and texts of both can be given to kerf_law_make(). */
+typedef struct kerf_option_info {
+  const char* meaning; /**< in a few words */
+  kerf_option value;
+  kerf_option standard;
+} kerf_option_info;
+KERF_API size_t kerf_law_option_count(const kerf_law* law);
+/** One of them, from 0 on. KERF_BAD_INPUT beyond the last; `option` is left as it was then. */
+KERF_API kerf_status kerf_law_option(const kerf_law* law, size_t index, kerf_option_info* option);
 
 /* ---- States ---- */
 

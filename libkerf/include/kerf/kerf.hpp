@@ -54,6 +54,13 @@ struct Force {
   std::uint32_t flags = 0;
 };
 
+/// Loads a plug-in as kerf_plugin_load() says, and gives the name of its law. @throws Error.
+inline std::string_view load_plugin(const std::string& path) {
+  return detail::made<const char>([&](const char** model, char* error, std::size_t size) {
+    return kerf_plugin_load(path.c_str(), model, error, size);
+  });
+}
+
 /// A law: immutable, shared by any number of threads and states. Moved, not copied.
 class Law {
  public:
@@ -98,6 +105,14 @@ class Law {
     if (const kerf_status status = kerf_law_parameter(get(), index, &parameter))
       throw Error(status, "no such parameter");
     return parameter;
+  }
+  [[nodiscard]] std::size_t option_count() const noexcept { return kerf_law_option_count(get()); }
+  /// @throws Error beyond the last.
+  [[nodiscard]] kerf_option_info option(std::size_t index) const {
+    kerf_option_info option{};
+    if (const kerf_status status = kerf_law_option(get(), index, &option))
+      throw Error(status, "no such option");
+    return option;
   }
   /// For functions of kerf.h.
   [[nodiscard]] const kerf_law* get() const noexcept { return law_.get(); }

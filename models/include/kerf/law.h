@@ -17,6 +17,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef KERF_KERF_H
+#error "kerf/law.h (plug-ins) and kerf/kerf.h (who renders laws) both have a kerf_law: not in one source"
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

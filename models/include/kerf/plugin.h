@@ -113,14 +113,20 @@ class Described {
   }
   static std::size_t passes() { return (count + width - 1) / width; }
   static Value made(const double* values) { return Value::make({values, count}, {}); }
+  /// Room for the most parameters; to clear all of it at each step would take longer than most steps.
+  union Duals {
+    Duals() {}
+    Dual all[32];
+  };
   /// With derivatives by the parameters of one pass.
   static Law<Dual> made(const double* values, std::size_t pass) {
-    std::array<Dual, 32> all;
+    Duals room;
+    Dual* const first = room.all;
     for (std::size_t i = 0; i < count; ++i) {
-      all[i].a = values[i];
-      if (i / width == pass) all[i].v[i % width] = 1.0;
+      Dual* const one = new (first + i) Dual(values[i]);
+      if (i / width == pass) one->v[i % width] = 1.0;
     }
-    return Law<Dual>::make({all.data(), count}, {});
+    return Law<Dual>::make({first, count}, {});
   }
 
   static int init(const double* values, void* memory) {

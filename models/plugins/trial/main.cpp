@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <string>
 
-#include <dlfcn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <kerf/models/foreign.h>
+#include <kerf/plugins/open.h>
 
 #include "trial/allocations.h"
 #include "trial/guarded_state.h"
@@ -34,14 +34,7 @@ std::string read_name() {
 
 const kerf_law_v1& described(const std::string& file) {
   report("at it was opened");
-  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) {
-    const std::string why = dlerror();
-    refuse("it is no shared object that can be opened: " +
-           (why.starts_with(file + ": ") ? why.substr(file.size() + 2) : why));
-  }
-  const auto describe = reinterpret_cast<const kerf_law_v1* (*)()>(dlsym(library, "kerf_law"));
-  if (describe == nullptr) refuse("it exports no kerf_law(): it is no law, or hides it");
+  const plugins::Describe describe = plugins::describing_function(file);
   report("at kerf_law() was called");
   const kerf_law_v1* const law = describe();
   if (law == nullptr) refuse("its kerf_law() returns nothing");

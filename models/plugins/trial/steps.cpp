@@ -88,11 +88,15 @@ TrialSteps try_steps(const models::ForeignLaw& law) {
   auto last_sign = begin;
   auto batch_begin = begin;
   std::size_t in_batch = 0;
+  Clock::duration spent{};  // of the batch, in steps and not in what looks after them
   const std::vector<TrialTick> all = trial_ticks(law);
   for (std::size_t i = 0; i < ticks; ++i) {
     const std::size_t allocated = allocations().value_or(0);
+    const auto before = Clock::now();
     const models::AxisValues force = stepped(description, parameters, state.bytes(), all[i]);
     const models::AxisValues again = stepped(description, parameters, copy.bytes(), all[i]);
+    const auto now = Clock::now();
+    spent += now - before;
     result.allocations += allocations().value_or(0) - allocated;
     if (state.is_damaged() || copy.is_damaged()) refuse("it writes beside " + of_state + at_tick(i, all[i]));
     for (std::size_t axis = 0; axis < axes; ++axis) {
@@ -103,13 +107,13 @@ TrialSteps try_steps(const models::ForeignLaw& law) {
       }
     }
     result.force.push_back(force[0]);
-    const auto now = Clock::now();
     ++in_batch;
     if (in_batch == batch || now - batch_begin > between_signs) {
-      times.push_back(std::chrono::duration<double>(now - batch_begin).count() /
+      times.push_back(std::chrono::duration<double>(spent).count() /
                       (2.0 * static_cast<double>(in_batch)));  // of two states
       batch_begin = now;
       in_batch = 0;
+      spent = {};
     }
     if (now - last_sign > between_signs) {
       report("at it was stepped");

@@ -106,26 +106,13 @@ const kerf_law_v1& of_this_version(const kerf_law_v1& law) {
 
 KnownEffects effects_of(std::uint32_t tells) {
   const auto has = [tells](std::uint32_t bit) { return (tells & bit) != 0; };
-  std::vector<Effect> all;
-  if (has(KERF_TELLS_LOOP)) all.push_back(Effect::loop);
-  if (has(KERF_TELLS_RELAXATION)) all.push_back(Effect::relaxation);
-  if (has(KERF_TELLS_CUTTING)) all.push_back(Effect::cutting);
-  if (has(KERF_TELLS_RATE)) all.push_back(Effect::rate);
-  if (has(KERF_TELLS_STIFFENING)) all.push_back(Effect::stiffening);
-  switch (all.size()) {
-    case 0:
-      return {};
-    case 1:
-      return {all[0]};
-    case 2:
-      return {all[0], all[1]};
-    case 3:
-      return {all[0], all[1], all[2]};
-    case 4:
-      return {all[0], all[1], all[2], all[3]};
-    default:
-      return {all[0], all[1], all[2], all[3], all[4]};
-  }
+  KnownEffects effects;
+  if (has(KERF_TELLS_LOOP)) effects.add(Effect::loop);
+  if (has(KERF_TELLS_RELAXATION)) effects.add(Effect::relaxation);
+  if (has(KERF_TELLS_CUTTING)) effects.add(Effect::cutting);
+  if (has(KERF_TELLS_RATE)) effects.add(Effect::rate);
+  if (has(KERF_TELLS_STIFFENING)) effects.add(Effect::stiffening);
+  return effects;
 }
 
 LawFacts facts_of(const kerf_law_v1& law) {
@@ -138,7 +125,8 @@ LawFacts facts_of(const kerf_law_v1& law) {
   return facts;
 }
 
-thread_local const ForeignLaw* running = nullptr;
+// Of the memory that a thread begins with: a library that is loaded later would take it at the first step.
+[[gnu::tls_model("initial-exec")]] thread_local const ForeignLaw* running = nullptr;
 
 /// While a plug-in's code runs.
 class Running {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -9,7 +10,11 @@ namespace kerf::models {
 namespace {
 
 constexpr std::size_t canary_size = 32;
-constexpr std::byte canary{0xC5};
+constexpr auto canary = [] {
+  std::array<std::byte, canary_size> bytes{};
+  bytes.fill(std::byte{0xC5});
+  return bytes;
+}();
 
 }  // namespace
 
@@ -18,7 +23,7 @@ ForeignState::Memory ForeignState::memory_of(std::size_t size, std::size_t align
   Memory memory(static_cast<std::byte*>(::operator new(size + canary_size, std::align_val_t(aligned))),
                 {aligned});
   std::memset(memory.get(), 0, size);
-  std::memset(memory.get() + size, static_cast<int>(canary), canary_size);
+  std::memcpy(memory.get() + size, canary.data(), canary_size);
   return memory;
 }
 
@@ -44,8 +49,7 @@ void ForeignState::assign(const ForeignState& other) noexcept {
 }
 
 bool ForeignState::is_intact() const noexcept {
-  const std::byte* const behind = memory_.get() + size_;
-  return std::all_of(behind, behind + canary_size, [](std::byte one) { return one == canary; });
+  return std::memcmp(memory_.get() + size_, canary.data(), canary_size) == 0;
 }
 
 }  // namespace kerf::models

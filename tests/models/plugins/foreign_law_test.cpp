@@ -72,6 +72,19 @@ TEST(ForeignLaw, IsFoundByItsNameWhereverLawsAre) {
                std::invalid_argument);
 }
 
+TEST(ForeignLaw, TellsOfACutWhatItsBitsSay) {
+  kerf_law_v1 law = named("tells");
+  const auto effects = [&law](unsigned tells) {
+    law.tells = tells;
+    const KnownEffects known = ForeignLaw(law, {}).facts().variants.begin()->effects;
+    return std::vector(known.begin(), known.end());
+  };
+  EXPECT_THAT(effects(0), testing::IsEmpty());
+  EXPECT_THAT(effects(KERF_TELLS_CUTTING), testing::ElementsAre(Effect::cutting));
+  EXPECT_THAT(effects(31), testing::ElementsAre(Effect::loop, Effect::relaxation, Effect::cutting,
+                                                Effect::rate, Effect::stiffening));
+}
+
 TEST(ForeignLaw, ComesInOnceByOneContentAndNotByTwo) {
   const ForeignLaw& first = register_law(named("once"), {.path = "./c.so", .name = "c.so", .sha256 = "c"});
   EXPECT_EQ(&register_law(named("once"), {.path = "./d.so", .name = "d.so", .sha256 = "c"}), &first);

@@ -21,6 +21,11 @@ class Few {
   constexpr Few(std::initializer_list<T> values) : size_(values.size()) {
     std::copy(values.begin(), values.end(), values_.begin());
   }
+  /// Where there is room for it. @throws std::out_of_range.
+  constexpr void add(const T& value) {
+    values_.at(size_) = value;
+    ++size_;
+  }
   [[nodiscard]] constexpr const T* begin() const { return values_.data(); }
   [[nodiscard]] constexpr const T* end() const { return values_.data() + size_; }
   [[nodiscard]] constexpr std::size_t size() const { return size_; }

@@ -68,14 +68,14 @@ TEST(LiveHub, TellsTheLawThatTheTickRendersAndEveryChangeAsAnEvent) {
   HubBench bench;
   bench.run(100);
   EXPECT_EQ(bench.status().law, "");
-  bench.hub.offer(spring(), "soft");
+  bench.hub.offer(spring(), {.law = "soft", .plugin = {}});
   EXPECT_EQ(bench.status().law, "") << "no tick has seen it yet";
   bench.run(100);
   EXPECT_EQ(bench.status().law, "soft");
   bench.rendering.release();
   bench.run(100);
   bench.rendering.resume();
-  bench.hub.offer(nullptr, "");
+  bench.hub.offer(nullptr, {});
   bench.run(100);
   EXPECT_EQ(bench.status().law, "");
   EXPECT_THAT(lines_of(bench.hub.history().frame_since(0, 10, 100).events),
@@ -113,12 +113,12 @@ TEST(LiveHub, TellsTheTimingOfTheLoop) {
 TEST(LiveHub, RecordsFromAnyMomentOnWithTimesFromTheFirstRow) {
   const test::TemporaryFolder folder;
   HubBench bench;
-  bench.hub.offer(spring(), "soft");
+  bench.hub.offer(spring(), {.law = "soft", .plugin = "the plug-in soft.so, SHA-256 00"});
   bench.run(500);
   bench.hub.start_recording(folder / "r.h5", false);
   bench.run(100);
   bench.rendering.release();
-  bench.hub.offer(spring(), "softer");
+  bench.hub.offer(spring(), {.law = "softer", .plugin = "the plug-in softer.so, SHA-256 11"});
   bench.run(50);
   bench.tick += 3;
   bench.run(50, schema::flag_missed_deadline);
@@ -144,7 +144,10 @@ TEST(LiveHub, RecordsFromAnyMomentOnWithTimesFromTheFirstRow) {
   EXPECT_THAT(schema::validate(folder / "r.h5"), IsEmpty());
   std::vector<std::string> lines = lines_of(recording.events);
   std::erase_if(lines, [](const std::string& it) { return it.find("soft_switch") != std::string::npos; });
-  EXPECT_THAT(lines, ElementsAre("0.000 law: soft", "0.100 law: softer", "0.100 zero: zero force, by hand",
+  EXPECT_THAT(recording.header.history, HasSubstr("rendered with the plug-in soft.so, SHA-256 00"));
+  EXPECT_THAT(lines, ElementsAre("0.000 law: soft, by the plug-in soft.so, SHA-256 00",
+                                 "0.100 law: softer, by the plug-in softer.so, SHA-256 11",
+                                 "0.100 zero: zero force, by hand",
                                  HasSubstr("0.153 missed_deadline: 3 ticks are not in the file"),
                                  "0.203 stop: the recording was stopped; the loop went on"));
 }
