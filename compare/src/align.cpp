@@ -195,6 +195,8 @@ AlignBy align_by(std::string_view name) {
   return static_cast<AlignBy>(found - align_names.begin());
 }
 
+std::string_view name_of(AlignBy by) noexcept { return align_names[static_cast<std::size_t>(by)]; }
+
 std::optional<Lag> lag_between_runs(const Series& expected, const Series& got, double most_lag_s) {
   const double period_s = expected.period();
   const auto most = static_cast<std::size_t>(std::max(4.0, most_lag_s / period_s));

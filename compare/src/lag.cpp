@@ -89,6 +89,19 @@ std::vector<double> changes_of(std::span<const double> values) {
   return changes;
 }
 
+/// Of a long run the stretch in which most happens: a lag is the same all along.
+std::size_t busiest(std::span<const double> values, std::size_t length) {
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t begin = 0; begin + length <= values.size(); begin += length / 2) {
+    double square = 0.0;
+    for (std::size_t i = begin + 1; i < begin + length; ++i) square += std::abs(values[i] - values[i - 1]);
+    if (square > most) best = begin;
+    most = std::max(most, square);
+  }
+  return best;
+}
+
 std::vector<double> without_mean(std::span<const double> values) {
   double mean = 0.0;
   for (const double one : values) mean += one / static_cast<double>(values.size());
@@ -144,9 +157,13 @@ std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const 
   if (rows < 4 * (kernel_reach + 4)) return {};
   used.most_ticks = std::min(used.most_ticks, rows / 4);
   const Shifted shifted(expected, got, used);
+  const std::size_t length = std::min(rows, std::max<std::size_t>(65536, 4 * used.most_ticks));
+  const std::size_t begin = busiest(expected, length);
+  const auto part_e = expected.subspan(begin, length);
+  const auto part_g = got.subspan(begin, length);
   const std::array<long, 3> candidates{
-      0, best_shift(without_mean(expected), without_mean(got), used.most_ticks, used.free_gain),
-      best_shift(changes_of(expected), changes_of(got), used.most_ticks, used.free_gain)};
+      0, best_shift(without_mean(part_e), without_mean(part_g), used.most_ticks, used.free_gain),
+      best_shift(changes_of(part_e), changes_of(part_g), used.most_ticks, used.free_gain)};
   double least = std::numeric_limits<double>::infinity();
   long whole = 0;
   for (const long one : candidates) {

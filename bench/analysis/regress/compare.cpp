@@ -5,8 +5,8 @@
 namespace kerf::bench {
 namespace {
 
-compare::Series columns_of(const std::vector<schema::ForceChannel>& channels,
-                           const std::vector<double>& force, double period_s) {
+compare::Series force_columns(const std::vector<schema::ForceChannel>& channels,
+                              const std::vector<double>& force, double period_s) {
   compare::Series series{.period_s = period_s};
   const std::size_t rows = channels.empty() ? 0 : force.size() / channels.size();
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -21,11 +21,11 @@ compare::Series columns_of(const std::vector<schema::ForceChannel>& channels,
 }  // namespace
 
 compare::Series series_of(const schema::StoredForces& stored, double period_s) {
-  return columns_of(stored.channels, stored.force, period_s);
+  return force_columns(stored.channels, stored.force, period_s);
 }
 
 compare::Series series_of(const RenderedForces& got, double period_s) {
-  return columns_of(got.channels, got.force, period_s);
+  return force_columns(got.channels, got.force, period_s);
 }
 
 void add_motion(compare::Series& series, const SampledMotion& motion) {

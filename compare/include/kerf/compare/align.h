@@ -20,6 +20,7 @@ enum class AlignBy : std::uint8_t {
 
 /// @throws std::invalid_argument that lists the names.
 [[nodiscard]] AlignBy align_by(std::string_view name);
+[[nodiscard]] std::string_view name_of(AlignBy by) noexcept;
 
 /// How much later one run is than another, as the forces themselves say.
 struct Lag {
