@@ -9,7 +9,7 @@ namespace kerf::compare {
 namespace {
 
 constexpr std::size_t most_edits = 200;
-constexpr std::size_t enough_rows = 10;  ///< that must be the same after an edit
+constexpr std::size_t enough_rows = 4;  ///< that must be the same after an edit
 constexpr std::size_t most_other_rows = 5;
 constexpr std::size_t looked_ahead = 4000;  ///< rows by which candidates are told apart
 
@@ -154,10 +154,15 @@ class RowMatching {
   std::vector<Column> columns_;
 };
 
+/// The last row that may be meant: of samples that are there twice the first of those that were.
+std::size_t last_row(const Edit& edit) {
+  return std::max(edit.first, edit.expected_row - std::min(edit.added, edit.expected_row));
+}
+
 /// At a tick, or between two that nobody can tell apart. A sample that is there twice is meant by either.
 std::string place_of(const Edit& edit) {
-  if (edit.expected_row - edit.first <= edit.added) return fmt::format("at tick {}", edit.first);
-  return fmt::format("between ticks {} and {}, which look the same", edit.first, edit.expected_row);
+  if (edit.first == last_row(edit)) return fmt::format("at tick {}", edit.first);
+  return fmt::format("between ticks {} and {}, which look the same", edit.first, last_row(edit));
 }
 
 std::string samples(std::size_t count) {
@@ -185,7 +190,7 @@ void add_edits(const std::vector<Edit>& edits, Change change, const char* what, 
     finding.sentence += fmt::format("; {}", place_of(edits[i]));
   if (edits.size() > 4) finding.sentence += fmt::format("; and at {} places more", edits.size() - 4);
   finding.numbers = {{"count", static_cast<double>(count)},
-                     {"row", static_cast<double>(edits.front().expected_row)},
+                     {"row", static_cast<double>(last_row(edits.front()))},
                      {"first_row", static_cast<double>(edits.front().first)},
                      {"places", static_cast<double>(edits.size())}};
   found.push_back(std::move(finding));
