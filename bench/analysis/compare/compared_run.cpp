@@ -40,7 +40,7 @@ ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
   if (force.empty())
     throw std::invalid_argument(fmt::format("{}: it holds no {} force", file.string(),
                                             which.measured ? "measured" : "commanded or measured"));
-  ComparedRun run{.name = file.string()};
+  ComparedRun run{.name = file.string(), .series = {}, .notes = {}};
   run.series.time_s = recording.time;
   const std::size_t axes = recording.dimensions();
   for (std::size_t axis = 0; axis < axes; ++axis) {
@@ -61,8 +61,8 @@ ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
 /// What a column of a table is.
 struct RunColumn {
   std::size_t index = 0;
-  std::string name;
-  Unit unit;
+  std::string name{};
+  Unit unit{};
 };
 
 std::vector<RunColumn> run_columns(const TextLayout& layout, ComparedRun& run) {
@@ -91,7 +91,7 @@ std::vector<RunColumn> run_columns(const TextLayout& layout, ComparedRun& run) {
 ComparedRun from_table(const fs::path& file) {
   const FileText text(file, {.max_bytes = LargestInput::import});
   const TextLayout layout = find_layout(text.text(), text.name());
-  ComparedRun run{.name = file.string(), .notes = text.notes()};
+  ComparedRun run{.name = file.string(), .series = {}, .notes = text.notes()};
   const std::vector<RunColumn> columns = run_columns(layout, run);
   if (std::ranges::none_of(columns,
                            [](const RunColumn& one) { return one.unit.si == "N" || one.unit.si == "N·m"; }))
