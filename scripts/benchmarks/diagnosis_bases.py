@@ -41,24 +41,26 @@ def strokes(t, size, stroke_s, pause_s):
     return size * (there - back)
 
 
-def kelvin(x, dt, k1=300.0, k2=500.0, b=50.0, onset=0.004, state=0.0):
+def kelvin(x, dt, k1=300.0, k2=500.0, b=50.0, onset=0.004, state=0.0, forgets=-1):
     """A spring beside a spring and a dashpot in series, in contact alone, exact for straight lines."""
     depth = np.maximum(x[:, 0] - onset, 0)
     tau, arm, force = b / k2, state, np.zeros(len(x))
     kept = np.exp(-dt / tau)
     for i in range(len(x)):
         v = (depth[i] - depth[i - 1]) / dt if i else 0.0
+        arm = 0.0 if i == forgets else arm
         arm = kept * arm + k2 * tau * (1 - kept) * v if depth[i] > 0 or arm > 0 else 0.0
         force[i] = max(0.0, k1 * depth[i] + arm) if depth[i] > 0 else 0.0
     return force[:, None]
 
 
-def two_arms(x, dt, k1=200.0, k2=400.0, k3=250.0, tau2=0.03, tau3=0.4, state=0.0):
+def two_arms(x, dt, k1=200.0, k2=400.0, k3=250.0, tau2=0.03, tau3=0.4, state=0.0, forgets=-1):
     """A Maxwell-Wiechert solid that is always in contact."""
     arm2, arm3, force = state, 0.6 * state, np.zeros(len(x))
     kept2, kept3 = np.exp(-dt / tau2), np.exp(-dt / tau3)
     for i in range(len(x)):
         v = (x[i, 0] - x[i - 1, 0]) / dt if i else 0.0
+        arm2, arm3 = (0.0, 0.0) if i == forgets else (arm2, arm3)
         arm2 = kept2 * arm2 + k2 * tau2 * (1 - kept2) * v
         arm3 = kept3 * arm3 + k3 * tau3 * (1 - kept3) * v
         force[i] = k1 * x[i, 0] + arm2 + arm3

@@ -177,7 +177,11 @@ def parameters(base, rng):
 
 
 def state(base, rng):
-    return base.rendered(state=rng.choice([-1, 1]) * rng.uniform(0.1, 1.0))
+    """What the law remembers at its first tick, or forgets within a contact."""
+    if base.name == "two arms" and rng.random() < 0.5:
+        return base.rendered(state=rng.choice([-1, 1]) * rng.uniform(0.1, 1.0))
+    pressed = np.flatnonzero(base.force[:, 0] > 0.5 * base.force.max())
+    return base.rendered(forgets=int(rng.choice(pressed)))
 
 
 CHANGES = {"sign": sign, "axes": axes, "rotation": rotation, "unit": unit, "gain": gain, "offset": offset, "drift": drift, "lag": lag,
@@ -189,7 +193,7 @@ def can_be_made(name, base):
     if name in ("axes", "rotation"):
         return base.force.shape[1] == 6
     if name == "state":
-        return base.name in ("two arms",)
+        return base.name in ("kelvin", "two arms")
     return base.law is not None or name not in ("trajectory", "parameters")
 
 
