@@ -239,7 +239,8 @@ Aligned aligned(const Series& expected, const Series& got, const AlignOptions& o
       Aligned beside = by_time(expected, same, 0.0);
       const auto lag = lag_between_runs(beside.expected, beside.got, options.most_lag_s);
       if (!lag)
-        throw std::invalid_argument("no force changes, so that no lag can be told; align by tick or time");
+        throw std::invalid_argument(
+            "no lag can be told: no force changes, or there are fewer than 80 rows; align by tick or time");
       Aligned result = by_time(expected, same, lag->seconds);
       result.lag = lag;
       return result;

@@ -26,6 +26,15 @@ std::vector<std::array<EventMatch, 3>> events_of(const compare::Aligned& runs, d
   return all;
 }
 
+/// Of most rows nothing is known: that is no agreement.
+void require_partners(RunComparison& result, std::size_t rows) {
+  const std::size_t compared = result.runs.expected.rows();
+  if (2 * compared >= rows) return;
+  result.comparison.passed = false;
+  result.comparison.messages.push_back(fmt::format(
+      "only {} of {} rows have a partner at their time: nothing is known of the others", compared, rows));
+}
+
 }  // namespace
 
 RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
@@ -47,6 +56,8 @@ RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
   const compare::Series& before = by_tick ? expected.series : result.runs.expected;
   const compare::Series& after = by_tick ? got.series : result.runs.got;
   result.comparison = compare::compare_with_gaps(before, after, options.tolerance);
+  if (!by_tick && options.align.by != compare::AlignBy::position)
+    require_partners(result, expected.series.rows());
   result.agreement = compare::agreement(result.runs.expected, result.runs.got, options.align.most_lag_s);
   result.events = events_of(result.runs, options.match_s);
   if (result.comparison.passed) return result;

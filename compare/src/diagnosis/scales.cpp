@@ -105,7 +105,7 @@ void find_saturation(const ForcePair& pair, Findings& found) {
   const double low =
       std::ranges::min(pair.expected) < least ? least : -std::numeric_limits<double>::infinity();
   const double high = std::ranges::max(pair.expected) > most ? most : std::numeric_limits<double>::infinity();
-  if (!(high > low) || (std::isinf(low) && std::isinf(high)) || (least == 0.0 && most == 0.0)) return;
+  if (!(high > low) || (std::isinf(low) && std::isinf(high)) || least == most) return;
   const auto cut = [&](std::size_t row) { return std::clamp(pair.expected[row], low, high); };
   double left = 0.0;
   double all = 0.0;

@@ -96,6 +96,13 @@ TEST_F(CompareProgram, TakesOutALagAndSaysHowLargeItIs) {
   EXPECT_NEAR(nlohmann::json::parse(outcome.output).at("lag").at("ms").get<double>(), 12.3, 0.05);
 }
 
+TEST_F(CompareProgram, IsNotContentWithAFewRowsThatOverlap) {
+  test::write_text(at("short.csv"), "time [s],x [N]\n0,0\n0.001,0\n0.002,0\n");
+  const Outcome outcome = compare({recording("a.h5"), at("short.csv"), "--align", "time"});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("only 3 of 2000 rows have a partner at their time"));
+}
+
 TEST_F(CompareProgram, RefusesWhatCannotBeCompared) {
   const auto refused = [&](const std::vector<std::string>& words, const std::string& message) {
     const Outcome outcome = compare(words);
