@@ -1,6 +1,7 @@
 #include "compare/run_comparison.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -55,7 +56,11 @@ RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
   // What is missing is seen in the whole runs alone.
   const compare::Series& before = by_tick ? expected.series : result.runs.expected;
   const compare::Series& after = by_tick ? got.series : result.runs.got;
-  result.comparison = compare::compare_with_gaps(before, after, options.tolerance);
+  compare::Tolerance tolerance = options.tolerance;
+  // Strokes of other speeds have no common time in which something could vibrate.
+  if (options.align.by == compare::AlignBy::position && !tolerance.vibration)
+    tolerance.vibration = std::numeric_limits<double>::infinity();
+  result.comparison = compare::compare_with_gaps(before, after, tolerance);
   if (!by_tick && options.align.by != compare::AlignBy::position)
     require_partners(result, expected.series.rows());
   result.agreement = compare::agreement(result.runs.expected, result.runs.got, options.align.most_lag_s);

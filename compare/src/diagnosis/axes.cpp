@@ -97,7 +97,7 @@ void find_permutation(const Group& group, Findings& found) {
                                  static_cast<double>(group[static_cast<std::size_t>(from)]->channel));
   }
   finding.sentence = "axes took each other's place: " + text;
-  found.push_back(std::move(finding));
+  if (finding.remainder < guessed_remainder) found.push_back(std::move(finding));
 }
 
 void find_rotation(const Group& group, Findings& found) {
@@ -129,7 +129,7 @@ void find_rotation(const Group& group, Findings& found) {
     axis = (1e6 * axis).array().round() / 1e6 + 0.0;  // and no -0
     finding.sentence += fmt::format(" about ({:.3g}, {:.3g}, {:.3g})", axis.x(), axis.y(), axis.z());
   }
-  found.push_back(std::move(finding));
+  if (finding.remainder < guessed_remainder) found.push_back(std::move(finding));
 }
 
 }  // namespace
