@@ -29,7 +29,7 @@ inline std::vector<double> strokes(std::size_t ticks = 4000, double seconds_a_ti
 }
 
 /// Forces and torques of a tool that wanders.
-inline compare::Series six_axes(std::size_t ticks = 3000) {
+inline compare::Series six_axes(std::size_t ticks = 1500) {
   compare::Series run;
   for (std::size_t axis = 0; axis < 6; ++axis) {
     compare::Channel channel{.name = std::vector<std::string>{"x", "y", "z", "rx", "ry", "rz"}[axis],
