@@ -13,6 +13,7 @@ class Room:
 ROOMS = [
     Room("models/mechanisms", ("kerf_mechanisms_test",)),
     Room("models", ("kerf_models_test", "kerf_lattice_test"), ("models/benchmarks", "models/mechanisms")),
+    Room("compare", ("kerf_compare_test",)),
     Room("fitting/psychophysics", ("kerf_psychophysics_test",), ("fitting/psychophysics/benchmarks",)),
     Room("fitting/population", ("kerf_population_test",), ("fitting/population/benchmarks",)),
     Room("fitting", ("kerf_fitting_test",), ("fitting/benchmarks", "fitting/population", "fitting/psychophysics")),

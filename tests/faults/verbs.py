@@ -58,6 +58,7 @@ VERBS = [
     Verb("replay --record", "replay {in}/cut.h5 --as table --virtual --seconds 0.5 --record t.h5", ("t.h5",), (), 0.2),
     Verb("replay --as table", "replay {in}/cut.h5 --as table --virtual --seconds 0.5 -o table", ("table",), (), 0.2,
          judges_time=True),
+    Verb("compare", "compare {in}/cut.h5 {in}/cut.h5 -o compared", ("compared",), (), 0.2),
     Verb("regress update", "regress update suite.toml --reason first --yes", ("suite.h5",), ("suite.toml", "kelvin.law.toml"),
          replaces=True, can_force=False),
     Verb("regress run", "regress run {in}/suite.toml --no-cost --junit j.xml -o regress", ("j.xml", "regress"), replaces=True,

@@ -1,57 +1,38 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include <kerf/compare/compare.h>
+#include <kerf/compare/diagnose.h>
 #include <kerf/schema/regression.h>
 
+#include "laws/sampled_motion.h"
 #include "regress/forces.h"
 #include "regress/suite.h"
 
 namespace kerf::bench {
 
-/// One force beside the stored one.
-struct ForceDifference {
-  std::size_t tick = 0;
-  std::size_t channel = 0;
-  double expected = 0.0;
-  double got = 0.0;
-  double allowed = 0.0;  ///< by the tolerance; 0 where it has to be exact
-  double jnds = 0.0;     ///< the difference, in JNDs of the expected force
+using compare::ChannelComparison;
+using compare::ForceDifference;
+using ForceComparison = compare::Comparison;
 
-  [[nodiscard]] double difference() const noexcept { return got - expected; }
-};
+/// Stored and rendered forces as what is compared. What they were rendered for stands beside them if it is
+/// given.
+[[nodiscard]] compare::Series series_of(const schema::StoredForces& stored, double period_s = 1e-3);
+[[nodiscard]] compare::Series series_of(const RenderedForces& got, double period_s = 1e-3);
+/// Adds the positions and velocities of as many axes as there are channels, if there are as many ticks.
+void add_motion(compare::Series& series, const SampledMotion& motion);
 
-/// What came of one channel.
-struct ChannelComparison {
-  schema::ForceChannel channel;
-  std::size_t outside = 0;          ///< ticks outside the tolerance
-  double largest_difference = 0.0;  ///< of all ticks, also those within the tolerance
-  double largest_jnds = 0.0;
-  double largest_expected = 0.0;  ///< largest of the stored forces
-};
-
-struct ForceComparison {
-  bool passed = true;
-  std::size_t expected_rows = 0;
-  std::size_t got_rows = 0;
-  std::size_t differing = 0;  ///< ticks that are not bit for bit the same
-  std::size_t outside = 0;    ///< ticks with a channel outside the tolerance
-  std::vector<ChannelComparison> channels;
-  std::optional<ForceDifference> worst;  ///< the farthest outside the tolerance, else the largest difference
-  std::vector<std::string> messages;     ///< why it did not pass, the gravest first
-};
-
-/// Compares forces with the stored ones, tick by tick and channel by channel. A different number of samples
-/// does not pass, whatever the tolerance.
+/// Compares forces with the stored ones, tick by tick and channel by channel, as
+/// compare::compare_with_gaps(). A law that faults in more or fewer ticks than it did does not pass either.
 [[nodiscard]] ForceComparison compare_forces(const schema::StoredForces& stored, const RenderedForces& got,
-                                             const Tolerance& tolerance);
+                                             const Tolerance& tolerance, double period_s = 1e-3);
 
-/// What the difference looks like: silence, a force of the other sign or of another scale (radians and
-/// degrees, N and gf, m and mm), a shift by some ticks, or samples missing from a tick on. One sentence each.
-[[nodiscard]] std::vector<std::string> diagnose(const schema::StoredForces& stored,
-                                                const RenderedForces& got);
+/// What the difference looks like, one sentence each, as compare::sentences_of(). `path`: what the forces
+/// were rendered for now, and were then, unless the facts say that it has changed.
+[[nodiscard]] std::vector<std::string> diagnose(const schema::StoredForces& stored, const RenderedForces& got,
+                                                const SampledMotion& path = {},
+                                                const compare::Facts& facts = {});
 
 }  // namespace kerf::bench

@@ -82,7 +82,8 @@ std::vector<ContextRow> context_of(const RegressionOutcome& outcome, std::size_t
       row.velocity = outcome.path.sample[tick].velocity[worst.channel];
     }
     if (tick < outcome.stored.rows()) row.expected = outcome.stored.force[tick * columns + worst.channel];
-    if (tick < outcome.got.rows()) row.got = outcome.got.force[tick * columns + worst.channel];
+    const std::size_t got = tick + worst.got_tick - worst.tick;  // where samples are missing, not the same
+    if (got < outcome.got.rows()) row.got = outcome.got.force[got * columns + worst.channel];
     rows.push_back(row);
   }
   return rows;

@@ -70,10 +70,16 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
   const auto begin = Clock::now();
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
   outcome.got = render_forces(one.law, outcome.path);
-  outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
+  outcome.comparison = compare_forces(stored, outcome.got, one.tolerance, outcome.path.period_s.back());
   outcome.messages = outcome.comparison.messages;
+  const compare::Facts facts{
+      .law_changed = checksum(one.law) != stored.law_sha256,
+      .trajectory_changed = checksum(outcome.path, outcome.got.channels.size()) != stored.trajectory_sha256};
   if (!outcome.comparison.passed) {
-    for (std::string& line : diagnose(stored, outcome.got)) outcome.messages.push_back(std::move(line));
+    for (std::string& line : diagnose(stored, outcome.got, outcome.path, facts))
+      outcome.messages.push_back(std::move(line));
+  } else if (*facts.trajectory_changed) {
+    outcome.note = "the trajectory has changed, and the forces are within the tolerance all the same";
   }
   outcome.why = why_different(outcome);
   if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law, outcome.path);

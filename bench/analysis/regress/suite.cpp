@@ -19,8 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 7> settings{"rate", "seconds", "absolute", "relative",
-                                                   "jnd",  "exact",   "tick_cost"};
+constexpr std::array<std::string_view, 11> settings{"rate", "seconds", "absolute",  "relative",
+                                                    "jnd",  "exact",   "tick_cost", "vibration",
+                                                    "slew", "drift",   "peak"};
+/// What a channel may have of its own.
+constexpr std::array<std::string_view, 8> channel_settings{"absolute",  "relative", "jnd",   "exact",
+                                                           "vibration", "slew",     "drift", "peak"};
 
 template <typename... Names>
 std::vector<std::string_view> with_settings(Names... names) {
@@ -37,14 +41,73 @@ double plain(const Place& place, const toml::node& node, std::string_view what, 
   return value;
 }
 
-/// One absolute tolerance: in N, or in N·m.
-void read_absolute(const Place& place, const toml::node& node, Tolerance& tolerance) {
+/// One limit: of forces, or of torques; per second if `per` says so.
+void read_limit(const Place& place, const toml::node& node, std::string_view key, const std::string& per,
+                compare::Limit& limit) {
   const toml::table* table = node.as_table();
-  const bool torque = table != nullptr && place.text(*table, "unit", "").find("m") != std::string::npos &&
-                      place.text(*table, "unit", "") != "mN";
-  const auto values = place.measured(node, "absolute", torque ? "N·m" : "N").values;
-  if (values.size() != 1 || !(values[0] >= 0.0)) place.refuse(node, "'absolute' must be one number, >= 0");
-  (torque ? tolerance.torque_n_m : tolerance.force_n) = values[0];
+  const std::string unit = table != nullptr ? place.text(*table, "unit", "") : "";
+  const std::string force = unit.substr(0, unit.find('/'));
+  const bool torque = force.find('m') != std::string::npos && force != "mN";
+  const auto values = place.measured(node, std::string(key), (torque ? "N·m" : "N") + per).values;
+  if (values.size() != 1 || !(values[0] >= 0.0)) place.refuse(node, "'{}' must be one number, >= 0", key);
+  (torque ? limit.torque : limit.force) = values[0];
+}
+
+/// One limit or a list of two, of forces and torques.
+void read_limits(const Place& place, const toml::table& table, std::string_view key, const std::string& per,
+                 compare::Limit& limit) {
+  const toml::node* given = table.get(key);
+  if (given == nullptr) return;
+  limit = {};
+  if (const toml::array* list = given->as_array()) {
+    for (const toml::node& node : *list) read_limit(place, node, key, per, limit);
+  } else {
+    read_limit(place, *given, key, per, limit);
+  }
+}
+
+/// The tolerance that a table names, over that which it inherits.
+void read_tolerance(const Place& place, const toml::table& table, Tolerance& tolerance) {
+  const bool inexact = table.contains("absolute") || table.contains("relative") || table.contains("jnd");
+  if (inexact) {
+    tolerance.force_n = tolerance.torque_n_m = tolerance.relative = tolerance.jnd = {};
+    tolerance.exact = false;
+  }
+  compare::Limit absolute{.force = tolerance.force_n, .torque = tolerance.torque_n_m};
+  read_limits(place, table, "absolute", "", absolute);
+  tolerance.force_n = absolute.force;
+  tolerance.torque_n_m = absolute.torque;
+  if (const toml::node* relative = table.get("relative"))
+    tolerance.relative = plain(place, *relative, "relative", 0.0, 1.0);
+  if (const toml::node* jnd = table.get("jnd")) tolerance.jnd = plain(place, *jnd, "jnd", 0.0, 100.0);
+  if (const toml::node* vibration = table.get("vibration"))
+    tolerance.vibration = plain(place, *vibration, "vibration", 0.0, 1e6);
+  read_limits(place, table, "slew", "/s", tolerance.slew);
+  read_limits(place, table, "drift", "", tolerance.drift);
+  read_limits(place, table, "peak", "", tolerance.peak);
+  if (const toml::node* exact = table.get("exact")) {
+    tolerance.exact = place.flag(table, "exact", false);
+    if (tolerance.exact && inexact)
+      place.refuse(*exact, "'exact' leaves no room for a tolerance; leave out either");
+    if (tolerance.exact) tolerance = {.exact = true};
+  }
+}
+
+/// Tolerances of single channels, [case.channel.NAME].
+void read_channels(const Place& place, const toml::table& table, RegressionCase& one) {
+  if (!table.contains("channel")) return;
+  const std::vector<models::LawAxis> axes = axes_of(one.law);
+  for (const auto& [key, node] : place.table(table, "channel")) {
+    const std::string name(key.str());
+    const toml::table* own = node.as_table();
+    if (own == nullptr || !std::ranges::count(axes, name, &models::LawAxis::name))
+      place.refuse(node, "'{}' is no channel of the law; it has {}", name, names_in(axes));
+    place.allow_only(*own, channel_settings, "[case.channel." + name + "]");
+    Tolerance tolerance = one.tolerance;
+    tolerance.channels.clear();
+    read_tolerance(place, *own, tolerance);
+    one.tolerance.channels.push_back({.channel = name, .tolerance = std::move(tolerance)});
+  }
 }
 
 /// The settings that a table names, over those that it inherits.
@@ -54,24 +117,7 @@ void read_settings(const Place& place, const toml::table& table, RegressionCase&
   if (table.contains("seconds"))
     one.motion.seconds =
         read_number(place, table, {.key = "seconds", .unit = "s", .lower = 0.001, .upper = longest_motion_s});
-  const bool inexact = table.contains("absolute") || table.contains("relative") || table.contains("jnd");
-  if (inexact) one.tolerance = {};
-  if (const toml::node* absolute = table.get("absolute")) {
-    if (const toml::array* list = absolute->as_array()) {
-      for (const toml::node& node : *list) read_absolute(place, node, one.tolerance);
-    } else {
-      read_absolute(place, *absolute, one.tolerance);
-    }
-  }
-  if (const toml::node* relative = table.get("relative"))
-    one.tolerance.relative = plain(place, *relative, "relative", 0.0, 1.0);
-  if (const toml::node* jnd = table.get("jnd")) one.tolerance.jnd = plain(place, *jnd, "jnd", 0.0, 100.0);
-  if (const toml::node* exact = table.get("exact")) {
-    one.tolerance.exact = place.flag(table, "exact", false);
-    if (one.tolerance.exact && inexact)
-      place.refuse(*exact, "'exact' leaves no room for a tolerance; leave out either");
-    if (one.tolerance.exact) one.tolerance = {.exact = true};
-  }
+  read_tolerance(place, table, one.tolerance);
   if (const toml::node* cost = table.get("tick_cost"))
     one.tick_cost = plain(place, *cost, "tick_cost", 1.1, 1000.0);
 }
@@ -101,10 +147,8 @@ fs::path file_at(const Place& place, const toml::table& table, std::string_view 
 
 /// Every channel needs something to be held against.
 void require_tolerances(const Place& place, const toml::table& table, const RegressionCase& one) {
-  const Tolerance& given = one.tolerance;
-  if (given.exact || given.relative || given.jnd) return;
   for (const models::LawAxis& axis : axes_of(one.law)) {
-    if (axis.force_unit == "N·m" ? given.torque_n_m.has_value() : given.force_n.has_value()) continue;
+    if (one.tolerance.of(axis.name).has_limit_for(axis.force_unit)) continue;
     place.refuse(table,
                  "case '{}' has no tolerance for '{}' in {}; give exact = true, relative, jnd or absolute = "
                  "{{ value = ..., unit = \"{}\" }}",
@@ -130,7 +174,7 @@ void read_plugins(const Place& place, const toml::table& root, const fs::path& f
 
 RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
                          const RegressionCase& defaults) {
-  const auto keys = with_settings("name", "law", "recording", "scene", "motion");
+  const auto keys = with_settings("name", "law", "recording", "scene", "motion", "channel");
   place.allow_only(table, keys, "a [[case]]");
   RegressionCase one = defaults;
   for (const char* key : {"name", "law"}) {
@@ -150,6 +194,7 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
   if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
   if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
   read_settings(place, table, one);
+  read_channels(place, table, one);
   if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
   if (table.contains("rate") && !one.motion.recording.empty())
     place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");

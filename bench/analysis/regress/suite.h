@@ -5,23 +5,14 @@
 #include <string>
 #include <vector>
 
+#include <kerf/compare/tolerance.h>
+
 #include "laws/law_file.h"
 #include "scene/motion.h"
 
 namespace kerf::bench {
 
-/// How far a rendered force may be from the stored one: as far as the largest of what is given,
-///
-///     |got - expected| <= max(absolute, relative |expected|, jnd JND(expected)),
-///
-/// or not at all, bit for bit.
-struct Tolerance {
-  std::optional<double> force_n;     ///< of channels in N
-  std::optional<double> torque_n_m;  ///< of channels in N·m
-  std::optional<double> relative;
-  std::optional<double> jnd;  ///< in JNDs of the expected force or torque
-  bool exact = false;
-};
+using compare::Tolerance;
 
 /// A law, a trajectory and how exactly the forces have to be those stored.
 struct RegressionCase {

@@ -48,7 +48,7 @@ std::vector<Group> groups() {
            }},
           {"fit", {add_laws, add_law, add_fit, add_blade, add_train}},
           {"judge", {add_choose, add_check, add_chart, add_stability, add_reproduce}},
-          {"replay", {add_replay, add_regress}},
+          {"replay", {add_replay, add_regress, add_compare}},
           {"experiment", {add_session}},
           {"study", {add_study}},
           {"share", {add_report}},

@@ -10,6 +10,7 @@ void add_blade(CLI::App& app, Context& context);
 void add_chart(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_choose(CLI::App& app, Context& context);
+void add_compare(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_fit(CLI::App& app, Context& context);

@@ -47,6 +47,28 @@ TEST_F(SuiteFile, NamesLawTrajectoryAndTolerance) {
   EXPECT_EQ(strokes.pause_s, 0.05);
 }
 
+TEST_F(SuiteFile, TakesLimitsOfTheWholeRunAndOfAChannel) {
+  const Suite suite =
+      with("exact = true",
+           "jnd = 0.5\nvibration = 3\nslew = { value = 20, unit = \"mN/s\" }\n"
+           "drift = [{ value = 1, unit = \"N\" }, { value = 2, unit = \"N·mm\" }]\n"
+           "channel.theta = { absolute = { value = 1, unit = \"N\" }, peak = { value = 2, unit = \"N\" } }");
+  const Tolerance& given = suite.cases[0].tolerance;
+  EXPECT_EQ(given.vibration_limit(), 3.0);
+  EXPECT_DOUBLE_EQ(given.slew.force.value(), 0.02);
+  EXPECT_DOUBLE_EQ(given.drift.torque.value(), 0.002);
+  const Tolerance& own = given.of("theta");
+  EXPECT_EQ(own.force_n, 1.0);
+  EXPECT_EQ(own.jnd, std::nullopt) << "one tolerance of each tick in place of another";
+  EXPECT_EQ(own.vibration, 3.0) << "what it does not say it inherits";
+  EXPECT_EQ(own.peak.force, 2.0);
+  EXPECT_EQ(given.of("other").jnd, 0.5);
+  refused("exact = true", "exact = true\nchannel.phi = { jnd = 1 }",
+          "'phi' is no channel of the law; it has theta");
+  refused("exact = true", "exact = true\nchannel.theta = { rate = 1 }", "rate");
+  refused("exact = true", "jnd = 1\nslew = { value = 1, unit = \"N\" }", "slew");
+}
+
 TEST_F(SuiteFile, TakesTolerancesInForceAndTorqueApart) {
   const Suite suite = with("exact = true",
                            "absolute = [{ value = 2, unit = \"mN\" }, { value = 3, unit = \"N·m\" }]\n"

@@ -1,10 +1,10 @@
-#include "kerf/fitting/jnd.h"
+#include "kerf/compare/jnd.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace kerf::fitting {
+namespace kerf::compare {
 
 double Jnd::at(double felt) const noexcept { return std::max(weber_fraction * std::abs(felt), threshold); }
 
@@ -30,4 +30,4 @@ double rms_of(std::span<const double> force) {
   return std::sqrt(squares / static_cast<double>(force.size()));
 }
 
-}  // namespace kerf::fitting
+}  // namespace kerf::compare

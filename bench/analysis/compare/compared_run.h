@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <kerf/compare/series.h>
+
+namespace kerf::bench {
+
+/// A run to be compared, and what is to be known of how it was read.
+struct ComparedRun {
+  std::string name;
+  compare::Series series;
+  std::vector<std::string> notes;
+};
+
+/// Which force of a recording.
+struct ComparedForce {
+  bool measured = false;  ///< that of its sensor, though one was commanded
+  std::string channel;    ///< this one alone; empty: all
+};
+
+/// Reads a recording (.h5), or a table of numbers: text, a workbook, what kerf::FileText reads. Of a table
+/// every column with a unit of a force or a torque is a channel, one in seconds is the time, and those of
+/// positions and speeds stand beside them; the others are left out and named.
+/// @throws std::invalid_argument for a file without a force, with a line that is no row, or as the readers
+/// do.
+[[nodiscard]] ComparedRun read_run(const std::filesystem::path& file, const ComparedForce& force);
+
+}  // namespace kerf::bench

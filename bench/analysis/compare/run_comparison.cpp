@@ -1,0 +1,108 @@
+#include "compare/run_comparison.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/core.h>
+
+namespace kerf::bench {
+namespace {
+
+std::vector<double> times_of_rows(const compare::Series& series) {
+  std::vector<double> times;
+  times.reserve(series.rows());
+  for (std::size_t row = 0; row < series.rows(); ++row) times.push_back(series.time_of(row));
+  return times;
+}
+
+std::vector<std::array<EventMatch, 3>> events_of(const compare::Aligned& runs, double match_s) {
+  std::vector<std::array<EventMatch, 3>> all;
+  const std::vector<double> times = times_of_rows(runs.expected);
+  for (std::size_t i = 0; i < runs.expected.channels.size(); ++i) {
+    const ForceEventOptions options{.jnd = compare::jnd_of(runs.expected.channels[i].unit)};
+    all.push_back(match_events(find_force_events(times, runs.expected.channels[i].value, options),
+                               find_force_events(times, runs.got.channels[i].value, options), match_s));
+  }
+  return all;
+}
+
+/// Of most rows nothing is known: that is no agreement.
+void require_partners(RunComparison& result, std::size_t rows) {
+  const std::size_t compared = result.runs.expected.rows();
+  if (2 * compared >= rows) return;
+  result.comparison.passed = false;
+  result.comparison.messages.push_back(fmt::format(
+      "only {} of {} rows have a partner at their time: nothing is known of the others", compared, rows));
+}
+
+}  // namespace
+
+RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
+                           const RunComparisonOptions& options) {
+  RunComparison result{.expected = expected.name, .got = got.name, .notes = expected.notes};
+  result.notes.insert(result.notes.end(), got.notes.begin(), got.notes.end());
+  const bool by_tick = options.align.by == compare::AlignBy::tick;
+  try {
+    got.series = compare::in_order_of(expected.series, std::move(got.series));
+    result.runs = compare::aligned(expected.series, got.series, options.align);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{} and {}: {}", result.expected, result.got, error.what()));
+  }
+  if (result.runs.expected.rows() < 2)
+    throw std::invalid_argument(
+        fmt::format("{} and {}: fewer than two rows to compare", result.expected, result.got));
+  result.notes.insert(result.notes.end(), result.runs.notes.begin(), result.runs.notes.end());
+  // What is missing is seen in the whole runs alone.
+  const compare::Series& before = by_tick ? expected.series : result.runs.expected;
+  const compare::Series& after = by_tick ? got.series : result.runs.got;
+  compare::Tolerance tolerance = options.tolerance;
+  // Strokes of other speeds have no common time in which something could vibrate.
+  if (options.align.by == compare::AlignBy::position && !tolerance.vibration)
+    tolerance.vibration = std::numeric_limits<double>::infinity();
+  result.comparison = compare::compare_with_gaps(before, after, tolerance);
+  if (!by_tick && options.align.by != compare::AlignBy::position)
+    require_partners(result, expected.series.rows());
+  result.agreement = compare::agreement(result.runs.expected, result.runs.got, options.align.most_lag_s);
+  result.events = events_of(result.runs, options.match_s);
+  if (result.comparison.passed) return result;
+  // Off the ticks positions are those of other moments: no motion that either was asked for.
+  compare::Series expected_run = before;
+  if (!by_tick) expected_run.positions.clear();
+  result.diagnosis = compare::diagnose(expected_run, after);
+  result.names = compare::sentences_of(result.diagnosis, before);
+  return result;
+}
+
+std::vector<std::string> comparison_lines(const RunComparison& result) {
+  std::vector<std::string> lines;
+  if (const auto& lag = result.runs.lag)
+    lines.push_back(fmt::format("lag {:+.4f} ms +- {:.4f} ms ({:+.4g} ticks), taken out", 1e3 * lag->seconds,
+                                1e3 * lag->std_error_s, lag->ticks));
+  for (std::size_t i = 0; i < result.agreement.size(); ++i) {
+    const compare::ChannelAgreement& one = result.agreement[i];
+    const compare::ChannelComparison& about = result.comparison.channels[i];
+    const std::string& unit = one.channel.unit;
+    lines.push_back(fmt::format(
+        "{:8} outside {:>7} of {} ticks  largest difference {:.3g} {} ({:.2g} JND)  RMS {:.3g} {}",
+        one.channel.name, about.outside, result.comparison.expected_rows, about.largest_difference, unit,
+        about.largest_jnds, one.rms_difference, unit));
+    const std::string latency = one.latency_s ? fmt::format("{:+.4g} ms +- {:.2g} ms", 1e3 * *one.latency_s,
+                                                            1e3 * one.latency_std_error_s)
+                                              : "unknown";
+    lines.push_back(fmt::format("{:8} gain {:.5g}  offset {:+.3g} {}  drift {:+.3g} {}  latency {}", "",
+                                one.gain, one.offset, unit, one.drift, unit, latency));
+    for (std::size_t kind = 0; kind < force_event_names.size(); ++kind) {
+      const EventMatch& match = result.events[i][kind];
+      if (match.recorded + match.rendered == 0) continue;
+      lines.push_back(fmt::format("{:8} {}: {} expected, {} got, {} the same, late by {:+.3g} ms on average",
+                                  "", force_event_names[kind], match.recorded, match.rendered,
+                                  match.late_s.size(), match.late_s.empty() ? 0.0 : 1e3 * match.mean_s()));
+    }
+  }
+  for (const std::string& message : result.comparison.messages) lines.push_back(message);
+  for (const std::string& name : result.names) lines.push_back(name);
+  return lines;
+}
+
+}  // namespace kerf::bench

@@ -1,0 +1,200 @@
+#include "lag.h"
+
+#include <array>
+#include <bit>
+#include <limits>
+
+#include "spectrum.h"
+
+namespace kerf::compare {
+namespace {
+
+/// Sums of a straight line through pairs, got over expected.
+struct Line {
+  double gain = 1.0;
+  double offset = 0.0;
+  double left = 0.0;  ///< sum of squares beside it
+};
+
+/// Two signals with one shifted against the other.
+class Shifted {
+ public:
+  Shifted(std::span<const double> expected, std::span<const double> got, const LagFitOptions& options)
+      : expected_(expected), got_(got), free_gain_(options.free_gain) {
+    const std::size_t margin = options.most_ticks + kernel_reach + 2;
+    rows_ = rows_for_all(margin, expected.size() - margin);
+  }
+
+  [[nodiscard]] Line line(double ticks, Kernel kernel) const {
+    double sum_e = 0.0;
+    double sum_g = 0.0;
+    double ee = 0.0;
+    double eg = 0.0;
+    double gg = 0.0;
+    double left = 0.0;
+    const Delayed delayed(expected_, ticks, kernel);
+    for (const std::size_t row : rows_) {
+      const double e = delayed(row);
+      const double g = got_[row];
+      left += (g - e) * (g - e);
+      sum_e += e;
+      sum_g += g;
+      ee += e * e;
+      eg += e * g;
+      gg += g * g;
+    }
+    if (!free_gain_) return {.left = left};
+    const auto count = static_cast<double>(rows_.size());
+    const double spread = ee - sum_e * sum_e / count;
+    const double gain = spread > 0.0 ? (eg - sum_e * sum_g / count) / spread : 0.0;
+    return {.gain = gain,
+            .offset = (sum_g - gain * sum_e) / count,
+            .left = std::max(0.0, gg - sum_g * sum_g / count - gain * (eg - sum_e * sum_g / count))};
+  }
+
+  /// Of the ticks, by the slope of the signal and what is left beside it.
+  [[nodiscard]] double std_error(const LagFit& fit) const {
+    double slopes = 0.0;
+    std::vector<double> left;
+    left.reserve(rows_.size());
+    const Delayed delayed(expected_, fit.ticks, fit.kernel);
+    for (const std::size_t row : rows_) {
+      const double slope = 0.5 * fit.gain * (delayed(row + 1) - delayed(row - 1));
+      slopes += slope * slope;
+      left.push_back(got_[row] - fit.gain * delayed(row) - fit.offset);
+    }
+    double square = 0.0;
+    for (const double one : left) square += one * one;
+    if (!(slopes > 0.0)) return std::numeric_limits<double>::infinity();
+    double together = 1.0;  // how many residuals say the same
+    for (std::size_t apart = 1; apart < left.size() / 10 && square > 0.0; ++apart) {
+      double product = 0.0;
+      for (std::size_t i = apart; i < left.size(); ++i) product += left[i] * left[i - apart];
+      if (product < 0.05 * square) break;
+      together += 2.0 * product / square;
+    }
+    return std::sqrt(together * square / static_cast<double>(left.size()) / slopes);
+  }
+
+ private:
+  std::span<const double> expected_;
+  std::span<const double> got_;
+  bool free_gain_;
+  std::vector<std::size_t> rows_;
+};
+
+std::vector<double> changes_of(std::span<const double> values) {
+  std::vector<double> changes(values.size(), 0.0);
+  for (std::size_t i = 1; i < values.size(); ++i) changes[i] = values[i] - values[i - 1];
+  return changes;
+}
+
+/// Of a long run the stretch in which most happens: a lag is the same all along.
+std::size_t busiest(std::span<const double> values, std::size_t length) {
+  std::size_t best = 0;
+  double most = -1.0;
+  for (std::size_t begin = 0; begin + length <= values.size(); begin += length / 2) {
+    double square = 0.0;
+    for (std::size_t i = begin + 1; i < begin + length; ++i) square += std::abs(values[i] - values[i - 1]);
+    if (square > most) best = begin;
+    most = std::max(most, square);
+  }
+  return best;
+}
+
+std::vector<double> without_mean(std::span<const double> values) {
+  double mean = 0.0;
+  for (const double one : values) mean += one / static_cast<double>(values.size());
+  std::vector<double> result(values.begin(), values.end());
+  for (double& one : result) one -= mean;
+  return result;
+}
+
+/// The whole shift at which two signals correlate most.
+long best_shift(std::span<const double> expected, std::span<const double> got, std::size_t most,
+                bool any_sign) {
+  const std::size_t length = std::bit_ceil(expected.size() + most + 1);
+  auto a = transform_of(expected, length);
+  const auto b = transform_of(got, length);
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = std::conj(a[i]) * b[i];
+  const std::vector<double> products = back_from(a, length);
+  long best = 0;
+  double largest = -std::numeric_limits<double>::infinity();
+  for (long shift = -static_cast<long>(most); shift <= static_cast<long>(most); ++shift) {
+    const auto at = shift < 0 ? length - static_cast<std::size_t>(-shift) : static_cast<std::size_t>(shift);
+    const double product = any_sign ? std::abs(products[at]) : products[at];
+    if (product <= largest) continue;
+    largest = product;
+    best = shift;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<std::size_t> rows_for_all(std::size_t begin, std::size_t end) {
+  constexpr std::size_t most = 20000;
+  constexpr std::size_t block = 1000;
+  std::vector<std::size_t> rows;
+  if (end <= begin) return rows;
+  const std::size_t count = end - begin;
+  const std::size_t blocks = most / block;
+  if (count <= most) {
+    for (std::size_t row = begin; row < end; ++row) rows.push_back(row);
+    return rows;
+  }
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::size_t from = begin + i * (count - block) / (blocks - 1);
+    for (std::size_t row = from; row < from + block; ++row) rows.push_back(row);
+  }
+  return rows;
+}
+
+std::optional<LagFit> fit_lag(std::span<const double> expected, std::span<const double> got,
+                              const LagFitOptions& options) {
+  LagFitOptions used = options;
+  const std::size_t rows = expected.size();
+  if (rows < 4 * (kernel_reach + 4)) return {};
+  used.most_ticks = std::min(used.most_ticks, rows / 4);
+  const Shifted shifted(expected, got, used);
+  const std::size_t length = std::min(rows, std::max<std::size_t>(65536, 4 * used.most_ticks));
+  const std::size_t begin = busiest(expected, length);
+  const auto part_e = expected.subspan(begin, length);
+  const auto part_g = got.subspan(begin, length);
+  const std::array<long, 3> candidates{
+      0, best_shift(without_mean(part_e), without_mean(part_g), used.most_ticks, used.free_gain),
+      best_shift(changes_of(part_e), changes_of(part_g), used.most_ticks, used.free_gain)};
+  double least = std::numeric_limits<double>::infinity();
+  long whole = 0;
+  for (const long one : candidates) {
+    const double left = shifted.line(static_cast<double>(one), Kernel::linear).left;
+    if (left < least) whole = one;
+    least = std::min(least, left);
+  }
+  // The peak of a correlation is near the least difference, not always at it.
+  for (const long step : {1L, -1L}) {
+    const auto most = static_cast<long>(used.most_ticks);
+    while (std::abs(whole + step) <= most) {
+      const double left = shifted.line(static_cast<double>(whole + step), Kernel::linear).left;
+      if (left >= least) break;
+      least = left;
+      whole += step;
+    }
+  }
+  LagFit best;
+  least = std::numeric_limits<double>::infinity();
+  for (const Kernel kernel : kernels) {
+    const double middle = static_cast<double>(whole);
+    const auto left = [&](double ticks) { return shifted.line(ticks, kernel).left; };
+    const double ticks = least_within(left, middle - 1.0, middle + 1.0);
+    const Line line = shifted.line(ticks, kernel);
+    if (line.left >= least) continue;
+    least = line.left;
+    best = {.ticks = ticks, .gain = line.gain, .offset = line.offset, .kernel = kernel};
+  }
+  best.std_error = shifted.std_error(best);
+  if (!std::isfinite(best.std_error)) return {};
+  return best;
+}
+
+}  // namespace kerf::compare

@@ -1,0 +1,123 @@
+#include "support/program.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <kerf/schema/recording.h>
+
+// Two runs compared as a user does it.
+
+namespace kerf {
+namespace {
+
+using test::Outcome;
+using test::run_kerf;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CompareProgram : public testing::Test {
+ protected:
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+
+  static double depth(double t) { return 0.01 * (1.0 - std::cos(4.4 * t)); }
+  static double force(double t) { return std::max(0.0, 300.0 * (depth(t) - 0.004)); }
+
+  /// A recording of two seconds at 1 kHz, with other forces if `change` is given.
+  [[nodiscard]] std::string recording(const std::string& name,
+                                      const std::function<double(double t)>& forces = force) const {
+    schema::Recording one;
+    one.header = schema::new_header("test");
+    one.axes = {{.name = "x"}};
+    for (int i = 0; i < 2000; ++i) {
+      const double t = 1e-3 * i;
+      one.time.push_back(t);
+      one.tick.push_back(static_cast<std::uint64_t>(i));
+      one.position.push_back(depth(t));
+      one.velocity.push_back(0.044 * std::sin(4.4 * t));
+      one.force_commanded.push_back(forces(t));
+    }
+    schema::write_recording(at(name), one);
+    return at(name);
+  }
+  /// The same as a table, in units of its own.
+  [[nodiscard]] std::string table(const std::string& name, const std::string& head, double scale) const {
+    std::string text = head + "\n";
+    for (int i = 0; i < 2000; ++i) text += fmt::format("{},{:.17g},{}\n", i, scale * force(1e-3 * i), i % 3);
+    test::write_text(at(name), text);
+    return at(name);
+  }
+  [[nodiscard]] Outcome compare(std::vector<std::string> words) const {
+    words.insert(words.begin(), "compare");
+    return run_kerf(words);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(CompareProgram, TakesARecordingAndATableInOtherUnitsForTheSame) {
+  const Outcome outcome =
+      compare({recording("a.h5"), table("b.csv", "time [ms],x [mN],grip", 1000.0), "--absolute", "1e-12"});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("left out, since neither force, position nor time by a unit: grip"));
+  EXPECT_THAT(outcome.output, HasSubstr("within the tolerance"));
+}
+
+TEST_F(CompareProgram, SaysWhatChangedAndDrawsIt) {
+  const std::string other = recording(
+      "b.h5", [](double t) { return force(t) + 0.02 * std::sin(2.0 * std::numbers::pi * 250.0 * t + 0.5); });
+  const Outcome outcome = compare({recording("a.h5"), other, "--jnd", "0.5", "-o", at("page"), "--json"});
+  EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_FALSE(json.at("passed").get<bool>());
+  EXPECT_EQ(json.at("outside"), 0);
+  EXPECT_EQ(json.at("names").at(0).at("change"), "vibration");
+  EXPECT_NEAR(json.at("names").at(0).at("numbers").at("hz").get<double>(), 250.0, 0.1);
+  EXPECT_THAT(
+      test::read_text(at("page/compare.html")),
+      AllOf(HasSubstr("Not within the tolerance"), HasSubstr("a vibration of 250 Hz"), HasSubstr("<svg")));
+  EXPECT_THAT(test::read_text(at("page/x.svg")), HasSubstr("got less expected"));
+  EXPECT_EQ(compare({at("a.h5"), other, "--jnd", "0.5", "--vibration", "10"}).exit_status, 0);
+  EXPECT_EQ(compare({at("a.h5"), other, "-o", at("page")}).exit_status, 2) << "what is there is not replaced";
+}
+
+TEST_F(CompareProgram, TakesOutALagAndSaysHowLargeItIs) {
+  const std::string late = recording("b.h5", [](double t) { return force(t - 0.0123); });
+  EXPECT_EQ(compare({recording("a.h5"), late, "--jnd", "0.1"}).exit_status, 1);
+  const Outcome outcome = compare({at("a.h5"), late, "--jnd", "0.1", "--align", "lag", "--json"});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.output;
+  EXPECT_NEAR(nlohmann::json::parse(outcome.output).at("lag").at("ms").get<double>(), 12.3, 0.05);
+}
+
+TEST_F(CompareProgram, IsNotContentWithAFewRowsThatOverlap) {
+  test::write_text(at("short.csv"), "time [s],x [N]\n0,0\n0.001,0\n0.002,0\n");
+  const Outcome outcome = compare({recording("a.h5"), at("short.csv"), "--align", "time"});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("only 3 of 2000 rows have a partner at their time"));
+}
+
+TEST_F(CompareProgram, RefusesWhatCannotBeCompared) {
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& message) {
+    const Outcome outcome = compare(words);
+    EXPECT_EQ(outcome.exit_status, 2);
+    EXPECT_THAT(outcome.errors, HasSubstr(message));
+  };
+  const std::string a = recording("a.h5");
+  refused({a, table("b.csv", "time [ms],y [N],grip", 1.0)}, "the forces are y [N] where x [N] are expected");
+  refused({a, table("b.csv", "time [ms],x [kg],grip", 1.0)}, "no column is a force by its unit");
+  refused({a, a, "--exact", "--jnd", "1"}, "--exact leaves no room");
+  refused({a, a, "--channel", "z"}, "there is no force 'z'; it has x [N]");
+  refused({a, a, "--measured"}, "it holds no measured force");
+  test::write_text(at("torn.csv"), "time [ms],x [N]\n0,1\n1,2\n2,\n3,4\n");
+  refused({at("torn.csv"), a}, "torn.csv:4: not a row of 2 numbers");
+}
+
+}  // namespace
+}  // namespace kerf

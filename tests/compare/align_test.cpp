@@ -1,0 +1,113 @@
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <kerf/compare/agreement.h>
+#include <kerf/compare/align.h>
+
+#include "compare/runs.h"
+
+namespace kerf::compare {
+namespace {
+
+using test::run_of;
+using test::strokes;
+
+/// A run with times from `begin` on, of a formula of the time less a lag.
+Series timed(double begin_s, double period_s, std::size_t ticks, double lag_s,
+             const std::function<double(double)>& force) {
+  Series run{.channels = {{.name = "x", .unit = "N", .value = {}}}};
+  for (std::size_t i = 0; i < ticks; ++i) {
+    run.time_s.push_back(begin_s + period_s * static_cast<double>(i));
+    run.channels[0].value.push_back(force(run.time_s.back() - lag_s));
+  }
+  return run;
+}
+double wave(double t) { return 2.0 + std::sin(7.0 * t) + 0.3 * std::sin(31.0 * t + 1.0); }
+
+double apart(const Aligned& runs) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < runs.expected.rows(); ++i)
+    most = std::max(most, std::abs(runs.expected.channels[0].value[i] - runs.got.channels[0].value[i]));
+  return most;
+}
+
+TEST(Align, ByTimePutsRunsOfDifferentRatesBesideEachOther) {
+  const Aligned runs =
+      aligned(timed(0.0, 1e-3, 4000, 0.0, wave), timed(0.5, 0.7e-3, 4000, 0.0, wave), {.by = AlignBy::time});
+  EXPECT_EQ(runs.expected.rows(), 2800U);
+  EXPECT_LT(apart(runs), 1e-3);
+  EXPECT_EQ(runs.notes.size(), 1U);
+  EXPECT_THROW((void)aligned(timed(0.0, 1e-3, 100, 0.0, wave), timed(9.0, 1e-3, 100, 0.0, wave),
+                             {.by = AlignBy::time}),
+               std::invalid_argument);
+}
+
+TEST(Align, ByTimeKeepsTheBitsOfRowsAtTheSameTimes) {
+  const Series run = timed(0.0, 1e-3, 500, 0.0, wave);
+  EXPECT_EQ(apart(aligned(run, run, {.by = AlignBy::time})), 0.0);
+}
+
+TEST(Align, ByLagSaysHowSureItIs) {
+  int within = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Series got = timed(0.0, 1e-3, 4000, 0.01234, [](double t) { return 1.4 * wave(t) - 0.2; });
+    const auto rough = test::noise(4000, 0.05, seed);
+    for (std::size_t i = 0; i < rough.size(); ++i) got.channels[0].value[i] += rough[i];
+    const Aligned runs = aligned(timed(0.0, 1e-3, 4000, 0.0, wave), got, {.by = AlignBy::lag});
+    ASSERT_TRUE(runs.lag);
+    // The slope of the wave times its gain has an RMS of 1.4 sqrt((7^2 + 9.3^2) / 2) N/s: by least squares.
+    const double by_hand = 0.05 / (1.4 * std::sqrt((49.0 + 86.49) / 2.0)) / std::sqrt(4000.0);
+    EXPECT_NEAR(runs.lag->std_error_s, by_hand, 0.25 * by_hand);
+    within += std::abs(runs.lag->seconds - 0.01234) < 2.0 * runs.lag->std_error_s ? 1 : 0;
+  }
+  EXPECT_GE(within, 17) << "two standard errors hold 95 %";
+}
+
+TEST(Align, ByPositionComparesStrokesOfOtherSpeeds) {
+  const auto stroke = [](double hz, std::size_t ticks) {
+    Series run{.channels = {{.name = "x", .unit = "N", .value = {}}},
+               .positions = {{.name = "x", .unit = "m", .value = {}}}};
+    for (std::size_t i = 0; i < ticks; ++i) {
+      const double x = 0.01 * (1.0 - std::cos(2.0 * std::numbers::pi * hz * 1e-3 * static_cast<double>(i)));
+      run.positions[0].value.push_back(x);
+      run.channels[0].value.push_back(std::exp(100.0 * x));
+    }
+    return run;
+  };
+  const Aligned runs = aligned(stroke(0.5, 4000), stroke(0.8, 2500), {.by = AlignBy::position});
+  EXPECT_GT(runs.expected.rows(), 3500U);
+  EXPECT_LT(apart(runs), 1e-3);
+  EXPECT_THROW((void)aligned(stroke(0.5, 4000), stroke(1.6, 4000), {.by = AlignBy::position}),
+               std::invalid_argument);
+  EXPECT_THROW((void)aligned(run_of(strokes()), run_of(strokes()), {.by = AlignBy::position}),
+               std::invalid_argument);
+}
+
+TEST(Align, KnowsItsNames) {
+  EXPECT_EQ(align_by("position"), AlignBy::position);
+  EXPECT_THROW((void)align_by("feeling"), std::invalid_argument);
+}
+
+TEST(Agreement, FindsGainOffsetLatencyAndCoherence) {
+  const Series expected = timed(0.0, 1e-3, 8000, 0.0, wave);
+  Series got = timed(0.0, 1e-3, 8000, 0.0035, [](double t) { return 0.8 * wave(t) + 0.1; });
+  const auto rough = test::noise(8000, 0.2);
+  for (std::size_t i = 0; i < rough.size(); ++i) got.channels[0].value[i] += rough[i];
+  const ChannelAgreement channel = agreement(expected, got).at(0);
+  EXPECT_NEAR(channel.gain, 0.8, 0.02);
+  EXPECT_NEAR(channel.offset, 0.1, 0.04);
+  EXPECT_NEAR(channel.latency_s.value(), 0.0035, 3.0 * channel.latency_std_error_s + 1e-4);
+  ASSERT_GE(channel.coherence.size(), 6U);
+  // At 31 rad/s, in windows of a second: 0.24^2 / 2 of the wave, in three bins, and noise of 0.2^2 / 512 in
+  // each.
+  EXPECT_GT(channel.coherence[0].coherence, 0.95) << "the wave is there";
+  EXPECT_LT(channel.coherence[5].coherence, 0.3) << "noise alone";
+}
+
+}  // namespace
+}  // namespace kerf::compare
