@@ -71,6 +71,10 @@ std::string summary_table(const SuiteOutcome& outcome) {
                                               "stored"}};
   for (const RegressionOutcome& one : outcome.cases) {
     const auto& worst = one.comparison.worst;
+    if (!one.error.empty()) {
+      rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
+      continue;
+    }
     rows.push_back({one.about.name, std::string(one.about.law.law.model()),
                     fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
                     fmt::format("{}", one.comparison.outside), fmt::format("{}", one.comparison.differing),
@@ -88,6 +92,7 @@ std::string summary_table(const SuiteOutcome& outcome) {
 
 std::string case_section(const RegressionOutcome& outcome, const std::vector<std::string>& pictures) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
+  if (!outcome.error.empty()) return body + html_answer(Answer::bad, escaped(outcome.error) + ".");
   for (const std::string& message : outcome.messages)
     body += html_answer(Answer::bad, escaped(message) + ".");
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <set>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "recordings/provenance.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -66,8 +68,43 @@ void judge_cost(RegressionOutcome& outcome) {
   }
 }
 
+/// What has changed though the forces have not: a trajectory that a law does not feel is soon forgotten.
+void note_silent_change(RegressionOutcome& outcome) {
+  if (!outcome.passed()) return;
+  const bool trajectory =
+      checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
+  if (!trajectory && checksum(outcome.about.law) == outcome.stored.law_sha256) return;
+  outcome.note +=
+      (outcome.note.empty() ? "" : "; ") + outcome.why + ", and the forces are within the tolerance";
+}
+
+/// Calls work(i) for every case: those whose cost is measured one by one, so that none disturbs another.
+template <typename Work>
+void for_each_case(const std::vector<RegressionCase>& cases, const SuiteOptions& options, const Work& work) {
+  const auto timed = [&](std::size_t i) { return options.tick_costs && cases[i].tick_cost.has_value(); };
+  for_each_index(cases.size(), std::max<std::size_t>(options.jobs, 1), [&](std::size_t i) {
+    if (!timed(i)) work(i);
+  });
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (timed(i)) work(i);
+  }
+}
+
+/// What is wrong with a case, if work() cannot be done; empty if it was done.
+template <typename Work>
+std::string error_of(const RegressionCase& one, const Work& work) {
+  if (!one.error.empty()) return one.error;
+  try {
+    work();
+    return {};
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
-  const auto begin = Clock::now();
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
   outcome.got = render_forces(one.law, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
@@ -78,7 +115,7 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
   outcome.why = why_different(outcome);
   if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law, outcome.path);
   judge_cost(outcome);
-  outcome.seconds = seconds_since(begin);
+  note_silent_change(outcome);
   return outcome;
 }
 
@@ -146,6 +183,11 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
 
 }  // namespace
 
+std::size_t SuiteOutcome::errors() const noexcept {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(cases, [](const RegressionOutcome& one) { return !one.error.empty(); }));
+}
+
 std::size_t SuiteOutcome::failed() const noexcept {
   return dropped.size() + static_cast<std::size_t>(std::ranges::count_if(
                               cases, [](const RegressionOutcome& one) { return !one.passed(); }));
@@ -154,16 +196,34 @@ std::size_t SuiteOutcome::failed() const noexcept {
 SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
   const auto begin = Clock::now();
   const Suite chosen = only(suite, options.only);
-  const auto stored = stored_forces(suite);
-  for (const RegressionCase& one : chosen.cases) {
-    if (find(stored, one.name) != nullptr) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
-        suite.stored.string(), one.name, suite.file.string()));
+  std::vector<schema::StoredForces> stored;
+  std::string unreadable;
+  try {
+    stored = stored_forces(suite);
+  } catch (const schema::FormatError& error) {
+    unreadable = error.what();
+  } catch (const std::invalid_argument& error) {
+    unreadable = error.what();
   }
   SuiteOutcome outcome;
-  for (const RegressionCase& one : chosen.cases)
-    outcome.cases.push_back(run_case(one, *find(stored, one.name), options.tick_costs));
+  outcome.cases.resize(chosen.cases.size());
+  for_each_case(chosen.cases, options, [&](std::size_t i) {
+    const auto case_begin = Clock::now();
+    const RegressionCase& one = chosen.cases[i];
+    RegressionOutcome& result = outcome.cases[i];
+    const std::string error = error_of(one, [&] {
+      if (!unreadable.empty()) throw std::invalid_argument(unreadable);
+      const schema::StoredForces* const before = find(stored, one.name);
+      if (before == nullptr) {
+        throw std::invalid_argument(fmt::format(
+            "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
+            suite.stored.string(), one.name, suite.file.string()));
+      }
+      result = run_case(one, *before, options.tick_costs);
+    });
+    if (!error.empty()) result = {.about = one, .error = error};
+    result.seconds = seconds_since(case_begin);
+  });
   if (options.only.empty()) outcome.dropped = dropped_from(suite, stored);
   outcome.seconds = seconds_since(begin);
   return outcome;
@@ -172,15 +232,20 @@ SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
 std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options) {
   const auto stored = stored_forces(suite);
   const Suite chosen = only(suite, options.only);
-  std::vector<StoredChange> changes;
-  for (const RegressionCase& one : suite.cases) {
+  std::vector<StoredChange> changes(suite.cases.size());
+  for_each_case(suite.cases, options, [&](std::size_t i) {
+    const RegressionCase& one = suite.cases[i];
     const schema::StoredForces* before = find(stored, one.name);
-    if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) > 0) {
-      changes.push_back(change_of(one, before, options.tick_costs));
-    } else if (before != nullptr) {
-      changes.push_back({.name = one.name, .asked = false, .now = *before});
-    }
-  }
+    changes[i] = {.name = one.name, .asked = false};
+    if (before != nullptr) changes[i].now = *before;
+    if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) == 0) return;
+    const std::string error = error_of(one, [&] { changes[i] = change_of(one, before, options.tick_costs); });
+    if (error.empty()) return;
+    changes[i].asked = true;
+    changes[i].kind = ChangeKind::impossible;
+    changes[i].what = error;
+  });
+  std::erase_if(changes, [](const StoredChange& one) { return !one.asked && one.now.channels.empty(); });
   for (const std::string& name : dropped_from(suite, stored)) {
     const bool asked = options.only.empty();
     changes.push_back({.name = name,
@@ -194,8 +259,9 @@ std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& op
 }
 
 bool changes_anything(const std::vector<StoredChange>& changes) noexcept {
-  return std::ranges::any_of(changes,
-                             [](const StoredChange& one) { return one.kind != ChangeKind::unchanged; });
+  return std::ranges::any_of(changes, [](const StoredChange& one) {
+    return one.kind != ChangeKind::unchanged && one.kind != ChangeKind::impossible;
+  });
 }
 
 void write_update(const Suite& suite, const std::vector<StoredChange>& changes, const std::string& reason) {
@@ -206,9 +272,9 @@ void write_update(const Suite& suite, const std::vector<StoredChange>& changes, 
   const std::string date = schema::new_header("").created;
   std::vector<schema::StoredForces> all;
   for (const StoredChange& change : changes) {
-    if (change.kind == ChangeKind::removed) continue;
+    if (change.kind == ChangeKind::removed || change.now.channels.empty()) continue;
     all.push_back(change.now);
-    if (change.kind == ChangeKind::unchanged) continue;
+    if (change.kind == ChangeKind::unchanged || change.kind == ChangeKind::impossible) continue;
     all.back().reason = line;
     all.back().date = date;
     all.back().software = software();

@@ -4,6 +4,7 @@
 #include <array>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -128,6 +129,20 @@ void read_plugins(const Place& place, const toml::table& root, const fs::path& f
   }
 }
 
+/// The files of a case. What is wrong with one of them is an error of that case alone.
+void read_files(const Place& place, const toml::table& table, const fs::path& folder, RegressionCase& one) {
+  try {
+    one.law_file = file_at(place, table, "law", folder);
+    one.law = read_law_file(one.law_file);
+    if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
+    if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
+  } catch (const std::invalid_argument& error) {
+    one.error = error.what();
+  } catch (const std::system_error& error) {
+    one.error = error.what();
+  }
+}
+
 RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
                          const RegressionCase& defaults) {
   const auto keys = with_settings("name", "law", "recording", "scene", "motion");
@@ -139,25 +154,25 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
   one.name = place.text(table, "name", "");
   if (one.name.empty() || one.name.front() == '.' || one.name.find('/') != std::string::npos)
     place.refuse(*table.get("name"), "'{}' is no name for a case; expected one without '/'", one.name);
-  one.law_file = file_at(place, table, "law", folder);
-  one.law = read_law_file(one.law_file);
   const int sources = static_cast<int>(table.contains("recording")) +
                       static_cast<int>(table.contains("scene")) + static_cast<int>(table.contains("motion"));
   if (sources != 1) {
     place.refuse(table, "case '{}' needs one trajectory: a recording, a scene or [[case.motion]]; found {}",
                  one.name, sources);
   }
-  if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
-  if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
   read_settings(place, table, one);
-  if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
-  if (table.contains("rate") && !one.motion.recording.empty())
+  read_files(place, table, folder, one);
+  if (table.contains("rate") && table.contains("recording"))
     place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");
+  if (!one.error.empty()) return one;
+  if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
   require_tolerances(place, table, one);
   return one;
 }
 
 }  // namespace
+
+LawFile stand_in() { return {.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0})}; }
 
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());
@@ -168,7 +183,7 @@ Suite read_suite(const fs::path& file) {
       .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};
   suite.stored.replace_extension(".h5");
   if (suite.stored == file) throw std::invalid_argument(file.string() + ": expected a suite, SUITE.toml");
-  RegressionCase defaults{.law = {.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0})}};
+  RegressionCase defaults;
   if (root.contains("defaults")) {
     const toml::table& table = place.table(root, "defaults");
     place.allow_only(table, settings, "[defaults]");

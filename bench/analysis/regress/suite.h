@@ -23,14 +23,18 @@ struct Tolerance {
   bool exact = false;
 };
 
+/// What stands in a case for a law until one is read, and where there is none.
+[[nodiscard]] LawFile stand_in();
+
 /// A law, a trajectory and how exactly the forces have to be those stored.
 struct RegressionCase {
   std::string name;
   std::filesystem::path law_file;
-  LawFile law;
+  LawFile law = stand_in();
   MotionSource motion;
   Tolerance tolerance;
   std::optional<double> tick_cost;  ///< how many times its stored cost a tick may cost
+  std::string error;                ///< why it cannot be run: a law or a file that cannot be read
 };
 
 struct Suite {
@@ -41,7 +45,8 @@ struct Suite {
 };
 
 /// Reads a suite and the laws that it names; paths are relative to its folder. docs/regress.md has the
-/// format. @throws std::invalid_argument with file, line, found and expected; std::system_error.
+/// format. A case whose law or trajectory cannot be read is kept with its reason; the others go on.
+/// @throws std::invalid_argument with file, line, found and expected; std::system_error.
 [[nodiscard]] Suite read_suite(const std::filesystem::path& file);
 
 /// The suite with these cases alone, in the suite's order; all of them if none is named.

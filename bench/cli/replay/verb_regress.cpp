@@ -32,6 +32,10 @@ struct RegressVerbArguments {
 };
 
 void say_case(const RegressionOutcome& one, Context& context) {
+  if (!one.error.empty()) {
+    context.say(fmt::format("  {:24} ERROR\n      {}", one.about.name, one.error));
+    return;
+  }
   const auto& worst = one.comparison.worst;
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
@@ -52,12 +56,27 @@ void refuse(bool given, std::string_view option, std::string_view action) {
   if (given) throw std::invalid_argument(fmt::format("{} is for 'kerf regress {}'", option, action));
 }
 
-void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
+void require_outputs(const RegressVerbArguments& arguments) {
   refuse(!arguments.reason.empty(), "--reason", "update");
   refuse(arguments.yes, "--yes", "update");
   if (!arguments.junit.empty()) require_output(arguments.junit, true);
   if (!arguments.output.empty())
     require_output(std::filesystem::path(arguments.output) / "regress.json", true);
+}
+
+/// The suite; a build server is told of one that cannot be read, too.
+Suite suite_to_run(const RegressVerbArguments& arguments) {
+  require_outputs(arguments);
+  try {
+    return read_suite(arguments.suite);
+  } catch (const std::exception& error) {
+    if (!arguments.junit.empty())
+      write_whole_file(arguments.junit, junit_xml(arguments.suite, error.what()), schema::Existing::replace);
+    throw;
+  }
+}
+
+void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
   for (const RegressionOutcome& one : outcome.cases) say_case(one, context);
@@ -72,7 +91,7 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
                   ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
                   : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
   if (!arguments.junit.empty())
-    write_whole_file(arguments.junit, junit_xml(suite, outcome), schema::Existing::replace);
+    write_whole_file(arguments.junit, junit_xml(suite, outcome, arguments.output), schema::Existing::replace);
   if (!arguments.output.empty()) {
     WholeFolder whole(arguments.output, schema::Existing::replace);
     write_regress_page(suite, outcome, whole.path());
@@ -80,6 +99,10 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
     context.say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;
+  if (outcome.errors() < all) return;
+  // Nothing was compared, which is no verdict on any force.
+  note(outcome.cases.front().error);
+  context.exit = Exit::bad_input;
 }
 
 std::string_view name_of(ChangeKind kind) {
@@ -90,6 +113,8 @@ std::string_view name_of(ChangeKind kind) {
       return "changes";
     case ChangeKind::removed:
       return "goes";
+    case ChangeKind::impossible:
+      return "fails";
     case ChangeKind::unchanged:
       break;
   }
@@ -119,6 +144,7 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
         {{"name", one.name}, {"change", name_of(one.kind)}, {"what", one.what}, {"why", one.why}});
     context.say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what,
                             one.why.empty() ? "" : "; ", one.why));
+    if (one.kind == ChangeKind::impossible) context.exit = Exit::check_failed;
   }
   if (!changes_anything(changes)) {
     context.say(fmt::format("{} stays as it is", suite.stored.string()));
@@ -135,11 +161,10 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
 
 void run_regress(RegressVerbArguments& arguments, Context& context) {
   arguments.options.tick_costs = !arguments.no_cost;
-  const Suite suite = read_suite(arguments.suite);
   if (arguments.action == "run") {
-    run_cases(arguments, suite, context);
+    run_cases(arguments, suite_to_run(arguments), context);
   } else {
-    update_forces(arguments, suite, context);
+    update_forces(arguments, read_suite(arguments.suite), context);
   }
 }
 
@@ -160,6 +185,9 @@ void add_regress(CLI::App& app, Context& context) {
   verb.add_option("ACTION", arguments->action, "run or update").required().one_of({"run", "update"});
   verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
   verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();
+  verb.add_option("-j,--jobs", arguments->options.jobs,
+                  "Cases at a time; those whose cost is measured run alone")
+      .with_default();
   verb.add_option("--junit", arguments->junit, "Write the results as JUnit XML");
   verb.add_option("-o,--output", arguments->output,
                   "Folder for regress.html, regress.json and pictures of what differs");

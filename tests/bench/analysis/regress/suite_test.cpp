@@ -73,7 +73,6 @@ TEST_F(SuiteFile, LetsACaseDepartFromTheDefaults) {
 
 TEST_F(SuiteFile, RefusesByItsLine) {
   refused("name = \"kelvin\"", "name = \"a/b\"", "'a/b' is no name for a case");
-  refused("law = \"kelvin.law.toml\"", "law = \"none.toml\"", "there is no file");
   refused("law = \"kelvin.law.toml\"", "", "a [[case]] needs 'law'");
   refused("exact = true", "exact = true\nrelative = 1e-3", "'exact' leaves no room");
   refused("exact = true", "exakt = true", "unknown key 'exakt'");
