@@ -46,7 +46,7 @@ json case_as_json(const RegressionOutcome& outcome) {
                         {"largest_expected", json_number(one.largest_expected)}});
   }
   return {{"name", outcome.about.name},
-          {"model", outcome.about.error.empty() ? json(outcome.about.law.law.model()) : json(nullptr)},
+          {"model", outcome.about.error.empty() ? json(renderer_of(outcome.about)) : json(nullptr)},
           {"passed", outcome.passed()},
           {"error", outcome.error.empty() ? json(nullptr) : json(outcome.error)},
           {"messages", outcome.messages},
@@ -93,7 +93,7 @@ std::string context_table(const RegressionOutcome& outcome) {
   const auto rows = context_of(outcome);
   if (rows.empty()) return {};
   const ForceDifference& worst = *outcome.comparison.worst;
-  const models::LawAxis axis = axes_of(outcome.about.law)[worst.channel];
+  const models::LawAxis axis = axes_of(outcome.about)[worst.channel];
   const auto line = [](const auto&... cells) {
     std::string text;
     ((text += fmt::format("{:>18}", cells)), ...);

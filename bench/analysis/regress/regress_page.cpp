@@ -52,7 +52,7 @@ std::string number_or_empty(double value) { return std::isnan(value) ? "" : fmt:
 std::string context_section(const RegressionOutcome& outcome) {
   const auto context = context_of(outcome);
   if (context.empty()) return {};
-  const models::LawAxis axis = axes_of(outcome.about.law)[outcome.comparison.worst->channel];
+  const models::LawAxis axis = axes_of(outcome.about)[outcome.comparison.worst->channel];
   std::vector<std::vector<std::string>> rows{
       {"tick", "time [s]", fmt::format("{} [{}]", axis.name, axis.position_unit),
        fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),
@@ -75,9 +75,9 @@ std::string summary_table(const SuiteOutcome& outcome) {
       rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
       continue;
     }
-    rows.push_back({one.about.name, std::string(one.about.law.law.model()),
-                    fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
-                    fmt::format("{}", one.comparison.outside), fmt::format("{}", one.comparison.differing),
+    rows.push_back({one.about.name, renderer_of(one.about), fmt::format("{}", one.comparison.got_rows),
+                    one.passed() ? "passed" : "FAILED", fmt::format("{}", one.comparison.outside),
+                    fmt::format("{}", one.comparison.differing),
                     worst ? fmt::format("{:.3g} {}", std::abs(worst->difference()),
                                         one.stored.channels[worst->channel].unit)
                           : "0",

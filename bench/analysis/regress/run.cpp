@@ -39,15 +39,23 @@ std::vector<std::string> dropped_from(const Suite& suite, const std::vector<sche
   return dropped;
 }
 
+RenderedForces rendered(const RegressionCase& one, const SampledMotion& path) {
+  return one.outside ? render_forces(*one.outside, path) : render_forces(one.law, path);
+}
+
 std::string why_different(const RegressionOutcome& outcome) {
-  const bool law = checksum(outcome.about.law) != outcome.stored.law_sha256;
+  const bool law = checksum(outcome.about) != outcome.stored.law_sha256;
   const bool trajectory =
       checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
   const std::string since =
       fmt::format("since {} ({}: {})", outcome.stored.date, outcome.stored.software, outcome.stored.reason);
-  if (law && trajectory) return fmt::format("the law file and the trajectory have changed {}", since);
-  if (law) return fmt::format("the law file has changed {}", since);
+  const char* const what = outcome.about.outside ? "renderer (its command, program or axes)" : "law file";
+  if (law && trajectory) return fmt::format("the {} and the trajectory have changed {}", what, since);
+  if (law) return fmt::format("the {} has changed {}", what, since);
   if (trajectory) return fmt::format("the trajectory has changed {}", since);
+  if (outcome.about.outside)
+    return fmt::format("command, program and trajectory are as they were; what they rest on has changed {}",
+                       since);
   return fmt::format("law file and trajectory are as they were; the code or the compiler has changed {}",
                      since);
 }
@@ -73,7 +81,7 @@ void note_silent_change(RegressionOutcome& outcome) {
   if (!outcome.passed()) return;
   const bool trajectory =
       checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
-  if (!trajectory && checksum(outcome.about.law) == outcome.stored.law_sha256) return;
+  if (!trajectory && checksum(outcome.about) == outcome.stored.law_sha256) return;
   outcome.note +=
       (outcome.note.empty() ? "" : "; ") + outcome.why + ", and the forces are within the tolerance";
 }
@@ -106,7 +114,7 @@ std::string error_of(const RegressionCase& one, const Work& work) {
 
 RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
-  outcome.got = render_forces(one.law, outcome.path);
+  outcome.got = rendered(one, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance);
   outcome.messages = outcome.comparison.messages;
   if (!outcome.comparison.passed) {
@@ -134,8 +142,9 @@ std::string how_different(const ForceComparison& comparison) {
 schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& path,
                                 const RenderedForces& got, std::optional<double> cost) {
   schema::StoredForces now{.name = one.name,
-                           .model = std::string(one.law.law.model()),
-                           .law_sha256 = checksum(one.law),
+                           .model = one.outside ? "" : std::string(one.law.law.model()),
+                           .renderer = one.outside ? called(*one.outside) : "",
+                           .law_sha256 = checksum(one),
                            .trajectory_sha256 = checksum(path, got.channels.size()),
                            .channels = got.channels,
                            .force = got.force,
@@ -148,7 +157,7 @@ schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& 
 StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs) {
   if (before == nullptr) {
     const SampledMotion path = path_of(one);
-    const RenderedForces got = render_forces(one.law, path);
+    const RenderedForces got = rendered(one, path);
     std::optional<double> cost;
     if (tick_costs && one.tick_cost) cost = tick_cost(one.law, path);
     return {.name = one.name,
@@ -161,7 +170,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
   const RegressionOutcome outcome = run_case(one, *before, tick_costs);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
-  const bool same_source = checksum(one.law) == before->law_sha256 &&
+  const bool same_source = checksum(one) == before->law_sha256 &&
                            checksum(outcome.path, outcome.got.channels.size()) == before->trajectory_sha256;
   const bool no_cost_yet = outcome.tick_cost && !before->tick_cost;
   if (outcome.passed() && same_source && !no_cost_yet) {

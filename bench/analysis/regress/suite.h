@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "laws/law_file.h"
+#include "regress/renderers/outside_renderer.h"
 #include "scene/motion.h"
 
 namespace kerf::bench {
@@ -31,11 +32,18 @@ struct RegressionCase {
   std::string name;
   std::filesystem::path law_file;
   LawFile law = stand_in();
+  std::optional<OutsideRenderer> outside;  ///< in place of a law
+  std::filesystem::path trajectory;        ///< a table of ticks, in place of `motion`
   MotionSource motion;
   Tolerance tolerance;
   std::optional<double> tick_cost;  ///< how many times its stored cost a tick may cost
   std::string error;                ///< why it cannot be run: a law or a file that cannot be read
 };
+
+/// The axes of a case's law, or those that its renderer is declared to have.
+[[nodiscard]] std::vector<models::LawAxis> axes_of(const RegressionCase& one);
+/// The law's model; of another renderer how it is called.
+[[nodiscard]] std::string renderer_of(const RegressionCase& one);
 
 struct Suite {
   std::string name;

@@ -23,6 +23,7 @@ namespace {
 struct RegressVerbArguments {
   std::string action;
   std::string suite;
+  std::string one;
   SuiteOptions options;
   std::string junit;
   std::string output;
@@ -159,9 +160,26 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
                           1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
 }
 
+/// The motion of a case as a renderer reads it.
+void write_trajectory(const RegressVerbArguments& arguments, Context& context) {
+  if (arguments.one.empty() || arguments.output.empty())
+    throw std::invalid_argument("expected kerf regress trajectory SUITE CASE -o FILE.csv");
+  require_output(arguments.output, true);
+  const RegressionCase one = only(read_suite(arguments.suite), {arguments.one}).cases.front();
+  if (!one.error.empty()) throw std::invalid_argument(one.error);
+  const SampledMotion path = path_of(one);
+  write_whole_file(arguments.output, trajectory_csv(path, axes_of(one)), schema::Existing::replace);
+  context.result = {
+      {"suite", arguments.suite}, {"case", one.name}, {"ticks", path.ticks()}, {"file", arguments.output}};
+  context.say(fmt::format("{}: {} ticks", arguments.output, path.ticks()));
+}
+
 void run_regress(RegressVerbArguments& arguments, Context& context) {
   arguments.options.tick_costs = !arguments.no_cost;
-  if (arguments.action == "run") {
+  refuse(!arguments.one.empty() && arguments.action != "trajectory", "CASE", "trajectory");
+  if (arguments.action == "trajectory") {
+    write_trajectory(arguments, context);
+  } else if (arguments.action == "run") {
     run_cases(arguments, suite_to_run(arguments), context);
   } else {
     update_forces(arguments, read_suite(arguments.suite), context);
@@ -178,19 +196,25 @@ void add_regress(CLI::App& app, Context& context) {
                "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
                "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
                "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
-               "not as it was. 'update' says what would change and why, and asks before it writes.\n"
+               "not as it was. A case may name a program of yours in place of a law; 'trajectory SUITE CASE\n"
+               "-o t.csv' writes what it is given. 'update' says what would change and why, and asks before "
+               "it writes.\n"
                "docs/regress.md says more.",
                [arguments, &context] { run_regress(*arguments, context); });
   verb.takes_laws(context);
-  verb.add_option("ACTION", arguments->action, "run or update").required().one_of({"run", "update"});
+  verb.add_option("ACTION", arguments->action, "run, update or trajectory")
+      .required()
+      .one_of({"run", "update", "trajectory"});
   verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
+  verb.add_option("CASE", arguments->one, "Of 'trajectory': the case whose motion is written");
   verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();
   verb.add_option("-j,--jobs", arguments->options.jobs,
                   "Cases at a time; those whose cost is measured run alone")
       .with_default();
   verb.add_option("--junit", arguments->junit, "Write the results as JUnit XML");
-  verb.add_option("-o,--output", arguments->output,
-                  "Folder for regress.html, regress.json and pictures of what differs");
+  verb.add_option(
+      "-o,--output", arguments->output,
+      "Folder for regress.html, regress.json and pictures of what differs; of 'trajectory' FILE.csv");
   verb.add_flag("--no-cost", arguments->no_cost, "Do not measure what a tick costs");
   verb.add_option("--reason", arguments->reason, "Why the forces change; kept in the file");
   verb.add_flag("--yes", arguments->yes, "Store what changes without asking");

@@ -75,6 +75,7 @@ const std::vector<Words> with_input{
     {"replay", "INPUT", "--as", "table", "--virtual"},
     {"replay", "FOLDER/r.h5", "--through", "INPUT"},
     {"regress", "run", "INPUT"},
+    {"regress", "trajectory", "INPUT", "case", "-o", "FOLDER/t.csv"},
     {"regress", "update", "INPUT", "--reason", "why", "--yes"},
     {"session", "new", "INPUT", "--subject", "S1", "--key-file", "FOLDER/key", "-o", "FOLDER/out.h5"},
     {"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1", "--key-file", "INPUT", "-o",
