@@ -178,6 +178,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
     return change;
   }
   change.kind = ChangeKind::changed;
+  change.outcome = outcome;
   change.why = outcome.why;
   if (outcome.comparison.passed && !outcome.messages.empty()) change.what = outcome.messages.back();
   if (outcome.passed() && same_source) change.what = "a tick cost is added";
@@ -265,6 +266,17 @@ std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& op
                        .now = *find(stored, name)});
   }
   return changes;
+}
+
+SuiteOutcome what_changes(const std::vector<StoredChange>& changes) {
+  SuiteOutcome all;
+  for (const StoredChange& change : changes) {
+    if (change.outcome) all.cases.push_back(*change.outcome);
+    if (change.kind == ChangeKind::removed) all.dropped.push_back(change.name);
+    if (change.kind == ChangeKind::impossible)
+      all.cases.push_back({.about = {.name = change.name}, .error = change.what});
+  }
+  return all;
 }
 
 bool changes_anything(const std::vector<StoredChange>& changes) noexcept {

@@ -56,16 +56,19 @@ enum class ChangeKind { added, changed, unchanged, removed, impossible };
 struct StoredChange {
   std::string name;
   ChangeKind kind = ChangeKind::unchanged;
-  std::string what;          ///< by how much
-  std::string why;           ///< what is behind it
-  bool asked = true;         ///< one of the cases that were named
-  schema::StoredForces now;  ///< as it would stand in the file, without the reason
+  std::string what;                          ///< by how much
+  std::string why;                           ///< what is behind it
+  bool asked = true;                         ///< one of the cases that were named
+  schema::StoredForces now;                  ///< as it would stand in the file, without the reason
+  std::optional<RegressionOutcome> outcome;  ///< of a case that changes: what would be accepted
 };
 
 /// What would change in the stored forces, case by case. What passes, with the same law and trajectory,
 /// stays as it is, so that the last digits of a compiler do not come and go; so does what cannot be rendered.
 /// @throws as run_suite(); schema::FormatError for a file that holds something else.
 [[nodiscard]] std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options);
+/// The cases that change, beside what is stored, as a run would show them.
+[[nodiscard]] SuiteOutcome what_changes(const std::vector<StoredChange>& changes);
 [[nodiscard]] bool changes_anything(const std::vector<StoredChange>& changes) noexcept;
 
 /// Writes what was planned. @throws std::invalid_argument for an empty reason; std::system_error.

@@ -77,6 +77,14 @@ Suite suite_to_run(const RegressVerbArguments& arguments) {
   }
 }
 
+void write_page(const Suite& suite, const SuiteOutcome& outcome, const std::string& folder,
+                Context& context) {
+  WholeFolder whole(folder, schema::Existing::replace);
+  write_regress_page(suite, outcome, whole.path());
+  whole.commit();
+  context.say(fmt::format("regress.html, regress.json and the pictures are in {}", folder));
+}
+
 void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
@@ -94,10 +102,7 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
   if (!arguments.junit.empty())
     write_whole_file(arguments.junit, junit_xml(suite, outcome, arguments.output), schema::Existing::replace);
   if (!arguments.output.empty()) {
-    WholeFolder whole(arguments.output, schema::Existing::replace);
-    write_regress_page(suite, outcome, whole.path());
-    whole.commit();
-    context.say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
+    write_page(suite, outcome, arguments.output, context);
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;
   if (outcome.errors() < all) return;
@@ -133,9 +138,10 @@ bool confirmed(bool yes, Context& context) {
 
 void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   refuse(!arguments.junit.empty(), "--junit", "run");
-  refuse(!arguments.output.empty(), "-o", "run");
   if (arguments.reason.find_first_not_of(" \t\r\n") == std::string::npos)
     throw std::invalid_argument("say why the forces change: --reason WHY");
+  if (!arguments.output.empty())
+    require_output(std::filesystem::path(arguments.output) / "regress.json", true);
   const auto changes = plan_update(suite, arguments.options);
   context.result = {{"suite", suite.file.string()}, {"stored", suite.stored.string()}, {"written", false}};
   context.result["changes"] = nlohmann::ordered_json::array();
@@ -151,6 +157,7 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
     context.say(fmt::format("{} stays as it is", suite.stored.string()));
     return;
   }
+  if (!arguments.output.empty()) write_page(suite, what_changes(changes), arguments.output, context);
   if (!confirmed(arguments.yes, context))
     throw std::invalid_argument(
         fmt::format("{} was not touched; --yes stores what is shown", suite.stored.string()));

@@ -71,6 +71,16 @@ TEST_F(RegressProgram, StoresNothingWithoutBeingToldTo) {
   EXPECT_THAT(kerf("update", {"--yes"}).errors, HasSubstr("say why the forces change: --reason WHY"));
 }
 
+TEST_F(RegressProgram, DrawsWhatWouldBeAcceptedBeforeItIs) {
+  store();
+  folder_.change_law("value = 8,", "value = 9,");
+  const std::string before = test::read_text(folder_.at("suite.h5"));
+  EXPECT_EQ(kerf("update", {"--reason", "stiffer", "-o", folder_.at("page")}).exit_status, 2);
+  EXPECT_EQ(test::read_text(folder_.at("suite.h5")), before) << "nobody said yes";
+  EXPECT_THAT(test::read_text(folder_.at("page/kelvin-worst.svg")), HasSubstr("<svg"));
+  EXPECT_THAT(test::read_text(folder_.at("page/regress.html")), HasSubstr("the law file has changed since"));
+}
+
 TEST_F(RegressProgram, CatchesALawThatWentSilent) {
   store();
   folder_.change_law("position = { value = 0.5, unit = \"rad\" }",
