@@ -40,6 +40,7 @@ std::vector<std::string> gather(const std::vector<ForceChannel>& channels,
 void write_case(hid_t cases, const StoredForces& one) {
   const auto group = h5::create_group(cases, one.name);
   for (const auto& [name, member] : texts_of_a_case) h5::write_attribute(group.id(), name, one.*member);
+  if (!one.renderer.empty()) h5::write_attribute(group.id(), "renderer", one.renderer);
   h5::write_attribute(group.id(), "faults", h5::native<std::uint64_t>(), {}, &one.faults);
   if (one.tick_cost) {
     h5::write_attribute(group.id(), "tick_cost", h5::native<double>(), {}, &*one.tick_cost);
@@ -80,6 +81,7 @@ StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std
   StoredForces one;
   one.name = name;
   for (const auto& [attribute, member] : texts_of_a_case) one.*member = text_of(group.id(), attribute);
+  one.renderer = text_of(group.id(), "renderer");
   if (has_number(group.id(), "faults", "uint64"))
     h5::read_attribute(group.id(), "faults", h5::native<std::uint64_t>(), &one.faults);
   if (has_number(group.id(), "tick_cost", "float64")) {

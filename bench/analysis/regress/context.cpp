@@ -46,8 +46,9 @@ json case_as_json(const RegressionOutcome& outcome) {
                         {"largest_expected", json_number(one.largest_expected)}});
   }
   return {{"name", outcome.about.name},
-          {"model", outcome.about.law.law.model()},
+          {"model", outcome.about.error.empty() ? json(renderer_of(outcome.about)) : json(nullptr)},
           {"passed", outcome.passed()},
+          {"error", outcome.error.empty() ? json(nullptr) : json(outcome.error)},
           {"messages", outcome.messages},
           {"why", outcome.why},
           {"note", outcome.note},
@@ -93,7 +94,7 @@ std::string context_table(const RegressionOutcome& outcome) {
   const auto rows = context_of(outcome);
   if (rows.empty()) return {};
   const ForceDifference& worst = *outcome.comparison.worst;
-  const models::LawAxis axis = axes_of(outcome.about.law)[worst.channel];
+  const models::LawAxis axis = axes_of(outcome.about)[worst.channel];
   const auto line = [](const auto&... cells) {
     std::string text;
     ((text += fmt::format("{:>18}", cells)), ...);
@@ -113,10 +114,10 @@ std::string context_table(const RegressionOutcome& outcome) {
 }
 
 json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome) {
-  json result{{"suite", suite.file.string()},    {"name", suite.name},
-              {"stored", suite.stored.string()}, {"passed", outcome.failed() == 0},
-              {"failed", outcome.failed()},      {"dropped", outcome.dropped},
-              {"seconds", outcome.seconds},      {"cases", json::array()}};
+  json result{
+      {"suite", suite.file.string()},    {"name", suite.name},         {"stored", suite.stored.string()},
+      {"passed", outcome.failed() == 0}, {"failed", outcome.failed()}, {"errors", outcome.errors()},
+      {"dropped", outcome.dropped},      {"seconds", outcome.seconds}, {"cases", json::array()}};
   for (const RegressionOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
   return result;
 }

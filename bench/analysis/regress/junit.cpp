@@ -6,6 +6,7 @@
 
 #include "html/html.h"
 #include "regress/context.h"
+#include "regress/regress_page.h"
 
 namespace kerf::bench {
 namespace {
@@ -36,6 +37,20 @@ std::string failure(const std::string& message, const std::string& more) {
                      xml_escaped(more));
 }
 
+std::string error_element(const std::string& reason) {
+  return fmt::format("    <error message=\"{0}\" type=\"case\">{0}</error>\n", xml_escaped(reason));
+}
+
+/// Page and pictures of a case, where they are going to stand.
+std::string attachments(const RegressionOutcome& one, const std::filesystem::path& page) {
+  if (page.empty()) return {};
+  std::string names;
+  for (const Figure& figure : figures_of(one))
+    names += fmt::format("[[ATTACHMENT|{}]]\n", (page / (figure.name + ".svg")).string());
+  names += fmt::format("[[ATTACHMENT|{}]]\n", (page / "regress.html").string());
+  return fmt::format("    <system-out>{}</system-out>\n", xml_escaped(names));
+}
+
 }  // namespace
 
 std::string xml_escaped(const std::string& text) {
@@ -52,12 +67,17 @@ std::string xml_escaped(const std::string& text) {
   return escaped(sound);
 }
 
-std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome) {
+std::string junit_xml(const std::filesystem::path& suite, const std::string& error) {
+  return junit_xml(Suite{.name = suite.stem().string(), .file = suite, .stored = {}, .cases = {}},
+                   {.cases = {{.about = {.name = suite.filename().string()}, .error = error}}});
+}
+
+std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome, const std::filesystem::path& page) {
   const std::string name = xml_escaped(suite.name);
   const std::size_t tests = outcome.cases.size() + outcome.dropped.size();
   const std::string counts =
-      fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.6f}\"", name, tests,
-                  outcome.failed(), outcome.seconds);
+      fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.6f}\"", name, tests,
+                  outcome.failed() - outcome.errors(), outcome.errors(), outcome.seconds);
   std::string xml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n"
       "    <properties><property name=\"software\" value=\"{}\"/></properties>\n",
@@ -70,8 +90,13 @@ std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome) {
       continue;
     }
     xml += ">\n";
-    xml += failure(one.messages.front(),
-                   fmt::format("{}\n{}\n{}", fmt::join(one.messages, "\n"), one.why, context_table(one)));
+    if (!one.error.empty()) {
+      xml += error_element(one.error);
+    } else {
+      xml += failure(one.messages.front(),
+                     fmt::format("{}\n{}\n{}", fmt::join(one.messages, "\n"), one.why, context_table(one)));
+    }
+    xml += attachments(one, page);
     xml += "  </testcase>\n";
   }
   for (const std::string& dropped : outcome.dropped) {

@@ -23,7 +23,9 @@ void add_bytes(std::string& bytes, double value) {
 SampledMotion path_of(const RegressionCase& one) {
   SampledMotion path;
   try {
-    path = sampled(one.motion, one.law);
+    path = !one.trajectory.empty() ? read_trajectory_csv(one.trajectory, axes_of(one))
+           : one.outside           ? sampled(one.motion, one.outside->axes)
+                                   : sampled(one.motion, one.law);
   } catch (const std::invalid_argument& error) {
     const std::string source =
         one.motion.recording.empty() ? one.motion.scene.string() : one.motion.recording.string();
@@ -57,6 +59,10 @@ std::string checksum(const LawFile& law) {
   const std::string plugin = plugin_text(law.law);
   if (!plugin.empty()) text.erase(text.find(plugin), plugin.size());
   return sha256_of(std::string_view(text));
+}
+
+std::string checksum(const RegressionCase& one) {
+  return one.outside ? checksum(*one.outside) : checksum(one.law);
 }
 
 }  // namespace kerf::bench

@@ -16,5 +16,7 @@ namespace kerf::bench {
 /// everything of its file but comments, standard errors and where it comes from.
 [[nodiscard]] std::string checksum(const SampledMotion& motion, std::size_t axes);
 [[nodiscard]] std::string checksum(const LawFile& law);
+/// Of what renders a case: its law, or another renderer.
+[[nodiscard]] std::string checksum(const RegressionCase& one);
 
 }  // namespace kerf::bench

@@ -52,7 +52,7 @@ std::string number_or_empty(double value) { return std::isnan(value) ? "" : fmt:
 std::string context_section(const RegressionOutcome& outcome) {
   const auto context = context_of(outcome);
   if (context.empty()) return {};
-  const models::LawAxis axis = axes_of(outcome.about.law)[outcome.comparison.worst->channel];
+  const models::LawAxis axis = axes_of(outcome.about)[outcome.comparison.worst->channel];
   std::vector<std::vector<std::string>> rows{
       {"tick", "time [s]", fmt::format("{} [{}]", axis.name, axis.position_unit),
        fmt::format("speed [{}/s]", axis.position_unit), fmt::format("expected [{}]", axis.force_unit),
@@ -71,9 +71,13 @@ std::string summary_table(const SuiteOutcome& outcome) {
                                               "stored"}};
   for (const RegressionOutcome& one : outcome.cases) {
     const auto& worst = one.comparison.worst;
-    rows.push_back({one.about.name, std::string(one.about.law.law.model()),
-                    fmt::format("{}", one.comparison.got_rows), one.passed() ? "passed" : "FAILED",
-                    fmt::format("{}", one.comparison.outside), fmt::format("{}", one.comparison.differing),
+    if (!one.error.empty()) {
+      rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
+      continue;
+    }
+    rows.push_back({one.about.name, renderer_of(one.about), fmt::format("{}", one.comparison.got_rows),
+                    one.passed() ? "passed" : "FAILED", fmt::format("{}", one.comparison.outside),
+                    fmt::format("{}", one.comparison.differing),
                     worst ? fmt::format("{:.3g} {}", std::abs(worst->difference()),
                                         one.stored.channels[worst->channel].unit)
                           : "0",
@@ -88,6 +92,7 @@ std::string summary_table(const SuiteOutcome& outcome) {
 
 std::string case_section(const RegressionOutcome& outcome, const std::vector<std::string>& pictures) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
+  if (!outcome.error.empty()) return body + html_answer(Answer::bad, escaped(outcome.error) + ".");
   for (const std::string& message : outcome.messages)
     body += html_answer(Answer::bad, escaped(message) + ".");
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));

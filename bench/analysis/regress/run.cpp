@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 #include <set>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "recordings/provenance.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -37,15 +39,23 @@ std::vector<std::string> dropped_from(const Suite& suite, const std::vector<sche
   return dropped;
 }
 
+RenderedForces rendered(const RegressionCase& one, const SampledMotion& path) {
+  return one.outside ? render_forces(*one.outside, path) : render_forces(one.law, path);
+}
+
 std::string why_different(const RegressionOutcome& outcome) {
-  const bool law = checksum(outcome.about.law) != outcome.stored.law_sha256;
+  const bool law = checksum(outcome.about) != outcome.stored.law_sha256;
   const bool trajectory =
       checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
   const std::string since =
       fmt::format("since {} ({}: {})", outcome.stored.date, outcome.stored.software, outcome.stored.reason);
-  if (law && trajectory) return fmt::format("the law file and the trajectory have changed {}", since);
-  if (law) return fmt::format("the law file has changed {}", since);
+  const char* const what = outcome.about.outside ? "renderer (its command, program or axes)" : "law file";
+  if (law && trajectory) return fmt::format("the {} and the trajectory have changed {}", what, since);
+  if (law) return fmt::format("the {} has changed {}", what, since);
   if (trajectory) return fmt::format("the trajectory has changed {}", since);
+  if (outcome.about.outside)
+    return fmt::format("command, program and trajectory are as they were; what they rest on has changed {}",
+                       since);
   return fmt::format("law file and trajectory are as they were; the code or the compiler has changed {}",
                      since);
 }
@@ -66,25 +76,58 @@ void judge_cost(RegressionOutcome& outcome) {
   }
 }
 
+/// What has changed though the forces have not: a trajectory that a law does not feel is soon forgotten.
+void note_silent_change(RegressionOutcome& outcome) {
+  if (!outcome.passed()) return;
+  const bool trajectory =
+      checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
+  if (!trajectory && checksum(outcome.about) == outcome.stored.law_sha256) return;
+  outcome.note +=
+      (outcome.note.empty() ? "" : "; ") + outcome.why + ", and the forces are within the tolerance";
+}
+
+/// Calls work(i) for every case: those whose cost is measured one by one, so that none disturbs another.
+template <typename Work>
+void for_each_case(const std::vector<RegressionCase>& cases, const SuiteOptions& options, const Work& work) {
+  const auto timed = [&](std::size_t i) { return options.tick_costs && cases[i].tick_cost.has_value(); };
+  for_each_index(cases.size(), std::max<std::size_t>(options.jobs, 1), [&](std::size_t i) {
+    if (!timed(i)) work(i);
+  });
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (timed(i)) work(i);
+  }
+}
+
+/// What is wrong with a case, if work() cannot be done; empty if it was done.
+template <typename Work>
+std::string error_of(const RegressionCase& one, const Work& work) {
+  if (!one.error.empty()) return one.error;
+  try {
+    work();
+    return {};
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
-  const auto begin = Clock::now();
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
-  outcome.got = render_forces(one.law, outcome.path);
+  outcome.got = rendered(one, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance, outcome.path.period_s.back());
   outcome.messages = outcome.comparison.messages;
   const compare::Facts facts{
-      .law_changed = checksum(one.law) != stored.law_sha256,
+      .law_changed = checksum(one) != stored.law_sha256,
       .trajectory_changed = checksum(outcome.path, outcome.got.channels.size()) != stored.trajectory_sha256};
   if (!outcome.comparison.passed) {
     for (std::string& line : diagnose(stored, outcome.got, outcome.path, facts))
       outcome.messages.push_back(std::move(line));
-  } else if (*facts.trajectory_changed) {
-    outcome.note = "the trajectory has changed, and the forces are within the tolerance all the same";
   }
   outcome.why = why_different(outcome);
   if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law, outcome.path);
   judge_cost(outcome);
-  outcome.seconds = seconds_since(begin);
+  note_silent_change(outcome);
   return outcome;
 }
 
@@ -103,8 +146,9 @@ std::string how_different(const ForceComparison& comparison) {
 schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& path,
                                 const RenderedForces& got, std::optional<double> cost) {
   schema::StoredForces now{.name = one.name,
-                           .model = std::string(one.law.law.model()),
-                           .law_sha256 = checksum(one.law),
+                           .model = one.outside ? "" : std::string(one.law.law.model()),
+                           .renderer = one.outside ? called(*one.outside) : "",
+                           .law_sha256 = checksum(one),
                            .trajectory_sha256 = checksum(path, got.channels.size()),
                            .channels = got.channels,
                            .force = got.force,
@@ -117,7 +161,7 @@ schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& 
 StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs) {
   if (before == nullptr) {
     const SampledMotion path = path_of(one);
-    const RenderedForces got = render_forces(one.law, path);
+    const RenderedForces got = rendered(one, path);
     std::optional<double> cost;
     if (tick_costs && one.tick_cost) cost = tick_cost(one.law, path);
     return {.name = one.name,
@@ -130,7 +174,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
   const RegressionOutcome outcome = run_case(one, *before, tick_costs);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
-  const bool same_source = checksum(one.law) == before->law_sha256 &&
+  const bool same_source = checksum(one) == before->law_sha256 &&
                            checksum(outcome.path, outcome.got.channels.size()) == before->trajectory_sha256;
   const bool no_cost_yet = outcome.tick_cost && !before->tick_cost;
   if (outcome.passed() && same_source && !no_cost_yet) {
@@ -138,6 +182,7 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
     return change;
   }
   change.kind = ChangeKind::changed;
+  change.outcome = outcome;
   change.why = outcome.why;
   if (outcome.comparison.passed && !outcome.messages.empty()) change.what = outcome.messages.back();
   if (outcome.passed() && same_source) change.what = "a tick cost is added";
@@ -152,6 +197,11 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
 
 }  // namespace
 
+std::size_t SuiteOutcome::errors() const noexcept {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(cases, [](const RegressionOutcome& one) { return !one.error.empty(); }));
+}
+
 std::size_t SuiteOutcome::failed() const noexcept {
   return dropped.size() + static_cast<std::size_t>(std::ranges::count_if(
                               cases, [](const RegressionOutcome& one) { return !one.passed(); }));
@@ -160,16 +210,34 @@ std::size_t SuiteOutcome::failed() const noexcept {
 SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
   const auto begin = Clock::now();
   const Suite chosen = only(suite, options.only);
-  const auto stored = stored_forces(suite);
-  for (const RegressionCase& one : chosen.cases) {
-    if (find(stored, one.name) != nullptr) continue;
-    throw std::invalid_argument(fmt::format(
-        "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
-        suite.stored.string(), one.name, suite.file.string()));
+  std::vector<schema::StoredForces> stored;
+  std::string unreadable;
+  try {
+    stored = stored_forces(suite);
+  } catch (const schema::FormatError& error) {
+    unreadable = error.what();
+  } catch (const std::invalid_argument& error) {
+    unreadable = error.what();
   }
   SuiteOutcome outcome;
-  for (const RegressionCase& one : chosen.cases)
-    outcome.cases.push_back(run_case(one, *find(stored, one.name), options.tick_costs));
+  outcome.cases.resize(chosen.cases.size());
+  for_each_case(chosen.cases, options, [&](std::size_t i) {
+    const auto case_begin = Clock::now();
+    const RegressionCase& one = chosen.cases[i];
+    RegressionOutcome& result = outcome.cases[i];
+    const std::string error = error_of(one, [&] {
+      if (!unreadable.empty()) throw std::invalid_argument(unreadable);
+      const schema::StoredForces* const before = find(stored, one.name);
+      if (before == nullptr) {
+        throw std::invalid_argument(fmt::format(
+            "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
+            suite.stored.string(), one.name, suite.file.string()));
+      }
+      result = run_case(one, *before, options.tick_costs);
+    });
+    if (!error.empty()) result = {.about = one, .error = error};
+    result.seconds = seconds_since(case_begin);
+  });
   if (options.only.empty()) outcome.dropped = dropped_from(suite, stored);
   outcome.seconds = seconds_since(begin);
   return outcome;
@@ -178,15 +246,20 @@ SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
 std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options) {
   const auto stored = stored_forces(suite);
   const Suite chosen = only(suite, options.only);
-  std::vector<StoredChange> changes;
-  for (const RegressionCase& one : suite.cases) {
+  std::vector<StoredChange> changes(suite.cases.size());
+  for_each_case(suite.cases, options, [&](std::size_t i) {
+    const RegressionCase& one = suite.cases[i];
     const schema::StoredForces* before = find(stored, one.name);
-    if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) > 0) {
-      changes.push_back(change_of(one, before, options.tick_costs));
-    } else if (before != nullptr) {
-      changes.push_back({.name = one.name, .asked = false, .now = *before});
-    }
-  }
+    changes[i] = {.name = one.name, .asked = false};
+    if (before != nullptr) changes[i].now = *before;
+    if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) == 0) return;
+    const std::string error = error_of(one, [&] { changes[i] = change_of(one, before, options.tick_costs); });
+    if (error.empty()) return;
+    changes[i].asked = true;
+    changes[i].kind = ChangeKind::impossible;
+    changes[i].what = error;
+  });
+  std::erase_if(changes, [](const StoredChange& one) { return !one.asked && one.now.channels.empty(); });
   for (const std::string& name : dropped_from(suite, stored)) {
     const bool asked = options.only.empty();
     changes.push_back({.name = name,
@@ -199,9 +272,21 @@ std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& op
   return changes;
 }
 
+SuiteOutcome what_changes(const std::vector<StoredChange>& changes) {
+  SuiteOutcome all;
+  for (const StoredChange& change : changes) {
+    if (change.outcome) all.cases.push_back(*change.outcome);
+    if (change.kind == ChangeKind::removed) all.dropped.push_back(change.name);
+    if (change.kind == ChangeKind::impossible)
+      all.cases.push_back({.about = {.name = change.name}, .error = change.what});
+  }
+  return all;
+}
+
 bool changes_anything(const std::vector<StoredChange>& changes) noexcept {
-  return std::ranges::any_of(changes,
-                             [](const StoredChange& one) { return one.kind != ChangeKind::unchanged; });
+  return std::ranges::any_of(changes, [](const StoredChange& one) {
+    return one.kind != ChangeKind::unchanged && one.kind != ChangeKind::impossible;
+  });
 }
 
 void write_update(const Suite& suite, const std::vector<StoredChange>& changes, const std::string& reason) {
@@ -212,9 +297,9 @@ void write_update(const Suite& suite, const std::vector<StoredChange>& changes, 
   const std::string date = schema::new_header("").created;
   std::vector<schema::StoredForces> all;
   for (const StoredChange& change : changes) {
-    if (change.kind == ChangeKind::removed) continue;
+    if (change.kind == ChangeKind::removed || change.now.channels.empty()) continue;
     all.push_back(change.now);
-    if (change.kind == ChangeKind::unchanged) continue;
+    if (change.kind == ChangeKind::unchanged || change.kind == ChangeKind::impossible) continue;
     all.back().reason = line;
     all.back().date = date;
     all.back().software = software();

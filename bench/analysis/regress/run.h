@@ -19,13 +19,14 @@ struct RegressionOutcome {
   RenderedForces got;
   schema::StoredForces stored;
   ForceComparison comparison;
+  std::string error;                  ///< why nothing could be compared: of the case, not of its forces
   std::vector<std::string> messages;  ///< why it did not pass, and what the difference looks like
   std::string why;                    ///< law, trajectory or code: what is not as it was when it was stored
   std::optional<double> tick_cost;    ///< measured now
   std::string note;                   ///< what could not be compared
   double seconds = 0.0;               ///< that it took
 
-  [[nodiscard]] bool passed() const noexcept { return messages.empty(); }
+  [[nodiscard]] bool passed() const noexcept { return error.empty() && messages.empty(); }
 };
 
 struct SuiteOutcome {
@@ -33,33 +34,41 @@ struct SuiteOutcome {
   std::vector<std::string> dropped;  ///< stored, and no longer in the suite
   double seconds = 0.0;
 
+  /// Cases that did not pass, those of errors() and those dropped among them.
   [[nodiscard]] std::size_t failed() const noexcept;
+  /// Cases that could not be compared at all.
+  [[nodiscard]] std::size_t errors() const noexcept;
 };
 
 struct SuiteOptions {
   std::vector<std::string> only;  ///< names of cases; empty: all
   bool tick_costs = true;
+  std::size_t jobs = 1;  ///< cases at a time; those whose cost is measured run alone
 };
 
-/// Renders every case and compares it with its stored forces.
-/// @throws std::invalid_argument if there are none for a case, saying how to store them; as read_suite() and
-/// path_of().
+/// Renders every case and compares it with its stored forces. A case for which that cannot be done (no stored
+/// forces, a trajectory with a gap, a law that cannot be read) has an error, and the others go on.
+/// @throws std::invalid_argument for a name that is no case.
 [[nodiscard]] SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options);
 
 /// What storing a case anew would do.
-enum class ChangeKind { added, changed, unchanged, removed };
+enum class ChangeKind { added, changed, unchanged, removed, impossible };
 struct StoredChange {
   std::string name;
   ChangeKind kind = ChangeKind::unchanged;
-  std::string what;          ///< by how much
-  std::string why;           ///< what is behind it
-  bool asked = true;         ///< one of the cases that were named
-  schema::StoredForces now;  ///< as it would stand in the file, without the reason
+  std::string what;                          ///< by how much
+  std::string why;                           ///< what is behind it
+  bool asked = true;                         ///< one of the cases that were named
+  schema::StoredForces now;                  ///< as it would stand in the file, without the reason
+  std::optional<RegressionOutcome> outcome;  ///< of a case that changes: what would be accepted
 };
 
 /// What would change in the stored forces, case by case. What passes, with the same law and trajectory,
-/// stays as it is, so that the last digits of a compiler do not come and go. @throws as run_suite().
+/// stays as it is, so that the last digits of a compiler do not come and go; so does what cannot be rendered.
+/// @throws as run_suite(); schema::FormatError for a file that holds something else.
 [[nodiscard]] std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options);
+/// The cases that change, beside what is stored, as a run would show them.
+[[nodiscard]] SuiteOutcome what_changes(const std::vector<StoredChange>& changes);
 [[nodiscard]] bool changes_anything(const std::vector<StoredChange>& changes) noexcept;
 
 /// Writes what was planned. @throws std::invalid_argument for an empty reason; std::system_error.

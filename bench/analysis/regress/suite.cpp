@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -26,10 +28,13 @@ constexpr std::array<std::string_view, 11> settings{"rate", "seconds", "absolute
 constexpr std::array<std::string_view, 8> channel_settings{"absolute",  "relative", "jnd",   "exact",
                                                            "vibration", "slew",     "drift", "peak"};
 
+constexpr std::array<std::string_view, 4> of_renderers{"renderer", "axes", "sign", "frame"};
+
 template <typename... Names>
 std::vector<std::string_view> with_settings(Names... names) {
   std::vector<std::string_view> all{names...};
   all.insert(all.end(), settings.begin(), settings.end());
+  all.insert(all.end(), of_renderers.begin(), of_renderers.end());
   return all;
 }
 
@@ -96,12 +101,12 @@ void read_tolerance(const Place& place, const toml::table& table, Tolerance& tol
 /// Tolerances of single channels, [case.channel.NAME].
 void read_channels(const Place& place, const toml::table& table, RegressionCase& one) {
   if (!table.contains("channel")) return;
-  const std::vector<models::LawAxis> axes = axes_of(one.law);
+  const std::vector<models::LawAxis> axes = axes_of(one);
   for (const auto& [key, node] : place.table(table, "channel")) {
     const std::string name(key.str());
     const toml::table* own = node.as_table();
     if (own == nullptr || !std::ranges::count(axes, name, &models::LawAxis::name))
-      place.refuse(node, "'{}' is no channel of the law; it has {}", name, names_in(axes));
+      place.refuse(node, "'{}' is no channel of the case; it has {}", name, names_in(axes));
     place.allow_only(*own, channel_settings, "[case.channel." + name + "]");
     Tolerance tolerance = one.tolerance;
     tolerance.channels.clear();
@@ -123,7 +128,7 @@ void read_settings(const Place& place, const toml::table& table, RegressionCase&
 }
 
 void read_motions(const Place& place, const toml::node& node, RegressionCase& one) {
-  const std::vector<models::LawAxis> axes = axes_of(one.law);
+  const std::vector<models::LawAxis> axes = axes_of(one);
   if (const toml::table* table = node.as_table()) {
     one.motion.axes.push_back(read_scripted_axis(place, *table, axes));
   } else if (const toml::array* all = node.as_array(); all != nullptr && all->is_homogeneous<toml::table>()) {
@@ -147,7 +152,7 @@ fs::path file_at(const Place& place, const toml::table& table, std::string_view 
 
 /// Every channel needs something to be held against.
 void require_tolerances(const Place& place, const toml::table& table, const RegressionCase& one) {
-  for (const models::LawAxis& axis : axes_of(one.law)) {
+  for (const models::LawAxis& axis : axes_of(one)) {
     if (one.tolerance.of(axis.name).has_limit_for(axis.force_unit)) continue;
     place.refuse(table,
                  "case '{}' has no tolerance for '{}' in {}; give exact = true, relative, jnd or absolute = "
@@ -172,37 +177,155 @@ void read_plugins(const Place& place, const toml::table& root, const fs::path& f
   }
 }
 
+models::LawAxis read_axis(const Place& place, const toml::node& node) {
+  const toml::table* const table = node.as_table();
+  if (table == nullptr || !table->contains("name"))
+    place.refuse(node, "expected axes = [{{ name = \"x\", position = \"m\", force = \"N\" }}]");
+  place.allow_only(*table, {"name", "position", "force"}, "an axis");
+  models::LawAxis axis{.name = place.text(*table, "name", ""),
+                       .position_unit = place.text(*table, "position", "m"),
+                       .force_unit = place.text(*table, "force", "N")};
+  if (axis.force_unit == "N*m" || axis.force_unit == "N m") axis.force_unit = "N·m";
+  if (axis.name.empty() || axis.name.find_first_of(",[]\n") != std::string::npos)
+    place.refuse(node, "'{}' is no name for an axis", axis.name);
+  if (axis.position_unit != "m" && axis.position_unit != "rad")
+    place.refuse(node, "'position' is \"{}\", expected \"m\" or \"rad\"", axis.position_unit);
+  if (axis.force_unit != "N" && axis.force_unit != "N·m")
+    place.refuse(node, "'force' is \"{}\", expected \"N\" or \"N·m\"", axis.force_unit);
+  return axis;
+}
+
+void read_command(const Place& place, const toml::node& node, OutsideRenderer& outside) {
+  const toml::table* const table = node.as_table();
+  const toml::array* const words = table == nullptr ? nullptr : table->get_as<toml::array>("command");
+  if (words == nullptr || words->empty() || !words->is_homogeneous<std::string>()) {
+    place.refuse(node,
+                 "expected renderer = {{ command = [\"./mysim\", \"{{trajectory}}\", \"{{forces}}\"] }}");
+  }
+  place.allow_only(*table, {"command", "timeout", "seed"}, "a renderer");
+  outside.command.clear();
+  std::string all;
+  for (const toml::node& word : *words) {
+    outside.command.push_back(**word.as_string());
+    all += outside.command.back() + '\n';
+  }
+  for (const char* const file : {"{trajectory}", "{forces}"}) {
+    if (all.find(file) == std::string::npos)
+      place.refuse(*words, "the command has no {}, where the program finds its file", file);
+  }
+  if (table->contains("timeout"))
+    outside.timeout_s =
+        read_number(place, *table, {.key = "timeout", .unit = "s", .lower = 0.01, .upper = 86400.0});
+  if (const toml::node* const seed = table->get("seed"))
+    outside.seed = static_cast<std::uint64_t>(std::floor(plain(place, *seed, "seed", 0.0, 4294967295.0)));
+}
+
+/// What a table says of a renderer that is no law, over what it inherits.
+void read_outside(const Place& place, const toml::table& table, const fs::path& folder, RegressionCase& one) {
+  const auto given = [&](std::string_view key) { return table.contains(key); };
+  if (!std::ranges::any_of(of_renderers, given) && !given("forces")) return;
+  if (!one.outside) one.outside.emplace();
+  OutsideRenderer& outside = *one.outside;
+  outside.folder = folder.empty() ? fs::path(".") : folder;
+  if (const toml::node* const renderer = table.get("renderer")) read_command(place, *renderer, outside);
+  if (given("forces")) {
+    outside.forces = folder / place.text(table, "forces", "");
+    outside.command.clear();
+  }
+  outside.sign = place.text(table, "sign", outside.sign);
+  if (outside.sign != "resisting" && outside.sign != "on the hand")
+    place.refuse(*table.get("sign"), "'sign' is \"{}\", expected \"resisting\" or \"on the hand\"",
+                 outside.sign);
+  outside.frame = place.text(table, "frame", outside.frame);
+  const toml::node* const node = table.get("axes");
+  if (node == nullptr) return;
+  const toml::array* const axes = node->as_array();
+  if (axes == nullptr || axes->empty() || axes->size() > models::max_law_axes)
+    place.refuse(*node, "'axes' must be a list of 1 to {} axes", models::max_law_axes);
+  outside.axes.clear();
+  for (const toml::node& axis : *axes) outside.axes.push_back(read_axis(place, axis));
+}
+
+/// One of law, renderer and forces, the latter two with their axes.
+void require_renderer(const Place& place, const toml::table& table, RegressionCase& one) {
+  const int given = static_cast<int>(table.contains("law")) + static_cast<int>(table.contains("renderer")) +
+                    static_cast<int>(table.contains("forces"));
+  if (given > 1)
+    place.refuse(table, "case '{}' has {} of law, renderer and forces, expected one", one.name, given);
+  if (table.contains("law")) {
+    one.outside.reset();
+    return;
+  }
+  if (!one.outside || (one.outside->command.empty() && one.outside->forces.empty()))
+    place.refuse(table, "a [[case]] needs 'law', 'renderer' or 'forces'");
+  if (one.outside->axes.empty())
+    place.refuse(table, "case '{}' needs 'axes': those of its renderer, with their units", one.name);
+  if (table.contains("tick_cost"))
+    place.refuse(*table.get("tick_cost"),
+                 "'tick_cost' is of Kerf's own laws; a renderer's ticks are not timed");
+  one.tick_cost.reset();
+}
+
+/// The files of a case. What is wrong with one of them is an error of that case alone.
+void read_files(const Place& place, const toml::table& table, const fs::path& folder, RegressionCase& one) {
+  try {
+    if (!one.outside) {
+      one.law_file = file_at(place, table, "law", folder);
+      one.law = read_law_file(one.law_file);
+    }
+    if (table.contains("trajectory")) one.trajectory = file_at(place, table, "trajectory", folder);
+    if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
+    if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
+  } catch (const std::invalid_argument& error) {
+    one.error = error.what();
+  } catch (const std::system_error& error) {
+    one.error = error.what();
+  }
+}
+
 RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
                          const RegressionCase& defaults) {
-  const auto keys = with_settings("name", "law", "recording", "scene", "motion", "channel");
+  const auto keys =
+      with_settings("name", "law", "forces", "recording", "scene", "trajectory", "motion", "channel");
   place.allow_only(table, keys, "a [[case]]");
   RegressionCase one = defaults;
-  for (const char* key : {"name", "law"}) {
-    if (!table.contains(key)) place.refuse(table, "a [[case]] needs '{}'", key);
-  }
+  if (!table.contains("name")) place.refuse(table, "a [[case]] needs 'name'");
   one.name = place.text(table, "name", "");
   if (one.name.empty() || one.name.front() == '.' || one.name.find('/') != std::string::npos)
     place.refuse(*table.get("name"), "'{}' is no name for a case; expected one without '/'", one.name);
-  one.law_file = file_at(place, table, "law", folder);
-  one.law = read_law_file(one.law_file);
   const int sources = static_cast<int>(table.contains("recording")) +
-                      static_cast<int>(table.contains("scene")) + static_cast<int>(table.contains("motion"));
+                      static_cast<int>(table.contains("scene")) + static_cast<int>(table.contains("motion")) +
+                      static_cast<int>(table.contains("trajectory"));
   if (sources != 1) {
-    place.refuse(table, "case '{}' needs one trajectory: a recording, a scene or [[case.motion]]; found {}",
-                 one.name, sources);
+    place.refuse(
+        table,
+        "case '{}' needs one trajectory: a recording, a scene, a trajectory or [[case.motion]]; found {}",
+        one.name, sources);
   }
-  if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
-  if (table.contains("scene")) one.motion.scene = file_at(place, table, "scene", folder);
   read_settings(place, table, one);
+  read_outside(place, table, folder, one);
+  require_renderer(place, table, one);
+  read_files(place, table, folder, one);
+  if (table.contains("rate") && table.contains("recording"))
+    place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");
+  if (!one.error.empty()) return one;
   read_channels(place, table, one);
   if (const toml::node* motion = table.get("motion")) read_motions(place, *motion, one);
-  if (table.contains("rate") && !one.motion.recording.empty())
-    place.refuse(*table.get("rate"), "a recording has its own rate; leave 'rate' out");
   require_tolerances(place, table, one);
   return one;
 }
 
 }  // namespace
+
+LawFile stand_in() { return {.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0})}; }
+
+std::vector<models::LawAxis> axes_of(const RegressionCase& one) {
+  return one.outside ? one.outside->axes : axes_of(one.law);
+}
+
+std::string renderer_of(const RegressionCase& one) {
+  return one.outside ? called(*one.outside) : std::string(one.law.law.model());
+}
 
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());
@@ -213,11 +336,12 @@ Suite read_suite(const fs::path& file) {
       .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};
   suite.stored.replace_extension(".h5");
   if (suite.stored == file) throw std::invalid_argument(file.string() + ": expected a suite, SUITE.toml");
-  RegressionCase defaults{.law = {.law = models::Law::make("kelvin", std::vector{1.0, 1.0, 1.0})}};
+  RegressionCase defaults;
   if (root.contains("defaults")) {
     const toml::table& table = place.table(root, "defaults");
-    place.allow_only(table, settings, "[defaults]");
+    place.allow_only(table, with_settings(), "[defaults]");
     read_settings(place, table, defaults);
+    read_outside(place, table, file.parent_path(), defaults);
   }
   const toml::array* cases = root.get_as<toml::array>("case");
   if (cases == nullptr || cases->empty() || !cases->is_homogeneous<toml::table>())

@@ -56,6 +56,7 @@ const std::vector<NamedValue>& named_values() {
       {"--rerun", {words, {"all"}}},
       {"--fidelity", {words, {"exact", "strips:", "paper"}}},
       {"--case", {nothing, {}}},
+      {"CASE", {nothing, {}}},
       {"--axis", {nothing, {}}},
       {"--along", {nothing, {}}},
       {"--channel", {nothing, {}}},

@@ -23,6 +23,7 @@ namespace {
 struct RegressVerbArguments {
   std::string action;
   std::string suite;
+  std::string one;
   SuiteOptions options;
   std::string junit;
   std::string output;
@@ -32,6 +33,10 @@ struct RegressVerbArguments {
 };
 
 void say_case(const RegressionOutcome& one, Context& context) {
+  if (!one.error.empty()) {
+    context.say(fmt::format("  {:24} ERROR\n      {}", one.about.name, one.error));
+    return;
+  }
   const auto& worst = one.comparison.worst;
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
@@ -52,12 +57,35 @@ void refuse(bool given, std::string_view option, std::string_view action) {
   if (given) throw std::invalid_argument(fmt::format("{} is for 'kerf regress {}'", option, action));
 }
 
-void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
+void require_outputs(const RegressVerbArguments& arguments) {
   refuse(!arguments.reason.empty(), "--reason", "update");
   refuse(arguments.yes, "--yes", "update");
   if (!arguments.junit.empty()) require_output(arguments.junit, true);
   if (!arguments.output.empty())
     require_output(std::filesystem::path(arguments.output) / "regress.json", true);
+}
+
+/// The suite; a build server is told of one that cannot be read, too.
+Suite suite_to_run(const RegressVerbArguments& arguments) {
+  require_outputs(arguments);
+  try {
+    return read_suite(arguments.suite);
+  } catch (const std::exception& error) {
+    if (!arguments.junit.empty())
+      write_whole_file(arguments.junit, junit_xml(arguments.suite, error.what()), schema::Existing::replace);
+    throw;
+  }
+}
+
+void write_page(const Suite& suite, const SuiteOutcome& outcome, const std::string& folder,
+                Context& context) {
+  WholeFolder whole(folder, schema::Existing::replace);
+  write_regress_page(suite, outcome, whole.path());
+  whole.commit();
+  context.say(fmt::format("regress.html, regress.json and the pictures are in {}", folder));
+}
+
+void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
   for (const RegressionOutcome& one : outcome.cases) say_case(one, context);
@@ -72,14 +100,15 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
                   ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
                   : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
   if (!arguments.junit.empty())
-    write_whole_file(arguments.junit, junit_xml(suite, outcome), schema::Existing::replace);
+    write_whole_file(arguments.junit, junit_xml(suite, outcome, arguments.output), schema::Existing::replace);
   if (!arguments.output.empty()) {
-    WholeFolder whole(arguments.output, schema::Existing::replace);
-    write_regress_page(suite, outcome, whole.path());
-    whole.commit();
-    context.say(fmt::format("regress.html, regress.json and the pictures are in {}", arguments.output));
+    write_page(suite, outcome, arguments.output, context);
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;
+  if (outcome.errors() < all) return;
+  // Nothing was compared, which is no verdict on any force.
+  note(outcome.cases.front().error);
+  context.exit = Exit::bad_input;
 }
 
 std::string_view name_of(ChangeKind kind) {
@@ -90,6 +119,8 @@ std::string_view name_of(ChangeKind kind) {
       return "changes";
     case ChangeKind::removed:
       return "goes";
+    case ChangeKind::impossible:
+      return "fails";
     case ChangeKind::unchanged:
       break;
   }
@@ -107,9 +138,10 @@ bool confirmed(bool yes, Context& context) {
 
 void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
   refuse(!arguments.junit.empty(), "--junit", "run");
-  refuse(!arguments.output.empty(), "-o", "run");
   if (arguments.reason.find_first_not_of(" \t\r\n") == std::string::npos)
     throw std::invalid_argument("say why the forces change: --reason WHY");
+  if (!arguments.output.empty())
+    require_output(std::filesystem::path(arguments.output) / "regress.json", true);
   const auto changes = plan_update(suite, arguments.options);
   context.result = {{"suite", suite.file.string()}, {"stored", suite.stored.string()}, {"written", false}};
   context.result["changes"] = nlohmann::ordered_json::array();
@@ -119,11 +151,13 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
         {{"name", one.name}, {"change", name_of(one.kind)}, {"what", one.what}, {"why", one.why}});
     context.say(fmt::format("  {:24} {:8} {}{}{}", one.name, name_of(one.kind), one.what,
                             one.why.empty() ? "" : "; ", one.why));
+    if (one.kind == ChangeKind::impossible) context.exit = Exit::check_failed;
   }
   if (!changes_anything(changes)) {
     context.say(fmt::format("{} stays as it is", suite.stored.string()));
     return;
   }
+  if (!arguments.output.empty()) write_page(suite, what_changes(changes), arguments.output, context);
   if (!confirmed(arguments.yes, context))
     throw std::invalid_argument(
         fmt::format("{} was not touched; --yes stores what is shown", suite.stored.string()));
@@ -133,13 +167,29 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
                           1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
 }
 
+/// The motion of a case as a renderer reads it.
+void write_trajectory(const RegressVerbArguments& arguments, Context& context) {
+  if (arguments.one.empty() || arguments.output.empty())
+    throw std::invalid_argument("expected kerf regress trajectory SUITE CASE -o FILE.csv");
+  require_output(arguments.output, true);
+  const RegressionCase one = only(read_suite(arguments.suite), {arguments.one}).cases.front();
+  if (!one.error.empty()) throw std::invalid_argument(one.error);
+  const SampledMotion path = path_of(one);
+  write_whole_file(arguments.output, trajectory_csv(path, axes_of(one)), schema::Existing::replace);
+  context.result = {
+      {"suite", arguments.suite}, {"case", one.name}, {"ticks", path.ticks()}, {"file", arguments.output}};
+  context.say(fmt::format("{}: {} ticks", arguments.output, path.ticks()));
+}
+
 void run_regress(RegressVerbArguments& arguments, Context& context) {
   arguments.options.tick_costs = !arguments.no_cost;
-  const Suite suite = read_suite(arguments.suite);
-  if (arguments.action == "run") {
-    run_cases(arguments, suite, context);
+  refuse(!arguments.one.empty() && arguments.action != "trajectory", "CASE", "trajectory");
+  if (arguments.action == "trajectory") {
+    write_trajectory(arguments, context);
+  } else if (arguments.action == "run") {
+    run_cases(arguments, suite_to_run(arguments), context);
   } else {
-    update_forces(arguments, suite, context);
+    update_forces(arguments, read_suite(arguments.suite), context);
   }
 }
 
@@ -153,16 +203,25 @@ void add_regress(CLI::App& app, Context& context) {
                "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
                "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
                "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
-               "not as it was. 'update' says what would change and why, and asks before it writes.\n"
+               "not as it was. A case may name a program of yours in place of a law; 'trajectory SUITE CASE\n"
+               "-o t.csv' writes what it is given. 'update' says what would change and why, and asks before "
+               "it writes.\n"
                "docs/regress.md says more.",
                [arguments, &context] { run_regress(*arguments, context); });
   verb.takes_laws(context);
-  verb.add_option("ACTION", arguments->action, "run or update").required().one_of({"run", "update"});
+  verb.add_option("ACTION", arguments->action, "run, update or trajectory")
+      .required()
+      .one_of({"run", "update", "trajectory"});
   verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
+  verb.add_option("CASE", arguments->one, "Of 'trajectory': the case whose motion is written");
   verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();
+  verb.add_option("-j,--jobs", arguments->options.jobs,
+                  "Cases at a time; those whose cost is measured run alone")
+      .with_default();
   verb.add_option("--junit", arguments->junit, "Write the results as JUnit XML");
-  verb.add_option("-o,--output", arguments->output,
-                  "Folder for regress.html, regress.json and pictures of what differs");
+  verb.add_option(
+      "-o,--output", arguments->output,
+      "Folder for regress.html, regress.json and pictures of what differs; of 'trajectory' FILE.csv");
   verb.add_flag("--no-cost", arguments->no_cost, "Do not measure what a tick costs");
   verb.add_option("--reason", arguments->reason, "Why the forces change; kept in the file");
   verb.add_flag("--yes", arguments->yes, "Store what changes without asking");

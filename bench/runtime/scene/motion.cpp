@@ -94,8 +94,8 @@ SampledMotion along_scene(const MotionSource& source, const LawFile& law) {
 }
 
 /// The axis of a recording that a law's axis is on.
-std::size_t column_for(const models::LawAxis& axis, const LawFile& law, const schema::Recording& recording) {
-  const std::size_t column = find_axis(recording, law.law.is_spatial() || !law.axis.empty() ? axis.name : "");
+std::size_t column_for(const models::LawAxis& axis, bool by_name, const schema::Recording& recording) {
+  const std::size_t column = find_axis(recording, by_name ? axis.name : "");
   if (recording.axes[column].position_unit != axis.position_unit) {
     throw std::invalid_argument(fmt::format("axis '{}' is in {}, and the law's in {}",
                                             recording.axes[column].name, recording.axes[column].position_unit,
@@ -104,11 +104,10 @@ std::size_t column_for(const models::LawAxis& axis, const LawFile& law, const sc
   return column;
 }
 
-SampledMotion recorded(const MotionSource& source, const LawFile& law) {
+SampledMotion recorded(const MotionSource& source, const std::vector<models::LawAxis>& axes, bool by_name) {
   const schema::Recording recording = read_whole_recording(source.recording);
-  const std::vector<models::LawAxis> axes = axes_of(law);
   std::vector<std::size_t> columns;
-  for (const models::LawAxis& axis : axes) columns.push_back(column_for(axis, law, recording));
+  for (const models::LawAxis& axis : axes) columns.push_back(column_for(axis, by_name, recording));
   SampledMotion path;
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     const double time_s = recording.time[row] - recording.time.front();
@@ -131,8 +130,17 @@ SampledMotion recorded(const MotionSource& source, const LawFile& law) {
 }  // namespace
 
 SampledMotion sampled(const MotionSource& source, const LawFile& law) {
-  if (!source.recording.empty()) return recorded(source, law);
+  if (!source.recording.empty())
+    return recorded(source, axes_of(law), law.law.is_spatial() || !law.axis.empty());
   return source.scene.empty() ? scripted(source) : along_scene(source, law);
+}
+
+SampledMotion sampled(const MotionSource& source, const std::vector<models::LawAxis>& axes) {
+  if (!source.recording.empty()) return recorded(source, axes, true);
+  if (source.scene.empty()) return scripted(source);
+  throw std::invalid_argument(
+      "the path of a scene is for laws; write it out by 'kerf regress trajectory' of a "
+      "case with a law, and name it as 'trajectory'");
 }
 
 }  // namespace kerf::bench

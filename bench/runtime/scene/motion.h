@@ -57,5 +57,7 @@ struct MotionSource {
 /// The motion on the axes of a law, in their own frame. @throws std::invalid_argument: a recording without
 /// the law's axes, in other units or with a sample that is not finite; a scene without a script.
 [[nodiscard]] SampledMotion sampled(const MotionSource& source, const LawFile& law);
+/// The same on axes by their names, without a law. @throws also for a scene, whose tool is placed by a law.
+[[nodiscard]] SampledMotion sampled(const MotionSource& source, const std::vector<models::LawAxis>& axes);
 
 }  // namespace kerf::bench

@@ -20,12 +20,14 @@ void check_force(TreeCheck& tree, const std::string& path) {
 void check_case(TreeCheck& tree, const std::string& name) {
   const std::string path = group_of_cases + '/' + name;
   if (!tree.has_group(path)) return;
-  std::vector<std::string_view> known{"faults", "tick_cost", "tick_cost_build"};
+  std::vector<std::string_view> known{"faults", "tick_cost", "tick_cost_build", "renderer"};
   for (const CaseText& text : texts_of_a_case) {
     known.emplace_back(text.name);
     static_cast<void>(tree.has_attribute(path, {.name = text.name, .type = "text", .fatal = false}));
   }
   static_cast<void>(tree.has_attribute(path, {.name = "faults", .type = "uint64", .fatal = false}));
+  static_cast<void>(
+      tree.has_attribute(path, {.name = "renderer", .type = "text", .required = false, .fatal = false}));
   const bool timed =
       tree.has_attribute(path, {.name = "tick_cost", .type = "float64", .required = false, .fatal = false});
   static_cast<void>(tree.has_attribute(

@@ -77,6 +77,7 @@ const std::vector<Words> with_input{
     {"compare", "INPUT", "FOLDER/r.h5"},
     {"compare", "FOLDER/r.h5", "INPUT"},
     {"regress", "run", "INPUT"},
+    {"regress", "trajectory", "INPUT", "case", "-o", "FOLDER/t.csv"},
     {"regress", "update", "INPUT", "--reason", "why", "--yes"},
     {"session", "new", "INPUT", "--subject", "S1", "--key-file", "FOLDER/key", "-o", "FOLDER/out.h5"},
     {"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1", "--key-file", "INPUT", "-o",

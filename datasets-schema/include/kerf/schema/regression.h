@@ -23,8 +23,9 @@ struct ForceChannel {
 
 /// The forces that a law rendered along a trajectory, tick by tick, and how they came to be stored.
 struct StoredForces {
-  std::string name;   ///< of the case, unique in its file, without '/'
-  std::string model;  ///< the law's
+  std::string name;        ///< of the case, unique in its file, without '/'
+  std::string model;       ///< the law's; empty of a renderer that is no law of Kerf
+  std::string renderer{};  ///< how such a renderer was called; else empty, and not in the file
   std::string law_sha256;
   std::string trajectory_sha256;
   std::string reason;    ///< why these forces were stored

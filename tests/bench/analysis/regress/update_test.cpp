@@ -28,9 +28,8 @@ class Update : public testing::Test {
 };
 
 TEST_F(Update, IsNeededBeforeTheFirstRun) {
-  EXPECT_THAT([&] { (void)run_suite(suite(), {}); },
-              ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("no forces are stored for case 'kelvin'"),
-                                                         HasSubstr("kerf regress update"))));
+  EXPECT_THAT(run_suite(suite(), {}).cases[0].error,
+              AllOf(HasSubstr("no forces are stored for case 'kelvin'"), HasSubstr("kerf regress update")));
   EXPECT_EQ(change().kind, ChangeKind::added);
   store("first forces");
   EXPECT_EQ(run_suite(suite(), {}).failed(), 0U);
