@@ -42,21 +42,7 @@ ImportOptions options_of_import(const ImportVerbArguments& arguments) {
   if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
   if (arguments.point.size() == 3)
     std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
-  std::string map;
-  bool has_file = false;
-  for (const std::string& part : arguments.maps) {
-    std::string entries = part;
-    if (names_import_file(part)) {
-      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
-      has_file = true;
-      const ImportFile file = read_import_file(part);
-      entries = file.map;
-      options = with_file_behind(std::move(options), file.options);
-    }
-    map += (map.empty() ? "" : ",") + entries;
-  }
-  options.map = parse_map(map);
-  return options;
+  return import_options_of(arguments.maps, std::move(options));
 }
 
 std::vector<MapEntry> map_of(const std::vector<std::string>& parts) {

@@ -98,4 +98,22 @@ ImportOptions with_file_behind(ImportOptions given, const ImportOptions& file) {
   return given;
 }
 
+ImportOptions import_options_of(const std::vector<std::string>& maps, ImportOptions given) {
+  std::string map;
+  bool has_file = false;
+  for (const std::string& part : maps) {
+    std::string entries = part;
+    if (names_import_file(part)) {
+      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
+      has_file = true;
+      const ImportFile file = read_import_file(part);
+      entries = file.map;
+      given = with_file_behind(std::move(given), file.options);
+    }
+    map += (map.empty() ? "" : ",") + entries;
+  }
+  given.map = parse_map(map);
+  return given;
+}
+
 }  // namespace kerf::bench

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "import/import.h"
 
@@ -34,5 +35,9 @@ struct ImportFile {
 
 /// Options that were given, and those of the file for what was left as it is.
 [[nodiscard]] ImportOptions with_file_behind(ImportOptions given, const ImportOptions& file);
+
+/// What the parts of --map say, entries or one file, beside options that were given and win over it.
+/// @throws std::invalid_argument for two files, and as read_import_file() and parse_map() do.
+[[nodiscard]] ImportOptions import_options_of(const std::vector<std::string>& maps, ImportOptions given);
 
 }  // namespace kerf::bench
