@@ -14,12 +14,14 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <kerf/fitting/jnd.h>
 #include <kerf/schema/recording.h>
 #include <kerf/schema/stand_in.h>
 
 #include "import/import.h"
 #include "import/imported_text.h"
 #include "imports/import_file.h"
+#include "inspect/first_look.h"
 #include "program/app.h"
 #include "program/progress.h"
 #include "recordings/provenance.h"
@@ -85,7 +87,9 @@ class ScratchFolder {
 };
 
 void import_one(const std::string& file, const ImportOptions& options, Context& context) {
-  const Imported imported = import_text(file, options);
+  Imported imported = import_text(file, options);
+  for (std::string& warning : first_look_of(imported.recording))
+    imported.warnings.push_back(std::move(warning));
   nlohmann::ordered_json entry{{"file", file}, {"sha256", sha256_of(fs::path(file))}};
   entry.update(imported_as_json(imported));
   entry.erase("parse_seconds");
@@ -117,6 +121,11 @@ void import_on_the_way(const std::vector<std::string>& files, Context& context) 
     require_read_twice(file);
     import_one(file, options, context);
   }
+}
+
+std::vector<std::string> first_look_of(const schema::Recording& recording) {
+  const schema::Axis& axis = recording.axes.front();
+  return first_look(recording, fitting::jnd_of(axis.force_unit, axis.lever).threshold);
 }
 
 void tell_imported_on_the_way(Context& context) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include <kerf/schema/recording.h>
+
 namespace kerf::bench {
 
 struct Context;
@@ -17,6 +19,10 @@ void import_on_the_way(const std::vector<std::string>& files, Context& context);
 /// Puts what was imported into the verb's JSON, as `imported_on_the_way`: of each text its name, its SHA-256
 /// and what `kerf import --json` says of it but for its duration.
 void tell_imported_on_the_way(Context& context);
+
+/// What is to be known of a recording that has just been imported (first_look()), by what is felt of its
+/// force.
+[[nodiscard]] std::vector<std::string> first_look_of(const schema::Recording& recording);
 
 /// Of a verb that changes the recording it is given. @throws std::invalid_argument if there is a map.
 void refuse_import_on_the_way(const std::string& verb, const std::string& file, const Context& context);

@@ -98,6 +98,7 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
     notes_.push_back("UTF-16 text");
   } else if (is_lvm(text())) {
     LvmText made = lvm_text(text(), name_);
+    begin_ = made.begin;
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
     take(std::move(made.text));
   } else {

@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "clocks/time_stamp.h"
 #include "files/mapped_file.h"
 
 namespace kerf::bench {
@@ -33,6 +35,8 @@ class FileText {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   /// What is to be known of how it was read, a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  /// The moment from which its times count, where the format says it beside them.
+  [[nodiscard]] const std::optional<TimeStamp>& begin() const noexcept { return begin_; }
 
  private:
   MappedFile mapped_;
@@ -40,6 +44,7 @@ class FileText {
   std::string made_;
   bool is_made_ = false;
   std::vector<std::string> notes_;
+  std::optional<TimeStamp> begin_;
 };
 
 }  // namespace kerf::bench
