@@ -228,7 +228,7 @@ void add_import(CLI::App& app, Context& context) {
       "1 then.",
       [arguments, &context] { run_import(*arguments, context); });
   verb.add_option("DATA", arguments->data,
-                  "Text, workbook (xlsx, xls), MAT-file or lvm, also packed by gzip; - is standard input. "
+                  "Text, workbook (xlsx, xls), MAT-file, lvm or TDMS, also packed by gzip; - is standard input. "
                   "Several, or folders of them")
       .required();
   verb.add_option("--map", arguments->maps,

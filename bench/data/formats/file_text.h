@@ -19,9 +19,9 @@ struct FileTextOptions {
 
 /// A file of numbers as text in which each line is a row, whatever it was: text as it stands; what gzip
 /// packed; UTF-16 as UTF-8; a LabVIEW file (lvm) without
-/// its headers; a sheet of a workbook (xlsx, xls), or the variables of a MAT-file, as columns with
-/// tabs between them and a row of names. Numbers of the two latter lose nothing. What a file is is told by
-/// its first bytes, not by its name, and of gzip by what is in it.
+/// its headers; a TDMS file; a sheet of a workbook (xlsx, xls), or the variables of a MAT-file, as columns
+/// with tabs between them and a row of names. Numbers of the two latter lose nothing. What a file is is told
+/// by its first bytes, not by its name, and of gzip by what is in it.
 class FileText {
  public:
   /// @throws std::invalid_argument that names file and place for what is damaged, larger than allowed, or of
@@ -37,6 +37,8 @@ class FileText {
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
   /// The moment from which its times count, where the format says it beside them.
   [[nodiscard]] const std::optional<TimeStamp>& begin() const noexcept { return begin_; }
+  /// What the column of those times is called.
+  [[nodiscard]] const std::string& time_column() const noexcept { return time_column_; }
 
  private:
   MappedFile mapped_;
@@ -45,6 +47,7 @@ class FileText {
   bool is_made_ = false;
   std::vector<std::string> notes_;
   std::optional<TimeStamp> begin_;
+  std::string time_column_;
 };
 
 }  // namespace kerf::bench

@@ -303,7 +303,7 @@ void take_begin(Imported& imported, const ReadFile& read) {
   const MappedColumn* time = find_channel(imported.columns, "time");
   if (!read.file.begin() || time == nullptr || imported.recording.header.start_ns) return;
   const std::string& name = imported.layout.columns[time->index].name;
-  if (!name.starts_with("X_Value")) return;
+  if (!name.starts_with(read.file.time_column())) return;
   const TimeStamp& begin = *read.file.begin();
   imported.recording.header.start_ns = begin.ns + std::llround(imported.first_time_s * ns_of_second);
   imported.recording.header.start_clock = begin.has_zone ? "UTC" : "local";

@@ -31,13 +31,14 @@ std::size_t stretch_of(const Place& place, const toml::table& table) {
   return static_cast<std::size_t>(value);
 }
 
-std::array<double, 3> point_of(const Place& place, const toml::node& node, std::string_view key) {
+std::array<double, 3> point_of(const Place& place, const toml::node& node, std::string_view key,
+                               std::string_view unit = "m") {
   const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 3) place.refuse(node, "'{}' must be three numbers", key);
+  if (list == nullptr || list->size() != 3) place.refuse(node, "'{}' must be three numbers [{}]", key, unit);
   std::array<double, 3> point{};
   for (std::size_t i = 0; i < point.size(); ++i) {
     point.at(i) = place.number(*list->get(i), fmt::format("'{}'", key));
-    if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers", key);
+    if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers [{}]", key, unit);
   }
   return point;
 }
@@ -82,7 +83,7 @@ ImportFile read_import_file(const std::filesystem::path& file) {
     options.places.origin_m = point_of(place, *origin, "origin");
   if (const toml::node* point = table.get("point")) options.places.point_m = point_of(place, *point, "point");
   if (const toml::node* rotation = table.get("sensor_rotation"))
-    options.places.sensor_rotation_rad = radians_of(point_of(place, *rotation, "sensor_rotation"));
+    options.places.sensor_rotation_rad = radians_of(point_of(place, *rotation, "sensor_rotation", "deg"));
   return read;
 }
 
