@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "files/trimmed.h"
-#include "signal/signal.h"
+#include "signal/quantiles.h"
 
 namespace kerf::bench {
 namespace {
