@@ -227,9 +227,10 @@ void add_import(CLI::App& app, Context& context) {
       "status "
       "1 then.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data,
-                  "Text, workbook (xlsx, xls), MAT-file, lvm or TDMS, also packed by gzip; - is standard input. "
-                  "Several, or folders of them")
+  verb.add_option(
+          "DATA", arguments->data,
+          "Text, workbook (xlsx, xls), MAT-file, lvm or TDMS, also packed by gzip; - is standard input. "
+          "Several, or folders of them")
       .required();
   verb.add_option("--map", arguments->maps,
                   "CHANNEL=COLUMN[unit],... (may be repeated), or FILE.toml that says it and other options")

@@ -1,8 +1,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "formats/tdms.h"
-#include "formats/tdms_segments.h"
+#include "formats/tdms/tdms.h"
+#include "formats/tdms/tdms_segments.h"
 #include "fuzz/target.h"
 
 namespace kerf::fuzz {

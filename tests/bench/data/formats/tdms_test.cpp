@@ -1,4 +1,4 @@
-#include "formats/tdms.h"
+#include "formats/tdms/tdms.h"
 
 #include <cmath>
 #include <string>
@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "formats/tdms_segments.h"
+#include "formats/tdms/tdms_segments.h"
 #include "import/import.h"
 #include "support/program.h"
 

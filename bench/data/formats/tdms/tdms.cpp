@@ -1,4 +1,4 @@
-#include "formats/tdms.h"
+#include "formats/tdms/tdms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "formats/tdms_segments.h"
+#include "formats/tdms/tdms_segments.h"
 
 namespace kerf::bench {
 namespace {
