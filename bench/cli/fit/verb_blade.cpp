@@ -85,6 +85,7 @@ void add_blade(CLI::App& app, Context& context) {
       "shape's law file, whose numbers are not used. Exit status 1 if the data determine no parameter.",
       [arguments, &context] { run_blade(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording").required();
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("--shape", arguments->shape, "Law file of a blade: its polygons, edge and fidelity")
       .required();
   verb.add_option("--fidelity", arguments->fidelity,

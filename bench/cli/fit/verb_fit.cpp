@@ -132,6 +132,7 @@ void add_fit(CLI::App& app, Context& context) {
         }
       });
   verb.takes_laws(context);
+  verb.takes_texts(context, arguments->recordings);
   add_fit_options(verb, *arguments);
 }
 

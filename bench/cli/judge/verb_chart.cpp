@@ -174,6 +174,7 @@ void add_chart(CLI::App& app, Context& context) {
       [arguments, &context] { run_chart(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording");
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("--scene", arguments->scene, "Scene, in place of a recording");
   verb.add_option("--laws", arguments->laws, "Laws to fit, or all (default: those that suit any axis)")
       .separated_by(',');

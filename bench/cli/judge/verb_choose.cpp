@@ -203,6 +203,7 @@ void add_choose(CLI::App& app, Context& context) {
       [arguments, &context] { run_choose(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to choose a law for");
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("--scene", arguments->scene, "Make a recording of this scene first, in virtual time");
   verb.add_option("-o,--output", arguments->output,
                   "Folder for choose.json, choose.csv, choose.html and the law file");

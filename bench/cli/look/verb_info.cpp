@@ -123,6 +123,7 @@ void add_info(CLI::App& app, Context& context) {
       [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording,
                   "The recording, or the NAME.partial of one not closed; a session, stored forces");
+  verb.takes_texts(context, arguments->recording);
   verb.add_flag("--follow", arguments->follow,
                 "Show a recording while it is made, from another terminal, until it is closed");
   verb.add_flag("--schema", arguments->schema, "Print the schema's tables instead, as Markdown");

@@ -11,6 +11,7 @@
 
 #include <kerf/fitting/jnd.h>
 #include <kerf/schema/recording_file.h>
+#include <kerf/schema/stand_in.h>
 
 #include "files/disk_room.h"
 #include "files/whole_file.h"
@@ -109,6 +110,7 @@ void run_inspect(const InspectVerbArguments& arguments, Context& context) {
   options.axis = find_cut_axis(rows.about(), arguments.axis);
   const schema::Axis& axis = rows.about().axes[options.axis];
   options.felt = arguments.felt.value_or(fitting::jnd_of(axis.force_unit, axis.lever).threshold);
+  if (arguments.writes()) schema::require_no_stand_in(arguments.recording);
   if (arguments.writes()) require_output(arguments.recording, true);
   Inspection inspection = inspect(rows, options);
   if (arguments.writes()) store(arguments, inspection, rows);
@@ -134,6 +136,7 @@ void add_inspect(CLI::App& app, Context& context) {
                "leave out the cycles that carry one (--cycles). docs/inspecting.md says how each is found.",
                [arguments, &context] { run_inspect(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "The recording").required();
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("--axis", arguments->axis,
                   "Axis along which contact is told (default: that of the cycles, else the first)");
   verb.add_option("--felt", arguments->felt,

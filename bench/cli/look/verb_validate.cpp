@@ -38,6 +38,7 @@ void add_validate(CLI::App& app, Context& context) {
   Verb verb = add_verb(app, context, "validate", "List every way in which a file departs from the schema",
                        "kerf validate cut.h5", [file, &context] { run_validate(*file, context); });
   verb.add_option("recording", *file, "The recording, session or stored forces").required();
+  verb.takes_texts(context, *file);
 }
 
 }  // namespace kerf::bench

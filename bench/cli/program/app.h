@@ -20,8 +20,11 @@ struct Context {
   std::uint64_t seed = 1;            ///< of every random choice
   bool seed_given = false;           ///< by --seed
   std::vector<std::string> plugins;  ///< laws of shared objects, by --plugin
-  Exit exit = Exit::done;            ///< a verb sets check_failed when a check did not pass
-  nlohmann::ordered_json result;     ///< printed at the end with --json
+  std::vector<std::string> maps;     ///< how texts are imported on the way, by --map
+  /// Of each text that was: see tell_imported_on_the_way().
+  nlohmann::ordered_json imported = nlohmann::ordered_json::array();
+  Exit exit = Exit::done;         ///< a verb sets check_failed when a check did not pass
+  nlohmann::ordered_json result;  ///< printed at the end with --json
   /// What could not be written though the result stands: said after it, and the exit status is file_error.
   std::string not_written;
 

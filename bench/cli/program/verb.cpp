@@ -9,6 +9,7 @@
 
 #include "laws/plugin_laws.h"
 #include "program/app.h"
+#include "program/import_on_the_way.h"
 
 namespace kerf::bench {
 
@@ -103,20 +104,53 @@ Verb& Verb::takes_laws(Context& context) {
   return *this;
 }
 
+void Verb::add_map(Context& context, const std::string& description) {
+  add_option("--map", context.maps, description).one_value_each();
+}
+
+Verb& Verb::takes_texts(Context& context, const std::string& recording) {
+  add_map(
+      context,
+      "CHANNEL=COLUMN[unit],... or FILE.toml: take a text instead of a recording, imported on the way as by "
+      "kerf import --map");
+  before_->push_back([&context, &recording] { import_on_the_way({recording}, context); });
+  return *this;
+}
+
+Verb& Verb::takes_texts(Context& context, const std::vector<std::string>& recordings) {
+  add_map(context,
+          "CHANNEL=COLUMN[unit],... or FILE.toml: take texts among the recordings, imported on the way as by "
+          "kerf "
+          "import --map");
+  before_->push_back([&context, &recordings] { import_on_the_way(recordings, context); });
+  return *this;
+}
+
+Verb& Verb::refuses_texts(Context& context, const std::string& recording) {
+  add_map(context, "Refused: a text is imported first, since this changes the recording");
+  before_->push_back([this_verb = verb_.get_name(), &context, &recording] {
+    refuse_import_on_the_way(this_verb, recording, context);
+  });
+  return *this;
+}
+
 Verb add_verb(CLI::App& app, Context& context, const std::string& name, const std::string& description,
               const std::string& example, std::function<void()> action) {
   CLI::App* const subcommand = app.add_subcommand(name, description);
   subcommand->footer("Example:\n  " + example);
-  Verb verb(*subcommand);
+  const auto before = std::make_shared<Verb::Before>();
+  Verb verb(*subcommand, before);
   verb.add_flag("--json", context.json, "Print one JSON object on standard output and nothing else there");
   const CLI::Option* const seed =
       subcommand->add_option("--seed", context.seed, "Seed of every random choice")->capture_default_str();
-  subcommand->callback([&context, seed, run = std::move(action)] {
+  subcommand->callback([&context, seed, before, run = std::move(action)] {
     context.seed_given = seed->count() > 0;
     if (!context.runs) return;
     for (const std::string& file : context.plugins) (void)load_plugin(file);
     say_plugin_notes();  // before a device moves
+    for (const auto& first : *before) first();
     run();
+    tell_imported_on_the_way(context);
   });
   return verb;
 }

@@ -2,7 +2,9 @@
 
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -41,7 +43,10 @@ class Option {
 /// A verb while its options are declared.
 class Verb {
  public:
-  explicit Verb(CLI::App& verb) : verb_(verb) {}
+  /// What is to be done between the reading of the command line and the verb's action.
+  using Before = std::vector<std::function<void()>>;
+
+  Verb(CLI::App& verb, std::shared_ptr<Before> before) : verb_(verb), before_(std::move(before)) {}
 
   /// Value: std::string, double, std::size_t, a vector of strings or of doubles, or std::optional<double>.
   /// The variable has to live until the verb has run.
@@ -50,9 +55,18 @@ class Verb {
   Option add_flag(const std::string& name, bool& variable, const std::string& description);
   /// Adds --plugin: laws of shared objects, which are loaded before the verb's action runs.
   Verb& takes_laws(Context& context);
+  /// Adds --map: texts among the recordings that the variable names are imported before the verb's action
+  /// runs.
+  Verb& takes_texts(Context& context, const std::string& recording);
+  Verb& takes_texts(Context& context, const std::vector<std::string>& recordings);
+  /// Adds a --map that is refused in a line with what to do: the verb changes the recording.
+  Verb& refuses_texts(Context& context, const std::string& recording);
 
  private:
+  void add_map(Context& context, const std::string& description);
+
   CLI::App& verb_;
+  std::shared_ptr<Before> before_;
 };
 
 /// Adds a verb with --json and --seed, its description and an example under --help; `action` runs after

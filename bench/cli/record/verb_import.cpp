@@ -15,6 +15,7 @@
 #include "import/imported_text.h"
 #include "import/join.h"
 #include "imports/import_file.h"
+#include "program/import_on_the_way.h"
 #include "program/progress.h"
 #include "program/verbs.h"
 #include "run/run.h"
@@ -28,11 +29,13 @@ struct ImportVerbArguments {
   std::vector<std::string> maps;
   std::vector<double> origin;
   std::vector<double> point;
+  std::vector<double> sensor_rotation;
   ImportOptions options;
   std::string trial;
   std::string join_file;
   std::vector<std::string> join_maps;
   std::string join_on;
+  std::string join_marker;
   bool force = false;
 };
 
@@ -42,21 +45,11 @@ ImportOptions options_of_import(const ImportVerbArguments& arguments) {
   if (arguments.origin.size() == 3) std::copy_n(arguments.origin.begin(), 3, options.places.origin_m.begin());
   if (arguments.point.size() == 3)
     std::copy_n(arguments.point.begin(), 3, options.places.point_m.emplace().begin());
-  std::string map;
-  bool has_file = false;
-  for (const std::string& part : arguments.maps) {
-    std::string entries = part;
-    if (names_import_file(part)) {
-      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
-      has_file = true;
-      const ImportFile file = read_import_file(part);
-      entries = file.map;
-      options = with_file_behind(std::move(options), file.options);
-    }
-    map += (map.empty() ? "" : ",") + entries;
+  if (arguments.sensor_rotation.size() == 3) {
+    const std::vector<double>& degrees = arguments.sensor_rotation;
+    options.places.sensor_rotation_rad = radians_of({degrees[0], degrees[1], degrees[2]});
   }
-  options.map = parse_map(map);
-  return options;
+  return import_options_of(arguments.maps, std::move(options));
 }
 
 std::vector<MapEntry> map_of(const std::vector<std::string>& parts) {
@@ -74,9 +67,12 @@ nlohmann::ordered_json join_other(const ImportVerbArguments& arguments, const Im
                                             arguments.join_file,
                                             explain_columns(arguments.join_file, arguments.options)));
   }
-  const Joined joined = join(
-      imported, {.file = arguments.join_file, .map = map_of(arguments.join_maps), .on = arguments.join_on},
-      options);
+  const Joined joined = join(imported,
+                             {.file = arguments.join_file,
+                              .map = map_of(arguments.join_maps),
+                              .on = arguments.join_on,
+                              .marker = arguments.join_marker},
+                             options);
   for (const std::string& warning : joined.warnings)
     imported.warnings.push_back(fmt::format("{}: {}", joined.file, warning));
   line = joined_line(joined);
@@ -107,6 +103,8 @@ void import_one(const ImportVerbArguments& arguments, Context& context) {
   Imported imported = import_text(data, options);
   std::string joined_line;
   const nlohmann::ordered_json joined = join_other(arguments, options, imported, joined_line);
+  for (std::string& warning : first_look_of(imported.recording))
+    imported.warnings.push_back(std::move(warning));
   schema::write_recording(arguments.output, imported.recording, schema::existing_if(arguments.force));
   context.result = imported_as_json(imported);
   if (!joined.is_null()) context.result["join"] = joined;
@@ -145,7 +143,8 @@ void import_several(const ImportVerbArguments& arguments, Context& context) {
   const std::vector<FileToImport> files = files_to_import(arguments.data, arguments.output);
   ImportManyOptions options{.each = options_of(arguments, files.front().file.string()),
                             .trial_column = arguments.trial,
-                            .folder = {}};
+                            .folder = {},
+                            .look = first_look_of};
   options.each.progress = show_no_progress;
   std::error_code absent;
   if (std::filesystem::exists(arguments.output, absent) &&
@@ -228,9 +227,10 @@ void add_import(CLI::App& app, Context& context) {
       "status "
       "1 then.",
       [arguments, &context] { run_import(*arguments, context); });
-  verb.add_option("DATA", arguments->data,
-                  "Text, workbook (xlsx, xls), MAT-file or lvm, also packed by gzip; - is standard input. "
-                  "Several, or folders of them")
+  verb.add_option(
+          "DATA", arguments->data,
+          "Text, workbook (xlsx, xls), MAT-file, lvm or TDMS, also packed by gzip; - is standard input. "
+          "Several, or folders of them")
       .required();
   verb.add_option("--map", arguments->maps,
                   "CHANNEL=COLUMN[unit],... (may be repeated), or FILE.toml that says it and other options")
@@ -244,6 +244,10 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--join-on", arguments->join_on,
                   "Channel of both maps that brings the clocks together by cross-correlation, or time where "
                   "they are one clock");
+  verb.add_option(
+      "--join-marker", arguments->join_marker,
+      "CHANNEL>LEVEL: an event in both files that brings the clocks together, where the channel rises "
+      "through the level [SI] (default: half way); CHANNEL>LEVEL,OTHER>LEVEL where they differ");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,
@@ -256,6 +260,12 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--point", arguments->point,
                   "Point x,y,z about which the file's torques are, in the frame of its wrench [m] (default: "
                   "the position)")
+      .separated_by(',')
+      .taking(3);
+  verb.add_option(
+          "--sensor-rotation", arguments->sensor_rotation,
+          "Rotation vector x,y,z [deg] from the sensor's axes, in which the wrench stands, to those of the "
+          "tool that the orientation is of")
       .separated_by(',')
       .taking(3);
   verb.add_option("--rate", arguments->options.rate_hz, "Rate of a file without a time column [Hz]")

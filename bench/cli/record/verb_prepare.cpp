@@ -196,6 +196,7 @@ void add_prepare(CLI::App& app, Context& context) {
       "time span, cycles. Each is noted in the history of the new recording ('kerf info').",
       [arguments, &context] { run_prepare(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording; it stays as it is").required();
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("-o,--output", arguments->output, "Recording to write").required();
   verb.add_flag("--drop-gaps", options.drop_gaps, "Leave out rows that are not finite");
   verb.add_flag("--weight", options.weight, "Take the tool's weight off a sensor with six axes");

@@ -36,6 +36,7 @@ void add_repair(CLI::App& app, Context& context) {
                "then is NAME.partial removed.",
                [arguments, &context] { run_repair(*arguments, context); });
   verb.add_option("recording", arguments->recording, "The recording, or its NAME.partial").required();
+  verb.refuses_texts(context, arguments->recording);
   verb.add_option("-o,--output", arguments->output,
                   "Write it here instead, and keep the partial file (on a full disk, say)");
   verb.add_flag("--force", arguments->force, "Replace an existing output");

@@ -156,6 +156,7 @@ void add_segment(CLI::App& app, Context& context) {
       "kerf segment punch.h5 -o charts", [arguments, &context] { run_segment(*arguments, context); });
   verb.add_option("RECORDING", arguments->recording, "Recording; its cycles are added or replaced")
       .required();
+  verb.refuses_texts(context, arguments->recording);
   verb.add_option("--axis", arguments->axis, "Axis that opens and closes (default: the first)");
   verb.add_option("--prominence", arguments->options.prominence,
                   "Share of the range that a stroke must cover")

@@ -248,6 +248,7 @@ void add_replay(CLI::App& app, Context& context) {
       [arguments, &context] { run_replay(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording to play").required();
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("--as", arguments->as, "table or path").one_of({"table", "path"});
   verb.add_option("--through", arguments->through, "Law file; may be repeated").one_value_each();
   verb.add_option("--from", arguments->from_s, "From this time on [s]");

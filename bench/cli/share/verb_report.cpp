@@ -69,6 +69,7 @@ void add_report(CLI::App& app, Context& context) {
       [arguments, &context] { run_report(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording").required();
+  verb.takes_texts(context, arguments->recording);
   verb.add_option("RESULTS", arguments->results, "JSON of other verbs, or folders that hold such");
   verb.add_option("--fits", arguments->fits, "Folder that 'kerf fit' wrote");
   verb.add_option("--check", arguments->check, "JSON that 'kerf check -o' wrote");

@@ -20,6 +20,8 @@ struct ClockFit {
   double skew_error = 0.0;
   double correlation = 0.0;  ///< of the two series where they overlap, at the fit
   std::size_t rows = 0;      ///< of the coarser series, that were compared
+  std::size_t markers = 0;   ///< that were compared instead (fit_markers()); 0: the series were
+  double t95 = 2.131;        ///< standard errors times this are half an interval of 95 %
 };
 
 /// Blocks of the overlap that are left out by turns for the standard errors, and what follows for an interval

@@ -10,6 +10,8 @@
 #include "formats/lvm.h"
 #include "formats/mat_table.h"
 #include "formats/run_apart.h"
+#include "formats/tdms/tdms.h"
+#include "formats/tdms/tdms_segments.h"
 #include "formats/utf16.h"
 #include "formats/workbook.h"
 #include "formats/xls.h"
@@ -21,9 +23,9 @@ namespace {
 void refuse_what_cannot_be_read(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\x89PNG") || bytes.starts_with("\xFF\xD8\xFF") || bytes.starts_with("GIF8"))
     throw std::invalid_argument(fmt::format("{}: a picture, not a file of numbers", name));
-  if (bytes.starts_with("TDSm"))
+  if (bytes.starts_with("TDSh"))
     throw std::invalid_argument(
-        fmt::format("{}: a TDMS file; export it from LabVIEW as text (lvm) or CSV", name));
+        fmt::format("{}: the index of a TDMS file; expected the file beside it that ends in .tdms", name));
   if (bytes.starts_with("\x89HDF"))
     throw std::invalid_argument(
         fmt::format("{}: a binary file, HDF5; a recording of Kerf's need not be imported, of others export "
@@ -93,11 +95,19 @@ FileText::FileText(const std::filesystem::path& file, const FileTextOptions& opt
     });
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
     take(std::move(made.text));
+  } else if (is_tdms(text())) {
+    TdmsText made = tdms_text(text(), name_);
+    begin_ = made.begin;
+    time_column_ = tdms_time_column;
+    notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
+    take(std::move(made.text));
   } else if (const auto order = utf16_order(text())) {
     take(utf8_of_utf16(text(), *order, name_));
     notes_.push_back("UTF-16 text");
   } else if (is_lvm(text())) {
     LvmText made = lvm_text(text(), name_);
+    begin_ = made.begin;
+    time_column_ = "X_Value";
     notes_.insert(notes_.end(), made.notes.begin(), made.notes.end());
     take(std::move(made.text));
   } else {

@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "clocks/time_stamp.h"
 #include "files/mapped_file.h"
 
 namespace kerf::bench {
@@ -17,9 +19,9 @@ struct FileTextOptions {
 
 /// A file of numbers as text in which each line is a row, whatever it was: text as it stands; what gzip
 /// packed; UTF-16 as UTF-8; a LabVIEW file (lvm) without
-/// its headers; a sheet of a workbook (xlsx, xls), or the variables of a MAT-file, as columns with
-/// tabs between them and a row of names. Numbers of the two latter lose nothing. What a file is is told by
-/// its first bytes, not by its name, and of gzip by what is in it.
+/// its headers; a TDMS file; a sheet of a workbook (xlsx, xls), or the variables of a MAT-file, as columns
+/// with tabs between them and a row of names. Numbers of the two latter lose nothing. What a file is is told
+/// by its first bytes, not by its name, and of gzip by what is in it.
 class FileText {
  public:
   /// @throws std::invalid_argument that names file and place for what is damaged, larger than allowed, or of
@@ -33,6 +35,10 @@ class FileText {
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   /// What is to be known of how it was read, a sentence each.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  /// The moment from which its times count, where the format says it beside them.
+  [[nodiscard]] const std::optional<TimeStamp>& begin() const noexcept { return begin_; }
+  /// What the column of those times is called.
+  [[nodiscard]] const std::string& time_column() const noexcept { return time_column_; }
 
  private:
   MappedFile mapped_;
@@ -40,6 +46,8 @@ class FileText {
   std::string made_;
   bool is_made_ = false;
   std::vector<std::string> notes_;
+  std::optional<TimeStamp> begin_;
+  std::string time_column_;
 };
 
 }  // namespace kerf::bench

@@ -51,7 +51,10 @@ class LvmReader {
     if (in_header_)
       throw std::invalid_argument(
           fmt::format("{}: a LabVIEW file whose header has no {}", name_, end_of_header));
-    LvmText made{.text = std::move(text_), .notes = {fmt::format("a LabVIEW measurement file{}", begin_)}};
+    LvmText made{.text = std::move(text_),
+                 .notes = {fmt::format("a LabVIEW measurement file{}", begin_)},
+                 .begin = {}};
+    made.begin = begin_stamp_;
     if (segments_ > 1) made.notes.push_back(fmt::format("its {} segments follow each other", segments_));
     return made;
   }
@@ -88,6 +91,8 @@ class LvmReader {
     has_times_ = value("X_Columns") != "No";
     if (segments_ == 0) return;
     awaits_names_ = true;
+    if (segments_ == 1 && !value("Date").empty() && value("Time_Pref") != "Absolute")
+      begin_stamp_ = stamp_of(value("Date"), value("Time"));
     if (segments_ == 1 && !value("Date").empty())
       begin_ = fmt::format(", begun {} {}", value("Date"), value("Time"));
     row_ = 0;
@@ -102,6 +107,16 @@ class LvmReader {
     }
     if (!(number("Delta_X") > 0.0))
       throw std::invalid_argument(fmt::format("{}: a LabVIEW file without times and without Delta_X", name_));
+  }
+
+  /// LabVIEW writes more digits of a second than it knows: those behind the nanosecond are left out.
+  static std::optional<TimeStamp> stamp_of(std::string date, std::string time) {
+    std::ranges::replace(date, '/', '-');
+    std::ranges::replace(time, ',', '.');
+    constexpr std::size_t to_nanosecond = std::string_view("hh:mm:ss.123456789").size();
+    TimeStamp stamp;
+    if (!is_time_stamp(date + "T" + time.substr(0, to_nanosecond), stamp)) return std::nullopt;
+    return stamp;
   }
 
   [[nodiscard]] std::string names_of(const Fields& fields) const {
@@ -136,6 +151,7 @@ class LvmReader {
   std::size_t segments_ = 0;
   std::size_t row_ = 0;
   std::string begin_;
+  std::optional<TimeStamp> begin_stamp_;
   std::string text_;
 };
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "clocks/time_stamp.h"
 
 namespace kerf::bench {
 
@@ -10,6 +13,9 @@ namespace kerf::bench {
 struct LvmText {
   std::string text;
   std::vector<std::string> notes;
+  /// The moment from which the times of the first segment count, to the nanosecond; none where the file gives
+  /// moments instead (Time_Pref Absolute) or no date.
+  std::optional<TimeStamp> begin;
 };
 
 [[nodiscard]] bool is_lvm(std::string_view text) noexcept;

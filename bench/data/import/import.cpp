@@ -120,6 +120,9 @@ void require_memory_for_rows(const std::filesystem::path& file, std::string_view
 void require_places_that_fit(const std::optional<SpatialMap>& map, const SpatialPlaces& places) {
   if (!map && (places.point_m || places.origin_m != std::array<double, 3>{}))
     throw std::invalid_argument("--origin and --point need a --map with position.x, position.y, position.z");
+  if (places.sensor_rotation_rad && (!map || map->frame != "sensor"))
+    throw std::invalid_argument(
+        "--sensor-rotation turns a wrench that --map maps in the frame of the sensor, and there is none");
   if (places.point_m && !map->has_torque)
     throw std::invalid_argument("--point says where torques are counted from, and --map maps none");
 }
@@ -295,6 +298,17 @@ struct ReadFile {
   std::shared_future<std::string> hash;  ///< last: it reads the file until it ends
 };
 
+/// Where the file says beside its times from when on they count: in the column that it calls so.
+void take_begin(Imported& imported, const ReadFile& read) {
+  const MappedColumn* time = find_channel(imported.columns, "time");
+  if (!read.file.begin() || time == nullptr || imported.recording.header.start_ns) return;
+  const std::string& name = imported.layout.columns[time->index].name;
+  if (!name.starts_with(read.file.time_column())) return;
+  const TimeStamp& begin = *read.file.begin();
+  imported.recording.header.start_ns = begin.ns + std::llround(imported.first_time_s * ns_of_second);
+  imported.recording.header.start_clock = begin.has_zone ? "UTC" : "local";
+}
+
 void write_header(schema::Recording& recording, const ReadFile& read, const std::string& trial,
                   const ImportOptions& options) {
   const schema::Header found = std::exchange(recording.header, schema::new_header(software()));
@@ -348,6 +362,7 @@ Imported recording_of(const ReadFile& read, TextTable table, const std::string& 
                     name, named_lines(imported.misplaced_lines)));
   }
   require_most_lines(imported, name);
+  take_begin(imported, read);
   const double period_s = median_period(recording.time);
   take_channels(imported, rows, options, period_s);
   report_irregular_lines(imported);

@@ -109,7 +109,11 @@ class ManyImports {
   /// What cannot be read is the entry's failure; what cannot be written is thrown.
   template <typename Import>
   void add(ImportEntry entry, const fs::path& name, const Import& import) {
-    if (const std::optional<Imported> imported = or_failure(entry, import)) {
+    if (std::optional<Imported> imported = or_failure(entry, import)) {
+      if (options_.look) {
+        for (std::string& warning : options_.look(imported->recording))
+          imported->warnings.push_back(std::move(warning));
+      }
       entry.recording = names_.take(name).string() + ".h5";
       const fs::path file = options_.folder / entry.recording;
       fs::create_directories(file.parent_path());

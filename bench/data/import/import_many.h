@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct ImportManyOptions {
   ImportOptions each;
   std::string trial_column;      ///< empty: a file is a recording
   std::filesystem::path folder;  ///< for the recordings, which it must not hold yet
+  /// Further warnings of a recording that came in, if anybody has some.
+  std::function<std::vector<std::string>(const schema::Recording&)> look = {};
 };
 
 /// Imports one file after the other. What is wrong with one, or with one trial, is its entry's failure, and

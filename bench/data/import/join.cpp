@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "clocks/marker_fit.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
 #include "signal/quantiles.h"
@@ -90,6 +91,25 @@ ClockedSeries series_of(schema::Recording& recording, const std::string& channel
     series.values.push_back((*values)[row]);
   }
   return series;
+}
+
+/// The clocks by markers: each file's own are found in the channel that is named for it.
+ClockFit fit_by_markers(schema::Recording& recording, schema::Recording& other, const JoinOptions& options) {
+  const std::vector<MarkerRule> rules = parse_markers(options.marker);
+  const auto markers_in = [&](schema::Recording& in, const MarkerRule& rule, const std::string& file) {
+    try {
+      return markers_of(series_of(in, channel_called(rule.channel), file), rule);
+    } catch (const std::invalid_argument& refused) {
+      throw std::invalid_argument(fmt::format("{}: --join-marker: {}", file, refused.what()));
+    }
+  };
+  const Markers first = markers_in(recording, rules.front(), "--map");
+  const Markers second = markers_in(other, rules.back(), options.file.string());
+  try {
+    return fit_markers(first, second);
+  } catch (const std::invalid_argument& refused) {
+    throw std::invalid_argument(fmt::format("{}: --join-marker: {}", options.file.string(), refused.what()));
+  }
 }
 
 /// The shift of two files whose times are of one clock.
@@ -177,7 +197,11 @@ void take_channel(schema::Recording& recording, schema::Recording& other, const 
 
 Joined join(Imported& imported, const JoinOptions& join_options, const ImportOptions& options) {
   const std::string file = join_options.file.string();
-  const std::string on = channel_called(join_options.on);
+  const bool by_marker = !join_options.marker.empty();
+  if (by_marker && !join_options.on.empty())
+    throw std::invalid_argument("--join-on and --join-marker are two ways; give one of them");
+  const std::string on =
+      channel_called(by_marker ? parse_markers(join_options.marker).front().channel : join_options.on);
   if (on.empty())
     throw std::invalid_argument(
         "--join-on is needed: a channel that both maps name and both files measured, or time for one clock");
@@ -185,8 +209,15 @@ Joined join(Imported& imported, const JoinOptions& join_options, const ImportOpt
   Imported other = read_other(join_options, options);
   require_one_axis(other, file);
   schema::Recording& recording = imported.recording;
-  Joined joined{.file = file, .on = on, .is_one_clock = on == "time", .warnings = other.warnings};
-  if (joined.is_one_clock) {
+  Joined joined{
+      .file = file, .on = on, .is_one_clock = on == "time" && !by_marker, .warnings = other.warnings};
+  if (by_marker) {
+    joined.clock = fit_by_markers(recording, other.recording, join_options);
+    if (joined.clock.markers == 1)
+      joined.warnings.emplace_back(
+          "one marker tells the shift and nothing of the skew: clocks that differ by 100 ppm are 6 ms apart "
+          "after a minute");
+  } else if (joined.is_one_clock) {
     joined.clock.shift_s = shared_shift(imported, other, file);
   } else {
     const ClockedSeries first = series_of(recording, on, "--map");
@@ -224,8 +255,11 @@ Joined join(Imported& imported, const JoinOptions& join_options, const ImportOpt
 
 nlohmann::ordered_json joined_as_json(const Joined& joined) {
   const auto known = [&](double value) {
-    return joined.is_one_clock ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+    return joined.is_one_clock || std::isnan(value) ? nlohmann::ordered_json()
+                                                    : nlohmann::ordered_json(value);
   };
+  nlohmann::ordered_json markers;
+  if (joined.clock.markers > 0) markers = joined.clock.markers;
   return {{"file", joined.file},
           {"on", joined.on},
           {"shift_s", joined.clock.shift_s},
@@ -233,6 +267,7 @@ nlohmann::ordered_json joined_as_json(const Joined& joined) {
           {"skew", joined.clock.skew},
           {"skew_std_error", known(joined.clock.skew_error)},
           {"correlation", known(joined.clock.correlation)},
+          {"markers", markers},
           {"channels", joined.channels},
           {"rows_without", joined.rows_without}};
 }
@@ -243,6 +278,17 @@ std::string joined_line(const Joined& joined) {
   if (joined.is_one_clock)
     return fmt::format("{}, by the time of both: it begins {:.6g} s after the first", what,
                        joined.clock.shift_s);
+  const ClockFit& clock = joined.clock;
+  if (clock.markers == 1)
+    return fmt::format("{}, by one marker of {}: its clock is shifted by {:.6g} +- {:.2g} s (95 %)", what,
+                       joined.on, clock.shift_s, clock.t95 * clock.shift_error_s);
+  if (clock.markers > 1)
+    return fmt::format(
+        "{}, by {} markers of {}: its clock is shifted by {:.6g} +- {:.2g} s and skewed by {:.4g} +- {:.2g} "
+        "ppm "
+        "(95 %)",
+        what, clock.markers, joined.on, clock.shift_s, clock.t95 * clock.shift_error_s, 1e6 * clock.skew,
+        1e6 * clock.t95 * clock.skew_error);
   return fmt::format(
       "{}, by {}: its clock is shifted by {:.6g} +- {:.2g} s and skewed by {:.4g} +- {:.2g} ppm (95 %), "
       "correlation "

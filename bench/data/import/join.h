@@ -16,7 +16,8 @@ namespace kerf::bench {
 struct JoinOptions {
   std::filesystem::path file;  ///< text, workbook or MAT-file, as import_text() takes
   std::vector<MapEntry> map;
-  std::string on;  ///< a channel that both maps name: what both clocks saw; "time": they are one clock
+  std::string on;      ///< a channel that both maps name: what both clocks saw; "time": they are one clock
+  std::string marker;  ///< as parse_markers() has it: instead of `on`
 };
 
 /// What another file brought into a recording.

@@ -40,6 +40,26 @@ std::string_view word_of(FormKind kind) {
   return "";
 }
 
+std::optional<OrientationForm> take_form(std::string_view& text) {
+  const std::string_view kind = take_word(text);
+  if (kind == word_of(FormKind::rotation_vector))
+    return OrientationForm{.kind = FormKind::rotation_vector, .order = {}};
+  std::string_view rest = text;
+  std::string order(take_word(rest));
+  if (order == "inverse") {
+    order.clear();  // of a matrix, whose rows need not be said
+  } else {
+    text = rest;
+  }
+  if (kind == word_of(FormKind::quaternion) && (order == "xyzw" || order == "wxyz"))
+    return OrientationForm{.kind = FormKind::quaternion, .order = order};
+  if (kind == word_of(FormKind::euler) && is_euler_order(order))
+    return OrientationForm{.kind = FormKind::euler, .order = order};
+  if (kind == word_of(FormKind::matrix) && (order.empty() || order == "rows" || order == "columns"))
+    return OrientationForm{.kind = FormKind::matrix, .order = order.empty() ? "rows" : order};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::size_t OrientationForm::columns() const noexcept {
@@ -58,6 +78,7 @@ std::size_t OrientationForm::columns() const noexcept {
 std::string OrientationForm::text() const {
   std::string text(word_of(kind));
   if (!order.empty()) text += " " + order;
+  if (is_inverse) text += " inverse";
   return text;
 }
 
@@ -66,17 +87,12 @@ bool OrientationForm::has_angles() const noexcept {
 }
 
 std::optional<OrientationForm> take_orientation_form(std::string_view& text) {
-  const std::string_view kind = take_word(text);
-  if (kind == word_of(FormKind::rotation_vector))
-    return OrientationForm{.kind = FormKind::rotation_vector, .order = {}};
-  const std::string order(take_word(text));
-  if (kind == word_of(FormKind::quaternion) && (order == "xyzw" || order == "wxyz"))
-    return OrientationForm{.kind = FormKind::quaternion, .order = order};
-  if (kind == word_of(FormKind::euler) && is_euler_order(order))
-    return OrientationForm{.kind = FormKind::euler, .order = order};
-  if (kind == word_of(FormKind::matrix) && (order.empty() || order == "rows" || order == "columns"))
-    return OrientationForm{.kind = FormKind::matrix, .order = order.empty() ? "rows" : order};
-  return std::nullopt;
+  std::optional<OrientationForm> form = take_form(text);
+  std::string_view rest = text;
+  if (!form || take_word(rest) != "inverse") return form;
+  text = rest;
+  form->is_inverse = true;
+  return form;
 }
 
 }  // namespace kerf::bench

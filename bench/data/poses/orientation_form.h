@@ -16,10 +16,13 @@ namespace kerf::bench {
 ///     euler xyz               small letters: about the world's axes one after the other, R = Rz Ry Rx
 ///     euler XYZ               capitals: about axes that turn along, R = Rx Ry Rz
 ///     matrix rows, columns    R row by row, or column by column
+///
+/// and "inverse" behind it: what stands there is the rotation from the world's frame to the sensor's.
 struct OrientationForm {
   enum class Kind : std::uint8_t { quaternion, rotation_vector, euler, matrix };
   Kind kind = Kind::quaternion;
   std::string order;  ///< "xyzw", "wxyz"; "xyz", "ZXZ", ...; "rows", "columns"; empty for a rotation vector
+  bool is_inverse = false;
 
   /// How many columns it takes.
   [[nodiscard]] std::size_t columns() const noexcept;

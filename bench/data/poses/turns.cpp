@@ -53,6 +53,22 @@ Quaterniond nearest_turn(Matrix3d m) {
   return Quaterniond(m);
 }
 
+Quaterniond turn_as_written(const OrientationForm& form, std::span<const double> values) {
+  if (std::ranges::any_of(values, [](double v) { return std::isnan(v); }))
+    return Quaterniond(Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  switch (form.kind) {
+    case OrientationForm::Kind::quaternion:
+      return quaternion_of(form.order, values).normalized();
+    case OrientationForm::Kind::rotation_vector:
+      return turn_of_vector(Vector3d(values[0], values[1], values[2]));
+    case OrientationForm::Kind::euler:
+      return turn_of_angles(form.order, values).normalized();
+    case OrientationForm::Kind::matrix:
+      return nearest_turn(matrix_of(form.order, values)).normalized();
+  }
+  return Quaterniond::Identity();
+}
+
 }  // namespace
 
 std::string fault_of(const OrientationForm& form, std::span<const double> values) {
@@ -73,19 +89,8 @@ std::string fault_of(const OrientationForm& form, std::span<const double> values
 }
 
 Quaterniond turn_of(const OrientationForm& form, std::span<const double> values) {
-  if (std::ranges::any_of(values, [](double v) { return std::isnan(v); }))
-    return Quaterniond(Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  switch (form.kind) {
-    case OrientationForm::Kind::quaternion:
-      return quaternion_of(form.order, values).normalized();
-    case OrientationForm::Kind::rotation_vector:
-      return turn_of_vector(Vector3d(values[0], values[1], values[2]));
-    case OrientationForm::Kind::euler:
-      return turn_of_angles(form.order, values).normalized();
-    case OrientationForm::Kind::matrix:
-      return nearest_turn(matrix_of(form.order, values)).normalized();
-  }
-  return Quaterniond::Identity();
+  const Quaterniond turn = turn_as_written(form, values);
+  return form.is_inverse ? turn.conjugate() : turn;
 }
 
 Vector3d RotationPath::next(const Quaterniond& turn) {

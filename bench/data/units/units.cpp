@@ -98,6 +98,22 @@ double take_factor(std::string_view& text) {
   return factor;
 }
 
+/// Takes "counts/1000000" off a text that goes on with the unit: of raw numbers of which so many are one
+/// unit.
+double take_counts_per(std::string_view& text) {
+  constexpr std::string_view word = "counts/";
+  if (!text.starts_with(word)) return 1.0;
+  std::string_view rest = text.substr(word.size());
+  double counts = 0.0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), counts);
+  const std::string_view unit = trimmed(rest.substr(static_cast<std::size_t>(end - rest.data())));
+  if (error != std::errc{} || unit.empty() || unit.data() == end)
+    throw std::invalid_argument(fmt::format(
+        "unit '{}' does not say how many counts are what; expected for example counts/1000000 N", text));
+  text = unit;
+  return 1.0 / counts;
+}
+
 constexpr std::array<const char*, 4> power_texts{"", "", "²", "³"};
 
 /// Takes "²", "³", "^2" or "^3" off the end of a symbol.
@@ -135,7 +151,8 @@ std::string joined(const Parts& parts) { return fmt::format("{}", fmt::join(part
 Unit parse_unit(std::string_view given) {
   std::string_view text = trimmed(given);
   if (text.empty()) throw std::invalid_argument("an empty unit; write 1 for a plain number");
-  Unit unit{.factor = take_factor(text), .si = {}, .offset = 0.0};
+  const double of_a_count = take_counts_per(text);
+  Unit unit{.factor = of_a_count * take_factor(text), .si = {}, .offset = 0.0};
   const bool is_fahrenheit = text == "degF" || text == "°F";
   Parts above;
   Parts below;

@@ -10,6 +10,7 @@ namespace kerf::bench {
 ///
 /// `parse_unit("N·s/mm")` has the factor 1000 and the SI unit "N·s/m". A factor may stand before a unit for
 /// raw counts: `parse_unit("0.0439453125 deg")` has the factor 0.0439453125 pi / 180 and the SI unit "rad".
+/// So may how many counts are one unit: `parse_unit("counts/1000000 N")` has the factor 1e-6.
 struct Unit {
   double factor = 1.0;  ///< value in SI = factor * value
   std::string si;       ///< "m", "s", "rad", "N", "V", "1", or a product such as "N·s/rad"

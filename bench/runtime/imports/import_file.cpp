@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "files/named_file.h"
@@ -30,13 +31,14 @@ std::size_t stretch_of(const Place& place, const toml::table& table) {
   return static_cast<std::size_t>(value);
 }
 
-std::array<double, 3> point_of(const Place& place, const toml::node& node, std::string_view key) {
+std::array<double, 3> point_of(const Place& place, const toml::node& node, std::string_view key,
+                               std::string_view unit = "m") {
   const toml::array* list = node.as_array();
-  if (list == nullptr || list->size() != 3) place.refuse(node, "'{}' must be three numbers [m]", key);
+  if (list == nullptr || list->size() != 3) place.refuse(node, "'{}' must be three numbers [{}]", key, unit);
   std::array<double, 3> point{};
   for (std::size_t i = 0; i < point.size(); ++i) {
     point.at(i) = place.number(*list->get(i), fmt::format("'{}'", key));
-    if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers [m]", key);
+    if (!std::isfinite(point.at(i))) place.refuse(node, "'{}' must be three finite numbers [{}]", key, unit);
   }
   return point;
 }
@@ -60,9 +62,10 @@ std::string map_of(const Place& place, const toml::table& table) {
 ImportFile read_import_file(const std::filesystem::path& file) {
   const toml::table table = parse_toml(read_named_file(file), file.string());
   const Place place(file.string());
-  place.allow_only(
-      table, {"map", "sheet", "stretch", "rate", "resample", "velocity_window", "origin", "point", "strict"},
-      "an import file");
+  place.allow_only(table,
+                   {"map", "sheet", "stretch", "rate", "resample", "velocity_window", "origin", "point",
+                    "sensor_rotation", "strict"},
+                   "an import file");
   ImportFile read{.map = map_of(place, table), .options = {}};
   try {
     (void)parse_map(read.map);
@@ -79,7 +82,14 @@ ImportFile read_import_file(const std::filesystem::path& file) {
   if (const toml::node* origin = table.get("origin"))
     options.places.origin_m = point_of(place, *origin, "origin");
   if (const toml::node* point = table.get("point")) options.places.point_m = point_of(place, *point, "point");
+  if (const toml::node* rotation = table.get("sensor_rotation"))
+    options.places.sensor_rotation_rad = radians_of(point_of(place, *rotation, "sensor_rotation", "deg"));
   return read;
+}
+
+std::array<double, 3> radians_of(std::array<double, 3> degrees) {
+  for (double& angle : degrees) angle *= std::numbers::pi / 180.0;
+  return degrees;
 }
 
 bool names_import_file(std::string_view map) {
@@ -94,7 +104,26 @@ ImportOptions with_file_behind(ImportOptions given, const ImportOptions& file) {
   if (given.velocity_window_s == 0.0) given.velocity_window_s = file.velocity_window_s;
   given.strict = given.strict || file.strict;
   if (given.places.origin_m == std::array<double, 3>{}) given.places.origin_m = file.places.origin_m;
+  if (!given.places.sensor_rotation_rad) given.places.sensor_rotation_rad = file.places.sensor_rotation_rad;
   if (!given.places.point_m) given.places.point_m = file.places.point_m;
+  return given;
+}
+
+ImportOptions import_options_of(const std::vector<std::string>& maps, ImportOptions given) {
+  std::string map;
+  bool has_file = false;
+  for (const std::string& part : maps) {
+    std::string entries = part;
+    if (names_import_file(part)) {
+      if (has_file) throw std::invalid_argument("--map names two files; expected one, and entries beside it");
+      has_file = true;
+      const ImportFile file = read_import_file(part);
+      entries = file.map;
+      given = with_file_behind(std::move(given), file.options);
+    }
+    map += (map.empty() ? "" : ",") + entries;
+  }
+  given.map = parse_map(map);
   return given;
 }
 

@@ -41,8 +41,8 @@ bool is_below_drawer(const fs::path& path) {
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
   place.allow_only(
       table,
-      {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank", "accepted",
-       "numbers", "sheet", "stretch", "rig", "join", "join_map", "join_on", "join_suggested"},
+      {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank", "less_blank",
+       "accepted", "numbers", "sheet", "stretch", "rig", "join", "join_map", "join_on", "join_suggested"},
       "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
@@ -72,6 +72,10 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.specimen = place.text(table, "specimen", "");
   file.rig = place.text(table, "rig", "");
   file.blank = place.flag(table, "blank", false);
+  file.less_blank = place.text(table, "less_blank", "");
+  if (file.blank && !file.less_blank.empty())
+    place.refuse(*table.get("less_blank"), "'less_blank' is of a recording of tissue, and '{}' is a blank",
+                 file.path);
   file.accepted = place.text(table, "accepted", "");
   file.numbers = place.text(table, "numbers", "");
   return file;
@@ -93,6 +97,14 @@ void read_files(const Place& place, const toml::table& root, StudyPlan& study) {
         std::ranges::find(study.files, file.join, &DrawerFile::path) != study.files.end())
       place.refuse(*files, "'{}' is joined to '{}' and takes part itself: give it ignored = \"why\"",
                    file.join, file.path);
+  for (const DrawerFile& file : study.files) {
+    if (file.less_blank.empty()) continue;
+    const DrawerFile blank = study.file_called(file.less_blank);
+    if (!blank.blank || !blank.ignored.empty())
+      place.refuse(*files,
+                   "'{}' has less_blank = \"{}\", which is no [[file]] with blank = true that takes part",
+                   file.path, file.less_blank);
+  }
 }
 
 void read_prepare(const Place& place, const toml::table& root, StudyPlan& study) {

@@ -24,10 +24,11 @@ struct DrawerFile {
   std::string tissue;
   std::string speed;
   std::string specimen;
-  std::string rig{};     ///< that it was recorded with, where there are several
-  bool blank = false;    ///< the tool without a tissue
-  std::string accepted;  ///< why it counts whatever is doubted of it; empty: a doubt leaves it out
-  std::string numbers;   ///< numbers and time stamps of its name, which are no factor
+  std::string rig{};         ///< that it was recorded with, where there are several
+  bool blank = false;        ///< the tool without a tissue
+  std::string less_blank{};  ///< path of the blank to be taken off it; empty: those of its rig and speed
+  std::string accepted;      ///< why it counts whatever is doubted of it; empty: a doubt leaves it out
+  std::string numbers;       ///< numbers and time stamps of its name, which are no factor
 };
 
 /// A text of more is no recording of a study but a log [bytes].

@@ -54,6 +54,7 @@ std::string file_text(const DrawerFile& file) {
   add("specimen", file.specimen);
   add_known("rig", file.rig);
   text += fmt::format("blank = {}\n", file.blank);
+  if (!file.less_blank.empty()) text += fmt::format("less_blank = {}\n", toml_quoted(file.less_blank));
   if (!file.accepted.empty()) add("accepted", file.accepted);
   if (!file.numbers.empty()) add("numbers", file.numbers);
   return text;

@@ -1,5 +1,6 @@
 #include "run/study_blanks.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -37,6 +38,11 @@ StudiedBlank studied(const BlankTaken& taken) {
 std::vector<std::size_t> fitting_blanks(const StudyPlan& plan, const DrawerFile& file) {
   std::vector<std::size_t> of_its_speed;
   std::vector<std::size_t> of_no_speed;
+  if (!file.less_blank.empty()) {
+    const auto named = std::ranges::find(plan.files, file.less_blank, &DrawerFile::path);
+    if (named == plan.files.end()) return {};
+    return {static_cast<std::size_t>(named - plan.files.begin())};
+  }
   for (std::size_t i = 0; i < plan.files.size(); ++i) {
     const DrawerFile& blank = plan.files[i];
     if (!blank.blank || !blank.ignored.empty() || blank.rig != file.rig) continue;

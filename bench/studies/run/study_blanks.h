@@ -25,7 +25,7 @@ struct StudyBlanks {
 };
 
 /// Which files of a plan are blanks of a file's rig and speed; where none is of its speed, those of its rig
-/// whose speed is not named.
+/// whose speed is not named. Of a file that names its blank that one alone.
 [[nodiscard]] std::vector<std::size_t> fitting_blanks(const StudyPlan& plan, const DrawerFile& file);
 
 /// Takes a blank off the measured force, as `kerf prepare --blank` does: of several the one that covers most

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/stand_in.h>
 
 namespace kerf::schema {
 namespace {
@@ -36,6 +37,7 @@ class Descriptor {
 
 TemporaryFile::TemporaryFile(std::filesystem::path target)
     : target_(std::move(target)), path_(unfinished_name(target_)) {
+  require_no_stand_in(target_);
   std::error_code ignored;
   std::filesystem::remove(path_, ignored);  // of a process of the same number that was killed here
 }

@@ -127,11 +127,24 @@ bool is_hdf5(const std::filesystem::path& file) {
   return H5Fis_hdf5(file.c_str()) > 0;
 }
 
+namespace {
+
+/// A file that is open somewhere and has no name any more: the usual driver asks for one, that of stdio does
+/// not.
+Handle open_nameless(const std::filesystem::path& file) {
+  const auto access = property_list(H5P_FILE_ACCESS);
+  call(H5Pset_fapl_stdio, access.id());
+  return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDONLY, access.id()));
+}
+
+}  // namespace
+
 Handle open_file(const std::filesystem::path& file) {
   try {
     return Handle(call(H5Fopen, file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
   } catch (const Error& error) {
     const std::string_view why(error.what());
+    if (why.find("can't retrieve real path") != std::string_view::npos) return open_nameless(file);
     // The second is said where another thread follows the file just now.
     if (why.find("already open for") == std::string_view::npos &&
         why.find("locking flag values don't match") == std::string_view::npos) {

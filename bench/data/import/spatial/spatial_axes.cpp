@@ -98,6 +98,10 @@ bool is_near_whole_turn(const Vector3d& r) {
 
 void append_vector(std::vector<double>& row, const Vector3d& v) { row.insert(row.end(), v.begin(), v.end()); }
 
+std::string rotation_text(const std::array<double, 3>& v) {
+  return fmt::format("({:.9g}, {:.9g}, {:.9g}) rad", v[0], v[1], v[2]);
+}
+
 void name_axes(schema::Recording& recording, bool turns) {
   recording.axes.clear();
   for (const char* name : {"x", "y", "z"}) recording.axes.push_back({.name = name});
@@ -136,6 +140,11 @@ std::vector<std::string> take_spatial_axes(schema::Recording& recording, const S
   recording.position.reserve(rows * recording.dimensions());
   if (map.has_force) recording.force_measured.reserve(rows * recording.dimensions());
 
+  Matrix3d to_tool = Matrix3d::Identity();
+  if (places.sensor_rotation_rad) {
+    const Vector3d s(places.sensor_rotation_rad->data());
+    to_tool = Eigen::AngleAxisd(s.norm(), s.stableNormalized()).toRotationMatrix();
+  }
   RotationPath path;
   std::size_t near_whole_turn = 0;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -151,14 +160,16 @@ std::vector<std::string> take_spatial_axes(schema::Recording& recording, const S
       near_whole_turn += is_near_whole_turn(r) ? 1U : 0U;
     }
     if (!map.has_force) continue;
-    const Wrench wrench =
-        at_position({.force = vector_at(values, forces, row), .torque = vector_at(values, torques, row)}, map,
-                    places, p, to_world);
+    const Wrench wrench = at_position({.force = to_tool * vector_at(values, forces, row),
+                                       .torque = to_tool * vector_at(values, torques, row)},
+                                      map, places, p, to_world);
     append_vector(recording.force_measured, wrench.force);
     if (turns) append_vector(recording.force_measured, models::left_jacobian(r).transpose() * wrench.torque);
   }
   if (map.has_force) {
     recording.header.device_properties["wrench_frame"] = map.frame;
+    if (places.sensor_rotation_rad)
+      recording.header.device_properties["sensor_rotation"] = rotation_text(*places.sensor_rotation_rad);
     if (turns) recording.header.device_properties["torques"] = "generalised";
   }
   if (near_whole_turn == 0) return {};
@@ -177,6 +188,7 @@ std::string spatial_text(const SpatialMap& map, const SpatialPlaces& places) {
     text += fmt::format(", {} in the frame {} turned to the world's", map.has_torque ? "wrench" : "force",
                         map.frame);
   }
+  if (places.sensor_rotation_rad) text += ", sensor turned by " + rotation_text(*places.sensor_rotation_rad);
   if (places.point_m) text += fmt::format(", torques about {}", text_of(*places.point_m));
   if (places.origin_m != std::array<double, 3>{})
     text += fmt::format(", origin {}", text_of(places.origin_m));

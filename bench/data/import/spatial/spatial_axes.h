@@ -26,6 +26,9 @@ struct SpatialPlaces {
   std::array<double, 3> origin_m{};              ///< subtracted from the positions
   std::optional<std::array<double, 3>> point_m;  ///< P, about which the file's torques are, in its wrench's
                                                  ///< frame; none: the position
+  /// Rotation vector of S, from the axes of the sensor, in which the wrench was measured, to those of the
+  /// tool, of which the orientation is: f and m below are S times what the file says [rad].
+  std::optional<std::array<double, 3>> sensor_rotation_rad;
 };
 
 /// Makes the axes x, y, z of a recording, and rx, ry, rz if there is an orientation, with the force measured.

@@ -405,6 +405,14 @@ TEST_F(BadFile, OfLabViewIsReadWithItsUnits) {
   EXPECT_EQ(read.layout.header_line, 17U) << "lines are those of the file";
   EXPECT_TRUE(read.bad_lines.empty());
   EXPECT_THAT(read.warnings, Contains("a LabVIEW measurement file, begun 2026/01/31 12:00:00.25"));
+  // date -u -d 2026-01-31T12:00:00Z +%s; its first time is X0 = 0.5 s after that quarter of a second.
+  EXPECT_EQ(read.recording.header.start_ns, 1769860800'750'000'000);
+  EXPECT_EQ(read.recording.header.start_clock, "local") << "the file names no zone";
+  std::string fine = lvm("One", "0.001", rows);
+  for (std::size_t at = fine.find(".25\t"); at != std::string::npos; at = fine.find(".25\t", at))
+    fine.replace(at, 3, ".1234567894999999999");  // more digits than nanoseconds
+  const Imported finer = imported(wrote("f.lvm", fine), "time=X_Value,position=Way,force=Load");
+  EXPECT_EQ(finer.recording.header.start_ns, 1769860800'623'456'789);
   const std::string none = wrote("b.lvm", lvm("No", "0.001", "\t1\t2\r\n\t1.5\t3\r\n\t2\t4\r\n"));
   const Imported timed = imported(none, "time=X_Value,position=Way,force=Load");
   EXPECT_NEAR(timed.recording.time[2], 2e-3, 1e-15);

@@ -1,9 +1,12 @@
 #include "support/program.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -53,6 +56,24 @@ TEST_F(ImportProgram, SaysWhatItFoundAsOneJsonObject) {
   EXPECT_EQ(json.at("channels").at("position").at("max"), 3e-3);
   EXPECT_THAT(json.at("warnings").dump(), HasSubstr("force_measured holds 1 values that are not finite"));
   EXPECT_THAT(outcome.errors, HasSubstr("1 lines are not data: 5"));
+}
+
+TEST_F(ImportProgram, SaysWhatTheSensorHides) {
+  std::string clipped = "t,x,F\n";
+  for (int i = 0; i < 400; ++i) {
+    const double x = 5.0 * (1.0 - std::cos(0.05 * i));
+    clipped += fmt::format("{},{:.3f},{:.3f}\n", 0.01 * i, x, std::min(2.0, 0.3 * x));
+  }
+  const Outcome outcome = import(clipped, {"--map", "time=t[s],position=x[mm],force=F[N]", "--json"});
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("warning: force_measured")) << "as kerf inspect says";
+  EXPECT_THAT(outcome.errors, HasSubstr("clipped"));
+  EXPECT_THAT(nlohmann::json::parse(outcome.output).at("warnings").dump(), HasSubstr("clipped"));
+  const std::string second = (folder_ / "b.csv").string();
+  test::write_text(second, clipped);
+  const Outcome both = run_kerf({"import", (folder_ / "data.txt").string(), second, "--map",
+                                 "time=t[s],position=x[mm],force=F[N]", "-o", (folder_ / "all").string()});
+  EXPECT_THAT(both.errors, HasSubstr("b.csv: force_measured")) << "of several files, too";
 }
 
 TEST_F(ImportProgram, RefusesAMapThatDoesNotFit) {

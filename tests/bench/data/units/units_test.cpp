@@ -68,6 +68,15 @@ TEST(Units, OfSeveralFactorsAreDividedAndRaisedByEach) {
   EXPECT_EQ(parse_unit("1/rpm").si, "s/rad");
 }
 
+TEST(Units, OfCountsAreWhatOneOfThemIs) {
+  // ATI's Net F/T writes 1,000,000 counts per N and 1,000,000 per N-m, or per lbf and lbf-in.
+  EXPECT_EQ(parse_unit("counts/1000000 N"), parse_unit("1e-6 N"));
+  EXPECT_EQ(parse_unit("counts/1e6 N·m").si, "N·m");
+  EXPECT_DOUBLE_EQ(parse_unit("counts/4000 lbf").factor, parse_unit("lbf").factor / 4000.0);
+  for (const auto* bad : {"counts/", "counts/N", "counts/1000", "counts/0 N"})
+    EXPECT_THROW((void)parse_unit(bad), std::invalid_argument) << bad;
+}
+
 TEST(Units, RefuseWhatTheyDoNotKnowAndSayWhatTheyDo) {
   const auto message = [](const char* text) -> std::string {
     try {

@@ -76,6 +76,8 @@ TEST_F(ImportFileTest, IsRefusedWithItsLine) {
   EXPECT_THAT(refusal(map + "rate = inf\n"), HasSubstr("a.import.toml:2: "));
   EXPECT_THAT(refusal(map + "stretch = 1.5\n"), HasSubstr("expected a whole number from 1 to 1000000"));
   EXPECT_THAT(refusal(map + "origin = [1, 2]\n"), HasSubstr("'origin' must be three numbers [m]"));
+  EXPECT_THAT(refusal(map + "sensor_rotation = [1, 2]\n"),
+              HasSubstr("'sensor_rotation' must be three numbers [deg]"));
   EXPECT_THAT(refusal(map + "point = [1, 2, nan]\n"), HasSubstr("a.import.toml:2: "));
   EXPECT_THAT(refusal("map = \n"), HasSubstr("a.import.toml:1"));
 }

@@ -36,9 +36,11 @@ StudyPlan some_plan() {
                  .speed = "slow",
                  .specimen = "s1",
                  .rig = "rig2",
+                 .less_blank = "air.csv",
                  .accepted = "looked through",
                  .numbers = "7"},
-                {.path = "picture.png", .ignored = "no text"}};
+                {.path = "picture.png", .ignored = "no text"},
+                {.path = "air.csv", .blank = true}};
   return plan;
 }
 
@@ -69,7 +71,8 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.compare, plan.compare);
   EXPECT_EQ(again.licence, plan.licence);
   EXPECT_EQ(again.people, plan.people);
-  ASSERT_EQ(again.files.size(), 2U);
+  ASSERT_EQ(again.files.size(), 3U);
+  EXPECT_EQ(again.files[0].less_blank, "air.csv");
   EXPECT_EQ(again.files[0].path, plan.files[0].path);
   EXPECT_EQ(again.files[0].specimen, "s1");
   EXPECT_EQ(again.files[0].rig, "rig2");
@@ -107,6 +110,9 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("path = \"picture.png\"\nignored = \"no text\"", "path = \"a_force.txt\""),
               HasSubstr("takes part itself"));
   EXPECT_THAT(with("blank = \"subtract\"", "blank = \"off\""), HasSubstr("not \"off\""));
+  EXPECT_THAT(with("less_blank = \"air.csv\"", "less_blank = \"picture.png\""),
+              HasSubstr("which is no [[file]] with blank = true"));
+  EXPECT_THAT(with("blank = true", "blank = true\nless_blank = \"air.csv\""), HasSubstr("is a blank"));
   EXPECT_THAT(with("files = \"rig2/*.csv\"\n", ""), HasSubstr("needs 'files'"));
   EXPECT_THAT(with("tissue = \"liver\"", "tisue = \"liver\""), HasSubstr("tisue"));
 }

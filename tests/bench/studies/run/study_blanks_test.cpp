@@ -93,6 +93,8 @@ TEST(FittingBlanks, AreOfTheSameRigAndSpeed) {
   EXPECT_THAT(fitting_blanks(plan, {.speed = "medium", .rig = "rig1"}), ElementsAre(2U));
   EXPECT_THAT(fitting_blanks(plan, {.speed = "slow", .rig = "rig2"}), ElementsAre(3U));
   EXPECT_THAT(fitting_blanks(plan, {.speed = "slow"}), IsEmpty());
+  EXPECT_THAT(fitting_blanks(plan, {.speed = "slow", .rig = "rig1", .less_blank = "d"}), ElementsAre(3U))
+      << "a person has named it";
 }
 
 }  // namespace

@@ -59,7 +59,8 @@ TEST(SpatialAxes, AreTheSameRotationVectorFromEveryFormOfOrientation) {
   for (const std::string form :
        {"qx:qw[quaternion xyzw]", "pw:pz[quaternion wxyz]", "v1:v3[rotvec rad]", "d1:d3[rotvec deg]",
         "ea:ec[euler xyz deg]", "fa:fc[euler ZYX rad]", "ga:gc[euler ZXZ deg]", "ha:hc[euler yxz rad]",
-        "m11:m33[matrix]", "m11:m33[matrix rows]", "n11:n33[matrix columns]", "5:8[quaternion xyzw]"}) {
+        "m11:m33[matrix]", "m11:m33[matrix rows]", "n11:n33[matrix columns]", "n11:n33[matrix inverse]",
+        "m11:m33[matrix columns inverse]", "5:8[quaternion xyzw]"}) {
     SCOPED_TRACE(form);
     const schema::Recording recording = imported_file(position + ",orientation=" + form).recording;
     ASSERT_EQ(recording.dimensions(), 6U);
@@ -97,6 +98,29 @@ TEST(SpatialAxes, CountPositionsFromTheOriginAndTorquesFromTheWorldsPointAllTheS
   EXPECT_NEAR(recording.position[0], -1.0, 1e-12);
   EXPECT_NEAR(recording.position[2], 0.02 - 3.0, 1e-12);
   expect_axis(recording, recording.force_measured, 4, "Ty", 1e-9);
+}
+
+TEST(SpatialAxes, TurnTheWrenchOfASensorThatIsMountedAtAnAngle) {
+  // A quarter turn about z: what the sensor feels along its x acts along the tool's y.
+  const std::string text =
+      "t,x,y,z,qx,qy,qz,qw,a,b,c,d,e,f\n0,0,0,0,0,0,0,1,1,2,3,4,5,6\n1,0,0,0,0,0,0,1,1,2,3,4,5,6\n";
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "data.csv", text);
+  const auto run = [&](const std::string& mapped) {
+    return test::run_kerf({"import", (folder / "data.csv").string(), "--map",
+                           "time=1[s],position=2:4[m],orientation=5:8[quaternion xyzw]," + mapped,
+                           "--sensor-rotation", "0,0,90", "-o", (folder / "r.h5").string(), "--force"});
+  };
+  ASSERT_EQ(run("wrench=9:14[counts/10 N counts/10 N·m sensor]").exit_status, 0);
+  const schema::Recording recording = schema::read_recording(folder / "r.h5");
+  const std::vector<double> expected{-0.2, 0.1, 0.3, -0.5, 0.4, 0.6};
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(recording.force_measured[i], expected[i], 1e-15) << i;
+  EXPECT_EQ(std::get<std::string>(recording.header.device_properties.at("wrench_frame")), "sensor");
+  EXPECT_THAT(std::get<std::string>(recording.header.device_properties.at("sensor_rotation")),
+              HasSubstr("(0, 0, 1.57079633) rad"));
+  EXPECT_THAT(recording.header.history, HasSubstr("sensor turned by"));
+  EXPECT_THAT(run("wrench=9:14[N N·m world]").errors,
+              HasSubstr("in the frame of the sensor, and there is none"));
 }
 
 TEST(SpatialAxes, KeepNanAndSayNothingOfTorquesThatNobodyMeasured) {
