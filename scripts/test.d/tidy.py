@@ -25,6 +25,7 @@ from pathlib import Path
 
 from changed_files import changed_files
 from compile_commands import ROOT, Unit, read_units
+from joint_sources import joined
 
 SOURCES = {".cpp"}
 HEADERS = {".h"}
@@ -66,31 +67,14 @@ def source_that_includes(header: Path, units: list[Unit]) -> Unit | None:
     return None
 
 
-BROUGHT = re.compile(r"^using (?:\w+::)+(\w+);", re.MULTILINE)
-DEFINED = re.compile(r"""^(?:(?:inline|static|constexpr|const|\[\[nodiscard\]\]|template\ <[^>]*>)\ +)*
-    (?:(?:struct|class|enum(?:\ class)?|using)\ (\w+)\b(?!::)
-    |(?!\s|using|namespace|return|TEST|INSTANTIATE)[\w:<>,&*\[\]\ ]+?\b(\w+)(?:\(|\{|\ =|\[|;))""", re.MULTILINE | re.VERBOSE)
-MOST_TOGETHER, MOST_BYTES_TOGETHER = 10, 60_000
+MOST_TOGETHER, MOST_BYTES_TOGETHER = 20, 120_000
 
 
 def together(units: list[Unit], folder: Path) -> list[Unit]:
     """Sources that are compiled alike and define no name twice, as sources that include them, written into `folder`."""
-    groups: list[tuple[set[str], set[str], list[Unit]]] = []
-    for unit in sorted(units, key=lambda unit: -unit.source.stat().st_size):
-        text = unit.source.read_text()
-        names = {name for match in DEFINED.findall(text) for name in match if name}
-        brought = set(BROUGHT.findall(text))
-        for all_names, all_brought, group in groups:
-            if (group[0].arguments == unit.arguments and len(group) < MOST_TOGETHER
-                    and sum(one.source.stat().st_size for one in [*group, unit]) < MOST_BYTES_TOGETHER
-                    and all_names.isdisjoint(names | brought) and all_brought.isdisjoint(names)):
-                all_names |= names
-                all_brought |= brought
-                group.append(unit)
-                break
-        else:
-            groups.append((names, brought, [unit]))
-    return [group[0] if len(group) == 1 else joint(group, folder) for _, _, group in groups]
+    of = {unit.source: unit for unit in units}
+    groups = joined(of, MOST_TOGETHER, MOST_BYTES_TOGETHER, lambda source: of[source].arguments)
+    return [of[group[0]] if len(group) == 1 else joint([of[source] for source in group], folder) for group in groups]
 
 
 def joint(group: list[Unit], folder: Path) -> Unit:
@@ -185,8 +169,10 @@ def main(arguments: list[str]) -> int:
     changed = None if everything else changed_files(ROOT)
     if changed is None:
         units = [unit for unit in units if not unit.is_header_alone]
-        lone = [unit for unit in units if not unit.includes]
-        units = [unit for unit in units if unit.includes] + together(lone, ROOT / "build" / "tidy-together")
+        # Tests are compiled in smaller batches than can be read together.
+        small = [unit for unit in units if not unit.includes or unit.includes[0].is_relative_to(ROOT / "tests")]
+        lone = [by_itself(unit, source) for unit in small for source in unit.includes or (unit.source,)]
+        units = [unit for unit in units if unit not in small] + together(lone, ROOT / "build" / "tidy-together")
     else:
         units = units_of_changes(units, changed)
     cache = Cache(ROOT / "build" / "tidy-cache", tidy)
