@@ -85,9 +85,11 @@ std::string session_schema_as_markdown() {
                  rule.list == 0 ? "one" : std::to_string(rule.list), std::string(description)});
   }
   text += '\n' + row({"dataset", "type", "shape", "what"}) + row({"---", "---", "---", "---"});
-  text += row({code("/entries"), code(session_layout::type_of_entries), "E",
-               "What happened, oldest first: `plan`, `run`, `trial`, `quit`, `opened`, `finished`; texts of "
-               "fixed length"});
+  text +=
+      row({code("/entries"), code(session_layout::type_of_entries), "E",
+           "What happened, oldest first: `plan`, `run`, `plugin` (name and SHA-256 of one that a run had), "
+           "`trial`, `quit`, `opened`, `finished`; texts of "
+           "fixed length"});
   text +=
       row({code("/sealed/NNNNNN"), code("uint8"), "any",
            "What is sealed of entry NNNNNN, from 000000: nonce (24), ciphertext, tag (16); in one piece, not "
