@@ -176,10 +176,10 @@ TEST_F(ExampleRenderers, GiveTheStoredForcesInCppAndPython) {
 TEST_F(ExampleRenderers, AreCaughtWhenTheyBecomeWrong) {
   const std::string text = test::read_text(folder_ / "renderers.toml");
   for (const auto& [fault, error, says] : std::vector<std::array<std::string, 3>>{
-           {"gain", "", "1.01 times the stored"},
+           {"gain", "", "the force is 1.01 times the expected one"},
            {"sign", "", "sign"},
-           {"shift", "", "that of 1 tick before"},
-           {"buzz", "", "0.02 N apart"},
+           {"shift", "", "1 tick (1 ms) too late"},
+           {"buzz", "", "a vibration of 250 Hz"},
            {"nan", "", "got nan N"},
            {"lost", "999 rows for 1000 ticks; the row of tick 300 has", ""},
            {"hang", "had not ended after 0.5 s", ""}}) {
