@@ -21,7 +21,8 @@ const std::filesystem::path& folder_of_suites() {
   return suites;
 }
 
-/// A suite that is read has cases with names of their own, each of a trajectory on axes of its law.
+/// A suite that is read has cases with names of their own, each of a trajectory on axes of its renderer,
+/// or with the reason why it has none.
 void fuzz_suite(Bytes bytes) {
   const auto file = folder_of_suites() / "fuzz.toml";
   std::ofstream(file, std::ios::binary | std::ios::trunc) << text_of(bytes);
@@ -31,11 +32,13 @@ void fuzz_suite(Bytes bytes) {
   std::set<std::string> names;
   for (const bench::RegressionCase& one : suite.cases) {
     promise(names.insert(one.name).second, "a case has a name of its own");
-    const std::size_t axes = bench::axes_of(one.law).size();
+    if (!one.error.empty()) continue;
+    const std::size_t axes = bench::axes_of(one).size();
+    promise(axes > 0, "a renderer has axes");
     for (const bench::ScriptedAxis& motion : one.motion.axes)
-      promise(motion.axis < axes, "an axis of the law moves");
+      promise(motion.axis < axes, "an axis of the renderer moves");
     const bench::MotionSource& from = one.motion;
-    promise(from.recording.empty() + from.scene.empty() + from.axes.empty() == 2,
+    promise(from.recording.empty() + from.scene.empty() + from.axes.empty() + one.trajectory.empty() == 3,
             "a case has one trajectory");
   }
   promise(bench::only(suite, {suite.cases.front().name}).cases.size() == 1, "a case is found by its name");
