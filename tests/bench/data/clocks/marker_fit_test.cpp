@@ -87,10 +87,10 @@ TEST(MarkerFit, CoversTheTruthInNineteenOfTwenty) {
 }
 
 TEST(MarkerFit, FindsWhereAShorterFileBegan) {
-  const Markers first{.time_s = {1.0, 3.5, 9.1, 11.0, 20.4, 31.2}, .period_s = 0.01};
-  const Markers other{.time_s = {0.1, 2.0, 11.4}, .period_s = 0.01};
-  EXPECT_NEAR(fit_markers(first, other).shift_s, 9.0, 1e-9);
-  EXPECT_NEAR(fit_markers(other, first).shift_s, -9.0, 1e-9);
+  const Markers whole{.time_s = {1.0, 3.5, 9.1, 11.0, 20.4, 31.2}, .period_s = 0.01};
+  const Markers part{.time_s = {0.1, 2.0, 11.4}, .period_s = 0.01};
+  EXPECT_NEAR(fit_markers(whole, part).shift_s, 9.0, 1e-9);
+  EXPECT_NEAR(fit_markers(part, whole).shift_s, -9.0, 1e-9);
 }
 
 TEST(MarkerFit, RefusesWhatDoesNotTell) {
