@@ -14,9 +14,8 @@ class Unit:
     """What a compiler reads at once: a source, several of them (a unity build), or a header alone."""
 
     source: Path
-    arguments: tuple[str, ...]  # without the source and the output
+    arguments: tuple[str, ...]  # without the source, the output and -Werror
     folder: Path
-    output: str
     includes: tuple[Path, ...]  # what a generated source takes in: the sources of a unity build, the header to be verified
 
     @property
@@ -60,6 +59,14 @@ def read_units(build: Path, root: Path = ROOT) -> list[Unit]:
             if not ("_verify_interface_header_sets" in str(source) or source.name.startswith("unity_")):
                 continue
             includes = _included(source, arguments)
-        output = words[words.index("-o") + 1] if "-o" in words else ""
-        units.append(Unit(source, arguments, Path(entry["directory"]), output, includes))
+        units.append(Unit(source, arguments, Path(entry["directory"]), includes))
     return units
+
+
+def without_precompiled_header(arguments: tuple[str, ...]) -> list[str]:
+    """Its text is included instead: it may not be built, and what it holds must count in the hash."""
+    words = list(arguments)
+    while "-include-pch" in words:
+        at = words.index("-include-pch")
+        del words[at - 1:at + 3]  # -Xclang -include-pch -Xclang FILE
+    return words

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Runs clang-tidy with the checks of .clang-tidy, on what changed or on everything, in parallel, and keeps the results.
 
-    scripts/test.d/tidy.py [--all] BUILD        BUILD: a folder that Clang has compiled, for example build/dev
+    scripts/test.d/tidy.py [--all] [--fresh] BUILD        BUILD: a folder that Clang has compiled, for example build/dev
 
 What has changed is said in changed_files.py: a changed source is read by itself; a changed header alone, or in a source that
 includes it. Where everything is read, sources that clash in no name are read together, since most of the time goes into what
 they all include. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
-NOLINTs), the command, the checks and the version of clang-tidy.
+NOLINTs), the command, the checks and the version of clang-tidy; with --fresh none is looked up or kept, which saves reading
+everything a second time where nothing is known from before.
 
 Exit status: 0 if nothing was found, 1 if something was, 2 for bad usage.
 """
@@ -24,7 +25,7 @@ import time
 from pathlib import Path
 
 from changed_files import changed_files
-from compile_commands import ROOT, Unit, read_units
+from compile_commands import ROOT, Unit, read_units, without_precompiled_header
 from joint_sources import joined
 
 SOURCES = {".cpp"}
@@ -86,15 +87,6 @@ def joint(group: list[Unit], folder: Path) -> Unit:
     return dataclasses.replace(group[0], source=source, includes=sources)
 
 
-def without_precompiled_header(arguments: tuple[str, ...]) -> list[str]:
-    """Its text is included instead: it may not be built, and what it holds must count in the hash."""
-    words = list(arguments)
-    while "-include-pch" in words:
-        at = words.index("-include-pch")
-        del words[at - 1:at + 3]  # -Xclang -include-pch -Xclang FILE
-    return words
-
-
 class Cache:
     def __init__(self, folder: Path, tidy: str):
         self.folder = folder
@@ -117,7 +109,7 @@ class Cache:
                 entry.unlink()
 
 
-def findings(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
+def findings(tidy: str, unit: Unit, cache: Cache | None) -> tuple[str, bool]:
     """What clang-tidy says, and whether that was known. What clashes after all is read one by one."""
     text, known = findings_at_once(tidy, unit, cache)
     if unit.includes and "[clang-diagnostic-error]" in text:
@@ -126,8 +118,8 @@ def findings(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
     return text, known
 
 
-def findings_at_once(tidy: str, unit: Unit, cache: Cache) -> tuple[str, bool]:
-    entry = cache.entry(unit)
+def findings_at_once(tidy: str, unit: Unit, cache: Cache | None) -> tuple[str, bool]:
+    entry = cache.entry(unit) if cache else None
     if entry and entry.exists():
         os.utime(entry)
         return entry.read_text(), True
@@ -157,9 +149,9 @@ def each_once(texts: list[str]) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     everything = "--all" in arguments
-    folders = [word for word in arguments if word != "--all"]
+    folders = [word for word in arguments if word not in ("--all", "--fresh")]
     if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
-        print("usage: scripts/test.d/tidy.py [--all] BUILD, a folder with compile_commands.json", file=sys.stderr)
+        print("usage: scripts/test.d/tidy.py [--all] [--fresh] BUILD, a folder with compile_commands.json", file=sys.stderr)
         return 2
     tidy = shutil.which("clang-tidy")
     if not tidy:
@@ -175,14 +167,15 @@ def main(arguments: list[str]) -> int:
         units = [unit for unit in units if unit not in small] + together(lone, ROOT / "build" / "tidy-together")
     else:
         units = units_of_changes(units, changed)
-    cache = Cache(ROOT / "build" / "tidy-cache", tidy)
+    cache = None if "--fresh" in arguments else Cache(ROOT / "build" / "tidy-cache", tidy)
     # The longest first, so that none is left for one processor at the end.
     units.sort(key=lambda unit: -sum(path.stat().st_size for path in unit.includes or (unit.source,)))
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         results = list(pool.map(lambda unit: findings(tidy, unit, cache), units))
     found = each_once([text for text, _ in results])
     print("".join(found), end="")
-    cache.prune()
+    if cache:
+        cache.prune()
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"clang-tidy: {len(found)} findings in {len(units)} units, {sum(known for _, known in results)} of them known from "
           f"before, {usage.ru_utime + usage.ru_stime:.0f} s of processor time")

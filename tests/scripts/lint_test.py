@@ -1,5 +1,7 @@
 """What scripts/test.d/tidy.py and headers_alone.py look at, and what they keep."""
 
+import contextlib
+import io
 import json
 import os
 import subprocess
@@ -156,6 +158,23 @@ class House(unittest.TestCase):
         status, said = self.run_tidy("--all")
         self.assertEqual(status, 0, said)
         self.assertIn("0 findings in 2 units, 1 of them known", said)
+
+    def test_keeps_nothing_where_it_is_to_look_afresh(self):
+        for _ in range(2):
+            self.assertIn("1 findings in 2 units, 0 of them known", self.run_tidy("--all", "--fresh")[1])
+        self.assertFalse((self.root / "build" / "tidy-cache").exists())
+
+    def test_says_which_header_lives_on_what_others_include(self):
+        def compile_headers():
+            with mock.patch("headers_alone.read_units", lambda build: read_units(build, self.root)), \
+                    contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as err:
+                return headers_alone.main(["--all", str(self.build)]), out.getvalue(), err.getvalue()
+
+        self.assertEqual(compile_headers(), (0, "1 of 1 headers compiled alone\n", ""))
+        self.write("include/law.h", "#pragma once\ninline std::size_t half(std::size_t n) { return n / 2; }\n")
+        status, out, err = compile_headers()
+        self.assertEqual((status, out), (1, "Of 1 headers 1 do not compile alone\n"))
+        self.assertIn("law.h:2:8: error:", err)
 
     def test_asks_again_when_the_checks_change(self):
         self.write("include/law.h", "#pragma once\n")

@@ -40,7 +40,8 @@ LiveLoop::~LiveLoop() { stop(); }
 void LiveLoop::start(const LiveOptions& options) {
   const std::lock_guard only(starting_);
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return phase_ != Phase::over; });
     if (phase_ != Phase::idle) throw std::invalid_argument("the loop runs already: stop it first");
     phase_ = Phase::starting;
     stop_ = is_run_over_ = false;
@@ -132,10 +133,10 @@ void LiveLoop::watch(LiveHub& hub) {
   {
     const std::lock_guard lock(mutex_);
     ended_ = fault_;
-    phase_ = Phase::idle;
-    changed_.notify_all();
+    phase_ = Phase::over;
   }
   if (on_rows_) on_rows_();
+  enter(Phase::idle);
 }
 
 void LiveLoop::stop() {

@@ -49,8 +49,8 @@ class LiveLoop {
   /// Stops the loop.
   ~LiveLoop();
 
-  /// Called by the thread that takes the rows out whenever it has. Before start(); must not throw,
-  /// and what it uses has to outlive the loop.
+  /// Called by the thread that takes the rows out whenever it has, and once more when the loop is over; not any
+  /// more once stop() has returned. Set before start(); must not throw, nor start or stop the loop.
   void on_rows(std::function<void()> call) { on_rows_ = std::move(call); }
 
   /// Returns once the device is open. Renders nothing at first; a force that was released stays so.
@@ -98,7 +98,8 @@ class LiveLoop {
   [[nodiscard]] Watched watched() const;
 
  private:
-  enum class Phase : std::uint8_t { idle, starting, running };
+  /// `over`: has ended, and who looks on is being told.
+  enum class Phase : std::uint8_t { idle, starting, running, over };
 
   void open(const LiveOptions& options);
   void enter(Phase phase);

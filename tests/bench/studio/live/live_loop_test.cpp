@@ -73,6 +73,43 @@ TEST(LiveLoop, RunsADeviceAndTellsWhatItDoes) {
   EXPECT_GE(watched.history().frame_since(0, 1, 600).columns, 100U) << "what was can still be looked at";
 }
 
+TEST(LiveLoop, CallsNobodyOnceItHasBeenStopped) {
+  LiveLoop loop;
+  std::atomic<bool> is_last_call{false};
+  std::atomic<bool> is_stopped{false};
+  std::atomic<int> calls_too_late{0};
+  loop.on_rows([&] {
+    // The call after the end is drawn out, so that who did not wait for it would have gone by now.
+    if (!loop.status().is_running) {
+      is_last_call = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    if (is_stopped) ++calls_too_late;
+  });
+  loop.start({});
+  loop.stop();
+  is_stopped = true;
+  EXPECT_TRUE(is_last_call) << "who looks on is told of the end";
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  EXPECT_EQ(calls_too_late, 0);
+}
+
+TEST(LiveLoop, StartsAnewWhileTheEndOfTheLastLoopIsBeingTold) {
+  LiveLoop loop;
+  std::atomic<bool> is_being_told{false};
+  loop.on_rows([&] {
+    if (loop.status().is_running) return;
+    is_being_told = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  });
+  loop.start({});
+  loop.request_stop();
+  ASSERT_TRUE(comes_true([&] { return is_being_told.load(); }));
+  loop.start({});
+  EXPECT_EQ(loop.watched().run, 2U);
+  loop.stop();
+}
+
 TEST(LiveLoop, TellsWhoStartsItWhyItCannotAndCanBeStartedAfterwards) {
   LiveLoop loop;
   EXPECT_THROW(loop.start({.device_uri = "sim:spoon"}), drivers::DeviceError);
