@@ -150,12 +150,12 @@ void add_session_analyze(CLI::App& session, Context& context) {
   verb.add_option("--level", options.level, "Significance level of the tests")
       .within(0.001, 0.5)
       .with_default();
-  verb.add_option("--margin", options.margin, "Equivalence margin of a preference, 50 % +- this")
-      .within(0.001, 0.5)
-      .with_default();
-  verb.add_option("--d-prime", options.d_prime_bound, "Renderings count as equal below this d'")
-      .positive()
-      .with_default();
+  verb.add_option("--margin", options.margin,
+                  "Equivalence margin of a preference, 50 % +- this (default: none)")
+      .within(0.001, 0.5);
+  verb.add_option("--d-prime", options.d_prime_bound,
+                  "Renderings count as equal below this d' (default: none)")
+      .positive();
   verb.add_option("--jnd-margins", arguments->jnd_margins, "LOWER UPPER: equivalence margin of a JND")
       .taking(2);
   verb.add_option("--correction", arguments->correction, "For several tests: holm or bh")

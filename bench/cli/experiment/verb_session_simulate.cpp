@@ -126,6 +126,21 @@ void add_session_simulate(CLI::App& session, Context& context) {
   verb.add_option("--spread", observer.spread, "Between subjects: standard deviation of ln(JND)")
       .not_negative()
       .with_default();
+  verb.add_option("--preference-spread", observer.preference_spread,
+                  "Between subjects: standard deviation of --preference [d']")
+      .not_negative()
+      .with_default();
+  verb.add_option("--share-feeling", observer.share_feeling,
+                  "Share of the subjects who feel any difference; the others guess")
+      .within(0.0, 1.0)
+      .with_default();
+  AnalysisOptions& analysis = arguments->simulation.analysis;
+  verb.add_option("--margin", analysis.margin,
+                  "How often a preference is shown to lie within 50 % +- this (default: not asked)")
+      .within(0.001, 0.5);
+  verb.add_option("--equal-below", analysis.d_prime_bound,
+                  "How often d' is shown to lie below this (default: not asked)")
+      .positive();
   verb.add_option("--preference", observer.preference,
                   "Of a preference: how much better the second of a pair is liked, if it is told apart [d']")
       .with_default();

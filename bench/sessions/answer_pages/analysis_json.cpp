@@ -22,21 +22,40 @@ json count_as_json(psychophysics::Count count) {
   return {{"successes", count.successes}, {"trials", count.trials}};
 }
 
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+/// What is excluded stands there always; whether a margin is kept only if one was set.
 json equivalence_as_json(const AnswerGroup& group, const AnalysisOptions& options) {
-  if (!group.equivalence) return nullptr;
+  if (!group.d_prime && group.counted == "right") return nullptr;
   json result{{"of", group.d_prime ? "dprime" : "preference"}};
   if (group.d_prime) {
-    result["bound"] = options.d_prime_bound;
+    result["bound"] = or_null(options.d_prime_bound);
     result["excluded_above"] = json_number(group.excluded_d_prime);
   } else {
-    result["margin"] = options.margin;
+    result["margin"] = or_null(options.margin);
     result["excluded_margin"] = json_number(group.excluded_margin);
   }
   result["level"] = options.level;
-  result["p_value"] = json_number(group.equivalence->p);
-  result["interval"] = pair_of(group.equivalence->interval);
-  result["shown"] = group.equivalence->is_shown;
+  const bool is_asked = group.equivalence.has_value();
+  const GroupEquivalence found = group.equivalence.value_or(GroupEquivalence());
+  result["p_value"] = is_asked ? json_number(found.p) : json(nullptr);
+  result["interval"] = is_asked ? pair_of(found.interval) : json(nullptr);
+  result["shown"] = is_asked ? json(found.is_shown) : json(nullptr);
+  result["subjects_shown"] = is_asked ? json(found.subjects_shown) : json(nullptr);
+  result["subjects_differ"] = is_asked && group.subjects > 2 ? json(found.subjects_differ) : json(nullptr);
   return result;
+}
+
+json over_subjects_as_json(const AnswerGroup& group) {
+  if (!group.over_subjects) return nullptr;
+  const psychophysics::SignFlips& flips = *group.over_subjects;
+  return {{"test", "sign flips"},
+          {"subjects", group.subjects},
+          {"mean", json_number(group.chance + flips.mean)},
+          {"p_greater", json_number(flips.p_greater)},
+          {"p_two_sided", json_number(flips.p_two_sided)},
+          {"exact", flips.is_exact},
+          {"is_main", group.tests_subjects}};
 }
 
 json power_as_json(const AnswerGroup& group) {
@@ -62,6 +81,7 @@ void add_group(json& result, const AnswerGroup& group, const AnalysisOptions& op
   result["main_test"] = std::isnan(group.p_value) ? "none" : group.one_sided ? "one-sided" : "two-sided";
   result["p_greater"] = json_number(group.p_greater);
   result["p_two_sided"] = json_number(group.p_two_sided);
+  result["over_subjects"] = over_subjects_as_json(group);
   result["ci95"] = pair_of(group.interval);
   result["wilson95"] = pair_of(group.wilson);
   result["dprime"] = group.d_prime ? json_number(group.d_prime->value) : json(nullptr);
@@ -139,6 +159,19 @@ json scale_as_json(const psychophysics::Ranking& ranking) {
             {"p_value", json_number(ranking.deviance_p)}}}};
 }
 
+json ranking_over_subjects_as_json(const TissueRanking& ranking) {
+  if (!ranking.over_subjects) return nullptr;
+  const psychophysics::SubjectsRanking& over = *ranking.over_subjects;
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < over.covariance.size(); ++i) errors.push_back(std::sqrt(over.covariance[i][i]));
+  return {{"test", "score of Bradley-Terry, flipped by subjects"},
+          {"subjects", over.subjects},
+          {"p_value", json_number(over.p)},
+          {"exact", over.is_exact},
+          {"std_error", json_numbers(errors)},
+          {"is_main", ranking.tests_subjects}};
+}
+
 json rankings_as_json(const Analysis& analysis) {
   json result = json::array();
   for (const TissueRanking& ranking : analysis.rankings) {
@@ -161,6 +194,7 @@ json rankings_as_json(const Analysis& analysis) {
          {"wins", ranking.wins},
          {"bradley_terry", ranking.bradley_terry ? scale_as_json(*ranking.bradley_terry) : json(nullptr)},
          {"thurstone", ranking.thurstone ? scale_as_json(*ranking.thurstone) : json(nullptr)},
+         {"over_subjects", ranking_over_subjects_as_json(ranking)},
          {"pairs", std::move(pairs)},
          {"note", note_of(ranking.note)}});
   }

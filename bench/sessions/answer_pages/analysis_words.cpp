@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -27,8 +28,9 @@ std::string group_line(const AnswerGroup& group, const Analysis& analysis, bool 
                         analysis.options.correction == FamilyCorrection::holm ? "Holm" : "Benjamini-Hochberg",
                         p_text(group.p_adjusted).substr(2));
   } else if (!std::isnan(group.p_value)) {
-    line += fmt::format(" ({}, exact, chance {})", group.one_sided ? "one-sided" : "two-sided",
-                        fmt::format("{:.3g} %", 100.0 * group.chance));
+    line +=
+        fmt::format(" ({}, {}, chance {:.3g} %)", group.one_sided ? "one-sided" : "two-sided",
+                    group.tests_subjects ? "signs of the subjects flipped" : "exact", 100.0 * group.chance);
   }
   if (group.d_prime)
     line += fmt::format(", d' {} ({})", d_prime_text(group.d_prime->value),
@@ -36,21 +38,33 @@ std::string group_line(const AnswerGroup& group, const Analysis& analysis, bool 
   return line;
 }
 
+std::string margin_text(const AnswerGroup& group, const std::string& margin) {
+  if (!group.equivalence) return "no margin was set";
+  const GroupEquivalence& found = *group.equivalence;
+  std::string text = fmt::format("{} is {} ({}{})", margin, found.is_shown ? "kept" : "not shown to be kept",
+                                 p_text(found.p), found.subjects_differ ? ", but the subjects differ" : "");
+  if (group.subjects > 1)
+    text += fmt::format("; for {} of {} subjects alone", found.subjects_shown, group.subjects);
+  return text;
+}
+
+/// Empty where nothing is excluded of the group and nothing was asked.
 std::string equivalence_line(const AnswerGroup& group, const AnalysisOptions& options) {
   const double level = 100.0 * options.level;
+  const char* of = group.subjects > 2 ? "mean " : "";
   if (group.d_prime) {
-    const auto bound = fmt::format("the bound of {:.3g} is {} ({})", options.d_prime_bound,
-                                   group.equivalence->is_shown ? "kept" : "not shown to be kept",
-                                   p_text(group.equivalence->p));
+    const auto bound =
+        margin_text(group, fmt::format("the bound of {:.3g}", options.d_prime_bound.value_or(0.0)));
     return std::isfinite(group.excluded_d_prime)
-               ? fmt::format("a d' above {} is excluded at {:.3g} %; {}",
+               ? fmt::format("a {}d' above {} is excluded at {:.3g} %; {}", of,
                              d_prime_text(group.excluded_d_prime), level, bound)
                : fmt::format("no d' is excluded at {:.3g} %; {}", level, bound);
   }
+  if (group.counted == "right") return "";
   return fmt::format(
-      "preferences beyond {} either way are excluded at {:.3g} %; a margin of +- {:.3g} % is {} ({})",
-      percent_text(group.chance + group.excluded_margin), level, 100.0 * options.margin,
-      group.equivalence->is_shown ? "kept" : "not shown to be kept", p_text(group.equivalence->p));
+      "{}preferences beyond {} either way are excluded at {:.3g} %; {}", of,
+      percent_text(group.chance + group.excluded_margin), level,
+      margin_text(group, fmt::format("a margin of +- {:.3g} %", 100.0 * options.margin.value_or(0.0))));
 }
 
 std::string level_line(const LevelFit& fit, const LevelAnalysis& levels, double confidence) {
@@ -102,9 +116,10 @@ void add_ranking_lines(const Analysis& analysis, std::vector<std::string>& lines
     std::string line = fmt::format("{}: Bradley-Terry worth", tissue);
     for (std::size_t i = 0; i < ranking.samples.size(); ++i) {
       line += fmt::format("{} {} {:+.2f} +- {:.2f}", i == 0 ? "" : ",", analysis.samples[ranking.samples[i]],
-                          ranking.bradley_terry->worth[i], ranking.bradley_terry->standard_error[i]);
+                          ranking.bradley_terry->worth[i], ranking.error_of(i));
     }
-    lines.push_back(fmt::format("{}; all equal: {}", line, p_text(ranking.bradley_terry->ratio_p)));
+    lines.push_back(fmt::format("{}; all equal: {}{}", line, p_text(ranking.p_value()),
+                                ranking.tests_subjects ? " (flipped by subjects)" : ""));
   }
 }
 
@@ -199,7 +214,8 @@ std::vector<std::string> summary_lines(const Analysis& analysis) {
       analysis.practice > 0 ? fmt::format(" ({} of practice left out)", analysis.practice) : std::string()));
   if (analysis.all) {
     lines.push_back(group_line(*analysis.all, analysis, false));
-    if (analysis.all->equivalence) lines.push_back(equivalence_line(*analysis.all, analysis.options));
+    std::string excluded = equivalence_line(*analysis.all, analysis.options);
+    if (!excluded.empty()) lines.push_back(std::move(excluded));
     if (!std::isnan(analysis.p_value) && !analysis.all->power.empty())
       lines.push_back(power_text(*analysis.all));
   }

@@ -23,9 +23,11 @@ void require_options(const AnalysisOptions& options) {
   const auto inside = [](double value, double end) { return value > 0.0 && value < end; };
   require(inside(options.confidence, 1.0), "confidence", options.confidence, "0 to 1, such as 0.95");
   require(inside(options.level, 0.5), "level", options.level, "0 to 0.5, such as 0.05");
-  require(inside(options.margin, 1.0), "margin of a preference", options.margin, "0 to 1, such as 0.1");
-  require(options.d_prime_bound > 0.0 && std::isfinite(options.d_prime_bound), "bound of d'",
-          options.d_prime_bound, "0 to infinity, such as 1");
+  if (options.margin)
+    require(inside(*options.margin, 1.0), "margin of a preference", *options.margin, "0 to 1, such as 0.1");
+  if (options.d_prime_bound)
+    require(*options.d_prime_bound > 0.0 && std::isfinite(*options.d_prime_bound), "bound of d'",
+            *options.d_prime_bound, "0 to infinity, such as 1");
   for (const double truth : options.truths) require(inside(truth, 1.0), "truth of a power", truth, "0 to 1");
   require(options.bootstrap >= 0, "number of bootstrap samples", options.bootstrap, "0 or more");
   if (options.lapse)
@@ -129,27 +131,38 @@ void add_groups(const Study& study, const Answers& judgements, Analysis& analysi
 double ranking_p(const std::vector<TissueRanking>& rankings) {
   std::vector<double> p;
   for (const TissueRanking& ranking : rankings) {
-    if (ranking.bradley_terry) p.push_back(ranking.bradley_terry->ratio_p);
+    if (ranking.bradley_terry) p.push_back(ranking.p_value());
   }
   if (p.empty()) return std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> adjusted = psychophysics::holm(p);
   return *std::min_element(adjusted.begin(), adjusted.end());
 }
 
+std::string main_test_text(const AnswerGroup& group) {
+  const char* sides = group.one_sided ? "one-sided" : "two-sided";
+  if (group.tests_subjects)
+    return fmt::format("flipped signs of the {} subjects' shares less {:.4g} %, {}", group.subjects,
+                       100.0 * group.chance, sides);
+  return fmt::format(
+      "exact binomial, {}, against {:.4g} %{}", sides, 100.0 * group.chance,
+      group.subjects > 1 ? ": of the answers, since so few subjects are no test of people" : "");
+}
+
+std::string ranking_test_text(const std::vector<TissueRanking>& rankings) {
+  const bool over_subjects = std::any_of(rankings.begin(), rankings.end(),
+                                         [](const TissueRanking& each) { return each.tests_subjects; });
+  return fmt::format("{} of Bradley-Terry against equal worth, the least of the tissues' after Holm",
+                     over_subjects ? "score, flipped by subjects," : "likelihood ratio");
+}
+
 void name_main_test(Analysis& analysis) {
   if (analysis.all) {
     analysis.p_value = analysis.all->p_value;
-    analysis.main_test =
-        std::isnan(analysis.p_value)
-            ? analysis.all->note
-            : fmt::format("exact binomial, {}, against {:.4g} %",
-                          analysis.all->one_sided ? "one-sided" : "two-sided", 100.0 * analysis.all->chance);
+    analysis.main_test = std::isnan(analysis.p_value) ? analysis.all->note : main_test_text(*analysis.all);
   } else if (!analysis.rankings.empty()) {
     analysis.p_value = ranking_p(analysis.rankings);
-    analysis.main_test = std::isnan(analysis.p_value)
-                             ? analysis.rankings.front().note
-                             : "likelihood ratio of Bradley-Terry against equal worth, the least of the "
-                               "tissues' after Holm";
+    analysis.main_test =
+        std::isnan(analysis.p_value) ? analysis.rankings.front().note : ranking_test_text(analysis.rankings);
   } else {
     analysis.main_test = "there are no answers";
   }
@@ -203,7 +216,7 @@ MainResult main_result(const Study& study, const AnalysisOptions& options) {
   if (has_answer(study, judgements)) {
     const AnswerGroup all = answer_group(study, judgements, "all", quick);
     result.p_value = all.p_value;
-    result.equivalent = all.equivalence && all.equivalence->is_shown;
+    if (all.equivalence) result.equivalent = all.equivalence->is_shown;
     if (all.d_prime) {
       result.d_prime = all.d_prime->value;
       result.d_prime_interval = all.d_prime->interval;
@@ -216,7 +229,7 @@ MainResult main_result(const Study& study, const AnalysisOptions& options) {
     result.jnd_interval = levels.pooled.jnd->interval;
   }
   if (levels.pooled.equality) result.equality = levels.pooled.equality->value;
-  result.equivalent = levels.pooled.jnd_within.value_or(false);
+  result.equivalent = levels.pooled.jnd_within;
   for (const std::string& note : levels.pooled.notes) {
     if (!result.note.empty()) result.note += "; ";
     result.note += note;

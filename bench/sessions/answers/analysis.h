@@ -23,9 +23,12 @@ enum class FamilyCorrection : std::uint8_t { holm, benjamini_hochberg };
 struct AnalysisOptions {
   double confidence = 0.95;  ///< of intervals
   double level = 0.05;       ///< of tests; also of each of the two of an equivalence
-  double margin = 0.10;      ///< a preference is none within 50 % +- this
-  /// Renderings count as equal below it. In two intervals d' = 1 is 76 % right: about one JND at 75 %.
-  double d_prime_bound = 1.0;
+  /// A preference is none within 50 % +- this. None unless somebody set it: a margin that follows the answers
+  /// shows nothing.
+  std::optional<double> margin;
+  /// Renderings count as equal below it; likewise. In two intervals d' = 1 is 76 % right: about one JND at 75
+  /// %.
+  std::optional<double> d_prime_bound;
   std::optional<psychophysics::Interval> jnd_margins;  ///< a JND is as wanted within them, in (0, infinity)
   std::vector<double> truths{0.75, 0.60};              ///< for which the power is told
   FamilyCorrection correction = FamilyCorrection::holm;
@@ -79,7 +82,8 @@ struct MainResult {
   psychophysics::Interval jnd_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
                                        .upper = std::numeric_limits<double>::quiet_NaN()};
   double equality = std::numeric_limits<double>::quiet_NaN();  ///< PSE
-  bool equivalent = false;  ///< shown: d' below its bound, a preference in its margin, the JND in its
+  /// Shown: d' below its bound, a preference in its margin, the JND in its; none where no margin was set.
+  std::optional<bool> equivalent;
   std::string note;
 };
 [[nodiscard]] MainResult main_result(const Study& study, const AnalysisOptions& options = {});

@@ -51,46 +51,83 @@ class Findings {
     return text;
   }
 
+  /// Whose answers a finding is about: people, by a test over subjects, or the answers alone.
+  [[nodiscard]] std::string tested(const AnswerGroup& all) const {
+    const std::string count = count_text(all, options_.confidence);
+    if (!all.tests_subjects) return fmt::format("{}, {}", count, p_text(all.p_value));
+    return fmt::format("mean of {} subjects {}, {} by flipped signs; {}", all.subjects,
+                       percent_text(all.chance + all.over_subjects->mean), p_text(all.p_value), count);
+  }
+
   void write_preference(const AnswerGroup& all) {
     if (is_alarm(all.p_value)) {
-      show(fmt::format("a preference: {}, {}", count_text(all, options_.confidence), p_text(all.p_value)));
+      show(fmt::format("a preference{}: {}", all.tests_subjects ? " on the average of people" : "",
+                       tested(all)));
     } else {
-      show(fmt::format("no sign of a preference: {}, {}", count_text(all, options_.confidence),
-                       p_text(all.p_value)));
-      show_not(
-          fmt::format("that there is none: {} answers had a chance of {}", all.count.trials, chances(all)));
+      show(fmt::format("no sign of a preference{}: {}", all.tests_subjects ? " on the average of people" : "",
+                       tested(all)));
+      show_not(fmt::format("that there is none: {} answers had a chance of {}{}", all.count.trials,
+                           chances(all), if_alike(all)));
     }
     if (all.excluded_margin < 0.5)
-      show(
-          fmt::format("over all answers a preference beyond {} either way is unlikely (excluded at {:.3g} %)",
-                      percent_text(all.chance + all.excluded_margin), level_percent()));
-    if (all.equivalence->is_shown)
-      show(fmt::format("the preference lies within 50 +- {:.3g} % ({})", 100.0 * options_.margin,
-                       p_text(all.equivalence->p)));
+      show(fmt::format("{} a preference beyond {} either way is unlikely (excluded at {:.3g} %)",
+                       average_of(all), percent_text(all.chance + all.excluded_margin), level_percent()));
+    if (all.equivalence)
+      write_equivalence(all,
+                        fmt::format("the preference lies within 50 +- {:.3g} %", 100.0 * *options_.margin));
     show_not(
         "that the samples cannot be told apart: two that feel different and please equally give 50 % as "
         "well; ABX or a forced choice asks for that");
   }
 
+  [[nodiscard]] static const char* if_alike(const AnswerGroup& all) {
+    return all.subjects > 1 ? ", were all subjects alike" : "";
+  }
+  [[nodiscard]] static const char* average_of(const AnswerGroup& all) {
+    return all.subjects > 2 ? "on the average of the subjects" : all.subjects == 2 ? "for both subjects" : "";
+  }
+
   void write_discrimination(const AnswerGroup& all) {
-    const char* who = analysis_.subjects.size() > 1 ? " by at least one of the subjects" : "";
-    const std::string count = count_text(all, options_.confidence);
     if (std::isnan(all.p_value)) return;
+    const std::string count = count_text(all, options_.confidence);
     if (is_alarm(all.p_value)) {
-      show(fmt::format("the difference is noticed{}: {}, {}", who, count, p_text(all.p_value)));
+      show(fmt::format("the difference is noticed{}: {}",
+                       all.tests_subjects ? " on the average of people"
+                       : all.subjects > 1 ? " by at least one of the subjects"
+                                          : "",
+                       tested(all)));
+    } else if (all.tests_subjects && is_alarm(all.p_greater)) {
+      show(fmt::format("the difference is noticed by at least one of the subjects: {}, {} (exact)", count,
+                       p_text(all.p_greater)));
+      show_not(fmt::format("that people notice it on the average: {}", tested(all)));
     } else {
-      show(fmt::format("no sign that the difference is noticed: {}, {}", count, p_text(all.p_value)));
-      show_not(fmt::format("that nobody notices it: {} answers had a chance of {} right", all.count.trials,
-                           chances(all)));
+      show(fmt::format("no sign that the difference is noticed: {}", tested(all)));
+      show_not(fmt::format("that nobody notices it: {} answers had a chance of {} right{}", all.count.trials,
+                           chances(all), if_alike(all)));
     }
     if (!all.d_prime) return;
-    if (all.equivalence->is_shown) {
-      show(fmt::format("over all answers d' is below {:.3g} ({})", options_.d_prime_bound,
-                       p_text(all.equivalence->p)));
-    } else if (std::isfinite(all.excluded_d_prime)) {
-      show_not(fmt::format("that d' is below {:.3g} ({}): only a d' above {} is excluded at {:.3g} %",
-                           options_.d_prime_bound, p_text(all.equivalence->p),
-                           d_prime_text(all.excluded_d_prime), level_percent()));
+    if (all.equivalence) write_equivalence(all, fmt::format("d' is below {:.3g}", *options_.d_prime_bound));
+    if (!(all.equivalence && all.equivalence->is_shown) && std::isfinite(all.excluded_d_prime)) {
+      show_not(fmt::format("a d' smaller than {}: what lies above is excluded {} at {:.3g} %",
+                           d_prime_text(all.excluded_d_prime), average_of(all), level_percent()));
+    }
+  }
+
+  /// Never from pooled answers, nor where subjects differ: a mean of some who hear and some who do not is
+  /// nobody's.
+  void write_equivalence(const AnswerGroup& all, const std::string& what) {
+    const GroupEquivalence& found = *all.equivalence;
+    std::string each;
+    if (all.subjects > 1)
+      each = fmt::format("; of each alone it is shown for {} of {} subjects", found.subjects_shown,
+                         all.subjects);
+    if (found.is_shown) {
+      show(fmt::format("{} {} ({}){}", average_of(all), what, p_text(found.p), each));
+    } else if (found.subjects_differ) {
+      show_not(
+          fmt::format("that {}: the subjects differ, and an average says nothing of each{}", what, each));
+    } else {
+      show_not(fmt::format("that {} ({}){}", what, p_text(found.p), each));
     }
   }
 
@@ -103,7 +140,7 @@ class Findings {
     for (const AnswerGroup& group : family) {
       if (std::isnan(group.p_value)) return;
       if (is_alarm(group.p_adjusted) && !is_ranked) {
-        show(fmt::format("{}: {}, {} after correction over {} tests", group.name,
+        show(fmt::format("of {}: {}, {} after correction over {} tests", group.name,
                          count_text(group, options_.confidence), p_text(group.p_adjusted), family.size()));
       }
     }
@@ -117,7 +154,7 @@ class Findings {
       const double least = psychophysics::binomial_test(
           best, group.chance,
           group.one_sided ? psychophysics::Alternative::greater : psychophysics::Alternative::two_sided);
-      if (least <= options_.level) continue;
+      if (least <= options_.level || group.tests_subjects) continue;
       names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", group.name, group.count.trials);
     }
     if (!names.empty())
@@ -126,7 +163,7 @@ class Findings {
   }
 
   void write_ranking(const TissueRanking& ranking) {
-    const std::string tissue = ranking.tissue.empty() ? "" : ranking.tissue + ": ";
+    const std::string tissue = ranking.tissue.empty() ? "" : fmt::format("of {}: ", ranking.tissue);
     if (!ranking.bradley_terry) {
       warn(fmt::format("{}no ranking: {}", tissue, ranking.note));
       return;
@@ -134,7 +171,8 @@ class Findings {
     for (const RankedPair& pair : ranking.pairs) {
       if (!is_alarm(pair.p_adjusted)) continue;
       const bool first = pair.difference.value > 0.0;
-      show(fmt::format("{}{} is preferred to {} (worth apart {:.2f}, {} after correction over {} pairs)",
+      // Not as the first word, which has a capital letter: "a" and "A" are two samples.
+      show(fmt::format("{}preferred is {} to {} (worth apart {:.2f}, {} after correction over {} pairs)",
                        tissue, analysis_.samples[ranking.samples[first ? pair.first : pair.second]],
                        analysis_.samples[ranking.samples[first ? pair.second : pair.first]],
                        std::abs(pair.difference.value), p_text(pair.p_adjusted), ranking.pairs.size()));
@@ -198,10 +236,13 @@ class Findings {
     }
     if (spread.population && !analysis_.levels) {
       const auto& population = *spread.population;
-      const std::string mean = fmt::format("mean of the subjects {} ({:.3g} % {}, Student), {}",
-                                           percent_text(population.mean), 100.0 * options_.confidence,
-                                           percent_text(population.interval), p_text(population.p_value));
-      if (is_alarm(population.p_value)) {
+      const bool is_tested = analysis_.all && analysis_.all->tests_subjects;
+      const double p = is_tested ? analysis_.p_value : population.p_value;
+      const std::string mean =
+          fmt::format("mean of the subjects {} ({:.3g} % {}, Student), {}{}", percent_text(population.mean),
+                      100.0 * options_.confidence, percent_text(population.interval), p_text(p),
+                      is_tested ? " by flipped signs" : "");
+      if (is_alarm(p)) {
         show(fmt::format("it holds on the average for the people that the {} subjects stand for: {}",
                          spread.subjects, mean));
       } else {

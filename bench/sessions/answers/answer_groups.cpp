@@ -11,6 +11,7 @@
 #include <kerf/psychophysics/comparisons.h>
 
 #include "answers/analysis.h"
+#include "answers/over_subjects.h"
 
 namespace kerf::bench {
 namespace {
@@ -43,23 +44,15 @@ std::string counted_in(const Study& study, const std::vector<const Judgement*>& 
   return "first of the pair preferred";
 }
 
-void add_preference(AnswerGroup& group, const AnalysisOptions& options) {
-  group.excluded_margin = psychophysics::excluded_margin(group.count, group.chance, options.level);
-  group.equivalence =
-      psychophysics::equivalent_proportion(group.count, group.chance, options.margin, options.level);
-}
-
 void add_sensitivity(const Study& study, const std::vector<const Judgement*>& judgements, AnswerGroup& group,
-                     const AnalysisOptions& options) {
+                     const SubjectCounts& subjects, const AnalysisOptions& options) {
   if (study.scale.two_sided() || !is_one_level(judgements)) {
     group.note = "no d' over several levels: the psychometric function has the sensitivity";
   } else if (!study.task) {
     group.note = "no d': the study does not say what its task is";
   } else {
     group.d_prime = psychophysics::estimate_d_prime(*study.task, group.count, options.confidence);
-    group.excluded_d_prime = psychophysics::excluded_d_prime(*study.task, group.count, options.level);
-    group.equivalence =
-        psychophysics::below_d_prime(*study.task, group.count, options.d_prime_bound, options.level);
+    add_equivalence(study, group, subjects, options);
   }
 }
 
@@ -118,7 +111,8 @@ AnswerGroup answer_group(const Study& study, const std::vector<const Judgement*>
   if (group.count.trials == 0) throw std::invalid_argument("there are no answers that are right or wrong");
   group.p_greater = psychophysics::binomial_test(group.count, group.chance, Alternative::greater);
   group.p_two_sided = psychophysics::binomial_test(group.count, group.chance, Alternative::two_sided);
-  group.p_value = group.one_sided ? group.p_greater : group.p_two_sided;
+  const SubjectCounts subjects = counts_by_subject(study, judgements);
+  add_main_test(study, group, subjects, options);
   group.interval = psychophysics::clopper_pearson(group.count, options.confidence);
   group.wilson = psychophysics::wilson(group.count, options.confidence);
   for (const double truth : has_levels(study.design) ? std::vector<double>() : options.truths) {
@@ -127,9 +121,9 @@ AnswerGroup answer_group(const Study& study, const std::vector<const Judgement*>
          .power = psychophysics::binomial_power(design_of(group, truth, options), group.count.trials)});
   }
   if (is_preference(study)) {
-    add_preference(group, options);
+    add_equivalence(study, group, subjects, options);
   } else {
-    add_sensitivity(study, judgements, group, options);
+    add_sensitivity(study, judgements, group, subjects, options);
   }
   if (study.design == Design::staircase) {
     group.p_value = group.p_greater = group.p_two_sided = not_a_number;

@@ -9,6 +9,7 @@
 #include <kerf/psychophysics/dprime.h>
 #include <kerf/psychophysics/equivalence.h>
 #include <kerf/psychophysics/homogeneity.h>
+#include <kerf/psychophysics/sign_flips.h>
 
 #include "protocol/judgement.h"
 
@@ -18,12 +19,28 @@ namespace kerf::bench {
 
 struct AnalysisOptions;
 
-/// How likely the test of a group was to find a truth, and how many trials it takes.
+/// How likely the exact test of a group was to find a truth that is the same for all its subjects, and how
+/// many trials it takes.
 struct TestPower {
   double truth = 0.75;  ///< share of right answers, or of preferences
-  double power = 0.0;   ///< of the main test at the trials there are
+  double power = 0.0;   ///< at the trials there are
   int trials_needed =
       0;  ///< for a power of 0.8; 0: not looked for (of the group of all alone), or over 100,000
+};
+
+/// Whether the difference lies within a margin that was set before: d' below a bound, a preference near 50 %.
+///
+/// Of one subject exact. Of two: exact of each, and shown if it is of both. Of more, for their mean:
+/// Student's of the subjects' shares, with an error no less than that of as many independent answers; shown
+/// if the interval lies within the margin, the subjects do not differ (equal_proportions) and none of them
+/// alone, after Holm, is beyond chance. A mean of people who hear and people who do not is no equivalence for
+/// anybody.
+struct GroupEquivalence {
+  double p = 1.0;
+  psychophysics::Interval interval;  ///< of the share, of confidence 1 - 2 level; of two: what holds both
+  bool is_shown = false;
+  std::size_t subjects_shown = 0;  ///< for how many of the subjects, each alone and exactly
+  bool subjects_differ = false;    ///< why it is not shown, although the mean lies within
 };
 
 /// What the answers of a group say: of all, of a subject, a tissue or a pair.
@@ -32,19 +49,26 @@ struct AnswerGroup {
   std::string counted;         ///< "right", "recording preferred"
   psychophysics::Count count;  ///< of a preference those for the first sample of the pair
   double chance = 0.5;
-  bool one_sided = true;   ///< the main test: of a discrimination; of a preference it is two-sided
-  double p_value = 1.0;    ///< of the main test, exact; NaN where the trials followed the answers
-  double p_greater = 1.0;  ///< P(X >= k)
+  bool one_sided = true;  ///< the main test: of a discrimination; of a preference it is two-sided
+  /// Of the main test: over subjects where `tests_subjects`, else exact over answers; NaN where the trials
+  /// followed the answers.
+  double p_value = 1.0;
+  double p_greater = 1.0;  ///< P(X >= k), exact over answers, as if they were independent
   double p_two_sided = 1.0;
-  double p_adjusted = 1.0;  ///< the main one, within its family (all subjects, all tissues, all pairs)
+  std::size_t subjects = 0;
+  /// Of the subjects' shares less chance, each counting once; none of one subject, nor where the trials
+  /// followed the answers.
+  std::optional<psychophysics::SignFlips> over_subjects;
+  bool tests_subjects = false;  ///< there are enough of them for over_subjects to reach the level
+  double p_adjusted = 1.0;      ///< the main one, within its family (all subjects, all tissues, all pairs)
   psychophysics::Interval interval;  ///< Clopper-Pearson
   psychophysics::Interval wilson;
   std::vector<TestPower> power;  ///< none of answers at levels, whose share right has no one truth
-  std::optional<psychophysics::DPrime> d_prime;           ///< none of a preference, nor over several levels
-  double excluded_d_prime = 0.0;                          ///< with d_prime; infinite where all are right
-  double excluded_margin = 0.0;                           ///< of a preference, about 50 %
-  std::optional<psychophysics::Equivalence> equivalence;  ///< d' below the bound; a preference in its margin
-  std::string note;                                       ///< why something is missing
+  std::optional<psychophysics::DPrime> d_prime;  ///< none of a preference, nor over several levels
+  double excluded_d_prime = 0.0;  ///< with d_prime, of its mean over subjects; infinite where all are right
+  double excluded_margin = 0.0;   ///< of a preference, about 50 %, likewise
+  std::optional<GroupEquivalence> equivalence;  ///< where a margin was set
+  std::string note;                             ///< why something is missing
 };
 
 /// A response bias: answers that prefer a slot.
@@ -65,7 +89,7 @@ struct SubjectSpread {
   struct Population {
     double mean = 0.0;
     psychophysics::Interval interval;
-    double p_value = 1.0;
+    double p_value = 1.0;                            ///< Student's
     std::optional<psychophysics::Interval> d_prime;  ///< what the interval is in d'
     double d_prime_of_mean = 0.0;
   };

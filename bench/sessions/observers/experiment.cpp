@@ -9,11 +9,23 @@
 namespace kerf::bench {
 namespace {
 
-/// d' of one JND for a subject: the larger its own JND, the less.
-double sensitivity_of_one(const Participants& participants, psychophysics::Random& random) {
-  const Observer& observer = participants.observer;
+/// One subject, with tastes of its own.
+struct Person {
+  Observer observer;
+  double sensitivity = 0.0;  ///< d' of one JND: the larger its own JND, the less
+};
+
+Person drawn_person(const Participants& participants, psychophysics::Random& random) {
+  Person person{.observer = participants.observer};
+  Observer& observer = person.observer;
+  const bool tastes_differ = observer.preference_spread > 0.0;
   const double deviation = observer.spread > 0.0 ? observer.spread * random.normal() : 0.0;
-  return participants.all_alike ? 0.0 : d_prime_per_jnd(observer) * std::exp(-deviation);
+  if (participants.nothing_to_find) observer.preference = 0.0;
+  if (tastes_differ) observer.preference += observer.preference_spread * random.normal();
+  const bool feels = observer.share_feeling >= 1.0 || random.chance(observer.share_feeling);
+  if (feels && (tastes_differ || !participants.nothing_to_find))
+    person.sensitivity = d_prime_per_jnd(observer) * std::exp(-deviation);
+  return person;
 }
 
 }  // namespace
@@ -37,14 +49,14 @@ Study simulated_study(const Protocol& protocol, const Sensation& sensation, cons
   std::vector<Plan> plans = make_plans(protocol, participants.subjects, random.below(SIZE_MAX));
   for (std::size_t subject = 0; subject < plans.size(); ++subject) {
     const std::string code = fmt::format("S{:02}", subject + 1);
-    const double sensitivity = sensitivity_of_one(participants, random);
+    const Person person = drawn_person(participants, random);
     TrialSequence sequence(protocol, std::move(plans[subject]));
     while (const std::optional<TrialPlan> trial = sequence.next()) {
       const FeltTrial felt{.judging = judging,
                            .slots = slots,
                            .plays = trial->slots,
-                           .d_prime = sensitivity * sensation.jnds(trial->pair, trial->level)};
-      const std::size_t answer = drawn_answer(participants.observer, felt, random);
+                           .d_prime = person.sensitivity * sensation.jnds(trial->pair, trial->level)};
+      const std::size_t answer = drawn_answer(person.observer, felt, random);
       study.judgements.push_back({.subject = code,
                                   .tissue = protocol.tissues[trial->tissue].name,
                                   .pair = trial->pair,

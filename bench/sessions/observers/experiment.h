@@ -12,7 +12,9 @@ namespace kerf::bench {
 struct Participants {
   Observer observer;
   std::size_t subjects = 1;
-  bool all_alike = false;  ///< they feel no difference at all: what a test then finds is a false alarm
+  /// There is nothing to find, so that what a test finds is a false alarm: nobody feels a difference; where
+  /// tastes differ (preference_spread), their mean is none.
+  bool nothing_to_find = false;
 };
 
 /// A seed of its own for every experiment of a kind, so that they can be drawn in any order (splitmix64).

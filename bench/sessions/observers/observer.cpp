@@ -151,6 +151,10 @@ void require_observer(const Observer& observer) {
           "0 to 1, such as 0.02");
   require(std::isfinite(observer.bias), "bias", observer.bias, "a number, such as 0.3");
   require(std::isfinite(observer.preference), "preference", observer.preference, "a number, such as 1");
+  require(at_least_0(observer.preference_spread) && observer.preference_spread <= 10.0,
+          "spread of the preference between subjects", observer.preference_spread, "0 to 10, such as 1");
+  require(observer.share_feeling >= 0.0 && observer.share_feeling <= 1.0,
+          "share of subjects who feel anything", observer.share_feeling, "0 to 1, such as 0.25");
   require(at_least_0(observer.spread) && observer.spread <= 3.0, "spread between subjects", observer.spread,
           "0 to 3, such as 0.2");
 }

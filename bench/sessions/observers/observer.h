@@ -31,6 +31,8 @@ struct Observer {
   double bias = 0.0;        ///< to the first slot, in d': of choices of the strongest, and of preferences
   double preference = 0.0;  ///< of the second sample of a pair over the first, in d'
   double spread = 0.0;      ///< between subjects: standard deviation of ln(JND), at least 0
+  double preference_spread = 0.0;  ///< between subjects: standard deviation of `preference`, at least 0
+  double share_feeling = 1.0;      ///< of the subjects, who feel any difference at all; in [0, 1]
 };
 
 /// @throws std::invalid_argument naming what is out of its range.

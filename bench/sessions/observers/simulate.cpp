@@ -60,7 +60,7 @@ class Simulator {
  private:
   std::vector<MainResult> results_of(const Protocol& protocol, std::uint64_t kind, std::size_t experiments) {
     const Participants participants{
-        .observer = options_.observer, .subjects = options_.subjects, .all_alike = kind == of_nulls};
+        .observer = options_.observer, .subjects = options_.subjects, .nothing_to_find = kind == of_nulls};
     AnalysisOptions analysis = options_.analysis;
     analysis.curves = kind != of_nulls && kind != of_confirmation;
     std::vector<MainResult> results(experiments);

@@ -89,7 +89,7 @@ SimulatedFindings findings_of(const std::vector<MainResult>& results, const Simu
   for (const MainResult& result : results) {
     found.trials += static_cast<double>(result.trials) / static_cast<double>(results.size());
     if (std::isfinite(result.p_value)) count(found.significant, result.p_value < level);
-    count(found.equivalent, result.equivalent);
+    if (result.equivalent) count(found.equivalent, *result.equivalent);
     if (!std::isnan(result.d_prime) && std::isfinite(truth.d_prime)) {
       d_primes.push_back(result.d_prime);
       count(found.d_prime_covered, holds(result.d_prime_interval, truth.d_prime));

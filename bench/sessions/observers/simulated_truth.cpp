@@ -30,6 +30,15 @@ std::vector<double> sensitivities_of(double spread) {
   return nodes;
 }
 
+/// mean + spread z at equally likely z.
+std::vector<double> preferences_of(double mean, double spread) {
+  if (spread <= 0.0) return {mean};
+  std::vector<double> nodes;
+  for (int i = 0; i < spread_nodes; ++i)
+    nodes.push_back(mean + spread * normal_quantile((i + 0.5) / spread_nodes));
+  return nodes;
+}
+
 /// The ways to fill the slots that an answer may depend on.
 std::vector<std::array<std::uint8_t, max_slots>> unlike_arrangements(Judging judging, std::size_t slots) {
   switch (judging) {
@@ -51,7 +60,8 @@ AnswerModel::AnswerModel(const Protocol& protocol, const Sensation& sensation, c
       sensation_(&sensation),
       observer_(observer),
       per_jnd_(d_prime_per_jnd(observer)),
-      sensitivities_(sensitivities_of(observer.spread)) {}
+      sensitivities_(sensitivities_of(observer.spread)),
+      preferences_(preferences_of(observer.preference, observer.preference_spread)) {}
 
 double AnswerModel::share(const std::array<std::size_t, 2>& pair, double level, bool lapses) const {
   Observer observer = observer_;
@@ -67,13 +77,22 @@ double AnswerModel::share(const std::array<std::size_t, 2>& pair, double level, 
     const auto right =
         first_is_right ? std::size_t{0}
                        : static_cast<std::size_t>(std::find(plays.begin(), plays.end(), 1) - plays.begin());
-    for (const double sensitivity : sensitivities_) {
-      sum += answer_probability(
+    const auto probability = [&](double sensitivity) {
+      return answer_probability(
           observer, {.judging = judging, .slots = slots, .plays = plays, .d_prime = sensitivity * d_prime},
           right);
+    };
+    double feeling = 0.0;
+    for (const double preference : preferences_) {
+      observer.preference = preference;
+      for (const double sensitivity : sensitivities_) feeling += probability(sensitivity);
     }
+    feeling /= static_cast<double>(preferences_.size() * sensitivities_.size());
+    sum += observer_.share_feeling < 1.0
+               ? observer_.share_feeling * feeling + (1.0 - observer_.share_feeling) * probability(0.0)
+               : feeling;
   }
-  const double mean = sum / static_cast<double>(arrangements.size() * sensitivities_.size());
+  const double mean = sum / static_cast<double>(arrangements.size());
   return protocol_->design == Design::preference ? 1.0 - mean : mean;
 }
 

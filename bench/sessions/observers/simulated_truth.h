@@ -58,7 +58,8 @@ class AnswerModel {
   const Sensation* sensation_;
   Observer observer_;
   double per_jnd_;
-  std::vector<double> sensitivities_;  ///< of subjects that stand for all alike
+  std::vector<double> sensitivities_;  ///< of subjects that stand for all who feel anything
+  std::vector<double> preferences_;    ///< of subjects that stand for all alike
 };
 
 }  // namespace kerf::bench

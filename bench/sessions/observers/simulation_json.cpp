@@ -46,7 +46,9 @@ ordered_json json_of(const Observer& observer) {
           {"lapse", observer.lapse},
           {"bias", observer.bias},
           {"preference", observer.preference},
-          {"spread", observer.spread}};
+          {"spread", observer.spread},
+          {"preference_spread", observer.preference_spread},
+          {"share_feeling", observer.share_feeling}};
 }
 
 ordered_json json_of(const SimulatedTruth& truth) {

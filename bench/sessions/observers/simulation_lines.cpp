@@ -49,6 +49,10 @@ std::string observer_line(const SimulationOptions& options) {
     line += fmt::format(", like the second of a pair better by d' = {:g}", observer.preference);
   if (observer.spread > 0.0)
     line += fmt::format(", and differ by {} from each other", percent(observer.spread));
+  if (observer.preference_spread > 0.0)
+    line += fmt::format(", whose tastes differ by d' = {:g}", observer.preference_spread);
+  if (observer.share_feeling < 1.0)
+    line += fmt::format(", and of whom {} feel any difference", percent(observer.share_feeling));
   return line + ".";
 }
 
@@ -60,6 +64,11 @@ void add_cells(const Simulation& simulation, std::vector<std::string>& lines) {
                                 simulation.design == Design::preference ? "for the first" : "right"));
 }
 
+/// The binomial test, whose power is known, asks nothing of people.
+const char* were_independent(const Simulation& simulation) {
+  return simulation.options.subjects > 1 ? ", were the answers of a subject independent" : "";
+}
+
 void add_power(const Simulation& simulation, std::vector<std::string>& lines) {
   const SimulatedFindings& found = simulation.found;
   if (found.significant.count.trials == 0) {
@@ -68,15 +77,18 @@ void add_power(const Simulation& simulation, std::vector<std::string>& lines) {
     std::string line = fmt::format("Power {} over {} experiments of {:.0f} answers",
                                    as_power(found.significant), found.significant.count.trials, found.trials);
     if (std::isfinite(simulation.theory))
-      line += fmt::format("; {:.2f} by the exact probability of {:.1f} %", simulation.theory,
-                          100.0 * simulation.truth.share);
+      line += fmt::format("; {:.2f} by the exact probability of {:.1f} %{}", simulation.theory,
+                          100.0 * simulation.truth.share, were_independent(simulation));
     lines.push_back(line + ".");
   }
   if (simulation.false_alarms.count.trials > 0)
-    lines.push_back(fmt::format("False alarms {} with observers who feel no difference, at a level of {}.",
-                                with_interval(simulation.false_alarms),
-                                percent(simulation.options.analysis.level)));
-  if (found.equivalent.count.successes > 0)
+    lines.push_back(fmt::format(
+        "False alarms {} with observers who {}, at a level of {}.", with_interval(simulation.false_alarms),
+        simulation.design == Design::preference && simulation.options.observer.preference_spread > 0.0
+            ? "on the average prefer none"
+            : "feel no difference",
+        percent(simulation.options.analysis.level)));
+  if (found.equivalent.count.trials > 0)
     lines.push_back(fmt::format("Called equivalent in {}.", with_interval(found.equivalent)));
 }
 
@@ -121,8 +133,9 @@ void add_needed(const Simulation& simulation, std::vector<std::string>& lines) {
           fmt::format("No number of trials up to 100,000 gives a power of {:g}.", simulation.options.power));
     return;
   }
-  std::string line = fmt::format("For a power of {:g} it takes {} answers by theory",
-                                 simulation.options.power, simulation.needed_total);
+  std::string line =
+      fmt::format("For a power of {:g} it takes {} answers by theory{}", simulation.options.power,
+                  simulation.needed_total, were_independent(simulation));
   if (simulation.confirmed)
     line += fmt::format(", {} {}; simulated {}", simulation.confirmed->trials, simulation.curve_of,
                         as_power(simulation.confirmed->found.significant));

@@ -1,7 +1,10 @@
+#include "ranking.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include <boost/math/distributions/chi_squared.hpp>
 
@@ -12,8 +15,6 @@
 
 namespace kerf::psychophysics {
 namespace {
-
-using Matrix = std::vector<std::vector<double>>;
 
 struct Link {
   double probability = 0.5;
@@ -70,7 +71,8 @@ void require_rankable(const Wins& wins) {
           "them by the binomial test, or gather more answers");
 }
 
-/// By Gauss and Jordan; the matrix is positive definite, so that no pivot is looked for.
+}  // namespace
+
 Matrix inverse(Matrix a) {
   const std::size_t n = a.size();
   Matrix b(n, std::vector<double>(n, 0.0));
@@ -93,16 +95,10 @@ Matrix inverse(Matrix a) {
   return b;
 }
 
-struct Derivatives {
-  std::vector<double> gradient;
-  Matrix information;  ///< with 1/n added everywhere: the mean, which the data do not know, is held at zero
-                       ///< by it
-};
-
-Derivatives derivatives(const Wins& wins, Scale scale, const std::vector<double>& worth) {
+RankingDerivatives derivatives(const Wins& wins, Scale scale, const std::vector<double>& worth) {
   const std::size_t n = wins.size();
-  Derivatives d{.gradient = std::vector<double>(n, 0.0),
-                .information = Matrix(n, std::vector<double>(n, 1.0 / static_cast<double>(n)))};
+  RankingDerivatives d{.gradient = std::vector<double>(n, 0.0),
+                       .information = Matrix(n, std::vector<double>(n, 0.0))};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       const double trials = wins[i][j] + wins[j][i];
@@ -122,12 +118,26 @@ Derivatives derivatives(const Wins& wins, Scale scale, const std::vector<double>
   return d;
 }
 
+Matrix covariance_of(Matrix information) {
+  const auto share = 1.0 / static_cast<double>(information.size());
+  for (auto& row : information) {
+    for (double& value : row) value += share;
+  }
+  Matrix covariance = inverse(std::move(information));
+  for (auto& row : covariance) {
+    for (double& value : row) value -= share;
+  }
+  return covariance;
+}
+
+namespace {
+
 void maximise(const Wins& wins, Scale scale, std::vector<double>& worth) {
   const std::size_t n = wins.size();
   double now = log_likelihood(wins, scale, worth);
   for (int round = 0; round < 200; ++round) {
-    const Derivatives d = derivatives(wins, scale, worth);
-    const Matrix covariance = inverse(d.information);
+    const RankingDerivatives d = derivatives(wins, scale, worth);
+    const Matrix covariance = covariance_of(d.information);
     std::vector<double> step(n, 0.0);
     double largest = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -167,12 +177,10 @@ Ranking rank(const Wins& wins, Scale scale) {
   const double equal = log_likelihood(wins, scale, result.worth);
   maximise(wins, scale, result.worth);
   result.log_likelihood = log_likelihood(wins, scale, result.worth);
-  result.covariance = inverse(derivatives(wins, scale, result.worth).information);
+  result.covariance = covariance_of(derivatives(wins, scale, result.worth).information);
   double saturated = 0.0;
   int pairs = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    // The inverse holds 1/n for the mean that was held.
-    for (double& value : result.covariance[i]) value -= 1.0 / static_cast<double>(n);
     result.standard_error.push_back(std::sqrt(result.covariance[i][i]));
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;

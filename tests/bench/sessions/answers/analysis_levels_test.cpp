@@ -113,7 +113,7 @@ TEST(AJnd, IsHeldAgainstItsMargins) {
   AnalysisOptions options = quick();
   options.jnd_margins = psychophysics::Interval{.lower = 0.0, .upper = 0.5};
   EXPECT_TRUE(analyse(study, options).levels->pooled.jnd_within.value());
-  EXPECT_TRUE(main_result(study, options).equivalent);
+  EXPECT_EQ(main_result(study, options).equivalent, true);
   options.jnd_margins = psychophysics::Interval{.lower = 0.0, .upper = 0.05};
   EXPECT_FALSE(analyse(study, options).levels->pooled.jnd_within.value());
 }

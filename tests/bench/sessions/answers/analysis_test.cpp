@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
+#include <vector>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,7 +43,7 @@ TEST(AnAbxSession, OfTwelveInSixteenIsRightOneSided) {
   EXPECT_NEAR(found.all->power.front().power, 0.630, 5e-4);
   ASSERT_TRUE(found.all->d_prime);
   EXPECT_NEAR(psychophysics::proportion_correct(abx_task(), found.all->d_prime->value), 0.75, 1e-9);
-  EXPECT_FALSE(found.all->equivalence->is_shown);
+  EXPECT_FALSE(found.all->equivalence) << "nobody set a margin";
 }
 
 TEST(AnAbxSession, PrintsWhatOthersRelyOn) {
@@ -77,7 +80,9 @@ TEST(ASession, WithAllAnswersRightHasADPrimeWithoutAnUpperEnd) {
 TEST(ASession, WithAllAnswersWrongIsNoDiscrimination) {
   Study study = study_with(Design::three_interval, {.intervals = 3});
   add_answers(study, "P1", "", 0, 12);
-  const Analysis found = analyse(study, quick());
+  AnalysisOptions options = quick();
+  options.d_prime_bound = 1.0;
+  const Analysis found = analyse(study, options);
   EXPECT_DOUBLE_EQ(found.p_value, 1.0);
   EXPECT_NEAR(found.all->chance, 1.0 / 3.0, 1e-15);
   EXPECT_LT(found.all->d_prime->value, 0.0);
@@ -139,6 +144,76 @@ TEST(Subjects, WhoAreAllAlikeGiveStudentNoWidth) {
   EXPECT_THAT(found.spread.note, HasSubstr("no width"));
 }
 
+/// Twelve answers of each.
+Study study_of_twelve(Design design, const std::vector<int>& right) {
+  Study study = study_with(design, abx_task());
+  for (std::size_t subject = 0; subject < right.size(); ++subject)
+    add_answers(study, fmt::format("P{}", subject + 1), "", right[subject], 12 - right[subject]);
+  return study;
+}
+
+// Three of twelve hear it, the others guess. Of 4,096 flips of the shares less 1/2 as many as R counts by
+// expand.grid() have their sum and more; the pooled test sees as many answers of independent people.
+TEST(Subjects, OfWhomFewHearAreNoPeopleWhoHear) {
+  const Study study = study_of_twelve(Design::abx, {12, 11, 12, 6, 5, 7, 6, 4, 7, 6, 5, 6});
+  const Analysis found = analyse(study, quick());
+  ASSERT_TRUE(found.all->tests_subjects);
+  EXPECT_EQ(found.all->subjects, 12U);
+  EXPECT_LT(found.all->p_greater, 0.01);
+  EXPECT_DOUBLE_EQ(found.p_value, found.all->over_subjects->p_greater);
+  EXPECT_GT(found.p_value, 0.05);
+  EXPECT_THAT(found.shows, Contains(HasSubstr("by at least one of the subjects")));
+  EXPECT_THAT(found.shows_not, Contains(HasSubstr("notice it on the average")));
+  EXPECT_THAT(found.main_test, HasSubstr("flipped signs of the 12 subjects"));
+  EXPECT_EQ(analysis_as_json(found).at("over_subjects").at("is_main"), true);
+}
+
+TEST(Subjects, WhoAllHearALittleAreFoundAsPeople) {
+  const Analysis found = analyse(study_of_twelve(Design::abx, {8, 7, 9, 8, 6, 7, 8, 9}), quick());
+  EXPECT_LT(found.p_value, 0.01);
+  EXPECT_THAT(found.shows, Contains(HasSubstr("noticed on the average of people")));
+}
+
+// One of twelve at d' 3, the others guess: over all answers d' is far below 1, for one of them it is not.
+TEST(Subjects, OfWhomOneHearsAreNotShownToBeDeaf) {
+  AnalysisOptions options = quick();
+  options.d_prime_bound = 1.5;
+  const Study study = study_of_twelve(Design::abx, {11, 6, 5, 7, 6, 6, 5, 6, 7, 6, 5, 7});
+  const Analysis found = analyse(study, options);
+  const GroupEquivalence& equivalence = *found.all->equivalence;
+  EXPECT_LT(equivalence.p, 0.05);
+  EXPECT_TRUE(equivalence.subjects_differ);
+  EXPECT_FALSE(equivalence.is_shown);
+  EXPECT_THAT(found.shows_not, Contains(HasSubstr("the subjects differ")));
+  const auto json = analysis_as_json(found).at("equivalence");
+  EXPECT_EQ(json.at("shown"), false);
+  EXPECT_EQ(json.at("subjects_differ"), true);
+  EXPECT_EQ(main_result(study, options).equivalent, false);
+}
+
+TEST(Subjects, WhoAllGuessAreShownToBeBelowABoundThatWasSet) {
+  AnalysisOptions options = quick();
+  options.d_prime_bound = 1.5;
+  const Analysis found = analyse(study_of_twelve(Design::abx, {6, 6, 5, 7, 6, 6, 5, 6, 7, 6, 5, 7}), options);
+  EXPECT_TRUE(found.all->equivalence->is_shown);
+  EXPECT_THAT(found.shows, Contains(HasSubstr("On the average of the subjects d' is below 1.5")));
+}
+
+TEST(Equivalence, OfTwoSubjectsIsThatOfTheWorse) {
+  AnalysisOptions options = quick();
+  options.d_prime_bound = 1.5;
+  const Analysis found = analyse(study_of_twelve(Design::abx, {4, 6}), options);
+  const double alone = psychophysics::below_d_prime(abx_task(), {.successes = 6, .trials = 12}, 1.5).p;
+  EXPECT_DOUBLE_EQ(found.all->equivalence->p, alone);
+}
+
+TEST(Equivalence, IsUnknownWithoutAMargin) {
+  const auto json = analysis_as_json(analyse(study_of_twelve(Design::abx, {6, 6, 5}), quick()));
+  EXPECT_TRUE(json.at("equivalence").at("shown").is_null());
+  EXPECT_TRUE(json.at("equivalence").at("bound").is_null());
+  EXPECT_TRUE(json.at("equivalence").at("excluded_above").is_number());
+}
+
 // Right 18 of 20 when it is the first, 6 of 20 when the second. R: fisher.test gives p = 0.00024.
 TEST(Answers, WithAResponseBiasAreWarnedOf) {
   Study study = study_with(Design::two_interval);
@@ -174,7 +249,7 @@ TEST(TheTableOf004, GivesTheNumbersOfTheDocs) {
   EXPECT_DOUBLE_EQ(found.p_value, 1.0);
   EXPECT_NEAR(found.all->interval.lower, 0.2109, 5e-5);
   EXPECT_NEAR(found.all->interval.upper, 0.7891, 5e-5);
-  EXPECT_NEAR(found.all->excluded_margin, 0.2547, 5e-5);
+  EXPECT_FALSE(found.all->tests_subjects) << "three subjects";
   EXPECT_NEAR(found.all->power[0].power, 0.391, 5e-4);
   EXPECT_EQ(found.all->power[0].trials_needed, 35);
   EXPECT_NEAR(found.all->power[1].power, 0.0863, 5e-5);
@@ -190,12 +265,16 @@ TEST(TheTableOf004, GivesTheNumbersOfTheDocs) {
   EXPECT_EQ(found.preferred, (std::vector<std::size_t>{6, 6}));
 }
 
-TEST(TheTableOf004, JustFailsAMarginOfAQuarter) {
+// Shares 3/4, 1/4, 1/2: mean 0.5, error 0.25 / sqrt(3); against 0.25 t = 1.7321 on 2, one-sided p = 0.1127.
+// R: pt().
+TEST(TheTableOf004, IsFarFromShowingAMarginOfAQuarterForPeople) {
   AnalysisOptions options = quick();
   options.margin = 0.25;
   const Analysis found = analyse(table_of_okamura(), options);
-  EXPECT_NEAR(found.all->equivalence->p, 0.054, 5e-4);
+  EXPECT_NEAR(found.all->equivalence->p, 0.1127, 5e-5);
   EXPECT_FALSE(found.all->equivalence->is_shown);
+  EXPECT_FALSE(found.all->equivalence->subjects_differ);
+  EXPECT_EQ(found.all->equivalence->subjects_shown, 0U);
 }
 
 TEST(TheTableOf004, SaysWhatItCannotSupport) {
@@ -238,6 +317,38 @@ TEST(Preferences, AmongManyAreRankedAsAgrestisBaseball) {
   EXPECT_DOUBLE_EQ(found.p_value, found.rankings[0].bradley_terry->ratio_p);
   EXPECT_DOUBLE_EQ(main_result(study).p_value, found.p_value);
   EXPECT_EQ(analysis_as_json(found).at("preferred").at("Milwaukee"), 50);
+}
+
+// Six subjects with one taste each, and six with the opposite: many answers, and nothing that people prefer.
+TEST(Preferences, ThatDifferFromSubjectToSubjectAreNoPreferenceOfPeople) {
+  Study study = study_with(Design::preference);
+  study.samples = {"a", "A", "c"};
+  for (int subject = 0; subject < 12; ++subject) {
+    const bool turned = subject % 2 == 1;
+    const std::size_t before = study.judgements.size();
+    for (const auto& [first, second, wins] : {std::tuple{0U, 1U, 9}, {0U, 2U, 10}, {1U, 2U, 7}})
+      add_wins(study, first, second, turned ? 12 - wins + (subject == 1 ? 0 : 1) : wins,
+               turned ? wins - (subject == 1 ? 0 : 1) : 12 - wins);
+    for (std::size_t i = before; i < study.judgements.size(); ++i)
+      study.judgements[i].subject = fmt::format("P{}", subject);
+  }
+  const Analysis found = analyse(study, quick());
+  ASSERT_EQ(found.rankings.size(), 1U);
+  EXPECT_TRUE(found.rankings[0].tests_subjects);
+  EXPECT_GT(found.p_value, 0.3);
+  EXPECT_LT(found.rankings[0].bradley_terry->ratio_p, 0.5);
+  EXPECT_GT(found.rankings[0].error_of(0), found.rankings[0].bradley_terry->standard_error[0]);
+  EXPECT_DOUBLE_EQ(main_result(study).p_value, found.p_value);
+  EXPECT_EQ(analysis_as_json(found).at("ranking").at(0).at("over_subjects").at("is_main"), true);
+}
+
+TEST(Findings, LeaveTheNamesOfSamplesAsTheyAre) {
+  Study study = study_with(Design::preference);
+  study.samples = {"a", "b", "c"};
+  add_wins(study, 0, 1, 28, 2);
+  add_wins(study, 0, 2, 28, 2);
+  add_wins(study, 1, 2, 15, 15);
+  EXPECT_THAT(analyse(study, quick()).shows, Contains(HasSubstr("referred is a to b")));
 }
 
 // [Ford1957]: an item that never lost has no finite worth.
