@@ -258,10 +258,33 @@ json across_as_json(const std::optional<psychophysics::AcrossSubjects>& across) 
           {"deviation", json_number(across->deviation)}};
 }
 
-json levels_as_json(const LevelAnalysis& levels) {
+json of_people_as_json(const psychophysics::OfPeople& found, double confidence) {
+  return {{"value", json_number(found.mean)},
+          {"ci95", pair_of(found.interval(confidence))},
+          {found.is_ratio ? "deviation_of_log" : "deviation", json_number(found.deviation)},
+          {"unit", "1 (fraction of the standard)"}};
+}
+
+json people_as_json(const std::optional<PeopleFit>& people, double confidence) {
+  if (!people) return nullptr;
+  json slope = of_people_as_json(people->fit.slope, confidence);
+  slope.erase("unit");
+  return {{"model", "mixed, adaptive quadrature"},
+          {"subjects", people->fit.subjects},
+          {"jnd", of_people_as_json(people->jnd, confidence)},
+          {"pse", people->equality ? of_people_as_json(*people->equality, confidence) : json(nullptr)},
+          {"slope", std::move(slope)},
+          {"correlation", json_number(people->fit.correlation)},
+          {"lapse", people->fit.lapse},
+          {"log_likelihood", json_number(people->fit.log_likelihood)},
+          {"jnd_within_margins", people->jnd_within ? json(*people->jnd_within) : json(nullptr)}};
+}
+
+json levels_as_json(const LevelAnalysis& levels, double confidence) {
   json result{{"two_sided", levels.two_sided},
               {"all", level_fit_as_json(levels.pooled, levels.two_sided)},
               {"by_subject", json::array()},
+              {"people", people_as_json(levels.people, confidence)},
               {"mean_jnd", across_as_json(levels.across)},
               {"mean_pse", across_as_json(levels.across_equality)},
               {"shapes", json::array()},
@@ -363,7 +386,8 @@ json analysis_as_json(const Analysis& analysis) {
   result["across_subjects"] = spread_as_json(analysis.spread);
   result["slot_bias"] = bias_as_json(analysis.bias, analysis.design);
   result["ranking"] = rankings_as_json(analysis);
-  result["psychometric"] = analysis.levels ? levels_as_json(*analysis.levels) : json(nullptr);
+  result["psychometric"] =
+      analysis.levels ? levels_as_json(*analysis.levels, options.confidence) : json(nullptr);
   result["tracks"] = tracks_as_json(analysis.tracks);
   result["response_times"] = times_as_json(analysis.times);
   result["corrections"] = corrections_as_json(analysis);

@@ -85,6 +85,18 @@ void add_level_lines(const Analysis& analysis, std::vector<std::string>& lines) 
   lines.push_back(level_line(levels.pooled, levels, confidence));
   for (const LevelFit& subject : levels.by_subject)
     lines.push_back("  " + level_line(subject, levels, confidence));
+  if (levels.people) {
+    const PeopleFit& people = *levels.people;
+    std::string line =
+        fmt::format("JND of people, mixed model: {} ({:.3g} % {}; between people a factor of {:.2f})",
+                    percent_text(people.jnd.mean), 100.0 * confidence,
+                    percent_text(people.jnd.interval(confidence)), std::exp(people.jnd.deviation));
+    if (people.equality)
+      line += fmt::format("; PSE {} ({:.3g} % {}; between people {})", percent_text(people.equality->mean),
+                          100.0 * confidence, percent_text(people.equality->interval(confidence)),
+                          percent_text(people.equality->deviation));
+    lines.push_back(std::move(line));
+  }
   if (levels.across) {
     lines.push_back(fmt::format("mean JND of the subjects: {} ({:.3g} % {}, Student)",
                                 percent_text(levels.across->mean), 100.0 * confidence,

@@ -224,12 +224,21 @@ MainResult main_result(const Study& study, const AnalysisOptions& options) {
   }
   if (!has_levels(study.design) || !options.curves) return result;
   const LevelAnalysis levels = analyse_levels(study, judgements, quick, false);
-  if (levels.pooled.jnd) {
+  if (levels.people) {
+    result.jnd = levels.people->jnd.mean;
+    result.jnd_interval = levels.people->jnd.interval(options.confidence);
+  } else if (levels.pooled.jnd) {
     result.jnd = levels.pooled.jnd->value;
     result.jnd_interval = levels.pooled.jnd->interval;
   }
-  if (levels.pooled.equality) result.equality = levels.pooled.equality->value;
-  result.equivalent = levels.pooled.jnd_within;
+  if (levels.people && levels.people->equality) {
+    result.equality = levels.people->equality->mean;
+    result.equality_interval = levels.people->equality->interval(options.confidence);
+  } else if (levels.pooled.equality) {
+    result.equality = levels.pooled.equality->value;
+    result.equality_interval = levels.pooled.equality->interval;
+  }
+  result.equivalent = levels.people ? levels.people->jnd_within : levels.pooled.jnd_within;
   for (const std::string& note : levels.pooled.notes) {
     if (!result.note.empty()) result.note += "; ";
     result.note += note;

@@ -78,10 +78,12 @@ struct MainResult {
   double d_prime = std::numeric_limits<double>::quiet_NaN();
   psychophysics::Interval d_prime_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
                                            .upper = std::numeric_limits<double>::quiet_NaN()};
-  double jnd = std::numeric_limits<double>::quiet_NaN();
+  double jnd = std::numeric_limits<double>::quiet_NaN();  ///< of people where there is one, else pooled
   psychophysics::Interval jnd_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
                                        .upper = std::numeric_limits<double>::quiet_NaN()};
-  double equality = std::numeric_limits<double>::quiet_NaN();  ///< PSE
+  double equality = std::numeric_limits<double>::quiet_NaN();  ///< PSE, likewise
+  psychophysics::Interval equality_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
+                                            .upper = std::numeric_limits<double>::quiet_NaN()};
   /// Shown: d' below its bound, a preference in its margin, the JND in its; none where no margin was set.
   std::optional<bool> equivalent;
   std::string note;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -183,26 +184,51 @@ class Findings {
                       tissue, p_text(ranking.bradley_terry->deviance_p)));
   }
 
+  void write_people(const LevelAnalysis& levels, const PeopleFit& people) {
+    const double confidence = options_.confidence;
+    show(fmt::format(
+        "the JND of people is {} {} ({:.3g} % {}, mixed model of {} subjects, who differ by a factor of "
+        "{:.2f})",
+        percent_text(people.jnd.mean),
+        levels.two_sided ? "of the standard, half of 25 to 75 %"
+                         : fmt::format("of the standard at {:.3g} % right",
+                                       100.0 * options_.criterion.value_or(0.5 + 0.5 * levels.guess)),
+        100.0 * confidence, percent_text(people.jnd.interval(confidence)), people.fit.subjects,
+        std::exp(people.jnd.deviation)));
+    if (people.equality)
+      show(fmt::format("people feel equal strength at {} from the standard ({:.3g} % {}; they differ by {})",
+                       percent_text(people.equality->mean), 100.0 * confidence,
+                       percent_text(people.equality->interval(confidence)),
+                       percent_text(people.equality->deviation)));
+  }
+
   void write_levels(const LevelAnalysis& levels) {
     const LevelFit& pooled = levels.pooled;
-    if (pooled.jnd)
-      show(threshold_text("the JND is", *pooled.jnd, criterion_text(levels, *pooled.jnd).c_str(),
-                          options_.confidence));
-    if (pooled.equality)
-      show(threshold_text("equal strength is felt at", *pooled.equality, "from the standard",
-                          options_.confidence));
-    if (levels.across) {
+    if (levels.people) {
+      write_people(levels, *levels.people);
+    } else {
+      const char* whose = analysis_.subjects.size() > 1 ? "the JND over all answers is" : "the JND is";
+      if (pooled.jnd)
+        show(threshold_text(whose, *pooled.jnd, criterion_text(levels, *pooled.jnd).c_str(),
+                            options_.confidence));
+      if (pooled.equality)
+        show(threshold_text("equal strength is felt at", *pooled.equality, "from the standard",
+                            options_.confidence));
+    }
+    if (levels.across && !levels.people) {
       show(fmt::format(
           "the mean JND of the {} subjects is {} ({:.3g} % {}, Student): the one for people like them",
           levels.by_subject.size(), percent_text(levels.across->mean), 100.0 * options_.confidence,
           percent_text(levels.across->interval)));
     }
-    if (pooled.jnd_within) {
-      const std::string margins = percent_text(*options_.jnd_margins);
-      if (*pooled.jnd_within) {
-        show(fmt::format("the JND lies within {}", margins));
+    const std::optional<bool> within = levels.people ? levels.people->jnd_within : pooled.jnd_within;
+    if (within) {
+      const std::string margins = fmt::format("the JND{} lies within {}", levels.people ? " of people" : "",
+                                              percent_text(*options_.jnd_margins));
+      if (*within) {
+        show(margins);
       } else {
-        show_not(fmt::format("that the JND lies within {}", margins));
+        show_not("that " + margins);
       }
     }
     if (pooled.jnd && is_adaptive(analysis_.design) && !pooled.by_posterior) {
@@ -214,8 +240,8 @@ class Findings {
     for (const std::string& note : levels.notes) warn(note);
     if (pooled.fit && is_alarm(pooled.fit->overdispersion_p)) {
       warn(fmt::format(
-          "subjects differ ({}, correlation of answers {:.2f}): the mean over subjects is the one to "
-          "report, not the pooled JND",
+          "subjects differ ({}, correlation of answers {:.2f}): what is said of people, or the mean over "
+          "subjects, is to be reported, not the pooled JND",
           p_text(pooled.fit->overdispersion_p), pooled.fit->overdispersion));
     }
     const auto check = [&](const LevelFit& fit) {

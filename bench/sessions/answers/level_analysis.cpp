@@ -220,6 +220,29 @@ std::optional<psychophysics::AcrossSubjects> mean_of(const std::vector<LevelFit>
   return psychophysics::across_subjects(fits, confidence);
 }
 
+std::optional<PeopleFit> fit_people(const std::vector<std::vector<Level>>& subjects, const Question& question,
+                                    std::vector<std::string>& notes) {
+  try {
+    const psychophysics::MixedOptions options{.shape = question.fit.shape,
+                                              .axis = question.fit.axis,
+                                              .guess = question.fit.guess,
+                                              .two_sided = question.two_sided,
+                                              .lapse = question.fit.lapse,
+                                              .criterion = question.fit.criterion};
+    PeopleFit people{.fit = psychophysics::fit_mixed(subjects, options)};
+    people.jnd = question.two_sided ? psychophysics::half_interquartile(people.fit, options.shape)
+                                    : people.fit.threshold;
+    if (question.two_sided) people.equality = people.fit.threshold;
+    if (question.options->jnd_margins)
+      people.jnd_within = psychophysics::lies_within(people.jnd.interval(1.0 - 2.0 * question.options->level),
+                                                     *question.options->jnd_margins);
+    return people;
+  } catch (const std::invalid_argument& refused) {
+    notes.push_back(fmt::format("no JND of people: {}", refused.what()));
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 double intensity_of(const Study& study, const Judgement& judgement) noexcept {
@@ -246,17 +269,21 @@ LevelAnalysis analyse_levels(const Study& study, const std::vector<const Judgeme
       subjects.push_back(judgement->subject);
   }
   std::vector<Level> rows;
+  std::vector<std::vector<Level>> rows_by_subject;
   for (const std::string& subject : subjects) {
     Answers own;
     std::copy_if(judgements.begin(), judgements.end(), std::back_inserter(own),
                  [&](const Judgement* judgement) { return judgement->subject == subject; });
     const std::vector<Level> own_rows = rows_of(study, own);
     rows.insert(rows.end(), own_rows.begin(), own_rows.end());
+    rows_by_subject.push_back(own_rows);
     if (thorough && subjects.size() > 1)
       analysis.by_subject.push_back(level_fit(study, own, own_rows, subject, question, thorough));
   }
   question.fit.overdispersed = subjects.size() > 1;
   analysis.pooled = level_fit(study, judgements, rows, "all", question, thorough);
+  if (subjects.size() >= 3 && !question.adaptive && analysis.pooled.fit)
+    analysis.people = fit_people(rows_by_subject, question, analysis.notes);
   if (!thorough) return analysis;
   if (analysis.pooled.fit) compare_shapes(analysis, question);
   if (subjects.size() >= 3) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/psychophysics/mixed_fit.h>
 #include <kerf/psychophysics/psychometric_fit.h>
 
 #include "protocol/judgement.h"
@@ -39,6 +40,14 @@ struct ShapeFit {
   double jnd = 0.0;
 };
 
+/// What holds for the people that subjects stand for: a mixed model, whose subjects have curves of their own.
+struct PeopleFit {
+  psychophysics::MixedFit fit;
+  psychophysics::OfPeople jnd;                      ///< fraction of the standard
+  std::optional<psychophysics::OfPeople> equality;  ///< PSE: of levels on both sides
+  std::optional<bool> jnd_within;                   ///< the margins, where there are some
+};
+
 struct LevelAnalysis {
   bool two_sided = false;
   psychophysics::Axis axis = psychophysics::Axis::logarithmic;
@@ -46,13 +55,15 @@ struct LevelAnalysis {
   double guess = 0.5;
   LevelFit pooled;
   std::vector<LevelFit> by_subject;
+  std::optional<PeopleFit>
+      people;  ///< of constant levels, from three subjects on; otherwise `notes` say why not
   std::optional<psychophysics::AcrossSubjects> across;           ///< of the JNDs
   std::optional<psychophysics::AcrossSubjects> across_equality;  ///< of the PSEs
   std::vector<ShapeFit> shapes;                                  ///< all that the axis allows, the main first
   std::vector<std::string> notes;
 };
 
-/// The pooled fit alone where `thorough` is false.
+/// The pooled fit and that of people alone where `thorough` is false.
 [[nodiscard]] LevelAnalysis analyse_levels(const Study& study,
                                            const std::vector<const Judgement*>& judgements,
                                            const AnalysisOptions& options, bool thorough = true);
