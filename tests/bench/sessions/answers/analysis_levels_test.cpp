@@ -1,6 +1,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -78,6 +79,38 @@ TEST(Subjects, WithOtherJndsHaveAMeanWithStudentsInterval) {
   EXPECT_GT(found.levels->across->interval.upper, wanted);
   EXPECT_LT(found.levels->pooled.fit->overdispersion_p, 0.05);
   EXPECT_THAT(found.warnings, Contains(HasSubstr("Subjects differ")));
+}
+
+TEST(People, HaveAJndAndAPseOfAMixedModelInPlaceOfThoseOfPooledAnswers) {
+  Study study = constant_study({-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3});
+  study.task.reset();
+  Random random(3);
+  for (int subject = 0; subject < 8; ++subject) {
+    Psychometric own{
+        .shape = Shape::gaussian, .axis = Axis::linear, .slope = 8.0, .guess = 0.0, .lapse = 0.0};
+    own.threshold = 0.03 + 0.08 * random.normal();
+    add_observer(study, fmt::format("P{}", subject), own, 16, random);
+  }
+  AnalysisOptions options = quick();
+  options.lapse = 0.0;
+  options.jnd_margins = psychophysics::Interval{.lower = 0.04, .upper = 0.2};
+  const Analysis found = analyse(study, options);
+  ASSERT_TRUE(found.levels->people);
+  const PeopleFit& people = *found.levels->people;
+  EXPECT_LT(people.equality->interval().lower, 0.03);
+  EXPECT_GT(people.equality->interval().upper, 0.03);
+  EXPECT_NEAR(people.equality->deviation, 0.08, 0.04);
+  EXPECT_LT(people.jnd.interval().lower, 0.6744898 / 8.0);
+  EXPECT_GT(people.jnd.interval().upper, 0.6744898 / 8.0);
+  EXPECT_EQ(people.jnd_within, true);
+  // The pooled curve is flatter than that of any subject: they differ in where it lies.
+  EXPECT_GT(found.levels->pooled.jnd->value, 1.15 * people.jnd.mean);
+  EXPECT_DOUBLE_EQ(main_result(study, options).jnd, people.jnd.mean);
+  EXPECT_DOUBLE_EQ(main_result(study, options).equality, people.equality->mean);
+  EXPECT_THAT(found.shows, Contains(HasSubstr("JND of people")));
+  const auto json = analysis_as_json(found).at("psychometric").at("people");
+  EXPECT_EQ(json.at("subjects"), 8);
+  EXPECT_DOUBLE_EQ(json.at("pse").at("value").get<double>(), people.equality->mean);
 }
 
 TEST(LevelsOnBothSides, GivePointOfEqualityAndJnd) {

@@ -51,6 +51,32 @@ TEST(Simulate, ObserversWhoFeelNothingRaiseFalseAlarmsInAtMostFivePercent) {
   }
 }
 
+// Of twelve people whose tastes differ by d' = 2 about none, 20 to 40 % of the studies would find a
+// preference if their answers were taken as independent.
+TEST(Simulate, PeopleWhoDisagreeRaiseNoMoreFalseAlarmsThanTheTestSays) {
+  SimulationOptions options = options_of(1000);
+  options.subjects = 12;
+  options.observer.preference_spread = 2.0;
+  const Simulation simulation =
+      simulated(simulated_protocol("design = \"preference\"\ntrials = 12\n" + two_springs(8, 16)), options);
+  EXPECT_LT(simulation.false_alarms.value(), 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / 1000));
+  EXPECT_GT(simulation.false_alarms.value(), 0.02);
+}
+
+TEST(Simulate, ObserversOfWhomFewFeelAnythingAreRightAsOftenAsTheExactProbabilitySays) {
+  SimulationOptions options = options_of(400);
+  options.subjects = 8;
+  options.observer.share_feeling = 0.25;
+  options.sensation.d_prime = 2.0;
+  options.analysis.d_prime_bound = 1.0;
+  const Simulation simulation = simulated(simulated_protocol(two_intervals + two_springs(8, 12)), options);
+  // A quarter of P(2 / sqrt2) without lapses, three quarters of a half.
+  const double felt = 0.98 * 0.5 * std::erfc(-1.0) + 0.02 * 0.5;
+  EXPECT_NEAR(simulation.truth.share, 0.25 * felt + 0.75 * 0.5, 1e-9);
+  EXPECT_EQ(simulation.found.equivalent.count.trials, 400);
+  EXPECT_LT(simulation.found.equivalent.value(), 0.2) << "some of them hear well";
+}
+
 TEST(Simulate, TheTrialsThatItTakesGiveThePowerThatWasWanted) {
   SimulationOptions options = options_of(1000);
   options.power = 0.9;
