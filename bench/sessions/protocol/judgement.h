@@ -23,6 +23,7 @@ struct Judgement {
   /// that played pair[1].
   std::size_t right = 0;
   std::size_t answer = 0;  ///< a slot
+  /// From when it could be answered to the answer; of earlier versions' sessions from the first force.
   double response_s = std::numeric_limits<double>::quiet_NaN();
   std::size_t switches = 0;
   bool practice = false;

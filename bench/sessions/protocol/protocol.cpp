@@ -78,7 +78,8 @@ void read_presentation(const Place& place, const toml::table& root, Protocol& pr
   protocol.interval_s = read_seconds(place, root, "interval", protocol.interval_s, 0.1, 600.0);
   protocol.gap_s = read_seconds(place, root, "gap", protocol.gap_s, 0.0, 60.0);
   protocol.switching =
-      read_choice(place, root, "switching", SwitchKind::blend,
+      read_choice(place, root, "switching",
+                  protocol.design == Design::abx ? SwitchKind::through_zero : SwitchKind::blend,
                   {{"blend", SwitchKind::blend}, {"through-zero", SwitchKind::through_zero}});
   protocol.ramp_s = read_seconds(place, root, "ramp", protocol.ramp_s, 0.0, 10.0);
   const auto slots = static_cast<double>(slots_of(protocol.design));
@@ -182,7 +183,7 @@ Protocol parse_protocol(const std::string& text, const std::string& name,
   const toml::table root = parse_toml(text, name);
   const Place place(name);
   place.allow_only(
-      root, {"name",     "design",   "question",  "instructions", "consent",     "trials",       "practice",
+      root, {"name",     "title",    "design",   "question",  "instructions", "consent",     "trials",       "practice",
              "feedback", "strategy", "break",     "signal",       "odd_one_out", "presentation", "interval",
              "gap",      "longest",  "switching", "ramp",         "device",      "rate",         "loudness",
              "sample",   "tissue",   "scale",     "motion"},
@@ -190,6 +191,8 @@ Protocol parse_protocol(const std::string& text, const std::string& name,
   Protocol protocol;
   protocol.toml = text;
   protocol.name = read_name(place, root, "a protocol");
+  protocol.title = read_plain_text(place, root, "title");
+  if (protocol.title.empty()) protocol.title = "Comparison";
   protocol.design = read_design(place, root);
   protocol.instructions = read_plain_text(place, root, "instructions", true);
   protocol.consent = read_plain_text(place, root, "consent", true);

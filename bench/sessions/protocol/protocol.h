@@ -82,6 +82,7 @@ enum class Loudness : std::uint8_t { as_they_are, peak, rms };
 /// A blind comparison, as a file `NAME.protocol.toml` describes it; docs/sessions.md has the format.
 struct Protocol {
   std::string name;
+  std::string title;  ///< what subjects see over every trial; the name may tell what is compared
   Design design = Design::preference;
   std::string question;      ///< "Which felt more like cutting liver?"
   std::string instructions;  ///< shown before the practice
@@ -97,7 +98,7 @@ struct Protocol {
   double interval_s = 4.0;
   double gap_s = 0.5;
   double longest_s = 60.0;  ///< of a trial; then zero force, and the subject may still answer
-  SwitchKind switching = SwitchKind::blend;
+  SwitchKind switching = SwitchKind::blend;  ///< of abx through_zero, unless its file says otherwise
   double ramp_s = 0.25;               ///< from sample to sample
   std::optional<std::size_t> signal;  ///< two_interval, three_interval: the sample that the question asks for
   bool odd_one_out = false;           ///< three_interval: either may be the odd one

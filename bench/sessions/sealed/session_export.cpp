@@ -28,14 +28,14 @@ std::string row_of(const SessionStore& store, std::size_t index, bool some_answe
   const RecordedTrial& trial = store.trials()[index];
   const std::size_t right = trial.what.right(protocol);
   const auto label = [&](std::size_t slot) { return label_of(protocol.design, slot); };
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
                      store.session().number, index + 1, trial.what.practice ? 1 : 0,
                      csv_text(protocol.tissues[trial.what.tissue].name),
                      csv_text(protocol.samples[trial.what.pair[0]].name),
                      csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
                      slots_in_words(protocol, trial.what), label(right), label(trial.answer),
                      some_answer_is_right ? (trial.answer == right ? "1" : "0") : "",
-                     csv_number(trial.response_s), trial.switches, trial.at);
+                     csv_number(trial.decision_s()), trial.switches, trial.at, csv_number(trial.answerable_s));
 }
 
 /// What the design alone does not say of how d' is reckoned.
@@ -50,12 +50,11 @@ std::string table_of(const SessionStore& store) {
       "# name = {}\n# design = \"{}\"\n{}"
       "# level: the second is the first times 1 + level; slots: which of the two each slot played, in the "
       "order "
-      "of their labels; right: of a preference the slot that played the second; response_s [s]: from the "
-      "first "
-      "force to the answer; at: UTC\n"
+      "of their labels; right: of a preference the slot that played the second; response_s [s]: from "
+      "when it could be answered to the answer; answerable_s [s]: from the first force until then; at: UTC\n"
       "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
       "switches,"
-      "at\n",
+      "at,answerable_s\n",
       csv_quoted(store.protocol().name), name_of(store.protocol().design), task_line(store.protocol()));
   for (std::size_t i = 0; i < store.trials().size(); ++i) table += row_of(store, i, some_answer_is_right);
   return table;

@@ -191,6 +191,7 @@ void SessionStore::append(const RecordedTrial& trial) {
   RecordedTrial answered{.what = trial.what,
                          .answer = trial.answer,
                          .response_s = trial.response_s,
+                         .answerable_s = trial.answerable_s,
                          .switches = trial.switches,
                          .at = trial.at,
                          .axes = trial.axes,

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +30,14 @@ struct RecordedTrial {
   TrialPlan what;           ///< with its level
   std::size_t answer = 0;   ///< a slot
   double response_s = 0.0;  ///< from the first force to the answer
+  /// From the first force until it could be answered; NaN in files of earlier versions.
+  double answerable_s = std::numeric_limits<double>::quiet_NaN();
+
+  /// From when it could be answered, where that is known, to the answer: without the stimuli of a sequence.
+  [[nodiscard]] double decision_s() const noexcept {
+    return std::isfinite(answerable_s) ? response_s - answerable_s : response_s;
+  }
+
   std::size_t switches = 0;
   std::string at;  ///< when it was answered, ISO 8601, UTC
   std::vector<schema::Axis> axes;

@@ -32,7 +32,7 @@ Judgement judgement_of(const SessionStore& store, std::size_t session, const Rec
           .level = trial.what.level,
           .right = trial.what.right(protocol),
           .answer = trial.answer,
-          .response_s = trial.response_s,
+          .response_s = trial.decision_s(),
           .switches = trial.switches,
           .practice = trial.what.practice};
 }

@@ -20,6 +20,7 @@ Json head_of(const RecordedTrial& trial) {
   Json head{{"what", to_json(trial.what)},
             {"answer", trial.answer},
             {"response_s", json_number(trial.response_s)},
+            {"answerable_s", json_number(trial.answerable_s)},
             {"switches", trial.switches},
             {"at", trial.at},
             {"ticks", trial.trace.size()},
@@ -40,6 +41,7 @@ RecordedTrial trial_of(const Json& head) {
   trial.what = trial_plan_from(head.at("what"));
   trial.answer = head.at("answer").get<std::size_t>();
   trial.response_s = number_from(head.at("response_s"));
+  if (head.contains("answerable_s")) trial.answerable_s = number_from(head.at("answerable_s"));
   trial.switches = head.at("switches").get<std::size_t>();
   trial.at = head.at("at").get<std::string>();
   for (const Json& axis : head.at("axes")) {

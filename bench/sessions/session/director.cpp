@@ -50,6 +50,8 @@ void Director::poll(double now_s) {
   // One at a time: what comes next may be meant for what is shown then.
   if (const auto action = subject_.next()) act(*action);
   if (phase_ == Phase::trial) follow_sequence();
+  if (phase_ == Phase::trial && first_felt_s_ && !answerable_s_ && may_answer())
+    answerable_s_ = now_s_ - *first_felt_s_;
   if (phase_ == Phase::trial && playing_ && time_is_over()) {
     rendering_.play(std::nullopt);
     playing_.reset();
@@ -127,6 +129,7 @@ void Director::start_trial() {
   trial_.rows = 0;
   playing_.reset();
   first_felt_s_.reset();
+  answerable_s_.reset();
   felt_s_ = {};
   switches_ = 0;
   intervals_begun_ = 0;
@@ -183,7 +186,7 @@ void Director::answer(std::size_t slot) {
   const Protocol& protocol = store_.protocol();
   if (phase_ != Phase::trial && phase_ != Phase::unstored) return refuse("There is nothing to answer now.");
   if (slot >= answers_of(protocol.design)) return refuse("That is none of the answers.");
-  if (!all_felt() && !time_is_over()) {
+  if (!may_answer()) {
     return refuse(protocol.presentation == Presentation::sequence
                       ? "Please wait until all of them have played."
                       : "Please feel every one of them first, each for a moment.");
@@ -191,6 +194,7 @@ void Director::answer(std::size_t slot) {
   answer_ = slot;
   if (phase_ == Phase::unstored) return end_trial();  // it was felt, and how long that took is known
   response_s_ = first_felt_s_ ? now_s_ - *first_felt_s_ : 0.0;
+  if (!answerable_s_) answerable_s_ = response_s_;
   playing_.reset();
   rendering_.end();
   phase_ = Phase::fading;
@@ -212,6 +216,7 @@ void Director::end_trial() {
       .what = planned_,
       .answer = answer_,
       .response_s = response_s_,
+      .answerable_s = *answerable_s_,
       .switches = switches_,
       .at = schema::new_header("").created,
       .axes = axes_of(device_),

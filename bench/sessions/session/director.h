@@ -72,6 +72,7 @@ class Director {
   void refuse(std::string why) { notice_ = std::move(why); }
   [[nodiscard]] bool all_felt() const noexcept;
   [[nodiscard]] bool time_is_over() const noexcept;
+  [[nodiscard]] bool may_answer() const noexcept { return all_felt() || time_is_over(); }
   [[nodiscard]] SubjectView view() const;
   void view_of_trial(SubjectView& view) const;
 
@@ -96,6 +97,7 @@ class Director {
   std::optional<std::size_t> playing_;
   double playing_since_s_ = 0.0;
   std::optional<double> first_felt_s_;
+  std::optional<double> answerable_s_;  ///< after that, when it could be answered first
   std::array<double, max_slots> felt_s_{};
   std::size_t switches_ = 0;
   std::size_t intervals_begun_ = 0;

@@ -18,12 +18,12 @@ void Director::view_of_trial(SubjectView& view) const {
   if (phase_ == Phase::unstored) view.may_answer = true;
   if (phase_ != Phase::trial) return;
   view.may_switch = protocol.presentation == Presentation::free && !time_is_over();
-  view.may_answer = all_felt() || time_is_over();
+  view.may_answer = may_answer();
 }
 
 SubjectView Director::view() const {
   const Protocol& protocol = store_.protocol();
-  SubjectView view{.study = protocol.name,
+  SubjectView view{.study = protocol.title,
                    .trial = std::min(sequence_.answered() + 1, sequence_.at_most()),
                    .at_most = sequence_.at_most(),
                    .may_be_fewer = is_adaptive(protocol.design),

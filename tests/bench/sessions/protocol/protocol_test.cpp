@@ -84,6 +84,21 @@ TEST(SessionProtocol, SaysEverythingOfASession) {
   EXPECT_EQ(protocol.toml, everything);
 }
 
+TEST(SessionProtocol, ShowsSubjectsATitleThatTellsNothingUnlessItSaysOne) {
+  EXPECT_EQ(protocol_from(everything).title, "Comparison");
+  EXPECT_EQ(protocol_from("title = \"Cutting liver\"\n" + std::string(everything)).title, "Cutting liver");
+}
+
+// With "blend" a switch from X to the sample that X is changes nothing: that would be noticing a change.
+TEST(SessionProtocol, SwitchesAbxThroughZeroUnlessItSaysOtherwise) {
+  const auto of = [](const std::string& design) {
+    return protocol_from(protocol_text("design = " + design)).switching;
+  };
+  EXPECT_EQ(of("\"abx\""), SwitchKind::through_zero);
+  EXPECT_EQ(of("\"abx\"\nswitching = \"blend\""), SwitchKind::blend);
+  EXPECT_EQ(of("\"preference\""), SwitchKind::blend);
+}
+
 TEST(SessionProtocol, SaysHowSamplesAreRendered) {
   const Protocol protocol = protocol_from(everything);
   EXPECT_EQ(protocol.presentation, Presentation::sequence);

@@ -37,13 +37,13 @@ TEST_F(SessionExport, IsATableOfAllTrials) {
   ASSERT_THAT(lines, SizeIs(7));
   EXPECT_EQ(lines[0], "# name = \"two laws\"");
   EXPECT_EQ(lines[1], "# design = \"abx\"");
-  EXPECT_THAT(lines[2], HasSubstr("response_s [s]"));
+  EXPECT_THAT(lines[2], HasSubstr("answerable_s [s]"));
   EXPECT_EQ(lines[3],
             "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
-            "switches,at");
-  EXPECT_EQ(lines[4], "S2,2,1,1,,soft,stiff,,first/second/first,A,B,0,3.25,1,2026-01-31T12:00:00Z");
-  EXPECT_EQ(lines[5], "S2,2,2,0,,soft,stiff,,second/first/second,A,B,0,3.25,1,2026-01-31T12:00:00Z");
-  EXPECT_EQ(lines[6], "S2,2,3,0,,soft,stiff,,first/second/second,B,A,0,3.25,1,2026-01-31T12:00:00Z");
+            "switches,at,answerable_s");
+  EXPECT_EQ(lines[4], "S2,2,1,1,,soft,stiff,,first/second/first,A,B,0,3.25,1,2026-01-31T12:00:00Z,");
+  EXPECT_EQ(lines[5], "S2,2,2,0,,soft,stiff,,second/first/second,A,B,0,3.25,1,2026-01-31T12:00:00Z,");
+  EXPECT_EQ(lines[6], "S2,2,3,0,,soft,stiff,,first/second/second,B,A,0,3.25,1,2026-01-31T12:00:00Z,");
 }
 
 TEST_F(SessionExport, HasARecordingOfEachTrialThatHasTicks) {
@@ -59,7 +59,7 @@ TEST_F(SessionExport, HasARecordingOfEachTrialThatHasTicks) {
   EXPECT_EQ(recording.events[0].kind, "slot");
   EXPECT_EQ(recording.events[0].text, "A: 'soft' (soft.law.toml)");
   EXPECT_EQ(recording.events[1].text, "B: 'stiff' (stiff.law.toml, force x 0.3)");
-  EXPECT_EQ(recording.header.created, "2026-01-31T12:00:00Z");
+  EXPECT_EQ(recording.header.created, "2026-01-31T12:00:00Z,");
   EXPECT_THAT(recording.header.history, HasSubstr("trial 1 of session"));
   EXPECT_THAT(recording.header.history, HasSubstr("X: 'soft' (soft.law.toml); answered B"));
 }

@@ -13,6 +13,7 @@ RecordedTrial trial_of(std::size_t ticks) {
   trial.what = {.tissue = 1, .pair = {0, 2}, .slots = {1, 0, 1}, .level = 0.1 + 0.2, .practice = true};
   trial.answer = 1;
   trial.response_s = 12.125;
+  trial.answerable_s = 8.0;
   trial.switches = 9;
   trial.at = "2026-01-31T12:00:00Z";
   trial.axes = {{.name = "theta", .position_unit = "rad", .force_unit = "N·m", .lever = 0.0369},
@@ -44,6 +45,8 @@ TEST(TrialBytes, ComeBackBitForBit) {
   EXPECT_EQ(back.what.slots, trial.what.slots);
   EXPECT_EQ(back.answer, 1U);
   EXPECT_EQ(back.response_s, 12.125);
+  EXPECT_EQ(back.answerable_s, 8.0);
+  EXPECT_EQ(back.decision_s(), 4.125);
   EXPECT_EQ(back.switches, 9U);
   EXPECT_EQ(back.at, trial.at);
   ASSERT_EQ(back.axes.size(), 2U);

@@ -103,6 +103,8 @@ TEST(RunSession, KeepsTheTimesOfASequence) {
   EXPECT_NEAR(ticks[0], 400, 1);
   EXPECT_NEAR(ticks[1], 400, 1);
   EXPECT_NEAR(trial.response_s, 0.9, 0.003) << "two intervals and the pause between them";
+  EXPECT_NEAR(trial.answerable_s, 0.9, 0.003);
+  EXPECT_NEAR(trial.decision_s(), 0.0, 0.003) << "the rehearsal answers at once; the stimuli are no decision";
 }
 
 TEST(RunSession, NeverStepsPastTheSlewLimitWhereverItIsSwitched) {
