@@ -77,6 +77,11 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
   std::vector<std::unique_ptr<SessionStore>> stores;
   std::vector<const SessionStore*> sessions;
   std::vector<NamedSession> named;
+  std::vector<std::string> remarks;
+  const auto mind = [&](std::string remark) {
+    warn(remark);
+    remarks.push_back(std::move(remark));
+  };
   context.result["early_openings"] = nlohmann::ordered_json::array();
   for (const std::string& file : arguments.files) {
     if (is_table(file))
@@ -86,17 +91,19 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
     stores.push_back(std::make_unique<SessionStore>(file, key, SessionStore::Purpose::read));
     const SessionStore& store = *stores.back();
     sessions.push_back(&store);
-    for (const std::string& warning : store.warnings()) warn(warning);
+    for (const std::string& warning : store.warnings()) mind(warning);
     for (const std::string& opening : store.early_openings()) {
-      warn(fmt::format("{}: opened before its end: {}", file, opening));
+      mind(fmt::format("{}: opened before its end: {}", file, opening));
       context.result["early_openings"].push_back({{"file", file}, {"opening", opening}});
     }
     if (was_rehearsed(store.session()))
-      warn(fmt::format("{}: a rehearsal, whose answers are by chance", file));
+      mind(fmt::format("{}: a rehearsal, whose answers are by chance", file));
     named.push_back({.file = file, .session = &store});
   }
   hold_against(receipts, named, context);
-  return study_of(sessions);
+  Study study = study_of(sessions);
+  study.remarks = std::move(remarks);
+  return study;
 }
 
 void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {

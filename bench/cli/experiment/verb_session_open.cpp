@@ -32,7 +32,7 @@ void open(SessionOpenVerbArguments& arguments, Context& context) {
                     {"finished", store.finished()},
                     {"early_openings", store.early_openings()}};
   for (const std::string& opening : store.early_openings()) warn("opened before its end: " + opening);
-  context.say(fmt::format("{}: trials.csv and a recording of each of {} trials", arguments.output,
+  context.say(fmt::format("{}: trials.csv, slots.csv and a recording of each of {} trials", arguments.output,
                           store.trials().size()));
 }
 
@@ -48,7 +48,8 @@ void add_session_open(CLI::App& session, Context& context) {
       [arguments, &context] { open(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("FILE", arguments->file, "The session").required();
-  verb.add_option("-o,--output", arguments->output, "Folder for trials.csv and the recordings").required();
+  verb.add_option("-o,--output", arguments->output, "Folder for trials.csv, slots.csv and the recordings")
+      .required();
   verb.add_option("--reason", arguments->reason, "Why it is opened before its end; kept in the file");
   add_key_options(verb, arguments->key);
   verb.add_flag("--force", arguments->replace, "Replace existing files");

@@ -339,6 +339,13 @@ json times_as_json(const ResponseTimes& times) {
           {"note", note_of(times.note)}};
 }
 
+json quality_as_json(const AnswerQuality& quality) {
+  return {{"known", quality.known},
+          {"unfelt", quality.known > 0 ? json(quality.unfelt) : json(nullptr)},
+          {"faulty", quality.known > 0 ? json(quality.faulty) : json(nullptr)},
+          {"without", {{"trials", quality.without}, {"p_value", json_number(quality.p_value)}}}};
+}
+
 json corrections_as_json(const Analysis& analysis) {
   json families = json::array();
   const auto add = [&](const char* family, std::size_t tests) {
@@ -390,6 +397,7 @@ json analysis_as_json(const Analysis& analysis) {
       analysis.levels ? levels_as_json(*analysis.levels, options.confidence) : json(nullptr);
   result["tracks"] = tracks_as_json(analysis.tracks);
   result["response_times"] = times_as_json(analysis.times);
+  result["quality"] = quality_as_json(analysis.quality);
   result["corrections"] = corrections_as_json(analysis);
   result["shown"] = analysis.shows;
   result["not_shown"] = analysis.shows_not;

@@ -168,6 +168,27 @@ void name_main_test(Analysis& analysis) {
   }
 }
 
+AnswerQuality quality_of_answers(const Study& study, const AnalysisOptions& options) {
+  AnswerQuality quality;
+  Study rest = study;
+  rest.judgements.clear();
+  for (const Judgement& each : study.judgements) {
+    if (each.practice) continue;
+    const bool is_unfelt = each.is_felt == false;
+    const bool is_faulty = each.is_sound == false;
+    quality.known += each.is_felt ? 1 : 0;
+    quality.unfelt += is_unfelt ? 1 : 0;
+    quality.faulty += is_faulty ? 1 : 0;
+    if (!is_unfelt && !is_faulty) rest.judgements.push_back(each);
+  }
+  quality.without = rest.judgements.size();
+  if (quality.unfelt == 0 && quality.faulty == 0) return quality;
+  AnalysisOptions test_alone = options;
+  test_alone.curves = false;
+  quality.p_value = main_result(rest, test_alone).p_value;
+  return quality;
+}
+
 }  // namespace
 
 Analysis analyse(const Study& study, const AnalysisOptions& options) {
@@ -192,6 +213,8 @@ Analysis analyse(const Study& study, const AnalysisOptions& options) {
     analysis.tracks = adaptive_tracks(study, judgements, options);
   }
   analysis.times = response_times(study, judgements);
+  analysis.quality = quality_of_answers(study, options);
+  analysis.remarks = study.remarks;
   name_main_test(analysis);
   add_findings(analysis);
   return analysis;

@@ -39,6 +39,15 @@ struct AnalysisOptions {
   std::uint64_t seed = 1;
 };
 
+/// Which trials were not felt, or not sound, and what the others say without them.
+struct AnswerQuality {
+  std::size_t known = 0;    ///< trials of which it is known
+  std::size_t unfelt = 0;   ///< a slot had no force that can be felt
+  std::size_t faulty = 0;   ///< a fault of law, device or loop while a slot played
+  std::size_t without = 0;  ///< trials that are left
+  double p_value = std::numeric_limits<double>::quiet_NaN();  ///< of the main test over those
+};
+
 /// Everything about a study.
 struct Analysis {
   AnalysisOptions options;
@@ -61,6 +70,8 @@ struct Analysis {
   std::optional<LevelAnalysis> levels;
   std::vector<AdaptiveTrack> tracks;
   ResponseTimes times;
+  AnswerQuality quality;
+  std::vector<std::string> remarks;    ///< of the study; among the warnings, too
   std::vector<std::string> shows;      ///< sentences
   std::vector<std::string> shows_not;  ///< what one might read into it
   std::vector<std::string> warnings;

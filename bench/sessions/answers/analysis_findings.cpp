@@ -16,6 +16,7 @@ class Findings {
   explicit Findings(Analysis& analysis) : analysis_(analysis), options_(analysis.options) {}
 
   void write() {
+    for (const std::string& remark : analysis_.remarks) warn(remark);
     if (analysis_.trials == 0) {
       warn(analysis_.practice > 0 ? "there are no answers besides practice" : "there are no answers");
       return;
@@ -32,6 +33,7 @@ class Findings {
     for (const TissueRanking& ranking : analysis_.rankings) write_ranking(ranking);
     write_subjects();
     write_bias();
+    write_quality();
     write_times();
   }
 
@@ -309,6 +311,18 @@ class Findings {
     warn(fmt::format("the answers have a response bias to one slot ({}; {}){}", counts, p_text(bias.test.p),
                      is_preference() ? ": a preference is seen less clearly for it"
                                      : ": the count makes the difference look smaller than it is"));
+  }
+
+  void write_quality() {
+    const AnswerQuality& quality = analysis_.quality;
+    if (quality.unfelt == 0 && quality.faulty == 0) return;
+    std::string what;
+    if (quality.unfelt > 0)
+      what = fmt::format("{} had a slot without a force that can be felt", quality.unfelt);
+    if (quality.faulty > 0)
+      what += fmt::format("{}{} a fault while a slot played", what.empty() ? "" : ", ", quality.faulty);
+    warn(fmt::format("of {} trials {}: they are counted; without them {} are left, with {}", quality.known,
+                     what, quality.without, p_text(quality.p_value)));
   }
 
   void write_times() {

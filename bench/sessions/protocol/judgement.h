@@ -27,6 +27,10 @@ struct Judgement {
   double response_s = std::numeric_limits<double>::quiet_NaN();
   std::size_t switches = 0;
   bool practice = false;
+  /// Of sessions whose forces are known: every slot had a force that can be felt; no fault of law, device or
+  /// loop meanwhile.
+  std::optional<bool> is_felt;
+  std::optional<bool> is_sound;
 
   [[nodiscard]] bool is_right() const noexcept { return answer == right; }
 };
@@ -40,6 +44,7 @@ struct Study {
   IntensityScale scale;                     ///< where the design has levels
   bool slots_known = true;                  ///< of a table of answers perhaps not: which slot held what
   std::vector<Judgement> judgements;        ///< practice included, which is not analysed
+  std::vector<std::string> remarks;         ///< what else is to be minded: rehearsals, early openings
 };
 
 /// A study without judgements yet.

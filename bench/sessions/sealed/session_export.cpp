@@ -7,6 +7,7 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "recordings/provenance.h"
+#include "sealed/trial_quality.h"
 #include "tables/csv.h"
 
 namespace kerf::bench {
@@ -28,14 +29,14 @@ std::string row_of(const SessionStore& store, std::size_t index, bool some_answe
   const RecordedTrial& trial = store.trials()[index];
   const std::size_t right = trial.what.right(protocol);
   const auto label = [&](std::size_t slot) { return label_of(protocol.design, slot); };
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
-                     store.session().number, index + 1, trial.what.practice ? 1 : 0,
-                     csv_text(protocol.tissues[trial.what.tissue].name),
-                     csv_text(protocol.samples[trial.what.pair[0]].name),
-                     csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
-                     slots_in_words(protocol, trial.what), label(right), label(trial.answer),
-                     some_answer_is_right ? (trial.answer == right ? "1" : "0") : "",
-                     csv_number(trial.decision_s()), trial.switches, trial.at, csv_number(trial.answerable_s));
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject, store.session().number,
+      index + 1, trial.what.practice ? 1 : 0, csv_text(protocol.tissues[trial.what.tissue].name),
+      csv_text(protocol.samples[trial.what.pair[0]].name),
+      csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
+      slots_in_words(protocol, trial.what), label(right), label(trial.answer),
+      some_answer_is_right ? (trial.answer == right ? "1" : "0") : "", csv_number(trial.decision_s()),
+      trial.switches, trial.at, csv_number(trial.answerable_s));
 }
 
 /// What the design alone does not say of how d' is reckoned.
@@ -57,6 +58,30 @@ std::string table_of(const SessionStore& store) {
       "at,answerable_s\n",
       csv_quoted(store.protocol().name), name_of(store.protocol().design), task_line(store.protocol()));
   for (std::size_t i = 0; i < store.trials().size(); ++i) table += row_of(store, i, some_answer_is_right);
+  return table;
+}
+
+/// What was felt of each slot, a row each.
+std::string slots_table_of(const SessionStore& store) {
+  const Protocol& protocol = store.protocol();
+  std::string table =
+      "subject,number,trial,practice,slot,plays,playing_s,contact_s,rms_N,peak_N,travel_m,speed_m_s,work_J,"
+      "limited_ticks,trial_faulty_ticks,trial_missed_deadlines\n";
+  for (std::size_t i = 0; i < store.trials().size(); ++i) {
+    const RecordedTrial trial = store.trial(i);
+    const std::optional<TrialQuality> quality = quality_of(trial, slots_of(protocol.design));
+    if (!quality) continue;
+    for (std::size_t slot = 0; slot < quality->slots.size(); ++slot) {
+      const SlotFelt& felt = quality->slots[slot];
+      table += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
+          store.session().number, i + 1, trial.what.practice ? 1 : 0, label_of(protocol.design, slot),
+          csv_text(protocol.samples[trial.what.pair[trial.what.slots[slot]]].name),
+          csv_number(felt.playing_s), csv_number(felt.contact_s), csv_number(felt.rms_n),
+          csv_number(felt.peak_n), csv_number(felt.travel_m), csv_number(felt.speed_m_s),
+          csv_number(felt.work_j), felt.limited_ticks, quality->faulty_ticks, quality->missed_deadlines);
+    }
+  }
   return table;
 }
 
@@ -137,8 +162,10 @@ schema::Recording recording_of(const SessionStore& store, std::size_t index) {
 
 void export_session(const SessionStore& store, const fs::path& folder, bool replace) {
   constexpr auto table = "trials.csv";
+  constexpr auto slots = "slots.csv";
   const auto name_of = [](std::size_t trial) { return fmt::format("trial-{:03}.h5", trial + 1); };
   require_output(folder / table, replace);
+  require_output(folder / slots, replace);
   for (std::size_t i = 0; i < store.trials().size(); ++i) require_output(folder / name_of(i), replace);
   WholeFolder whole(folder, schema::existing_if(replace));
   for (std::size_t i = 0; i < store.trials().size(); ++i) {
@@ -146,6 +173,7 @@ void export_session(const SessionStore& store, const fs::path& folder, bool repl
     if (recording.rows() > 0) schema::write_recording(whole.path() / name_of(i), recording);
   }
   write_whole_file(whole.path() / table, table_of(store));
+  write_whole_file(whole.path() / slots, slots_table_of(store));
   whole.commit();
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "sealed/session_store.h"
+#include "sealed/trial_quality.h"
 
 namespace kerf::bench {
 namespace {
@@ -25,6 +26,7 @@ void require_same(const schema::Session& first, const schema::Session& other) {
 
 Judgement judgement_of(const SessionStore& store, std::size_t session, const RecordedTrial& trial) {
   const Protocol& protocol = store.protocol();
+  const std::optional<TrialQuality> quality = quality_of(trial, slots_of(protocol.design));
   return {.subject = store.session().subject,
           .session = session,
           .tissue = protocol.tissues.at(trial.what.tissue).name,
@@ -34,7 +36,9 @@ Judgement judgement_of(const SessionStore& store, std::size_t session, const Rec
           .answer = trial.answer,
           .response_s = trial.decision_s(),
           .switches = trial.switches,
-          .practice = trial.what.practice};
+          .practice = trial.what.practice,
+          .is_felt = quality ? std::optional(quality->is_felt()) : std::nullopt,
+          .is_sound = quality ? std::optional(quality->is_sound()) : std::nullopt};
 }
 
 }  // namespace
@@ -50,9 +54,8 @@ Study study_of(const std::vector<const SessionStore*>& sessions) {
       throw std::invalid_argument(fmt::format("the session of {} ({}) is there twice; name each file once",
                                               session.subject, session.uuid));
     }
-    for (const RecordedTrial& trial : store->trials()) {
-      study.judgements.push_back(judgement_of(*store, seen.size(), trial));
-    }
+    for (std::size_t i = 0; i < store->trials().size(); ++i)
+      study.judgements.push_back(judgement_of(*store, seen.size(), store->trial(i)));
   }
   return study;
 }

@@ -59,7 +59,7 @@ TEST_F(SessionExport, HasARecordingOfEachTrialThatHasTicks) {
   EXPECT_EQ(recording.events[0].kind, "slot");
   EXPECT_EQ(recording.events[0].text, "A: 'soft' (soft.law.toml)");
   EXPECT_EQ(recording.events[1].text, "B: 'stiff' (stiff.law.toml, force x 0.3)");
-  EXPECT_EQ(recording.header.created, "2026-01-31T12:00:00Z,");
+  EXPECT_EQ(recording.header.created, "2026-01-31T12:00:00Z");
   EXPECT_THAT(recording.header.history, HasSubstr("trial 1 of session"));
   EXPECT_THAT(recording.header.history, HasSubstr("X: 'soft' (soft.law.toml); answered B"));
 }
