@@ -29,10 +29,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef KERF_LAW_H
-#error "kerf/law.h (plug-ins) and kerf/kerf.h (who renders laws) both have a kerf_law: not in one source"
-#endif
-
 #if defined(__GNUC__)
 #define KERF_API __attribute__((visibility("default")))
 #else
@@ -139,9 +135,10 @@ KERF_API kerf_status kerf_law_make(const char* model, const kerf_value* values, 
  * files that name it, with the SHA-256 of this very file, are opened from now on, and kerf_law_make() takes
  * its name, which `model` is given; `model` may be NULL. A file that is loaded already is that one.
  *
- * The plug-in's code runs within the program and with its rights, and a crash in it is one of the program:
- * let `kerf law build` or `kerf check` try it before. A step in which it throws, gives no finite number or
- * writes behind its state is a KERF_LAW_FAULT. Not while another thread makes a law.
+ * The plug-in's code runs within the program and with its rights, also while it is loaded, and a crash in it
+ * is one of the program: let `kerf laws ./mylaw.so` try it before, which does so in a process of its own. A
+ * step in which it throws, gives no finite number or writes behind its state is a KERF_LAW_FAULT. Not while
+ * another thread makes a law.
  *
  * Errors: KERF_BAD_INPUT with the file: no such file, no plug-in, another version of kerf/law.h, a
  * description that makes no sense, the name of a law that there is already. `*model` is NULL then. */

@@ -1,6 +1,7 @@
 #include "kerf/models/foreign.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -10,6 +11,8 @@
 #include <sstream>
 #include <stdexcept>
 #include <utility>
+
+#include "kerf/models/foreign_call.h"
 
 namespace kerf::models {
 namespace {
@@ -86,10 +89,14 @@ Quantity quantity_of(const std::string& given, const std::string& what, std::str
   refuse(what, ": its unit '", given, "' is none of", known);
 }
 
-void check_state(std::size_t size, std::size_t alignment, std::string_view what) {
+/// The alignment of a state that can be.
+std::size_t checked_alignment(std::size_t size, std::size_t alignment, std::string_view what) {
   if (size > largest_state) refuse(what, "_size is ", size, " bytes, expected at most ", largest_state);
+  if (alignment == 0) return alignof(double);
   if (!std::has_single_bit(alignment) || alignment > largest_alignment)
-    refuse(what, "_alignment is ", alignment, ", expected a power of two up to ", largest_alignment);
+    refuse(what, "_alignment is ", alignment, ", expected a power of two up to ", largest_alignment,
+           ", or 0");
+  return alignment;
 }
 
 const kerf_law_v1& of_this_version(const kerf_law_v1& law) {
@@ -128,13 +135,38 @@ LawFacts facts_of(const kerf_law_v1& law) {
 // Of the memory that a thread begins with: a library that is loaded later would take it at the first step.
 [[gnu::tls_model("initial-exec")]] thread_local const ForeignLaw* running = nullptr;
 
+/// What others see of a thread: in a line of the cache of its own.
+struct alignas(64) Watched {
+  std::atomic<const ForeignLaw*> law{nullptr};
+  std::atomic<std::uint64_t> begun{0};
+};
+std::array<Watched, watched_threads> watched;
+std::atomic<std::size_t> threads{0};
+[[gnu::tls_model("initial-exec")]] thread_local Watched* seen_of_this = nullptr;
+
+Watched& seen() noexcept {
+  if (seen_of_this == nullptr)
+    seen_of_this = &watched[threads.fetch_add(1, std::memory_order_relaxed) % watched_threads];
+  return *seen_of_this;
+}
+
 /// While a plug-in's code runs.
 class Running {
  public:
-  explicit Running(const ForeignLaw& law) noexcept { running = &law; }
+  explicit Running(const ForeignLaw& law) noexcept : seen_(seen()) {
+    running = &law;
+    seen_.begun.store(seen_.begun.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    seen_.law.store(&law, std::memory_order_relaxed);
+  }
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
-  ~Running() { running = nullptr; }
+  ~Running() {
+    seen_.law.store(nullptr, std::memory_order_relaxed);
+    running = nullptr;
+  }
+
+ private:
+  Watched& seen_;
 };
 
 /// Never taken apart: laws, and views of their names, live as long as the program.
@@ -163,11 +195,12 @@ ForeignLaw::ForeignLaw(const kerf_law_v1& law, PluginFile from)
   if (law.step == nullptr) refuse("it has no step()");
   if (law.reserved != 0 || law.tells > 31)
     refuse("'tells' or 'reserved' has bits that version 1 does not know");
-  check_state(law.state_size, law.state_alignment, "state");
+  law_.state_alignment = checked_alignment(law.state_size, law.state_alignment, "state");
   if (law.step_derivatives != nullptr) {
     if (law.axis_count > 0)
       refuse("step_derivatives() is for laws along one axis, and this has axes of its own");
-    check_state(law.derivatives_state_size, law.derivatives_state_alignment, "derivatives_state");
+    law_.derivatives_state_alignment =
+        checked_alignment(law.derivatives_state_size, law.derivatives_state_alignment, "derivatives_state");
   } else if (law.init_derivatives != nullptr) {
     refuse("it has init_derivatives() without step_derivatives()");
   }
@@ -292,5 +325,10 @@ std::vector<const ForeignLaw*> foreign_laws() {
 }
 
 const ForeignLaw* running_foreign_law() noexcept { return running; }
+
+ForeignCall foreign_call(std::size_t thread) noexcept {
+  const Watched& one = watched[thread];
+  return {.law = one.law.load(std::memory_order_relaxed), .begun = one.begun.load(std::memory_order_relaxed)};
+}
 
 }  // namespace kerf::models

@@ -56,7 +56,7 @@ TEST(Plugin, ThatIsNoneIsRefused) {
   const test::TemporaryFolder folder;
   test::write_text(folder / "text.so", "no object\n");
   EXPECT_THAT(refusal(folder / "text.so"), HasSubstr("no shared object that can be opened"));
-  EXPECT_THAT(refusal(plugin("no_law")), HasSubstr("exports no kerf_law()"));
+  EXPECT_THAT(refusal(plugin("no_law")), HasSubstr("exports no kerf_plugin_law()"));
   EXPECT_THAT(refusal(plugin("moody_other_version")), HasSubstr("made for version 2 of kerf/law.h"));
 }
 
@@ -87,6 +87,20 @@ TEST(Plugin, ThatAllocatesInItsStepIsCounted) {
   if (!trial.allocations) GTEST_SKIP() << "sanitizers have a malloc of their own";
   EXPECT_GT(*trial.allocations, 100U);
   EXPECT_LT(*trial.allocations, trial.steps);
+}
+
+TEST(Plugin, ThatDoesNotComeBackLaterEndsTheProgramByItsName) {
+  // In a process of its own: who looks after plug-ins is a thread, and a fork has none.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto step_on = [] {
+    (void)load(plugin("moody"), "12", std::chrono::milliseconds(100));
+    const models::Law law = models::Law::make("moody", std::vector{100.0, 4.0});  // sleeps for an hour
+    models::Law::State state = law.initial_state();
+    for (const double depth : {0.001, 0.003})
+      (void)law.step(state, models::Motion{.penetration = depth, .velocity = 0.0}, 1e-3);
+  };
+  EXPECT_EXIT(step_on(), testing::ExitedWithCode(4),
+              "moody.so: the law of this plug-in has not come back for 100 ms");
 }
 
 TEST(Plugin, ThatSleepsIsGivenUp) {
