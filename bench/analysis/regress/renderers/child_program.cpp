@@ -1,6 +1,7 @@
 #include "regress/renderers/child_program.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <stdexcept>
@@ -20,6 +21,14 @@ namespace {
 
 constexpr std::size_t words_kept = 4096;  ///< bytes of each stream
 constexpr std::size_t longest_in_print = 300;
+constexpr std::size_t most_others = 2;  ///< to wait for beside a program
+
+using Clock = std::chrono::steady_clock;
+
+int milliseconds_until(Clock::time_point deadline) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 60'000));
+}
 
 pid_t spawn(const ChildProgram::Start& start, int output, int errors) {
   posix_spawn_file_actions_t actions;
@@ -104,6 +113,24 @@ ChildProgram::ChildProgram(const Start& start)
 }
 
 ChildProgram::~ChildProgram() { kill_group(); }
+
+bool ChildProgram::wait(std::span<pollfd> others, Clock::time_point deadline) {
+  std::array<pollfd, most_others + 3> waited{};
+  for (;;) {
+    std::ranges::copy(others, waited.begin());
+    pollfd* const own = waited.data() + others.size();
+    own[0] = {.fd = ended_.number(), .events = POLLIN, .revents = 0};
+    own[1] = {.fd = output.pipe().reads.number(), .events = POLLIN, .revents = 0};
+    own[2] = {.fd = errors.pipe().reads.number(), .events = POLLIN, .revents = 0};
+    poll(waited.data(), others.size() + 3, milliseconds_until(deadline));
+    if (own[1].revents != 0 && !output.take()) output.pipe().reads.reset();
+    if (own[2].revents != 0 && !errors.take()) errors.pipe().reads.reset();
+    std::copy_n(waited.begin(), others.size(), others.begin());
+    const bool is_ready = std::ranges::any_of(others, [](const pollfd& one) { return one.revents != 0; });
+    // Who floods its streams is not waited for longer than the others.
+    if (is_ready || own[0].revents != 0 || Clock::now() >= deadline) return own[0].revents != 0;
+  }
+}
 
 int ChildProgram::kill_group() noexcept {
   if (reaped_) return status_;

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include <poll.h>
 #include <sys/types.h>
 
 namespace kerf::bench {
@@ -64,8 +65,10 @@ class ChildProgram {
   ChildProgram& operator=(const ChildProgram&) = delete;
   ~ChildProgram();
 
-  /// Can be read once the program has ended; its group may go on.
-  [[nodiscard]] int ended() const noexcept { return ended_.number(); }
+  /// Keeps what it says until one of the others is ready, it has ended or the deadline is over.
+  /// @param others at most two; their `revents` are set
+  /// @returns whether the program has ended; its group may go on
+  bool wait(std::span<pollfd> others, std::chrono::steady_clock::time_point deadline);
   /// Kills the group, takes what was said last. @returns the program's status as of waitpid().
   int kill_group() noexcept;
   /// The last line that it said, as the end of a message.

@@ -1,6 +1,5 @@
 #include "regress/renderers/line_link.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 
@@ -13,11 +12,6 @@ namespace {
 
 constexpr std::chrono::milliseconds from_close_to_end{200};  ///< a program that ends closes first
 
-int milliseconds_until(LineLink::Clock::time_point deadline) {
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - LineLink::Clock::now());
-  return static_cast<int>(std::clamp<std::int64_t>(left.count(), 0, 60'000));
-}
-
 }  // namespace
 
 LineLink::LineLink(ChildProgram& program, int reads, int writes)
@@ -28,31 +22,19 @@ LineLink::LineLink(ChildProgram& program, int reads, int writes)
 
 /// What comes first; text of the program is taken into the buffer before its end is told.
 LineLink::Waited LineLink::wait(bool for_room, Clock::time_point deadline) {
-  const auto while_open = [](bool open, int descriptor) { return open ? descriptor : -1; };
-  for (;;) {
-    std::array<pollfd, 5> waited{
-        {{.fd = while_open(!closed_ && buffer_.size() <= longest_line, reads_),
-          .events = POLLIN,
-          .revents = 0},
-         {.fd = while_open(for_room, writes_), .events = POLLOUT, .revents = 0},
-         {.fd = program_.ended(), .events = POLLIN, .revents = 0},
-         {.fd = program_.errors.pipe().reads.number(), .events = POLLIN, .revents = 0},
-         {.fd = program_.output.pipe().reads.number(), .events = POLLIN, .revents = 0}}};
-    const int ready = poll(waited.data(), waited.size(), milliseconds_until(deadline));
-    if (ready == 0 && Clock::now() >= deadline) return Waited::nothing;
-    if (waited[3].revents != 0 && !program_.errors.take()) program_.errors.pipe().reads.reset();
-    if (waited[4].revents != 0 && !program_.output.take()) program_.output.pipe().reads.reset();
-    if (waited[0].revents != 0) {
-      std::array<char, 16384> bytes{};
-      const ssize_t count = read(reads_, bytes.data(), bytes.size());
-      if (count > 0) buffer_.append(bytes.data(), static_cast<std::size_t>(count));
-      if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) closed_ = true;
-      return Waited::text;
-    }
-    if (waited[1].revents != 0) return Waited::room;
-    if (waited[2].revents != 0) return Waited::end;
-    if (Clock::now() >= deadline) return Waited::nothing;  // who floods its other streams is late, too
+  const bool for_text = !closed_ && buffer_.size() <= longest_line;
+  std::array<pollfd, 2> waited{{{.fd = for_text ? reads_ : -1, .events = POLLIN, .revents = 0},
+                                {.fd = for_room ? writes_ : -1, .events = POLLOUT, .revents = 0}}};
+  const bool has_ended = program_.wait(waited, deadline);
+  if (waited[0].revents != 0) {
+    std::array<char, 16384> bytes{};
+    const ssize_t count = read(reads_, bytes.data(), bytes.size());
+    if (count > 0) buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) closed_ = true;
+    return Waited::text;
   }
+  if (waited[1].revents != 0) return Waited::room;
+  return has_ended ? Waited::end : Waited::nothing;
 }
 
 LineLink::Outcome LineLink::gone() {

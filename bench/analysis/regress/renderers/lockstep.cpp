@@ -1,6 +1,7 @@
 #include "regress/renderers/lockstep.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -141,13 +142,10 @@ class Conversation {
   }
 
   void accept_from(const Descriptor& listener) {
-    pollfd waited[]{{.fd = listener.number(), .events = POLLIN, .revents = 0},
-                    {.fd = program_->ended(), .events = POLLIN, .revents = 0}};
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(answer_due() - Clock::now()).count();
-    poll(waited, 2, static_cast<int>(std::max<std::int64_t>(left, 0)));
-    if (waited[0].revents == 0)
-      fail(waited[1].revents != 0 ? LineLink::Outcome::ended : LineLink::Outcome::late,
-           "connected to {socket}");
+    std::array<pollfd, 1> connection{{{.fd = listener.number(), .events = POLLIN, .revents = 0}}};
+    const bool has_ended = program_->wait(connection, deadline_);
+    if (connection[0].revents == 0)
+      fail(has_ended ? LineLink::Outcome::ended : LineLink::Outcome::late, "connected to {socket}");
     socket_.reset(accept4(listener.number(), nullptr, nullptr, SOCK_CLOEXEC));
     if (socket_.number() < 0)
       throw std::system_error(errno, std::generic_category(), "a renderer's connection");
@@ -179,8 +177,7 @@ class Conversation {
     fail(fmt::format("{} before it had {}", end_in_words(program_->kill_group()), done));
   }
 
-  std::string_view exchange(std::string_view question, const std::string& done) {
-    const auto due = answer_due();
+  std::string_view exchange(std::string_view question, const std::string& done, Clock::time_point due) {
     std::string_view line;
     LineLink::Outcome outcome = link_->send(question, due);
     if (outcome == LineLink::Outcome::done) outcome = link_->receive(line, due);
@@ -235,7 +232,7 @@ class Conversation {
   }
 
   void greet() {
-    const std::string_view line = exchange(hello(), "answered the hello");
+    const std::string_view line = exchange(hello(), "answered the hello", deadline_);
     try {
       const json answer = json::parse(line);
       if (answer.at("hello") != "kerf lockstep") throw std::invalid_argument("another hello");
@@ -258,7 +255,7 @@ class Conversation {
     trajectory_.append_row(question_, motion_, tick);
     question_ += '\n';
     const auto begin = Clock::now();
-    const std::string_view line = exchange(question_, fmt::format("answered tick {}", tick));
+    const std::string_view line = exchange(question_, fmt::format("answered tick {}", tick), answer_due());
     const std::chrono::duration<double> round_trip = Clock::now() - begin;
     read_values(line, tick);
     if (values_[columns_.key] != static_cast<double>(tick))

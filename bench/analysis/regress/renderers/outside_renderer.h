@@ -17,7 +17,7 @@ namespace kerf::bench {
 struct Lockstep {
   bool socket = false;       ///< over a socket, {socket} of its command, not over its standard streams
   bool by_the_wall = false;  ///< each tick at its time; else as soon as the one before is answered
-  double answer_s = 10.0;    ///< how long an answer may take
+  double answer_s = 10.0;    ///< how long the answer to a tick may take; to the hello as long as the case
 };
 
 /// A renderer that is no law of Kerf: a program that is run once a case, or a file of forces that it has

@@ -1,11 +1,10 @@
 #include "regress/renderers/run_program.h"
 
-#include <array>
+#include <algorithm>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/core.h>
-#include <poll.h>
 
 #include "regress/renderers/child_program.h"
 
@@ -14,7 +13,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int look_every_ms = 10;  ///< at the size of what it writes
+constexpr std::chrono::milliseconds look_every{10};  ///< at the size of what it writes
 
 bool too_large(const ProgramRun& run) {
   std::error_code none;
@@ -24,21 +23,15 @@ bool too_large(const ProgramRun& run) {
 
 /// Why it has to be killed; empty: it ended.
 std::string watch(const ProgramRun& run, ChildProgram& program) {
-  const auto deadline = Clock::now() + run.timeout;
-  std::array<pollfd, 3> waited{
-      {{.fd = program.ended(), .events = POLLIN, .revents = 0},
-       {.fd = program.output.pipe().reads.number(), .events = POLLIN, .revents = 0},
-       {.fd = program.errors.pipe().reads.number(), .events = POLLIN, .revents = 0}}};
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(run.timeout);
   for (;;) {
-    poll(waited.data(), waited.size(), look_every_ms);
-    if (waited[1].revents != 0 && !program.output.take()) waited[1].fd = -1;
-    if (waited[2].revents != 0 && !program.errors.take()) waited[2].fd = -1;
+    const bool has_ended = program.wait({}, std::min(deadline, Clock::now() + look_every));
     if (too_large(run)) {
       return fmt::format(
           "the renderer wrote more than {} bytes of forces, more than its rows can take, and was killed",
           run.output_at_most);
     }
-    if (waited[0].revents != 0) return {};
+    if (has_ended) return {};
     if (Clock::now() > deadline) {
       return fmt::format("the renderer had not ended after {:g} s and was killed with its process group",
                          run.timeout.count());

@@ -140,7 +140,8 @@ TEST_F(LockstepRenderer, IsAnErrorOfItsCaseInOneLineWhateverItSays) {
     std::string at_end{};
   };
   const std::vector<Bad> all{
-      {"sleep 60", good, "had not answered the hello after 1 s and was killed with its process group"},
+      {"sleep 60", good,
+       "had not answered the hello when its 1 s were over and was killed with its process group"},
       {"echo loading meshes", good, "gave the hello 'loading meshes', expected a line such as {"},
       {hello("\"version\":1", "\"version\":2"), good, "speaks version 2 of the protocol, expected 1"},
       {hello("lockstep", "music"), good, "gave the hello"},
@@ -185,9 +186,11 @@ TEST_F(LockstepRenderer, IsAnErrorOfItsCaseInOneLineWhateverItSays) {
   const std::string before = test::read_text(folder_ / "suite.h5");
   std::vector<Script> scripts;
   for (const Bad& bad : all) {
-    const bool waits = bad.says.find("after 1 s") != std::string::npos;
-    scripts.push_back(
-        {bad.hello, bad.each, bad.at_end, bad.more, waits ? "answer = { value = 1, unit = \"s\" }" : ""});
+    const auto waits = [&](const char* until) { return bad.says.find(until) != std::string::npos; };
+    const std::string options = waits("after 1 s")      ? "answer = { value = 1, unit = \"s\" }"
+                                : waits("when its 1 s") ? "timeout = { value = 1, unit = \"s\" }"
+                                                        : "";
+    scripts.push_back({bad.hello, bad.each, bad.at_end, bad.more, options});
   }
   write_suite(scripts);
   const SuiteOutcome outcome = run_suite(suite(), {.jobs = all.size()});

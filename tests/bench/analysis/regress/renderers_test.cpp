@@ -210,6 +210,29 @@ TEST_F(ExampleRenderers, AreCaughtWhenTheyBecomeWrong) {
   }
 }
 
+TEST_F(ExampleRenderers, AreToConnectToTheSocketWhateverElseTheySay) {
+  const std::string text = test::read_text(folder_ / "renderers.toml");
+  const std::string before = R"(["python3", "lockstep.py", "--socket", "{socket}"])";
+  for (const auto& [command, says] : std::vector<std::array<std::string, 2>>{
+           {R"(["sh", "-c", "yes | head -100000; exec python3 lockstep.py --socket $0", "{socket}"])", ""},
+           {R"(["sh", "-c", "echo no display >&2; exit 3", "{socket}"])",
+            "ended with status 3 before it had connected to {socket}; it said last: no display"},
+           {R"(["sh", "-c", "sleep 60", "{socket}"])",
+            "had not connected to {socket} when its 0.5 s were over and was killed"}}) {
+    std::string other = text;
+    other.replace(other.find(before), before.size(), command);
+    const std::string answer = "answer = { value = 10";
+    if (command.find("sleep") != std::string::npos)
+      other.replace(other.find(answer), answer.size(), "timeout = { value = 0.5");
+    test::write_text(folder_ / "renderers.toml", other);
+    const RegressionOutcome one =
+        run_suite(read_suite(folder_ / "renderers.toml"), {.only = {"spring in Python, in lockstep"}})
+            .cases.at(0);
+    EXPECT_THAT(one.error, HasSubstr(says));
+    EXPECT_EQ(one.passed(), says.empty()) << one.error;
+  }
+}
+
 TEST_F(ExampleRenderers, AreCaughtInLockstepToo) {
   const std::string text = test::read_text(folder_ / "renderers.toml");
   std::vector<Fault> faults = named_faults;
