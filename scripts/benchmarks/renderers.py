@@ -8,6 +8,7 @@ subprocess, and both are held against the time that the commands themselves wait
 
 import argparse
 import json
+import os
 import pathlib
 import resource
 import statistics
@@ -108,7 +109,8 @@ def main():
         lines.append("| %s | %.2f | %.2f | %.1f |" % (
             what, statistics.median(runs), min(runs), 1e6 * statistics.median(runs) / LONG_TICKS))
     lines += ["", "Medians of %d rounds. The bare loop starts the same commands one after the other from Python and reads nothing; "
-              "processor time is that of Kerf and of the commands together." % arguments.rounds]
+              "processor time is that of Kerf and of the commands together. Load average of the machine: %.0f."
+              % (arguments.rounds, os.getloadavg()[0])]
     replace_section(arguments.house / "docs/benchmarks.md", "renderers", "Renderers that are no laws of Kerf",
                     "\n".join(lines))
     print("\n".join(lines))
