@@ -5,12 +5,20 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 namespace {
 
 constexpr double surface = 0.01;  // x0 [m]
 constexpr double tau = 0.05;      // [s]
+
+// The next number of a row.
+double next(char*& at) {
+  const double value = std::strtod(at, &at);
+  if (*at == ',') ++at;
+  return value;
+}
 
 }  // namespace
 
@@ -22,13 +30,17 @@ int main() {
   }
   std::puts(
       R"({"hello":"kerf lockstep","version":1,"sign":"resisting","columns":["tick","fx[N]","fy[N]","compute_time[s]"]})");
-  std::fflush(stdout);
+  if (std::fflush(stdout) != 0) return 4;
   double lag = 0.0;
   double last = 0.0;
   while (std::fgets(line, sizeof line, stdin) != nullptr) {
-    unsigned long tick;
-    double now, x, vx, y, vy;
-    if (std::sscanf(line, "%lu,%lf,%lf,%lf,%lf,%lf", &tick, &now, &x, &vx, &y, &vy) != 6) return 2;
+    char* at = line;
+    const double tick = next(at);
+    const double now = next(at);
+    const double x = next(at);
+    const double vx = next(at);
+    next(at);  // y
+    const double vy = next(at);
     const auto begin = std::chrono::steady_clock::now();
     const double period = now - last;
     last = now;
@@ -37,8 +49,9 @@ int main() {
     const double fx = depth > 0.0 ? 400.0 * depth + 200.0 * lag : 0.0;
     const double fy = depth > 0.0 ? 100.0 * depth * vy / 0.1 : 0.0;
     const std::chrono::duration<double> cost = std::chrono::steady_clock::now() - begin;
-    std::printf("%lu,%.17g,%.17g,%.3g\n", tick, fx, fy, cost.count());
-    std::fflush(stdout);  // the next tick is asked for once this one is answered
+    std::printf("%.0f,%.17g,%.17g,%.3g\n", tick, fx, fy, cost.count());
+    // The next tick is asked for once this one is answered.
+    if (std::fflush(stdout) != 0) return 4;
   }
   return 0;
 }

@@ -26,7 +26,7 @@ constexpr std::uintmax_t no_file = 0;
 std::string sha256_once(const fs::path& file) {
   struct Known {
     fs::file_time_type written;
-    std::uintmax_t size;
+    std::uintmax_t size = 0;
     std::string sha256;
   };
   static std::mutex guard;
