@@ -214,17 +214,17 @@ void run_regress(RegressVerbArguments& arguments, Context& context) {
 
 void add_regress(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<RegressVerbArguments>();
-  Verb verb = add_verb(
-      app, context, "regress", "Compare rendered forces with stored ones, tick by tick",
-      "kerf regress update suite.toml --reason 'first forces' --yes\n"
-      "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
-      "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
-      "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
-      "not as it was. A case may name a program of yours in place of a law; 'trajectory SUITE CASE\n"
-      "-o t.csv' (or t.h5) writes what it is given. 'update' says what would change and why, and asks before "
-      "it writes.\n"
-      "docs/regress.md says more.",
-      [arguments, &context] { run_regress(*arguments, context); });
+  Verb verb =
+      add_verb(app, context, "regress", "Compare rendered forces with stored ones, tick by tick",
+               "kerf regress update suite.toml --reason 'first forces' --yes\n"
+               "  kerf regress run suite.toml --junit regress.xml -o regress\n\n"
+               "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
+               "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
+               "not as it was. A case may name a program of yours in place of a law; 'trajectory SUITE CASE\n"
+               "-o t.csv' (or t.h5) writes what it is given. 'update' says what would change and why, and\n"
+               "asks before it writes.\n"
+               "docs/regress.md says more.",
+               [arguments, &context] { run_regress(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("ACTION", arguments->action, "run, update or trajectory")
       .required()
