@@ -22,6 +22,9 @@ void require_sound(const std::vector<StoredForces>& cases) {
       throw std::invalid_argument("stored forces: '" + one.name + "' is no name; expected one without '/'");
     if (!names.insert(one.name).second)
       throw std::invalid_argument("stored forces: there are two cases named '" + one.name + "'");
+    if (!one.compute_time_s.empty() && one.compute_time_s.size() != one.rows())
+      throw std::invalid_argument("stored forces: '" + one.name +
+                                  "' has compute times for another number of rows");
     if (one.channels.empty() || one.force.size() % one.channels.size() != 0) {
       throw std::invalid_argument("stored forces: '" + one.name + "' has " +
                                   std::to_string(one.force.size()) + " numbers for " +
@@ -37,10 +40,22 @@ std::vector<std::string> gather(const std::vector<ForceChannel>& channels,
   return all;
 }
 
+void write_compute_time(hid_t group, const StoredForces& one) {
+  if (one.compute_time_s.empty()) return;
+  const hsize_t rows = one.compute_time_s.size();
+  const auto dataset = h5::create_dataset(
+      group, "compute_time", h5::native<double>(),
+      {.extent = {rows}, .chunk_rows = std::min<hsize_t>(rows, force_chunk_rows), .compressed = true});
+  h5::write_attribute(dataset.id(), "of", one.compute_time_of);
+  h5::write(dataset.id(), h5::native<double>(), one.compute_time_s.data());
+}
+
 void write_case(hid_t cases, const StoredForces& one) {
   const auto group = h5::create_group(cases, one.name);
   for (const auto& [name, member] : texts_of_a_case) h5::write_attribute(group.id(), name, one.*member);
   if (!one.renderer.empty()) h5::write_attribute(group.id(), "renderer", one.renderer);
+  if (!one.made_with.empty()) h5::write_attribute(group.id(), "made_with", one.made_with);
+  write_compute_time(group.id(), one);
   h5::write_attribute(group.id(), "faults", h5::native<std::uint64_t>(), {}, &one.faults);
   if (one.tick_cost) {
     h5::write_attribute(group.id(), "tick_cost", h5::native<double>(), {}, &*one.tick_cost);
@@ -73,6 +88,21 @@ bool has_number(hid_t object, const std::string& name, const std::string& type) 
   return found.type == type && found.extent.empty();
 }
 
+void read_compute_time(const std::filesystem::path& file, hid_t group, const std::string& where,
+                       StoredForces& one) {
+  if (!h5::is_dataset(group, "compute_time")) return;
+  const auto dataset = h5::open(group, "compute_time");
+  const h5::Description about = h5::describe(dataset.id());
+  if (about.type != "float64" || about.extent.size() != 1)
+    refuse(file, where + "/compute_time: found " + about.type + ", expected float64 of N");
+  if (!h5::is_plausible(dataset.id(), std::filesystem::file_size(file)))
+    refuse(file, where + "/compute_time: found more values than the file can hold");
+  one.compute_time_of = text_of(dataset.id(), "of");
+  one.compute_time_s.resize(about.extent[0]);
+  if (!one.compute_time_s.empty())
+    h5::read(dataset.id(), h5::native<double>(), about.extent[0], one.compute_time_s.data());
+}
+
 StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std::string& name) {
   const std::string where = group_of_cases + '/' + name;
   if (!h5::is_group(cases, name)) refuse(file, where + ": found no group, expected one a case");
@@ -82,6 +112,8 @@ StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std
   one.name = name;
   for (const auto& [attribute, member] : texts_of_a_case) one.*member = text_of(group.id(), attribute);
   one.renderer = text_of(group.id(), "renderer");
+  one.made_with = text_of(group.id(), "made_with");
+  read_compute_time(file, group.id(), where, one);
   if (has_number(group.id(), "faults", "uint64"))
     h5::read_attribute(group.id(), "faults", h5::native<std::uint64_t>(), &one.faults);
   if (has_number(group.id(), "tick_cost", "float64")) {

@@ -44,6 +44,23 @@ class Regression : public testing::Test {
   std::filesystem::path file_ = folder_ / "suite.h5";
 };
 
+TEST_F(Regression, KeepsWhatARendererTookAndWhatItWas) {
+  StoredForces one{.name = "outside", .renderer = "./mysim", .channels = {{"x", "N"}}, .force = {1.0, 2.0}};
+  one.compute_time_s = {3e-5, 0.1 + 0.2};
+  one.compute_time_of = "round trip";
+  one.made_with = "version: mysim 1.0\nmysim: 12ab\n";
+  write_regression(file_, {one});
+  EXPECT_THAT(validate(file_), IsEmpty());
+  const auto all = read_regression(file_);
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_EQ(all[0].compute_time_s, one.compute_time_s);
+  EXPECT_EQ(all[0].compute_time_of, "round trip");
+  EXPECT_EQ(all[0].made_with, one.made_with);
+  one.compute_time_s.push_back(1.0);
+  EXPECT_THAT([&] { write_regression(file_, {one}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("compute times for another number of rows")));
+}
+
 TEST_F(Regression, ComesBackBitForBit) {
   StoredForces odd{.name = "odd", .channels = {{"theta", "N"}}};
   odd.force = {-0.0, std::numeric_limits<double>::denorm_min(), 0.1 + 0.2};

@@ -7,6 +7,7 @@
 
 #include "files/json_number.h"
 #include "laws/placement.h"
+#include "regress/renderers/step_cost.h"
 
 namespace kerf::bench {
 namespace {
@@ -35,6 +36,16 @@ json difference_as_json(const RegressionOutcome& outcome, const ForceDifference&
   return result;
 }
 
+json compute_time_as_json(const RegressionOutcome& outcome) {
+  if (outcome.got.compute_time_s.empty()) return nullptr;
+  const StepCost cost = step_cost(outcome.got.compute_time_s);
+  return {{"of", outcome.got.compute_time_of},
+          {"median_s", json_number(cost.median_s)},
+          {"of_99_in_100_s", json_number(cost.near_all_s)},
+          {"largest_s", json_number(cost.largest_s)},
+          {"late", outcome.got.late}};
+}
+
 json case_as_json(const RegressionOutcome& outcome) {
   json channels = json::array();
   for (const ChannelComparison& one : outcome.comparison.channels) {
@@ -61,6 +72,8 @@ json case_as_json(const RegressionOutcome& outcome) {
            outcome.comparison.worst ? difference_as_json(outcome, *outcome.comparison.worst) : json(nullptr)},
           {"tick_cost", json_number(outcome.tick_cost)},
           {"stored_tick_cost", json_number(outcome.stored.tick_cost)},
+          {"compute_time", compute_time_as_json(outcome)},
+          {"made_with", outcome.made_with.empty() ? json(nullptr) : json(outcome.made_with)},
           {"seconds", outcome.seconds}};
 }
 

@@ -18,6 +18,9 @@ struct RenderedForces {
   std::vector<double> force;  ///< N x D, row-major
   std::uint64_t faults = 0;
   std::optional<std::size_t> first_fault;  ///< its tick
+  std::vector<double> compute_time_s{};    ///< of every tick; empty: it was not measured
+  std::string compute_time_of{};           ///< "renderer", by which it is told, or "round trip"
+  std::size_t late = 0;                    ///< ticks answered after the next was due, by the wall clock
 
   [[nodiscard]] std::size_t rows() const noexcept {
     return channels.empty() ? 0 : force.size() / channels.size();

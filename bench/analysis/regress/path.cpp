@@ -9,6 +9,7 @@
 #include "laws/law_toml.h"
 #include "laws/plugin_laws.h"
 #include "recordings/provenance.h"
+#include "regress/renderers/recorded_table.h"
 
 namespace kerf::bench {
 namespace {
@@ -23,7 +24,7 @@ void add_bytes(std::string& bytes, double value) {
 SampledMotion path_of(const RegressionCase& one) {
   SampledMotion path;
   try {
-    path = !one.trajectory.empty() ? read_trajectory_csv(one.trajectory, axes_of(one))
+    path = !one.trajectory.empty() ? read_trajectory(one.trajectory, axes_of(one))
            : one.outside           ? sampled(one.motion, one.outside->axes)
                                    : sampled(one.motion, one.law);
   } catch (const std::invalid_argument& error) {

@@ -9,6 +9,8 @@
 #include <fmt/core.h>
 
 #include "recordings/provenance.h"
+#include "regress/renderers/made_with.h"
+#include "regress/renderers/step_cost.h"
 #include "threads/for_each_index.h"
 
 namespace kerf::bench {
@@ -43,6 +45,12 @@ RenderedForces rendered(const RegressionCase& one, const SampledMotion& path) {
   return one.outside ? render_forces(*one.outside, path) : render_forces(one.law, path);
 }
 
+/// What is another program, version or plug-in than it was, as the end of a sentence.
+std::string programs_changed(const RegressionOutcome& outcome) {
+  const std::string words = made_otherwise(outcome.stored.made_with, outcome.made_with);
+  return words.empty() ? "" : ": " + words;
+}
+
 std::string why_different(const RegressionOutcome& outcome) {
   const bool law = checksum(outcome.about) != outcome.stored.law_sha256;
   const bool trajectory =
@@ -50,9 +58,12 @@ std::string why_different(const RegressionOutcome& outcome) {
   const std::string since =
       fmt::format("since {} ({}: {})", outcome.stored.date, outcome.stored.software, outcome.stored.reason);
   const char* const what = outcome.about.outside ? "renderer (its command, program or axes)" : "law file";
-  if (law && trajectory) return fmt::format("the {} and the trajectory have changed {}", what, since);
-  if (law) return fmt::format("the {} has changed {}", what, since);
-  if (trajectory) return fmt::format("the trajectory has changed {}", since);
+  const std::string programs = programs_changed(outcome);
+  if (law && trajectory)
+    return fmt::format("the {} and the trajectory have changed {}{}", what, since, programs);
+  if (law) return fmt::format("the {} has changed {}{}", what, since, programs);
+  if (trajectory) return fmt::format("the trajectory has changed {}{}", since, programs);
+  if (!programs.empty()) return fmt::format("what renders has changed {}{}", since, programs);
   if (outcome.about.outside)
     return fmt::format("command, program and trajectory are as they were; what they rest on has changed {}",
                        since);
@@ -81,7 +92,9 @@ void note_silent_change(RegressionOutcome& outcome) {
   if (!outcome.passed()) return;
   const bool trajectory =
       checksum(outcome.path, outcome.got.channels.size()) != outcome.stored.trajectory_sha256;
-  if (!trajectory && checksum(outcome.about) == outcome.stored.law_sha256) return;
+  if (!trajectory && checksum(outcome.about) == outcome.stored.law_sha256 &&
+      programs_changed(outcome).empty())
+    return;
   outcome.note +=
       (outcome.note.empty() ? "" : "; ") + outcome.why + ", and the forces are within the tolerance";
 }
@@ -124,7 +137,12 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
     for (std::string& line : diagnose(stored, outcome.got, outcome.path, facts))
       outcome.messages.push_back(std::move(line));
   }
+  outcome.made_with = made_with(one);
   outcome.why = why_different(outcome);
+  if (one.outside) {
+    for (std::string& line : judge_step_cost(*one.outside, stored, outcome.got))
+      outcome.messages.push_back(std::move(line));
+  }
   if (tick_costs && one.tick_cost) outcome.tick_cost = tick_cost(one.law, outcome.path);
   judge_cost(outcome);
   note_silent_change(outcome);
@@ -144,7 +162,8 @@ std::string how_different(const ForceComparison& comparison) {
 
 /// A case as it is now, measured anew.
 schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& path,
-                                const RenderedForces& got, std::optional<double> cost) {
+                                const RenderedForces& got, std::optional<double> cost,
+                                const std::string& made) {
   schema::StoredForces now{.name = one.name,
                            .model = one.outside ? "" : std::string(one.law.law.model()),
                            .renderer = one.outside ? called(*one.outside) : "",
@@ -153,7 +172,10 @@ schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& 
                            .channels = got.channels,
                            .force = got.force,
                            .faults = got.faults,
-                           .tick_cost = cost};
+                           .tick_cost = cost,
+                           .compute_time_s = got.compute_time_s,
+                           .compute_time_of = got.compute_time_of,
+                           .made_with = made};
   if (cost) now.tick_cost_build = build_kind();
   return now;
 }
@@ -169,14 +191,16 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
             .what = fmt::format("{} ticks of {} channel{}", got.rows(), got.channels.size(),
                                 got.channels.size() == 1 ? "" : "s"),
             .why = "nothing is stored for it yet",
-            .now = stored_now(one, path, got, cost)};
+            .now = stored_now(one, path, got, cost, made_with(one))};
   }
   const RegressionOutcome outcome = run_case(one, *before, tick_costs);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
   const bool same_source = checksum(one) == before->law_sha256 &&
                            checksum(outcome.path, outcome.got.channels.size()) == before->trajectory_sha256;
-  const bool no_cost_yet = outcome.tick_cost && !before->tick_cost;
+  const bool no_cost_yet = (outcome.tick_cost && !before->tick_cost) ||
+                           (one.outside && one.outside->compute_times && before->compute_time_s.empty() &&
+                            !outcome.got.compute_time_s.empty());
   if (outcome.passed() && same_source && !no_cost_yet) {
     if (outcome.comparison.differing > 0) change.what += ", within the tolerance: it stays as it is";
     return change;
@@ -185,10 +209,10 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
   change.outcome = outcome;
   change.why = outcome.why;
   if (outcome.comparison.passed && !outcome.messages.empty()) change.what = outcome.messages.back();
-  if (outcome.passed() && same_source) change.what = "a tick cost is added";
+  if (outcome.passed() && same_source) change.what = "the cost of a tick is added";
   std::optional<double> cost = outcome.tick_cost;
   if (!cost && one.tick_cost) cost = before->tick_cost;
-  change.now = stored_now(one, outcome.path, outcome.got, cost);
+  change.now = stored_now(one, outcome.path, outcome.got, cost, outcome.made_with);
   change.now.history = before->history;
   if (!change.now.history.empty() && !change.now.history.ends_with('\n')) change.now.history += '\n';
   change.now.history += fmt::format("{} {}: {}\n", before->date, before->software, before->reason);

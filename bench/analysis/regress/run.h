@@ -23,6 +23,7 @@ struct RegressionOutcome {
   std::vector<std::string> messages;  ///< why it did not pass, and what the difference looks like
   std::string why;                    ///< law, trajectory or code: what is not as it was when it was stored
   std::optional<double> tick_cost;    ///< measured now
+  std::string made_with{};            ///< now: made_with()
   std::string note;                   ///< what could not be compared
   double seconds = 0.0;               ///< that it took
 

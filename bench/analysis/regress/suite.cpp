@@ -14,6 +14,7 @@
 #include "laws/law_toml.h"
 #include "laws/placement.h"
 #include "laws/plugin_laws.h"
+#include "regress/renderers/read_renderer.h"
 #include "scene/read_motion.h"
 
 namespace kerf::bench {
@@ -28,13 +29,11 @@ constexpr std::array<std::string_view, 11> settings{"rate", "seconds", "absolute
 constexpr std::array<std::string_view, 8> channel_settings{"absolute",  "relative", "jnd",   "exact",
                                                            "vibration", "slew",     "drift", "peak"};
 
-constexpr std::array<std::string_view, 4> of_renderers{"renderer", "axes", "sign", "frame"};
-
 template <typename... Names>
 std::vector<std::string_view> with_settings(Names... names) {
   std::vector<std::string_view> all{names...};
   all.insert(all.end(), settings.begin(), settings.end());
-  all.insert(all.end(), of_renderers.begin(), of_renderers.end());
+  all.insert(all.end(), settings_of_renderers.begin(), settings_of_renderers.end());
   return all;
 }
 
@@ -177,75 +176,6 @@ void read_plugins(const Place& place, const toml::table& root, const fs::path& f
   }
 }
 
-models::LawAxis read_axis(const Place& place, const toml::node& node) {
-  const toml::table* const table = node.as_table();
-  if (table == nullptr || !table->contains("name"))
-    place.refuse(node, "expected axes = [{{ name = \"x\", position = \"m\", force = \"N\" }}]");
-  place.allow_only(*table, {"name", "position", "force"}, "an axis");
-  models::LawAxis axis{.name = place.text(*table, "name", ""),
-                       .position_unit = place.text(*table, "position", "m"),
-                       .force_unit = place.text(*table, "force", "N")};
-  if (axis.force_unit == "N*m" || axis.force_unit == "N m") axis.force_unit = "N·m";
-  if (axis.name.empty() || axis.name.find_first_of(",[]\n") != std::string::npos)
-    place.refuse(node, "'{}' is no name for an axis", axis.name);
-  if (axis.position_unit != "m" && axis.position_unit != "rad")
-    place.refuse(node, "'position' is \"{}\", expected \"m\" or \"rad\"", axis.position_unit);
-  if (axis.force_unit != "N" && axis.force_unit != "N·m")
-    place.refuse(node, "'force' is \"{}\", expected \"N\" or \"N·m\"", axis.force_unit);
-  return axis;
-}
-
-void read_command(const Place& place, const toml::node& node, OutsideRenderer& outside) {
-  const toml::table* const table = node.as_table();
-  const toml::array* const words = table == nullptr ? nullptr : table->get_as<toml::array>("command");
-  if (words == nullptr || words->empty() || !words->is_homogeneous<std::string>()) {
-    place.refuse(node,
-                 "expected renderer = {{ command = [\"./mysim\", \"{{trajectory}}\", \"{{forces}}\"] }}");
-  }
-  place.allow_only(*table, {"command", "timeout", "seed"}, "a renderer");
-  outside.command.clear();
-  std::string all;
-  for (const toml::node& word : *words) {
-    outside.command.push_back(**word.as_string());
-    all += outside.command.back() + '\n';
-  }
-  for (const char* const file : {"{trajectory}", "{forces}"}) {
-    if (all.find(file) == std::string::npos)
-      place.refuse(*words, "the command has no {}, where the program finds its file", file);
-  }
-  if (table->contains("timeout"))
-    outside.timeout_s =
-        read_number(place, *table, {.key = "timeout", .unit = "s", .lower = 0.01, .upper = 86400.0});
-  if (const toml::node* const seed = table->get("seed"))
-    outside.seed = static_cast<std::uint64_t>(std::floor(plain(place, *seed, "seed", 0.0, 4294967295.0)));
-}
-
-/// What a table says of a renderer that is no law, over what it inherits.
-void read_outside(const Place& place, const toml::table& table, const fs::path& folder, RegressionCase& one) {
-  const auto given = [&](std::string_view key) { return table.contains(key); };
-  if (!std::ranges::any_of(of_renderers, given) && !given("forces")) return;
-  if (!one.outside) one.outside.emplace();
-  OutsideRenderer& outside = *one.outside;
-  outside.folder = folder.empty() ? fs::path(".") : folder;
-  if (const toml::node* const renderer = table.get("renderer")) read_command(place, *renderer, outside);
-  if (given("forces")) {
-    outside.forces = folder / place.text(table, "forces", "");
-    outside.command.clear();
-  }
-  outside.sign = place.text(table, "sign", outside.sign);
-  if (outside.sign != "resisting" && outside.sign != "on the hand")
-    place.refuse(*table.get("sign"), "'sign' is \"{}\", expected \"resisting\" or \"on the hand\"",
-                 outside.sign);
-  outside.frame = place.text(table, "frame", outside.frame);
-  const toml::node* const node = table.get("axes");
-  if (node == nullptr) return;
-  const toml::array* const axes = node->as_array();
-  if (axes == nullptr || axes->empty() || axes->size() > models::max_law_axes)
-    place.refuse(*node, "'axes' must be a list of 1 to {} axes", models::max_law_axes);
-  outside.axes.clear();
-  for (const toml::node& axis : *axes) outside.axes.push_back(read_axis(place, axis));
-}
-
 /// One of law, renderer and forces, the latter two with their axes.
 void require_renderer(const Place& place, const toml::table& table, RegressionCase& one) {
   const int given = static_cast<int>(table.contains("law")) + static_cast<int>(table.contains("renderer")) +
@@ -253,6 +183,9 @@ void require_renderer(const Place& place, const toml::table& table, RegressionCa
   if (given > 1)
     place.refuse(table, "case '{}' has {} of law, renderer and forces, expected one", one.name, given);
   if (table.contains("law")) {
+    if (table.contains("compute_time"))
+      place.refuse(*table.get("compute_time"),
+                   "'compute_time' is of renderers; a law's ticks have 'tick_cost'");
     one.outside.reset();
     return;
   }
@@ -262,7 +195,7 @@ void require_renderer(const Place& place, const toml::table& table, RegressionCa
     place.refuse(table, "case '{}' needs 'axes': those of its renderer, with their units", one.name);
   if (table.contains("tick_cost"))
     place.refuse(*table.get("tick_cost"),
-                 "'tick_cost' is of Kerf's own laws; a renderer's ticks are not timed");
+                 "'tick_cost' is of Kerf's own laws; a renderer's ticks have 'compute_time'");
   one.tick_cost.reset();
 }
 
@@ -271,7 +204,7 @@ void read_files(const Place& place, const toml::table& table, const fs::path& fo
   try {
     if (!one.outside) {
       one.law_file = file_at(place, table, "law", folder);
-      one.law = read_law_file(one.law_file);
+      one.law = is_plugin(one.law_file.native()) ? law_of_plugin(one.law_file) : read_law_file(one.law_file);
     }
     if (table.contains("trajectory")) one.trajectory = file_at(place, table, "trajectory", folder);
     if (table.contains("recording")) one.motion.recording = file_at(place, table, "recording", folder);
@@ -303,7 +236,7 @@ RegressionCase read_case(const Place& place, const toml::table& table, const fs:
         one.name, sources);
   }
   read_settings(place, table, one);
-  read_outside(place, table, folder, one);
+  read_renderer(place, table, folder, one.outside);
   require_renderer(place, table, one);
   read_files(place, table, folder, one);
   if (table.contains("rate") && table.contains("recording"))
@@ -341,7 +274,7 @@ Suite read_suite(const fs::path& file) {
     const toml::table& table = place.table(root, "defaults");
     place.allow_only(table, with_settings(), "[defaults]");
     read_settings(place, table, defaults);
-    read_outside(place, table, file.parent_path(), defaults);
+    read_renderer(place, table, file.parent_path(), defaults.outside);
   }
   const toml::array* cases = root.get_as<toml::array>("case");
   if (cases == nullptr || cases->empty() || !cases->is_homogeneous<toml::table>())

@@ -12,9 +12,12 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "program/verbs.h"
+#include "recordings/provenance.h"
 #include "regress/context.h"
 #include "regress/junit.h"
 #include "regress/regress_page.h"
+#include "regress/renderers/recorded_table.h"
+#include "regress/renderers/step_cost.h"
 #include "regress/run.h"
 
 namespace kerf::bench {
@@ -41,7 +44,8 @@ void say_case(const RegressionOutcome& one, Context& context) {
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
                                   : "none";
-  const std::string cost = one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : "";
+  const std::string cost =
+      one.tick_cost ? fmt::format("tick cost {:.3g}", *one.tick_cost) : step_cost_in_words(one.got);
   context.say(fmt::format("  {:24} {:6}  {:>6} ticks  worst difference {:10}  {}", one.about.name,
                           one.passed() ? "passed" : "FAILED", one.comparison.got_rows, apart, cost));
   if (!one.note.empty()) context.say(fmt::format("      {}", one.note));
@@ -170,12 +174,25 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
 /// The motion of a case as a renderer reads it.
 void write_trajectory(const RegressVerbArguments& arguments, Context& context) {
   if (arguments.one.empty() || arguments.output.empty())
-    throw std::invalid_argument("expected kerf regress trajectory SUITE CASE -o FILE.csv");
+    throw std::invalid_argument("expected kerf regress trajectory SUITE CASE -o FILE.csv or FILE.h5");
   require_output(arguments.output, true);
   const RegressionCase one = only(read_suite(arguments.suite), {arguments.one}).cases.front();
   if (!one.error.empty()) throw std::invalid_argument(one.error);
   const SampledMotion path = path_of(one);
-  write_whole_file(arguments.output, trajectory_csv(path, axes_of(one)), schema::Existing::replace);
+  const TrajectoryColumns columns{axes_of(one), one.outside ? one.outside->quaternion : ""};
+  if (is_recording(arguments.output)) {
+    schema::Recording recording = trajectory_recording(path, columns);
+    recording.header = schema::new_header(software());
+    if (one.outside) {
+      recording.header.scene_properties["sign"] = one.outside->sign;
+      if (!one.outside->frame.empty()) recording.header.scene_properties["frame"] = one.outside->frame;
+      if (!columns.quaternion.empty()) recording.header.scene_properties["quaternion"] = columns.quaternion;
+    }
+    add_history(recording.header, fmt::format("kerf regress trajectory, case '{}'", one.name));
+    schema::write_recording(arguments.output, recording);
+  } else {
+    write_whole_file(arguments.output, trajectory_csv(path, columns), schema::Existing::replace);
+  }
   context.result = {
       {"suite", arguments.suite}, {"case", one.name}, {"ticks", path.ticks()}, {"file", arguments.output}};
   context.say(fmt::format("{}: {} ticks", arguments.output, path.ticks()));
@@ -204,8 +221,8 @@ void add_regress(CLI::App& app, Context& context) {
                "A suite names laws, trajectories and tolerances; its forces are stored beside it, in\n"
                "suite.h5. 'run' exits with 1 if a force, the number of samples or the cost of a tick is\n"
                "not as it was. A case may name a program of yours in place of a law; 'trajectory SUITE CASE\n"
-               "-o t.csv' writes what it is given. 'update' says what would change and why, and asks before "
-               "it writes.\n"
+               "-o t.csv' (or t.h5) writes what it is given. 'update' says what would change and why, and\n"
+               "asks before it writes.\n"
                "docs/regress.md says more.",
                [arguments, &context] { run_regress(*arguments, context); });
   verb.takes_laws(context);
@@ -219,9 +236,9 @@ void add_regress(CLI::App& app, Context& context) {
                   "Cases at a time; those whose cost is measured run alone")
       .with_default();
   verb.add_option("--junit", arguments->junit, "Write the results as JUnit XML");
-  verb.add_option(
-      "-o,--output", arguments->output,
-      "Folder for regress.html, regress.json and pictures of what differs; of 'trajectory' FILE.csv");
+  verb.add_option("-o,--output", arguments->output,
+                  "Folder for regress.html, regress.json and pictures of what differs; of 'trajectory' "
+                  "FILE.csv or FILE.h5");
   verb.add_flag("--no-cost", arguments->no_cost, "Do not measure what a tick costs");
   verb.add_option("--reason", arguments->reason, "Why the forces change; kept in the file");
   verb.add_flag("--yes", arguments->yes, "Store what changes without asking");

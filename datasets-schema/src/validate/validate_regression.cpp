@@ -20,7 +20,7 @@ void check_force(TreeCheck& tree, const std::string& path) {
 void check_case(TreeCheck& tree, const std::string& name) {
   const std::string path = group_of_cases + '/' + name;
   if (!tree.has_group(path)) return;
-  std::vector<std::string_view> known{"faults", "tick_cost", "tick_cost_build", "renderer"};
+  std::vector<std::string_view> known{"faults", "tick_cost", "tick_cost_build", "renderer", "made_with"};
   for (const CaseText& text : texts_of_a_case) {
     known.emplace_back(text.name);
     static_cast<void>(tree.has_attribute(path, {.name = text.name, .type = "text", .fatal = false}));
@@ -28,13 +28,19 @@ void check_case(TreeCheck& tree, const std::string& name) {
   static_cast<void>(tree.has_attribute(path, {.name = "faults", .type = "uint64", .fatal = false}));
   static_cast<void>(
       tree.has_attribute(path, {.name = "renderer", .type = "text", .required = false, .fatal = false}));
+  static_cast<void>(
+      tree.has_attribute(path, {.name = "made_with", .type = "text", .required = false, .fatal = false}));
   const bool timed =
       tree.has_attribute(path, {.name = "tick_cost", .type = "float64", .required = false, .fatal = false});
   static_cast<void>(tree.has_attribute(
       path, {.name = "tick_cost_build", .type = "text", .required = timed, .fatal = false}));
   tree.only_attributes(path, known);
-  tree.only_children(path, {"force"});
+  tree.only_children(path, {"force", "compute_time"});
   check_force(tree, path + "/force");
+  const std::string times = path + "/compute_time";
+  if (!h5::is_dataset(tree.file(), times) || !tree.extent_of(times, "float64", 1)) return;
+  static_cast<void>(tree.has_attribute(times, {.name = "of", .type = "text", .fatal = false}));
+  tree.only_attributes(times, {"of"});
 }
 
 void check_content(const StoredForces& one, std::vector<Violation>& violations) {

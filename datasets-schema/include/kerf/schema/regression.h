@@ -33,10 +33,13 @@ struct StoredForces {
   std::string software;  ///< "kerf 0.1.0"
   std::string history;   ///< those that stood before: one line each, oldest first
   std::vector<ForceChannel> channels;
-  std::vector<double> force;        ///< N x D, row-major
-  std::uint64_t faults = 0;         ///< ticks in which the law faulted
-  std::optional<double> tick_cost;  ///< of a tick, in rounds of the calibration loop
-  std::string tick_cost_build;      ///< what kind of build it was measured with
+  std::vector<double> force;             ///< N x D, row-major
+  std::uint64_t faults = 0;              ///< ticks in which the law faulted
+  std::optional<double> tick_cost;       ///< of a tick, in rounds of the calibration loop
+  std::string tick_cost_build;           ///< what kind of build it was measured with
+  std::vector<double> compute_time_s{};  ///< of every tick of a renderer; empty: it was not measured
+  std::string compute_time_of{};         ///< "renderer", which told it, or "round trip"
+  std::string made_with{};               ///< version and SHA-256 of programs, a line each; may be empty
 
   [[nodiscard]] std::size_t rows() const noexcept {
     return channels.empty() ? 0 : force.size() / channels.size();

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+#include <fstream>
 #include <limits>
 
 #include <fmt/core.h>
@@ -6,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/regression.h>
 
 #include "bench/analysis/regress/small_suite.h"
 #include "regress/suite.h"
@@ -43,6 +47,118 @@ TEST_F(RegressProgram, PassesWhatDidNotChange) {
   EXPECT_EQ(json.at("cases").at(0).at("samples"), 400);
   EXPECT_THAT(test::read_text(folder_.at("r.xml")), HasSubstr("failures=\"0\""));
   EXPECT_THAT(test::read_text(folder_.at("page/regress.html")), HasSubstr("All 1 cases passed"));
+}
+
+/// A motion in space as a renderer is given it, to a file and back.
+constexpr const char* in_space = R"(
+[[case]]
+name = "turns"
+seconds = { value = 20, unit = "ms" }
+exact = true
+sign = "on the hand"
+frame = "the tool's"
+quaternion = "wxyz"
+axes = [
+  { name = "x" }, { name = "y" }, { name = "z" },
+  { name = "rx", position = "rad", force = "N·m" },
+  { name = "ry", position = "rad", force = "N·m" },
+  { name = "rz", position = "rad", force = "N·m" }]
+renderer = { command = ["true", "{trajectory}", "{forces}"] }
+[[case.motion]]
+axis = "z"
+kind = "sine"
+centre = { value = 0, unit = "m" }
+amplitude = { value = 1, unit = "m" }
+[[case.motion]]
+axis = "ry"
+kind = "rest"
+at = { value = 90, unit = "deg" }
+)";
+
+TEST_F(RegressProgram, WritesATrajectoryInSpaceAndTakesItBack) {
+  folder_.write_suite(in_space);
+  for (const std::string name : {"t.csv", "t.h5"}) {
+    const Outcome outcome = kerf("trajectory", {"turns", "-o", folder_.at(name)});
+    ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  }
+  const std::string table = test::read_text(folder_.at("t.csv"));
+  EXPECT_EQ(
+      table.substr(0, table.find('\n')),
+      "tick,time[s],x[m],vx[m/s],y[m],vy[m/s],z[m],vz[m/s],rx[rad],vrx[rad/s],ry[rad],vry[rad/s],rz[rad],"
+      "vrz[rad/s],qw[1],qx[1],qy[1],qz[1],period[s]");
+  EXPECT_THAT(table, HasSubstr(",0.7071067811865476,0,0.7071067811865475,0,0.001\n"))
+      << "a quarter turn about y";
+  const auto recording = schema::read_recording(folder_.at("t.h5"));
+  EXPECT_EQ(recording.rows(), 20U);
+  EXPECT_EQ(std::get<std::string>(recording.header.scene_properties.at("quaternion")), "wxyz");
+  const std::string suite = in_space;
+  const std::string head = suite.substr(0, suite.find("[[case.motion]]"));
+  for (const std::string name : {"t.csv", "t.h5"}) {
+    std::string again = head;
+    again.replace(again.find("seconds = { value = 20, unit = \"ms\" }"), 37, "trajectory = \"" + name + "\"");
+    folder_.write_suite(again);
+    const Outcome outcome = kerf("trajectory", {"turns", "-o", folder_.at("back.csv")});
+    ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+    EXPECT_EQ(test::read_text(folder_.at("back.csv")), table) << name << ": to the last digit";
+  }
+  std::string turned = table;
+  test::write_text(folder_.at("t.csv"), turned.replace(turned.find("qw[1],qx[1]"), 11, "qx[1],qw[1]"));
+  folder_.write_suite(std::string(head).replace(head.find("seconds = { value = 20, unit = \"ms\" }"), 37,
+                                                "trajectory = \"t.csv\""));
+  EXPECT_THAT(kerf("trajectory", {"turns", "-o", folder_.at("back.csv")}).errors,
+              HasSubstr("the quaternion of row 0 is another turn than rx, ry, rz beside it"));
+}
+
+TEST_F(RegressProgram, TakesTheForcesOfARecording) {
+  const auto write = [&](double gain, const std::string& sign) {
+    schema::Recording recording;
+    recording.header = schema::new_header("a test");
+    recording.header.scene_properties["sign"] = sign;
+    recording.axes = {{.name = "s"}, {.name = "x"}};
+    for (std::uint64_t tick = 0; tick < 20; ++tick) {
+      recording.tick.push_back(tick);
+      recording.time.push_back(0.001 * static_cast<double>(tick));
+      recording.position.insert(recording.position.end(), {0.0, 1e-3 * static_cast<double>(tick)});
+      recording.velocity.insert(recording.velocity.end(), {0.0, 1.0});
+      recording.force_commanded.insert(recording.force_commanded.end(),
+                                       {7.0, gain * static_cast<double>(tick)});
+    }
+    schema::write_recording(folder_.at("x.h5"), recording);
+  };
+  write(1.0, "resisting");
+  folder_.write_suite(
+      "[[case]]\nname = \"made\"\naxes = [{ name = \"x\" }]\nforces = \"x.h5\"\nrecording = \"x.h5\"\nexact "
+      "= "
+      "true\n");
+  store();
+  EXPECT_EQ(kerf("run").exit_status, 0);
+  write(1.01, "resisting");
+  const Outcome other = kerf("run");
+  EXPECT_EQ(other.exit_status, 1);
+  EXPECT_THAT(other.output, HasSubstr("1.01 times"));
+  write(1.0, "on the hand");
+  EXPECT_THAT(kerf("run").output, HasSubstr("of sign 'on the hand', and the suite says 'resisting'"));
+}
+
+TEST_F(RegressProgram, TakesALawOfAPlugin) {
+  const std::filesystem::path law = std::filesystem::path(KERF_TEST_PLUGINS) / "coulomb_spring.so";
+  std::filesystem::copy(law, folder_.at("mylaw.so"));
+  std::string suite = test::one_case;
+  for (const auto& [from, to] :
+       std::vector<std::array<std::string, 2>>{{"kelvin.law.toml", "mylaw.so"},
+                                               {R"(value = 35, unit = "deg")", R"(value = 0, unit = "m")"},
+                                               {R"(value = 8, unit = "deg")", R"(value = 1, unit = "cm")"}})
+    suite.replace(suite.find(from), from.size(), to);
+  folder_.write_suite(suite);
+  store();
+  const auto stored = schema::read_regression(folder_.at("suite.h5"));
+  EXPECT_EQ(stored.at(0).model, "coulomb_spring");
+  EXPECT_THAT(stored.at(0).made_with, testing::MatchesRegex("the plug-in mylaw.so: [0-9a-f]+\n"));
+  EXPECT_GT(*std::ranges::max_element(stored.at(0).force), 0.9) << "100 N/m over 1 cm";
+  std::ofstream(folder_.at("mylaw.so"), std::ios::app) << "built anew";
+  const Outcome outcome = kerf("run");
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("the plug-in mylaw.so is another file than it was"));
 }
 
 TEST_F(RegressProgram, FindsAFolderThatCannotBeBeforeItRunsACase) {

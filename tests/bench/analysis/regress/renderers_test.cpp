@@ -6,7 +6,7 @@
 #include <kerf/schema/regression.h>
 
 #include "regress/path.h"
-#include "regress/renderers/outside_renderer.h"
+#include "regress/renderers/trajectory_table.h"
 #include "regress/run.h"
 #include "support/program.h"
 
@@ -119,7 +119,7 @@ TEST_F(ScriptedRenderer, MayBeAFileOfForcesAlongATrajectoryOfAFile) {
   write_update(suite(), plan_update(suite(), {}), "first");
   const RegressionCase one = suite().cases[0];
   const SampledMotion path = path_of(one);
-  test::write_text(folder_ / "t.csv", trajectory_csv(path, axes_of(one)));
+  test::write_text(folder_ / "t.csv", trajectory_csv(path, {axes_of(one)}));
   EXPECT_EQ(checksum(read_trajectory_csv(folder_ / "t.csv", axes_of(one)), 2), checksum(path, 2))
       << "there and back, bit for bit";
   ASSERT_EQ(
@@ -157,44 +157,96 @@ TEST_F(ScriptedRenderer, IsDeclaredWholeOrTheSuiteIsRefused) {
 class ExampleRenderers : public testing::Test {
  protected:
   ExampleRenderers() {
-    for (const char* name : {"spring.py", "renderers.toml", "renderers.h5"})
+    for (const char* name : {"spring.py", "lockstep.py", "renderers.toml", "renderers.h5"})
       std::filesystem::copy(examples / name, folder_ / name);
     std::filesystem::copy(KERF_EXAMPLE_RENDERER, folder_ / "spring");
+    std::filesystem::copy(KERF_EXAMPLE_LOCKSTEP, folder_ / "lockstep");
   }
   test::TemporaryFolder folder_;
 };
 
 TEST_F(ExampleRenderers, GiveTheStoredForcesInCppAndPython) {
   const SuiteOutcome outcome = run_suite(read_suite(folder_ / "renderers.toml"), {.jobs = 2});
-  ASSERT_THAT(outcome.cases, SizeIs(2));
+  ASSERT_THAT(outcome.cases, SizeIs(4));
   for (const RegressionOutcome& one : outcome.cases) {
     EXPECT_TRUE(one.passed()) << one.error;
-    EXPECT_EQ(one.comparison.differing, 0U) << "the same bits in both languages";
+    EXPECT_EQ(one.comparison.differing, 0U) << "the same bits in both languages, by files and in lockstep";
+  }
+}
+
+/// What a fault of an example renderer is found as: an error, or a name for what changed.
+struct Fault {
+  std::string fault;
+  std::string error;
+  std::string says;
+};
+const std::vector<Fault> named_faults{{"gain", "", "the force is 1.01 times the expected one"},
+                                      {"sign", "", "sign"},
+                                      {"shift", "", "1 tick (1 ms) too late"},
+                                      {"buzz", "", "a vibration of 250 Hz"},
+                                      {"nan", "", "got nan N"}};
+
+void expect_found(const RegressionOutcome& one, const Fault& fault) {
+  EXPECT_THAT(one.error, HasSubstr(fault.error)) << fault.fault;
+  EXPECT_EQ(one.error.empty(), fault.error.empty()) << one.error;
+  EXPECT_FALSE(one.passed()) << fault.fault;
+  if (fault.error.empty()) {
+    EXPECT_THAT(one.messages, testing::Contains(HasSubstr(fault.says))) << fault.fault;
   }
 }
 
 TEST_F(ExampleRenderers, AreCaughtWhenTheyBecomeWrong) {
   const std::string text = test::read_text(folder_ / "renderers.toml");
-  for (const auto& [fault, error, says] : std::vector<std::array<std::string, 3>>{
-           {"gain", "", "the force is 1.01 times the expected one"},
-           {"sign", "", "sign"},
-           {"shift", "", "1 tick (1 ms) too late"},
-           {"buzz", "", "a vibration of 250 Hz"},
-           {"nan", "", "got nan N"},
-           {"lost", "999 rows for 1000 ticks; the row of tick 300 has", ""},
-           {"hang", "had not ended after 0.5 s", ""}}) {
+  std::vector<Fault> faults = named_faults;
+  faults.push_back({"lost", "999 rows for 1000 ticks; the row of tick 300 has", ""});
+  faults.push_back({"hang", "had not ended after 0.5 s", ""});
+  for (const Fault& fault : faults) {
     std::string wrong = text;
-    wrong.replace(wrong.find("\"{forces}\"]"), 11, "\"{forces}\", \"--fault\", \"" + fault + "\"]");
-    if (fault == "hang") wrong.replace(wrong.find("value = 20"), 10, "value = 0.5");
+    wrong.replace(wrong.find("\"{forces}\"]"), 11, "\"{forces}\", \"--fault\", \"" + fault.fault + "\"]");
+    if (fault.fault == "hang") wrong.replace(wrong.find("value = 20"), 10, "value = 0.5");
     test::write_text(folder_ / "renderers.toml", wrong);
+    expect_found(
+        run_suite(read_suite(folder_ / "renderers.toml"), {.only = {"spring in Python"}}).cases.at(0), fault);
+  }
+}
+
+TEST_F(ExampleRenderers, AreToConnectToTheSocketWhateverElseTheySay) {
+  const std::string text = test::read_text(folder_ / "renderers.toml");
+  const std::string before = R"(["python3", "lockstep.py", "--socket", "{socket}"])";
+  for (const auto& [command, says] : std::vector<std::array<std::string, 2>>{
+           {R"(["sh", "-c", "yes | head -100000; exec python3 lockstep.py --socket $0", "{socket}"])", ""},
+           {R"(["sh", "-c", "echo no display >&2; exit 3", "{socket}"])",
+            "ended with status 3 before it had connected to {socket}; it said last: no display"},
+           {R"(["sh", "-c", "sleep 60", "{socket}"])",
+            "had not connected to {socket} when its 0.5 s were over and was killed"}}) {
+    std::string other = text;
+    other.replace(other.find(before), before.size(), command);
+    const std::string answer = "answer = { value = 10";
+    if (command.find("sleep") != std::string::npos)
+      other.replace(other.find(answer), answer.size(), "timeout = { value = 0.5");
+    test::write_text(folder_ / "renderers.toml", other);
     const RegressionOutcome one =
-        run_suite(read_suite(folder_ / "renderers.toml"), {.only = {"spring in Python"}}).cases.at(0);
-    EXPECT_THAT(one.error, HasSubstr(error)) << fault;
-    EXPECT_EQ(one.error.empty(), error.empty()) << one.error;
-    EXPECT_FALSE(one.passed()) << fault;
-    if (error.empty()) {
-      EXPECT_THAT(one.messages, testing::Contains(HasSubstr(says))) << fault;
-    }
+        run_suite(read_suite(folder_ / "renderers.toml"), {.only = {"spring in Python, in lockstep"}})
+            .cases.at(0);
+    EXPECT_THAT(one.error, HasSubstr(says));
+    EXPECT_EQ(one.passed(), says.empty()) << one.error;
+  }
+}
+
+TEST_F(ExampleRenderers, AreCaughtInLockstepToo) {
+  const std::string text = test::read_text(folder_ / "renderers.toml");
+  std::vector<Fault> faults = named_faults;
+  faults.push_back({"lost", "had not answered tick 300 after 0.5 s", ""});
+  faults.push_back({"hang", "had not answered tick 300 after 0.5 s", ""});
+  for (const Fault& fault : faults) {
+    std::string wrong = text;
+    wrong.replace(wrong.find("\"{socket}\"]"), 11, "\"{socket}\", \"--fault\", \"" + fault.fault + "\"]");
+    if (!fault.error.empty()) wrong.replace(wrong.find("value = 10, unit = \"s\""), 10, "value = 0.5");
+    test::write_text(folder_ / "renderers.toml", wrong);
+    expect_found(
+        run_suite(read_suite(folder_ / "renderers.toml"), {.only = {"spring in Python, in lockstep"}})
+            .cases.at(0),
+        fault);
   }
 }
 
