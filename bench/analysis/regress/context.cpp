@@ -47,7 +47,8 @@ json case_as_json(const RegressionOutcome& outcome) {
   }
   return {{"name", outcome.about.name},
           {"model", outcome.about.error.empty() ? json(renderer_of(outcome.about)) : json(nullptr)},
-          {"passed", outcome.passed()},
+          {"passed", outcome.left_out ? json(nullptr) : json(outcome.passed())},
+          {"left_out", outcome.left_out},
           {"error", outcome.error.empty() ? json(nullptr) : json(outcome.error)},
           {"messages", outcome.messages},
           {"why", outcome.why},
@@ -114,10 +115,11 @@ std::string context_table(const RegressionOutcome& outcome) {
 }
 
 json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome) {
-  json result{
-      {"suite", suite.file.string()},    {"name", suite.name},         {"stored", suite.stored.string()},
-      {"passed", outcome.failed() == 0}, {"failed", outcome.failed()}, {"errors", outcome.errors()},
-      {"dropped", outcome.dropped},      {"seconds", outcome.seconds}, {"cases", json::array()}};
+  json result{{"suite", suite.file.string()},    {"name", suite.name},
+              {"stored", suite.stored.string()}, {"passed", outcome.failed() == 0},
+              {"failed", outcome.failed()},      {"errors", outcome.errors()},
+              {"dropped", outcome.dropped},      {"notes", outcome.notes},
+              {"seconds", outcome.seconds},      {"cases", json::array()}};
   for (const RegressionOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
   return result;
 }

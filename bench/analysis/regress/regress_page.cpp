@@ -75,6 +75,11 @@ std::string summary_table(const SuiteOutcome& outcome) {
       rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
       continue;
     }
+    if (one.left_out) {
+      rows.push_back({one.about.name, renderer_of(one.about), "", "left out: nothing has changed", "", "", "",
+                      "", "", fmt::format("{}: {}", one.stored.date.substr(0, 10), one.stored.reason)});
+      continue;
+    }
     rows.push_back({one.about.name, renderer_of(one.about), fmt::format("{}", one.comparison.got_rows),
                     one.passed() ? "passed" : "FAILED", fmt::format("{}", one.comparison.outside),
                     fmt::format("{}", one.comparison.differing),
@@ -128,11 +133,12 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
   for (std::size_t i = 0; i < figures.size(); ++i)
     write_whole_file(folder / (figures[i].name + ".svg"), pictures[i]);
   const std::size_t failed = outcome.failed();
-  const std::size_t all = outcome.cases.size() + outcome.dropped.size();
+  const std::size_t all = outcome.cases.size() + outcome.dropped.size() - outcome.left_out();
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"answer{}\">{}</p>\n", escaped(suite.name),
                                  failed > 0 ? " bad" : "",
                                  failed > 0 ? fmt::format("{} of {} cases did not pass.", failed, all)
                                             : fmt::format("All {} cases passed.", all));
+  for (const std::string& note : outcome.notes) body += html_answer(Answer::partly, escaped(note) + ".");
   body += summary_table(outcome);
   std::size_t next = 0;
   for (const RegressionOutcome& one : outcome.cases) {
