@@ -266,7 +266,7 @@ TEST(Diagnose, CallsTheLastDigitsRounding) {
               ElementsAre("the last digits alone"));
   EXPECT_THAT(said(strokes()), IsEmpty());
   EXPECT_THAT(said(changed([](double f, std::size_t i) { return i == 30 ? std::nan("") : f; })),
-              Contains("no finite number in 1 tick, first in tick 30"));
+              Contains("not finite from row 30, 1 row"));
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ ForceComparison compare_forces(const schema::StoredForces& stored, const Rendere
   return result;
 }
 
-std::vector<std::string> diagnose(const schema::StoredForces& stored, const RenderedForces& got,
-                                  const SampledMotion& path, const compare::Facts& facts) {
+compare::Diagnosis diagnose(const schema::StoredForces& stored, const RenderedForces& got,
+                            const SampledMotion& path, const compare::Facts& facts) {
   if (stored.channels.empty() || got.channels.size() != stored.channels.size()) return {};
   const double period_s = path.period_s.empty() ? 1e-3 : path.period_s.back();
   compare::Series expected = series_of(stored, period_s);
@@ -88,7 +88,15 @@ std::vector<std::string> diagnose(const schema::StoredForces& stored, const Rend
     add_motion(actual, path);
     actual.velocities.clear();  // of the stored ones none are kept
   }
-  return compare::sentences_of(compare::diagnose(expected, actual, facts), expected);
+  return compare::diagnose(expected, actual, facts);
+}
+
+std::vector<std::string> sentences_of(const compare::Diagnosis& diagnosis,
+                                      const schema::StoredForces& stored) {
+  // The names of the channels alone are asked for.
+  schema::StoredForces names;
+  names.channels = stored.channels;
+  return compare::sentences_of(diagnosis, series_of(names));
 }
 
 }  // namespace kerf::bench

@@ -1,6 +1,10 @@
 #include "regress/read_tolerance.h"
 
+#include <stdexcept>
+
 #include <fmt/core.h>
+
+#include "files/named_file.h"
 
 namespace kerf::bench {
 namespace {
@@ -64,6 +68,29 @@ void read_tolerance(const Place& place, const toml::table& table, compare::Toler
       place.refuse(*exact, "'exact' leaves no room for a tolerance; leave out either");
     if (tolerance.exact) tolerance = {.exact = true};
   }
+}
+
+compare::Tolerance read_tolerance_file(const std::filesystem::path& file) {
+  const Place place(file.string());
+  toml::table root = parse_toml(read_named_file(file), file.string());
+  compare::Tolerance tolerance;
+  read_tolerance(place, root, tolerance);
+  if (!tolerance.has_limit_for("N") && !tolerance.has_limit_for("N·m"))
+    throw std::invalid_argument(file.string() + ": it needs one of exact, absolute, relative and jnd");
+  if (root.contains("channel")) {
+    const compare::Tolerance of_all = tolerance;
+    for (const auto& [key, node] : place.table(root, "channel")) {
+      const std::string name(key.str());
+      if (!node.is_table()) place.refuse(node, "expected [channel.{}]", name);
+      place.allow_only(*node.as_table(), tolerance_keys, "[channel." + name + "]");
+      compare::Tolerance own = of_all;
+      read_tolerance(place, *node.as_table(), own);
+      tolerance.channels.push_back({.channel = name, .tolerance = std::move(own)});
+    }
+    root.erase("channel");
+  }
+  place.allow_only(root, tolerance_keys, "a file of tolerances");
+  return tolerance;
 }
 
 }  // namespace kerf::bench

@@ -125,7 +125,8 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
       .law_changed = checksum(one) != stored.law_sha256,
       .trajectory_changed = checksum(outcome.path, outcome.got.channels.size()) != stored.trajectory_sha256};
   if (!outcome.comparison.passed) {
-    for (std::string& line : diagnose(stored, outcome.got, outcome.path, facts))
+    outcome.diagnosis = diagnose(stored, outcome.got, outcome.path, facts);
+    for (std::string& line : sentences_of(outcome.diagnosis, stored))
       outcome.messages.push_back(std::move(line));
   }
   outcome.why = why_different(outcome);

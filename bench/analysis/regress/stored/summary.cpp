@@ -26,12 +26,12 @@ std::string in_one_line(std::string text) {
 }
 
 std::string summary_line(std::string_view key, std::string_view value) {
-  return fmt::format("{:<11}{}\n", key, value);
+  return fmt::format("{:<10} {}\n", key, value);
 }
 
 /// The value of a key at the beginning of a line, up to its first blank.
 std::string first_word_of(std::string_view text, std::string_view key) {
-  const std::string begin = fmt::format("\n{:<11}", key);
+  const std::string begin = fmt::format("\n{:<10} ", key);
   const auto at = text.find(begin);
   if (at == std::string_view::npos) return {};
   text.remove_prefix(at + begin.size());
