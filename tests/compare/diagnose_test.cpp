@@ -261,6 +261,14 @@ TEST(Diagnose, SaysThatItDoesNotKnowAndWhatComesNearest) {
                                 HasSubstr("% of the difference"))));
 }
 
+TEST(Diagnose, TakesNoSpikeOnASteadyForceForAnotherRate) {
+  const std::vector<double> steady(1000, 2.0);
+  std::vector<double> spiked = steady;
+  spiked[500] = 2.5;
+  EXPECT_THAT(sentences_of(diagnose(run_of(steady), run_of(spiked)), run_of(steady)),
+              ElementsAre("a spike of +0.5 N at tick 500"));
+}
+
 TEST(Diagnose, CallsTheLastDigitsRounding) {
   EXPECT_THAT(said(changed([](double f, std::size_t) { return std::nextafter(f, 9.0); })),
               ElementsAre("the last digits alone"));
