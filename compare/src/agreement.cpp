@@ -53,10 +53,17 @@ std::vector<BandCoherence> coherence_of(std::span<const double> a, std::span<con
 ChannelAgreement agreement_of(const Channel& expected, const Channel& got, double period_s,
                               double most_lag_s) {
   ChannelAgreement result{.channel = {.name = expected.name, .unit = expected.unit}};
-  const auto count = static_cast<double>(expected.value.size());
+  // Rows in which either is no number say nothing of the others.
+  const auto is_number = [&](std::size_t row) {
+    return std::isfinite(expected.value[row]) && std::isfinite(got.value[row]);
+  };
+  const auto rows = static_cast<double>(expected.value.size());
+  double count = 0.0;
   double sum_e = 0.0;
   double sum_g = 0.0;
   for (std::size_t row = 0; row < expected.value.size(); ++row) {
+    if (!is_number(row)) continue;
+    count += 1.0;
     sum_e += expected.value[row];
     sum_g += got.value[row];
   }
@@ -66,6 +73,7 @@ ChannelAgreement agreement_of(const Channel& expected, const Channel& got, doubl
   double square = 0.0;
   double moment = 0.0;
   for (std::size_t row = 0; row < expected.value.size(); ++row) {
+    if (!is_number(row)) continue;
     const double e = expected.value[row] - sum_e / count;
     const double g = got.value[row] - sum_g / count;
     const double apart = got.value[row] - expected.value[row];
@@ -73,14 +81,15 @@ ChannelAgreement agreement_of(const Channel& expected, const Channel& got, doubl
     eg += e * g;
     gg += g * g;
     square += apart * apart;
-    moment += (static_cast<double>(row) - 0.5 * (count - 1.0)) * apart;
+    moment += (static_cast<double>(row) - 0.5 * (rows - 1.0)) * apart;
   }
+  if (count == 0.0) return result;
   result.gain = ee > 0.0 ? eg / ee : 1.0;
   result.offset = sum_g / count - result.gain * sum_e / count;
-  result.drift = moment * 12.0 / (count * (count + 1.0));
+  result.drift = moment * 12.0 / (rows * (rows + 1.0));
   result.rms_difference = std::sqrt(square / count);
   result.correlation = ee > 0.0 && gg > 0.0 ? eg / std::sqrt(ee * gg) : 0.0;
-  if (ee > 0.0 && gg > 0.0) {
+  if (ee > 0.0 && gg > 0.0 && count == rows) {
     const auto most = static_cast<std::size_t>(std::max(4.0, most_lag_s / period_s));
     if (const auto fit = fit_lag(expected.value, got.value, {.most_ticks = most, .free_gain = true})) {
       result.latency_s = fit->ticks * period_s;

@@ -33,6 +33,9 @@ struct Badness {
 };
 
 std::string worst_in_words(const ForceDifference& worst, const ChannelName& channel, bool exact) {
+  if (!std::isfinite(worst.difference()))
+    return fmt::format("{}: expected {:.9g} {}, got {:.9g} {}, and what is not finite is within no tolerance",
+                       channel.name, worst.expected, channel.unit, worst.got, channel.unit);
   return fmt::format("{}: expected {:.9g} {}, got {:.9g} {}, {:.3g} {} apart ({:.3g} JND), {}", channel.name,
                      worst.expected, channel.unit, worst.got, channel.unit, std::abs(worst.difference()),
                      channel.unit, worst.jnds,
@@ -121,10 +124,13 @@ class Comparing {
       if (!same) differs_[tick] = 1;
       one.allowed = tolerance.allowed(expected.unit, one.expected);
       const double apart = std::abs(one.difference());
-      squares += apart * apart;
+      if (std::isfinite(apart)) squares += apart * apart;
+      if (!std::isfinite(apart)) ++about.not_finite;
       one.jnds = apart / jnd.at(one.expected);
-      about.largest_difference = std::max(about.largest_difference, apart);
-      about.largest_jnds = std::max(about.largest_jnds, one.jnds);
+      if (std::isfinite(apart)) {
+        about.largest_difference = std::max(about.largest_difference, apart);
+        about.largest_jnds = std::max(about.largest_jnds, one.jnds);
+      }
       // A number that is not finite is within no tolerance, and not right because it was stored.
       const bool is_outside = (tolerance.exact && !same) || !(apart <= one.allowed);
       if (is_outside) take_outside(about, tick);
@@ -135,7 +141,8 @@ class Comparing {
       worst_ = badness;
       result_.worst = one;
     }
-    if (rows_ > 0) about.rms_difference = std::sqrt(squares / static_cast<double>(rows_));
+    if (rows_ > about.not_finite)
+      about.rms_difference = std::sqrt(squares / static_cast<double>(rows_ - about.not_finite));
     result_.channels.push_back(std::move(about));
   }
 
@@ -166,7 +173,7 @@ class Comparing {
   void judge_run(std::size_t channel) {
     ChannelComparison& about = result_.channels[channel];
     const Tolerance& tolerance = tolerance_.of(about.channel.name);
-    if (tolerance.exact || about.largest_difference == 0.0 || !std::isfinite(about.rms_difference)) return;
+    if (tolerance.exact || about.largest_difference == 0.0 || about.not_finite > 0) return;
     const std::string& unit = about.channel.unit;
     const auto peak = tolerance.peak.of(unit);
     if (const double apart = about.largest_got - about.largest_expected; peak && std::abs(apart) > *peak)

@@ -30,6 +30,10 @@ void require_sound(const std::vector<StoredForces>& cases) {
                                   std::to_string(one.force.size()) + " numbers for " +
                                   std::to_string(one.channels.size()) + " channels");
     }
+    const StoredTrajectory& path = one.trajectory;
+    if (path.position.size() != path.time_s.size() * path.axes.size() || path.empty() != path.axes.empty())
+      throw std::invalid_argument("stored forces: the trajectory of '" + one.name +
+                                  "' does not fill its rows");
   }
 }
 
@@ -70,6 +74,30 @@ void write_case(hid_t cases, const StoredForces& one) {
   if (!one.force.empty()) h5::write(dataset.id(), h5::native<double>(), one.force.data());
 }
 
+void write_columns(hid_t group, const char* name, const h5::Extent& extent,
+                   const std::vector<double>& values) {
+  const auto dataset = h5::create_dataset(
+      group, name, h5::native<double>(),
+      {.extent = extent, .chunk_rows = std::min<hsize_t>(extent[0], force_chunk_rows), .compressed = true});
+  h5::write(dataset.id(), h5::native<double>(), values.data());
+}
+
+/// Each trajectory once, whatever number of cases has it.
+void write_trajectories(hid_t file, const std::vector<StoredForces>& cases) {
+  std::set<std::string> written;
+  for (const StoredForces& one : cases) {
+    const StoredTrajectory& path = one.trajectory;
+    if (path.empty() || one.trajectory_sha256.empty()) continue;
+    if (written.empty()) static_cast<void>(h5::create_group(file, group_of_trajectories));
+    if (!written.insert(one.trajectory_sha256).second) continue;
+    const auto group = h5::create_group(file, group_of_trajectories + '/' + one.trajectory_sha256);
+    h5::write_attribute(group.id(), "axes", gather(path.axes, &ForceChannel::name));
+    h5::write_attribute(group.id(), "units", gather(path.axes, &ForceChannel::unit));
+    write_columns(group.id(), "time", {path.time_s.size()}, path.time_s);
+    write_columns(group.id(), "position", {path.time_s.size(), path.axes.size()}, path.position);
+  }
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& what) {
   throw FormatError(one_line(file.string() + ": " + what));
 }
@@ -103,11 +131,62 @@ void read_compute_time(const std::filesystem::path& file, hid_t group, const std
     h5::read(dataset.id(), h5::native<double>(), about.extent[0], one.compute_time_s.data());
 }
 
+/// The names and units of as many columns, from two attributes.
+std::vector<ForceChannel> read_columns(const std::filesystem::path& file, hid_t object,
+                                       const std::string& where, const char* name_list, std::size_t count) {
+  for (const char* list : {name_list, "units"}) {
+    if (h5::has_attribute(object, list) && h5::describe_attribute(object, list).type == "text" &&
+        h5::read_texts(object, list).size() == count) {
+      continue;
+    }
+    refuse(file, where + ": expected the attribute '" + list + "', one text a column");
+  }
+  const auto names = h5::read_texts(object, name_list);
+  const auto units = h5::read_texts(object, "units");
+  std::vector<ForceChannel> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) columns.push_back({names[i], units[i]});
+  return columns;
+}
+
+/// A dataset of float64 with so many dimensions. `extent`: as it is in the file.
+std::vector<double> read_values(const std::filesystem::path& file, hid_t group, const std::string& where,
+                                const char* name, std::size_t dimensions, h5::Extent& extent) {
+  const std::string place = where + '/' + name;
+  if (!h5::is_dataset(group, name)) refuse(file, place + ": there is no such dataset");
+  const auto dataset = h5::open(group, name);
+  const h5::Description about = h5::describe(dataset.id());
+  if (about.type != "float64" || about.extent.size() != dimensions || about.extent.back() == 0)
+    refuse(file,
+           place + ": found " + about.type + ", expected float64 of N" + (dimensions > 1 ? " x D" : ""));
+  if (!h5::is_plausible(dataset.id(), std::filesystem::file_size(file)))
+    refuse(file, place + ": found more values than the file can hold");
+  extent = about.extent;
+  std::vector<double> values(extent[0] * (dimensions > 1 ? extent[1] : 1));
+  if (!values.empty()) h5::read(dataset.id(), h5::native<double>(), extent[0], values.data());
+  return values;
+}
+
+StoredTrajectory read_trajectory(const std::filesystem::path& file, hid_t root, const std::string& sha256) {
+  const std::string where = group_of_trajectories + '/' + sha256;
+  if (sha256.empty() || sha256.find('/') != std::string::npos || !h5::is_group(root, group_of_trajectories) ||
+      !h5::is_group(root, where)) {
+    return {};
+  }
+  const auto group = h5::open(root, where);
+  h5::Extent rows;
+  h5::Extent extent;
+  StoredTrajectory path;
+  path.time_s = read_values(file, group.id(), where, "time", 1, rows);
+  path.position = read_values(file, group.id(), where, "position", 2, extent);
+  if (extent[0] != rows[0]) refuse(file, where + ": 'time' and 'position' have other numbers of rows");
+  path.axes = read_columns(file, group.id(), where, "axes", extent[1]);
+  return path;
+}
+
 StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std::string& name) {
   const std::string where = group_of_cases + '/' + name;
   if (!h5::is_group(cases, name)) refuse(file, where + ": found no group, expected one a case");
   const auto group = h5::open(cases, name);
-  if (!h5::is_dataset(group.id(), "force")) refuse(file, where + "/force: there is no such dataset");
   StoredForces one;
   one.name = name;
   for (const auto& [attribute, member] : texts_of_a_case) one.*member = text_of(group.id(), attribute);
@@ -121,24 +200,10 @@ StoredForces read_case(const std::filesystem::path& file, hid_t cases, const std
     h5::read_attribute(group.id(), "tick_cost", h5::native<double>(), &*one.tick_cost);
     one.tick_cost_build = text_of(group.id(), "tick_cost_build");
   }
-  const auto dataset = h5::open(group.id(), "force");
-  const h5::Description about = h5::describe(dataset.id());
-  if (about.type != "float64" || about.extent.size() != 2 || about.extent[1] == 0)
-    refuse(file, where + "/force: found " + about.type + ", expected float64 of N x D");
-  if (!h5::is_plausible(dataset.id(), std::filesystem::file_size(file)))
-    refuse(file, where + "/force: found more values than the file can hold");
-  for (const char* list : {"channels", "units"}) {
-    if (h5::has_attribute(dataset.id(), list) && h5::describe_attribute(dataset.id(), list).type == "text" &&
-        h5::read_texts(dataset.id(), list).size() == about.extent[1]) {
-      continue;
-    }
-    refuse(file, where + "/force: expected the attribute '" + list + "', one text a column");
-  }
-  const auto names = h5::read_texts(dataset.id(), "channels");
-  const auto units = h5::read_texts(dataset.id(), "units");
-  for (std::size_t i = 0; i < names.size(); ++i) one.channels.push_back({names[i], units[i]});
-  one.force.resize(about.extent[0] * about.extent[1]);
-  if (!one.force.empty()) h5::read(dataset.id(), h5::native<double>(), about.extent[0], one.force.data());
+  h5::Extent extent;
+  one.force = read_values(file, group.id(), where, "force", 2, extent);
+  one.channels =
+      read_columns(file, h5::open(group.id(), "force").id(), where + "/force", "channels", extent[1]);
   return one;
 }
 
@@ -169,7 +234,10 @@ std::vector<StoredForces> in_process::read_regression(const std::filesystem::pat
     if (!h5::is_group(opened.id(), group_of_cases)) refuse(file, "there is no group " + group_of_cases);
     const auto cases = h5::open(opened.id(), group_of_cases);
     std::vector<StoredForces> all;
-    for (const std::string& name : h5::children(cases.id())) all.push_back(read_case(file, cases.id(), name));
+    for (const std::string& name : h5::children(cases.id())) {
+      all.push_back(read_case(file, cases.id(), name));
+      all.back().trajectory = read_trajectory(file, opened.id(), all.back().trajectory_sha256);
+    }
     return all;
   } catch (const h5::Error& error) {
     throw DamageError(file, error);
@@ -189,6 +257,7 @@ void write_regression(const std::filesystem::path& file, const std::vector<Store
                           &regression_schema_version);
       const auto group = h5::create_group(output.id(), group_of_cases);
       for (const StoredForces& one : cases) write_case(group.id(), one);
+      write_trajectories(output.id(), cases);
     }
     output.close();
   } catch (const h5::Error& error) {

@@ -261,12 +261,20 @@ TEST(Diagnose, SaysThatItDoesNotKnowAndWhatComesNearest) {
                                 HasSubstr("% of the difference"))));
 }
 
+TEST(Diagnose, TakesNoSpikeOnASteadyForceForAnotherRate) {
+  const std::vector<double> steady(1000, 2.0);
+  std::vector<double> spiked = steady;
+  spiked[500] = 2.5;
+  EXPECT_THAT(sentences_of(diagnose(run_of(steady), run_of(spiked)), run_of(steady)),
+              ElementsAre("a spike of +0.5 N at tick 500"));
+}
+
 TEST(Diagnose, CallsTheLastDigitsRounding) {
   EXPECT_THAT(said(changed([](double f, std::size_t) { return std::nextafter(f, 9.0); })),
               ElementsAre("the last digits alone"));
   EXPECT_THAT(said(strokes()), IsEmpty());
   EXPECT_THAT(said(changed([](double f, std::size_t i) { return i == 30 ? std::nan("") : f; })),
-              Contains("no finite number in 1 tick, first in tick 30"));
+              Contains("not finite from row 30, 1 row"));
 }
 
 }  // namespace

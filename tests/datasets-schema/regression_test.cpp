@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -97,6 +98,38 @@ TEST_F(Regression, ComesBackHoweverManyPiecesItIsReadIn) {
   const auto all = read_regression(file_);
   ASSERT_THAT(all, SizeIs(2));
   EXPECT_TRUE(all[1].force == hour.force);
+}
+
+// The first file that `kerf regress update` ever wrote into the tree; the numbers are h5py's.
+TEST_F(Regression, OfTheFirstKerfIsStillRead) {
+  const std::filesystem::path first = KERF_SOURCE_DIR "/tests/datasets-schema/golden/regression-1-first.h5";
+  const auto all = read_regression(first);
+  ASSERT_THAT(all, SizeIs(19));
+  EXPECT_EQ(all[0].name, "kelvin");
+  EXPECT_EQ(all[0].force[300], 5.1442130968440605);
+  EXPECT_EQ(all[0].date, "2026-11-21T21:47:56Z");
+  EXPECT_EQ(all[0].tick_cost, 0.6922336720618948);
+  EXPECT_TRUE(all[0].trajectory.empty());
+  const auto blade = std::ranges::find(all, std::string("blade"), &StoredForces::name);
+  ASSERT_THAT(blade->channels, SizeIs(6));
+  EXPECT_EQ(blade->force[300 * 6], -0.05518008185774805);
+  EXPECT_THAT(validate(first), IsEmpty());
+}
+
+TEST_F(Regression, KeepsATrajectoryOnceForAllItsCases) {
+  StoredForces one = sample_forces();
+  one.trajectory = {
+      .axes = {{"x", "m"}, {"rx", "rad"}}, .time_s = {0.0, 0.001}, .position = {0.1, 0.2, 0.3, 0.4}};
+  StoredForces again = one;
+  again.name = "the same way";
+  write_regression(file_, {one, again});
+  const auto all = read_regression(file_);
+  EXPECT_EQ(all[0], one);
+  EXPECT_EQ(all[1].trajectory, one.trajectory);
+  EXPECT_THAT(validate(file_), IsEmpty());
+  again.trajectory.position.pop_back();
+  EXPECT_THAT([&] { write_regression(file_, {again}); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("does not fill its rows")));
 }
 
 TEST_F(Regression, IsCompressed) {

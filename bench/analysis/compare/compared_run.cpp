@@ -8,11 +8,14 @@
 #include <fmt/ranges.h>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/regression.h>
+#include <kerf/schema/validate.h>
 
 #include "files/named_file.h"
 #include "formats/file_text.h"
 #include "import/text_layout.h"
 #include "import/text_table.h"
+#include "laws/placement.h"
 #include "recordings/whole_recording.h"
 #include "units/units.h"
 
@@ -21,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_recording(const fs::path& file) {
+bool is_hdf5(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.ends_with(".h5") || name.ends_with(".h5.partial");
 }
@@ -56,6 +59,43 @@ ComparedRun from_recording(const fs::path& file, const ComparedForce& which) {
   }
   if (!commanded && !which.measured) run.notes.push_back(fmt::format("{}: the measured force", run.name));
   return run;
+}
+
+ComparedRun from_stored(const fs::path& file, const std::string& name) {
+  std::vector<schema::StoredForces> all = schema::read_regression(file);
+  const auto found = name.empty() && all.size() == 1
+                         ? all.begin()
+                         : std::ranges::find(all, name, &schema::StoredForces::name);
+  if (found == all.end())
+    throw std::invalid_argument(
+        fmt::format("{}: there is no case '{}'; --case takes one of {}", file.string(), name, names_in(all)));
+  ComparedRun run{.name = fmt::format("{}, {}", file.string(), found->name), .series = {}, .notes = {}};
+  const std::size_t channels = found->channels.size();
+  for (std::size_t i = 0; i < channels; ++i)
+    run.series.channels.push_back({.name = found->channels[i].name,
+                                   .unit = found->channels[i].unit,
+                                   .value = column_of(found->force, i, channels)});
+  const schema::StoredTrajectory& path = found->trajectory;
+  if (path.time_s.size() != run.series.rows()) {
+    run.notes.push_back(fmt::format("{}: no times are stored: rows are taken to be 1 ms apart", run.name));
+    return run;
+  }
+  run.series.time_s = path.time_s;
+  for (std::size_t axis = 0; axis < path.axes.size(); ++axis)
+    run.series.positions.push_back({.name = path.axes[axis].name,
+                                    .unit = path.axes[axis].unit,
+                                    .value = column_of(path.position, axis, path.axes.size())});
+  return run;
+}
+
+/// Which of both a file is says its schema, asked for where it is no recording.
+ComparedRun from_hdf5(const fs::path& file, const ComparedForce& force) {
+  try {
+    return from_recording(file, force);
+  } catch (const schema::FormatError&) {
+    if (schema::schema_of(file) != schema::regression_schema_name) throw;
+    return from_stored(file, force.stored);
+  }
 }
 
 /// What a column of a table is.
@@ -133,7 +173,7 @@ ComparedRun from_table(const fs::path& file) {
 }  // namespace
 
 ComparedRun read_run(const fs::path& file, const ComparedForce& force) {
-  ComparedRun run = is_recording(file) ? from_recording(file, force) : from_table(file);
+  ComparedRun run = is_hdf5(file) ? from_hdf5(file, force) : from_table(file);
   if (!force.channel.empty()) {
     const std::string all = compare::names_of(run.series.channels);
     std::erase_if(run.series.channels,

@@ -15,17 +15,19 @@ struct ComparedRun {
   std::vector<std::string> notes;
 };
 
-/// Which force of a recording.
+/// Which force of a file.
 struct ComparedForce {
-  bool measured = false;  ///< that of its sensor, though one was commanded
+  bool measured = false;  ///< of a recording that of its sensor, though one was commanded
   std::string channel;    ///< this one alone; empty: all
+  std::string stored;     ///< the case, of a suite's stored forces; empty: the only one
 };
 
-/// Reads a recording (.h5), or a table of numbers: text, a workbook, what kerf::FileText reads. Of a table
-/// every column with a unit of a force or a torque is a channel, one in seconds is the time, and those of
-/// positions and speeds stand beside them; the others are left out and named.
-/// @throws std::invalid_argument for a file without a force, with a line that is no row, or as the readers
-/// do.
+/// Reads a recording or a suite's stored forces (.h5), or a table of numbers: text, a workbook, what
+/// kerf::FileText reads. Of a table every column with a unit of a force or a torque is a channel, one in
+/// seconds is the time, and those of positions and speeds stand beside them; the others are left out and
+/// named.
+/// @throws std::invalid_argument for a file without a force or without that case, with a line that is no row,
+/// or as the readers do.
 [[nodiscard]] ComparedRun read_run(const std::filesystem::path& file, const ComparedForce& force);
 
 }  // namespace kerf::bench

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "compare/finding_json.h"
 #include "compare/run_comparison.h"
 #include "files/json_number.h"
 
@@ -7,24 +8,6 @@ namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-json finding_as_json(const compare::Finding& one, const compare::Series& series) {
-  json channels = json::array();
-  for (const std::size_t channel : one.channels) channels.push_back(series.channels[channel].name);
-  json numbers = json::object();
-  for (const auto& [name, value] : one.numbers) numbers[name] = json_number(value);
-  return {{"change", compare::name_of(one.change)},
-          {"channels", channels},
-          {"remainder", json_number(one.remainder)},
-          {"sentence", one.sentence},
-          {"numbers", numbers}};
-}
-
-json findings_as_json(const std::vector<compare::Finding>& all, const compare::Series& series) {
-  json list = json::array();
-  for (const compare::Finding& one : all) list.push_back(finding_as_json(one, series));
-  return list;
-}
 
 json worst_as_json(const compare::ForceDifference& one, const compare::Series& series) {
   return {{"tick", one.tick},
@@ -77,6 +60,7 @@ json channel_as_json(const RunComparison& result, std::size_t i) {
       {"unit", one.channel.unit},
       {"outside", about.outside},
       {"first_outside", about.first_outside ? json(*about.first_outside) : json(nullptr)},
+      {"not_finite", about.not_finite},
       {"intervals", intervals},
       {"largest_difference", json_number(about.largest_difference)},
       {"largest_jnds", json_number(about.largest_jnds)},
@@ -115,8 +99,8 @@ json comparison_as_json(const RunComparison& result, const RunComparisonOptions&
       {"outside", comparison.outside},
       {"messages", comparison.messages},
       {"explained", result.diagnosis.explained},
-      {"names", findings_as_json(result.diagnosis.names, series)},
-      {"guesses", findings_as_json(result.diagnosis.guesses, series)},
+      {"names", findings_as_json(result.diagnosis.names, series.channels)},
+      {"guesses", findings_as_json(result.diagnosis.guesses, series.channels)},
       {"sentences", result.names},
       {"notes", result.notes},
       {"worst", comparison.worst ? worst_as_json(*comparison.worst, series) : json(nullptr)},

@@ -43,19 +43,31 @@ Range range_of(std::initializer_list<std::span<const double>> columns) {
   return high > low ? Range{low - margin, high + margin} : Range{};
 }
 
-void mark_outside(Chart& chart, const RunComparison& result, const compare::ChannelComparison& about,
+void mark_outside(Chart& chart, const RunComparison& result, const compare::Tolerance& tolerance,
                   std::size_t channel) {
+  const compare::ChannelComparison& about = result.comparison.channels[channel];
   const auto time_of = [&](std::size_t tick) { return result.runs.expected.time_of(tick); };
   for (const compare::Interval& one : about.intervals) {
     if (chart.bands.size() == most_bands) break;
     chart.bands.push_back({.begin = time_of(one.begin), .end = time_of(one.end), .colour = Colour::yellow});
   }
-  if (about.first_outside)
-    chart.vertical.push_back({.at = time_of(*about.first_outside),
-                              .label = fmt::format("first, tick {}", *about.first_outside),
-                              .label_after = true});
+  const auto felt = std::ranges::max_element(about.bands, {}, &compare::BandLevel::thresholds);
+  const auto limit = tolerance.of(about.channel.name).vibration_limit();
+  if (limit && felt != about.bands.end() && felt->thresholds() > *limit) {
+    const double middle = time_of(0) + felt->worst_time_s;
+    chart.bands.push_back({.begin = middle - 0.125, .end = middle + 0.125, .colour = Colour::sky});
+    chart.vertical.push_back(
+        {.at = middle, .label = fmt::format("vibrates, {:.0f}-{:.0f} Hz", felt->from_hz, felt->to_hz)});
+  }
   const auto& worst = result.comparison.worst;
-  if (worst && worst->channel == channel && about.outside > 0)
+  const bool has_worst = worst && worst->channel == channel && about.outside > 0;
+  const bool at_once = has_worst && about.first_outside == worst->tick;
+  if (about.first_outside)
+    chart.vertical.push_back(
+        {.at = time_of(*about.first_outside),
+         .label = fmt::format("first{}, tick {}", at_once ? " and worst" : "", *about.first_outside),
+         .label_after = true});
+  if (has_worst && !at_once)
     chart.vertical.push_back(
         {.at = time_of(worst->tick), .label = fmt::format("worst, tick {}", worst->tick)});
 }
@@ -128,48 +140,47 @@ std::string page_of(const RunComparison& result, const std::vector<std::string>&
 
 }  // namespace
 
-std::vector<Chart> comparison_charts(const RunComparison& result, const compare::Tolerance& tolerance) {
-  std::vector<Chart> charts;
-  for (std::size_t i = 0; i < result.runs.expected.channels.size(); ++i) {
-    const compare::Channel& expected = result.runs.expected.channels[i];
-    const compare::Channel& got = result.runs.got.channels[i];
-    const compare::ChannelComparison& about = result.comparison.channels[i];
-    Chart forces{.title = expected.name + ": expected and got",
-                 .x_label = "time [s]",
-                 .y_label = fmt::format("force [{}]", expected.unit),
-                 .curves = {curve_of(result, expected.value, "expected", Colour::blue, 3.0),
-                            curve_of(result, got.value, "got", Colour::vermillion, 1.3)},
-                 .y_range = range_of({expected.value, got.value}),
-                 .legend_below = true,
-                 .left_margin = 11};
-    mark_outside(forces, result, about, i);
-    std::vector<double> apart;
-    std::vector<double> above;
-    std::vector<double> below;
-    for (std::size_t row = 0; row < expected.value.size(); ++row) {
-      apart.push_back(got.value[row] - expected.value[row]);
-      above.push_back(tolerance.of(expected.name).allowed(expected.unit, expected.value[row]));
-      below.push_back(-above.back());
-    }
-    Chart between{.title = expected.name + ": got less expected, and what is allowed",
-                  .x_label = "time [s]",
-                  .y_label = fmt::format("difference [{}]", expected.unit),
-                  .curves = {curve_of(result, above, "allowed", Colour::green, 1.2),
-                             curve_of(result, below, "", Colour::green, 1.2),
-                             curve_of(result, apart, "difference", Colour::vermillion, 1.3)},
-                  .y_range = range_of({apart, above, below}),
-                  .legend_below = true,
-                  .left_margin = 11};
-    mark_outside(between, result, about, i);
-    charts.push_back(std::move(forces));
-    charts.push_back(std::move(between));
+std::array<Chart, 2> channel_charts(const RunComparison& result, const compare::Tolerance& tolerance,
+                                    std::size_t channel) {
+  const compare::Channel& expected = result.runs.expected.channels[channel];
+  const compare::Channel& got = result.runs.got.channels[channel];
+  Chart forces{.title = expected.name + ": expected and got",
+               .x_label = "time [s]",
+               .y_label = fmt::format("force [{}]", expected.unit),
+               .curves = {curve_of(result, expected.value, "expected", Colour::blue, 3.0),
+                          curve_of(result, got.value, "got", Colour::vermillion, 1.3)},
+               .y_range = range_of({expected.value, got.value}),
+               .legend_below = true,
+               .left_margin = 14};
+  mark_outside(forces, result, tolerance, channel);
+  std::vector<double> apart;
+  std::vector<double> above;
+  std::vector<double> below;
+  for (std::size_t row = 0; row < expected.value.size(); ++row) {
+    apart.push_back(got.value[row] - expected.value[row]);
+    above.push_back(tolerance.of(expected.name).allowed(expected.unit, expected.value[row]));
+    below.push_back(-above.back());
   }
-  return charts;
+  Chart between{.title = expected.name + ": got less expected, and what is allowed",
+                .x_label = "time [s]",
+                .y_label = fmt::format("difference [{}]", expected.unit),
+                .curves = {curve_of(result, above, "allowed", Colour::green, 1.2),
+                           curve_of(result, below, "", Colour::green, 1.2),
+                           curve_of(result, apart, "difference", Colour::vermillion, 1.3)},
+                .y_range = range_of({apart, above, below}),
+                .legend_below = true,
+                .left_margin = 14};
+  mark_outside(between, result, tolerance, channel);
+  return {std::move(forces), std::move(between)};
 }
 
 void write_comparison(const std::filesystem::path& folder, const RunComparison& result,
                       const RunComparisonOptions& options, bool replace) {
-  const std::vector<std::string> charts = draw_all(comparison_charts(result, options.tolerance));
+  std::vector<Chart> all;
+  for (std::size_t i = 0; i < result.runs.expected.channels.size(); ++i) {
+    for (Chart& chart : channel_charts(result, options.tolerance, i)) all.push_back(std::move(chart));
+  }
+  const std::vector<std::string> charts = draw_all(all);
   WholeFolder whole(folder, schema::existing_if(replace));
   std::vector<std::string> pictures;
   NewNames names;

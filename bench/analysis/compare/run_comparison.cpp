@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "threads/for_each_index.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -27,6 +29,22 @@ std::vector<std::array<EventMatch, 3>> events_of(const compare::Aligned& runs, d
   return all;
 }
 
+/// Every channel is allowed something, and none that is not there.
+void require_tolerances_of(const std::vector<compare::Channel>& channels,
+                           const compare::Tolerance& tolerance) {
+  for (const compare::ChannelTolerance& one : tolerance.channels) {
+    if (!std::ranges::count(channels, one.channel, &compare::Channel::name))
+      throw std::invalid_argument(fmt::format("a tolerance is given for '{}', and the forces are {}",
+                                              one.channel, compare::names_of(channels)));
+  }
+  for (const compare::Channel& one : channels) {
+    if (!tolerance.of(one.name).has_limit_for(one.unit))
+      throw std::invalid_argument(fmt::format(
+          "no tolerance is given for '{}' in {}; give exact, relative, jnd or an absolute one in {}",
+          one.name, one.unit, one.unit));
+  }
+}
+
 /// Of most rows nothing is known: that is no agreement.
 void require_partners(RunComparison& result, std::size_t rows) {
   const std::size_t compared = result.runs.expected.rows();
@@ -38,14 +56,18 @@ void require_partners(RunComparison& result, std::size_t rows) {
 
 }  // namespace
 
-RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
-                           const RunComparisonOptions& options) {
+RunComparison compare_runs(ComparedRun expected, ComparedRun got, const RunComparisonOptions& options) {
   RunComparison result{.expected = expected.name, .got = got.name, .notes = expected.notes};
   result.notes.insert(result.notes.end(), got.notes.begin(), got.notes.end());
+  const std::size_t rows = expected.series.rows();
   const bool by_tick = options.align.by == compare::AlignBy::tick;
+  const bool paired = by_tick && got.series.rows() == rows;
   try {
+    require_tolerances_of(expected.series.channels, options.tolerance);
     got.series = compare::in_order_of(expected.series, std::move(got.series));
-    result.runs = compare::aligned(expected.series, got.series, options.align);
+    result.runs = paired
+                      ? compare::Aligned{.expected = std::move(expected.series), .got = std::move(got.series)}
+                      : compare::aligned(expected.series, got.series, options.align);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("{} and {}: {}", result.expected, result.got, error.what()));
   }
@@ -54,22 +76,32 @@ RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
         fmt::format("{} and {}: fewer than two rows to compare", result.expected, result.got));
   result.notes.insert(result.notes.end(), result.runs.notes.begin(), result.runs.notes.end());
   // What is missing is seen in the whole runs alone.
-  const compare::Series& before = by_tick ? expected.series : result.runs.expected;
-  const compare::Series& after = by_tick ? got.series : result.runs.got;
+  const bool whole = by_tick && !paired;
+  const compare::Series& before = whole ? expected.series : result.runs.expected;
+  const compare::Series& after = whole ? got.series : result.runs.got;
   compare::Tolerance tolerance = options.tolerance;
   // Strokes of other speeds have no common time in which something could vibrate.
   if (options.align.by == compare::AlignBy::position && !tolerance.vibration)
     tolerance.vibration = std::numeric_limits<double>::infinity();
-  result.comparison = compare::compare_with_gaps(before, after, tolerance);
-  if (!by_tick && options.align.by != compare::AlignBy::position)
-    require_partners(result, expected.series.rows());
-  result.agreement = compare::agreement(result.runs.expected, result.runs.got, options.align.most_lag_s);
-  result.events = events_of(result.runs, options.match_s);
+  for_each_index(3, 3, [&](std::size_t part) {
+    if (part == 0) {
+      result.agreement = compare::agreement(result.runs.expected, result.runs.got, options.align.most_lag_s);
+    } else if (part == 1) {
+      result.comparison = compare::compare_with_gaps(before, after, tolerance);
+    } else {
+      result.events = events_of(result.runs, options.match_s);
+    }
+  });
+  if (!by_tick && options.align.by != compare::AlignBy::position) require_partners(result, rows);
   if (result.comparison.passed) return result;
-  // Off the ticks positions are those of other moments: no motion that either was asked for.
-  compare::Series expected_run = before;
-  if (!by_tick) expected_run.positions.clear();
-  result.diagnosis = compare::diagnose(expected_run, after);
+  if (by_tick) {
+    result.diagnosis = compare::diagnose(before, after);
+  } else {
+    // Off the ticks positions are those of other moments: no motion that either was asked for.
+    compare::Series expected_run = before;
+    expected_run.positions.clear();
+    result.diagnosis = compare::diagnose(expected_run, after);
+  }
   result.names = compare::sentences_of(result.diagnosis, before);
   return result;
 }
@@ -87,6 +119,9 @@ std::vector<std::string> comparison_lines(const RunComparison& result) {
         "{:8} outside {:>7} of {} ticks  largest difference {:.3g} {} ({:.2g} JND)  RMS {:.3g} {}",
         one.channel.name, about.outside, result.comparison.expected_rows, about.largest_difference, unit,
         about.largest_jnds, one.rms_difference, unit));
+    if (about.not_finite > 0)
+      lines.push_back(
+          fmt::format("{:8} not finite in {} ticks, which the numbers here leave out", "", about.not_finite));
     const std::string latency = one.latency_s ? fmt::format("{:+.4g} ms +- {:.2g} ms", 1e3 * *one.latency_s,
                                                             1e3 * one.latency_std_error_s)
                                               : "unknown";

@@ -38,7 +38,7 @@ struct RunComparison {
 /// Puts two runs beside each other and compares them. By tick, runs of different length do not pass, and
 /// ticks of a run with samples missing are compared with their own partners.
 /// @throws std::invalid_argument as compare::aligned() and compare::in_order_of() do, naming both files.
-[[nodiscard]] RunComparison compare_runs(const ComparedRun& expected, ComparedRun got,
+[[nodiscard]] RunComparison compare_runs(ComparedRun expected, ComparedRun got,
                                          const RunComparisonOptions& options);
 
 /// Everything about it, for --json.

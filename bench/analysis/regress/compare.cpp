@@ -44,6 +44,24 @@ void add_motion(compare::Series& series, const SampledMotion& motion) {
   }
 }
 
+namespace {
+
+/// What forces were rendered for when they were stored. @returns whether it is known.
+bool add_stored_motion(compare::Series& series, const schema::StoredForces& stored) {
+  const schema::StoredTrajectory& path = stored.trajectory;
+  const std::size_t axes = path.axes.size();
+  if (path.time_s.size() != series.rows() || axes < series.channels.size()) return false;
+  for (std::size_t axis = 0; axis < series.channels.size(); ++axis) {
+    compare::Channel position{.name = path.axes[axis].name, .unit = path.axes[axis].unit, .value = {}};
+    for (std::size_t row = 0; row < series.rows(); ++row)
+      position.value.push_back(path.position[row * axes + axis]);
+    series.positions.push_back(std::move(position));
+  }
+  return true;
+}
+
+}  // namespace
+
 ForceComparison compare_forces(const schema::StoredForces& stored, const RenderedForces& got,
                                const Tolerance& tolerance, double period_s) {
   ForceComparison result =
@@ -57,8 +75,8 @@ ForceComparison compare_forces(const schema::StoredForces& stored, const Rendere
   return result;
 }
 
-std::vector<std::string> diagnose(const schema::StoredForces& stored, const RenderedForces& got,
-                                  const SampledMotion& path, const compare::Facts& facts) {
+compare::Diagnosis diagnose(const schema::StoredForces& stored, const RenderedForces& got,
+                            const SampledMotion& path, const compare::Facts& facts) {
   if (stored.channels.empty() || got.channels.size() != stored.channels.size()) return {};
   const double period_s = path.period_s.empty() ? 1e-3 : path.period_s.back();
   compare::Series expected = series_of(stored, period_s);
@@ -66,8 +84,19 @@ std::vector<std::string> diagnose(const schema::StoredForces& stored, const Rend
   if (!facts.trajectory_changed.value_or(false) && stored.rows() == got.rows()) {
     add_motion(expected, path);
     add_motion(actual, path);
+  } else if (facts.trajectory_changed.value_or(false) && add_stored_motion(expected, stored)) {
+    add_motion(actual, path);
+    actual.velocities.clear();  // of the stored ones none are kept
   }
-  return compare::sentences_of(compare::diagnose(expected, actual, facts), expected);
+  return compare::diagnose(expected, actual, facts);
+}
+
+std::vector<std::string> sentences_of(const compare::Diagnosis& diagnosis,
+                                      const schema::StoredForces& stored) {
+  // The names of the channels alone are asked for.
+  schema::StoredForces names;
+  names.channels = stored.channels;
+  return compare::sentences_of(diagnosis, series_of(names));
 }
 
 }  // namespace kerf::bench

@@ -29,10 +29,12 @@ void add_motion(compare::Series& series, const SampledMotion& motion);
 [[nodiscard]] ForceComparison compare_forces(const schema::StoredForces& stored, const RenderedForces& got,
                                              const Tolerance& tolerance, double period_s = 1e-3);
 
-/// What the difference looks like, one sentence each, as compare::sentences_of(). `path`: what the forces
+/// What the difference looks like: compare::diagnose(). `path`: what the forces
 /// were rendered for now, and were then, unless the facts say that it has changed.
-[[nodiscard]] std::vector<std::string> diagnose(const schema::StoredForces& stored, const RenderedForces& got,
-                                                const SampledMotion& path = {},
-                                                const compare::Facts& facts = {});
+[[nodiscard]] compare::Diagnosis diagnose(const schema::StoredForces& stored, const RenderedForces& got,
+                                          const SampledMotion& path = {}, const compare::Facts& facts = {});
+/// The same, one sentence each.
+[[nodiscard]] std::vector<std::string> sentences_of(const compare::Diagnosis& diagnosis,
+                                                    const schema::StoredForces& stored);
 
 }  // namespace kerf::bench

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "compare/finding_json.h"
 #include "files/json_number.h"
 #include "laws/placement.h"
 #include "regress/renderers/step_cost.h"
@@ -56,11 +57,18 @@ json case_as_json(const RegressionOutcome& outcome) {
                         {"largest_jnds", json_number(one.largest_jnds)},
                         {"largest_expected", json_number(one.largest_expected)}});
   }
+  std::vector<compare::Channel> named;
+  for (const schema::ForceChannel& one : outcome.stored.channels)
+    named.push_back({.name = one.name, .unit = one.unit});
   return {{"name", outcome.about.name},
           {"model", outcome.about.error.empty() ? json(renderer_of(outcome.about)) : json(nullptr)},
-          {"passed", outcome.passed()},
+          {"passed", outcome.left_out ? json(nullptr) : json(outcome.passed())},
+          {"left_out", outcome.left_out},
           {"error", outcome.error.empty() ? json(nullptr) : json(outcome.error)},
           {"messages", outcome.messages},
+          {"explained", outcome.diagnosis.explained},
+          {"names", findings_as_json(outcome.diagnosis.names, named)},
+          {"guesses", findings_as_json(outcome.diagnosis.guesses, named)},
           {"why", outcome.why},
           {"note", outcome.note},
           {"samples", outcome.comparison.got_rows},
@@ -127,10 +135,11 @@ std::string context_table(const RegressionOutcome& outcome) {
 }
 
 json outcome_as_json(const Suite& suite, const SuiteOutcome& outcome) {
-  json result{
-      {"suite", suite.file.string()},    {"name", suite.name},         {"stored", suite.stored.string()},
-      {"passed", outcome.failed() == 0}, {"failed", outcome.failed()}, {"errors", outcome.errors()},
-      {"dropped", outcome.dropped},      {"seconds", outcome.seconds}, {"cases", json::array()}};
+  json result{{"suite", suite.file.string()},    {"name", suite.name},
+              {"stored", suite.stored.string()}, {"passed", outcome.failed() == 0},
+              {"failed", outcome.failed()},      {"errors", outcome.errors()},
+              {"dropped", outcome.dropped},      {"notes", outcome.notes},
+              {"seconds", outcome.seconds},      {"cases", json::array()}};
   for (const RegressionOutcome& one : outcome.cases) result["cases"].push_back(case_as_json(one));
   return result;
 }

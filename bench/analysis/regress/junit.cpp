@@ -75,9 +75,11 @@ std::string junit_xml(const std::filesystem::path& suite, const std::string& err
 std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome, const std::filesystem::path& page) {
   const std::string name = xml_escaped(suite.name);
   const std::size_t tests = outcome.cases.size() + outcome.dropped.size();
+  const std::string skipped =
+      outcome.left_out() > 0 ? fmt::format(" skipped=\"{}\"", outcome.left_out()) : "";
   const std::string counts =
-      fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.6f}\"", name, tests,
-                  outcome.failed() - outcome.errors(), outcome.errors(), outcome.seconds);
+      fmt::format("name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\"{} time=\"{:.6f}\"", name, tests,
+                  outcome.failed() - outcome.errors(), outcome.errors(), skipped, outcome.seconds);
   std::string xml = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite {}>\n"
       "    <properties><property name=\"software\" value=\"{}\"/></properties>\n",
@@ -85,6 +87,10 @@ std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome, const std
   for (const RegressionOutcome& one : outcome.cases) {
     xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.6f}\"", name,
                        xml_escaped(one.about.name), one.seconds);
+    if (one.left_out) {
+      xml += fmt::format("><skipped message=\"{}\"/></testcase>\n", xml_escaped(one.why));
+      continue;
+    }
     if (one.passed()) {
       xml += "/>\n";
       continue;

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "compare/comparison_page.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "html/html.h"
@@ -15,15 +16,16 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t ticks_around = 40;
+constexpr std::size_t most_channels = 6;  ///< that are drawn of one case
 
-Chart chart_of(const RegressionOutcome& outcome, std::size_t begin, std::size_t end,
-               const std::string& title) {
+Chart chart_around_worst(const RegressionOutcome& outcome) {
   const ForceDifference& worst = *outcome.comparison.worst;
   const std::size_t columns = outcome.stored.channels.size();
-  const bool close = end - begin <= 3 * ticks_around;
-  const Mark mark = close ? Mark::steps : Mark::line;
-  Curve expected{.label = "expected", .colour = Colour::blue, .mark = mark, .width = 3.0};
-  Curve got{.label = "got", .colour = Colour::vermillion, .mark = mark, .width = 1.5};
+  const std::size_t begin = worst.tick - std::min(worst.tick, ticks_around);
+  const std::size_t end =
+      std::min(std::max(outcome.stored.rows(), outcome.got.rows()), worst.tick + ticks_around + 1);
+  Curve expected{.label = "expected", .colour = Colour::blue, .mark = Mark::steps, .width = 3.0};
+  Curve got{.label = "got", .colour = Colour::vermillion, .mark = Mark::steps, .width = 1.5};
   const double period_s = outcome.path.period_s.front();
   const auto time_of = [&](std::size_t tick) {
     return tick < outcome.path.ticks() ? outcome.path.time_s[tick] : static_cast<double>(tick) * period_s;
@@ -38,10 +40,10 @@ Chart chart_of(const RegressionOutcome& outcome, std::size_t begin, std::size_t 
     add(got, outcome.got.force);
   }
   const schema::ForceChannel& channel = outcome.stored.channels[worst.channel];
-  return {.title = title,
+  return {.title = outcome.about.name + ": around the worst tick",
           .x_label = "time [s]",
           .y_label = fmt::format("force of {} [{}]", channel.name, channel.unit),
-          .curves = {decimated(expected), decimated(got)},
+          .curves = {expected, got},
           .vertical = {{.at = time_of(worst.tick),
                         .label = fmt::format("tick {}", worst.tick),
                         .label_after = 2 * (worst.tick - begin) < end - begin}}};
@@ -65,6 +67,27 @@ std::string context_section(const RegressionOutcome& outcome) {
   return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }
 
+/// Both runs beside each other, as far as both have ticks.
+RunComparison whole_runs(const RegressionOutcome& outcome) {
+  const double period_s = outcome.path.period_s.back();
+  RunComparison result{.comparison = outcome.comparison};
+  result.runs = compare::aligned(series_of(outcome.stored, period_s), series_of(outcome.got, period_s), {});
+  for (compare::Series* const one : {&result.runs.expected, &result.runs.got})
+    one->time_s.assign(outcome.path.time_s.begin(),
+                       outcome.path.time_s.begin() +
+                           static_cast<std::ptrdiff_t>(std::min(one->rows(), outcome.path.ticks())));
+  return result;
+}
+
+/// The worst channel, then the others that are outside.
+std::vector<std::size_t> drawn_channels(const ForceComparison& comparison) {
+  std::vector<std::size_t> channels{comparison.worst->channel};
+  for (std::size_t i = 0; i < comparison.channels.size() && channels.size() < most_channels; ++i) {
+    if (i != channels.front() && comparison.channels[i].outside > 0) channels.push_back(i);
+  }
+  return channels;
+}
+
 std::string summary_table(const SuiteOutcome& outcome) {
   std::vector<std::vector<std::string>> rows{{"case", "law", "ticks", "result", "outside the tolerance",
                                               "different at all", "worst difference", "JND", "tick cost",
@@ -75,6 +98,11 @@ std::string summary_table(const SuiteOutcome& outcome) {
       rows.push_back({one.about.name, "", "", "ERROR", "", "", "", "", "", ""});
       continue;
     }
+    if (one.left_out) {
+      rows.push_back({one.about.name, renderer_of(one.about), "", "left out: nothing has changed", "", "", "",
+                      "", "", one.stored.date.substr(0, 10)});
+      continue;
+    }
     rows.push_back({one.about.name, renderer_of(one.about), fmt::format("{}", one.comparison.got_rows),
                     one.passed() ? "passed" : "FAILED", fmt::format("{}", one.comparison.outside),
                     fmt::format("{}", one.comparison.differing),
@@ -83,7 +111,7 @@ std::string summary_table(const SuiteOutcome& outcome) {
                           : "0",
                     worst ? fmt::format("{:.2g}", worst->jnds) : "0",
                     one.tick_cost ? fmt::format("{:.3g}", *one.tick_cost) : "",
-                    fmt::format("{}: {}", one.stored.date.substr(0, 10), one.stored.reason)});
+                    one.stored.date.substr(0, 10)});
   }
   for (const std::string& name : outcome.dropped)
     rows.push_back({name, "", "", "FAILED: no longer in the suite", "", "", "", "", "", ""});
@@ -104,13 +132,18 @@ std::string case_section(const RegressionOutcome& outcome, const std::vector<std
 
 std::vector<Figure> figures_of(const RegressionOutcome& outcome) {
   if (!outcome.comparison.worst) return {};
-  const std::size_t tick = outcome.comparison.worst->tick;
-  const std::size_t rows = std::max(outcome.stored.rows(), outcome.got.rows());
   const std::string& name = outcome.about.name;
-  return {{.name = name + "-worst",
-           .chart = chart_of(outcome, tick - std::min(tick, ticks_around),
-                             std::min(rows, tick + ticks_around + 1), name + ": around the worst tick")},
-          {.name = name + "-whole", .chart = chart_of(outcome, 0, rows, name + ": the whole trajectory")}};
+  std::vector<Figure> figures{{.name = name + "-worst", .chart = chart_around_worst(outcome)}};
+  const RunComparison runs = whole_runs(outcome);
+  for (const std::size_t channel : drawn_channels(outcome.comparison)) {
+    const std::string of = figures.size() == 1 ? "" : "-" + outcome.stored.channels[channel].name;
+    auto [forces, difference] = channel_charts(runs, outcome.about.tolerance, channel);
+    forces.title = name + ", " + forces.title;
+    difference.title = name + ", " + difference.title;
+    figures.push_back({.name = name + "-whole" + of, .chart = std::move(forces)});
+    figures.push_back({.name = name + "-difference" + of, .chart = std::move(difference)});
+  }
+  return figures;
 }
 
 void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
@@ -128,12 +161,12 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
   for (std::size_t i = 0; i < figures.size(); ++i)
     write_whole_file(folder / (figures[i].name + ".svg"), pictures[i]);
   const std::size_t failed = outcome.failed();
-  const std::size_t all = outcome.cases.size() + outcome.dropped.size();
+  const std::size_t all = outcome.cases.size() + outcome.dropped.size() - outcome.left_out();
   std::string body = fmt::format("<h1>{}</h1>\n<p class=\"answer{}\">{}</p>\n", escaped(suite.name),
                                  failed > 0 ? " bad" : "",
                                  failed > 0 ? fmt::format("{} of {} cases did not pass.", failed, all)
                                             : fmt::format("All {} cases passed.", all));
-  body += summary_table(outcome);
+  for (const std::string& note : outcome.notes) body += html_answer(Answer::partly, escaped(note) + ".");
   std::size_t next = 0;
   for (const RegressionOutcome& one : outcome.cases) {
     if (one.passed()) continue;
@@ -141,6 +174,7 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
     for (std::size_t i = figures_of(one).size(); i > 0; --i) mine.push_back(pictures[next++]);
     body += case_section(one, mine);
   }
+  body += "<h2>All cases</h2>\n" + summary_table(outcome);
   write_whole_file(folder / "regress.html", html_page(suite.name, body));
 }
 

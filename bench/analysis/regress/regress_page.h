@@ -9,8 +9,8 @@
 
 namespace kerf::bench {
 
-/// Expected and got of the worst channel of a case: around its worst tick, and over the whole trajectory.
-/// None if nothing differs.
+/// Expected and got around the worst tick, then of the worst channel, and of others that are outside, over
+/// the whole trajectory both and their difference with what is allowed. None if nothing differs.
 [[nodiscard]] std::vector<Figure> figures_of(const RegressionOutcome& outcome);
 
 /// Writes regress.html, regress.json and the pictures of the cases that did not pass into a folder.

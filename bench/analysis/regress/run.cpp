@@ -9,8 +9,11 @@
 #include <fmt/core.h>
 
 #include "recordings/provenance.h"
+#include "regress/inputs.h"
 #include "regress/renderers/made_with.h"
 #include "regress/renderers/step_cost.h"
+#include "regress/stored/stored_suite.h"
+#include "regress/stored/summary.h"
 #include "threads/for_each_index.h"
 
 namespace kerf::bench {
@@ -27,9 +30,10 @@ const schema::StoredForces* find(const std::vector<schema::StoredForces>& all, c
   return found == all.end() ? nullptr : &*found;
 }
 
-std::vector<schema::StoredForces> stored_forces(const Suite& suite) {
-  if (!std::filesystem::exists(suite.stored)) return {};
-  return schema::read_regression(suite.stored);
+/// @throws std::invalid_argument if its stored forces cannot be read.
+void require_readable(const StoredSuite& stored, const std::string& name) {
+  const auto error = stored.errors.find(name);
+  if (error != stored.errors.end()) throw std::invalid_argument(error->second);
 }
 
 /// Stored forces without a case in the suite.
@@ -134,7 +138,8 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
       .law_changed = checksum(one) != stored.law_sha256,
       .trajectory_changed = checksum(outcome.path, outcome.got.channels.size()) != stored.trajectory_sha256};
   if (!outcome.comparison.passed) {
-    for (std::string& line : diagnose(stored, outcome.got, outcome.path, facts))
+    outcome.diagnosis = diagnose(stored, outcome.got, outcome.path, facts);
+    for (std::string& line : sentences_of(outcome.diagnosis, stored))
       outcome.messages.push_back(std::move(line));
   }
   outcome.made_with = made_with(one);
@@ -147,6 +152,14 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
   judge_cost(outcome);
   note_silent_change(outcome);
   return outcome;
+}
+
+RegressionOutcome case_left_out(const RegressionCase& one, const schema::StoredForces& stored) {
+  return {
+      .about = one,
+      .stored = stored,
+      .why = fmt::format("what it follows from is as it was when its forces were stored on {}", stored.date),
+      .left_out = true};
 }
 
 std::string how_different(const ForceComparison& comparison) {
@@ -171,6 +184,7 @@ schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& 
                            .trajectory_sha256 = checksum(path, got.channels.size()),
                            .channels = got.channels,
                            .force = got.force,
+                           .trajectory = stored_trajectory(one, path),
                            .faults = got.faults,
                            .tick_cost = cost,
                            .compute_time_s = got.compute_time_s,
@@ -203,6 +217,8 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
                             !outcome.got.compute_time_s.empty());
   if (outcome.passed() && same_source && !no_cost_yet) {
     if (outcome.comparison.differing > 0) change.what += ", within the tolerance: it stays as it is";
+    if (before->trajectory.empty()) change.now.trajectory = stored_trajectory(one, outcome.path);
+    change.completes = before->trajectory.empty() && !change.now.trajectory.empty();
     return change;
   }
   change.kind = ChangeKind::changed;
@@ -226,6 +242,10 @@ std::size_t SuiteOutcome::errors() const noexcept {
       std::ranges::count_if(cases, [](const RegressionOutcome& one) { return !one.error.empty(); }));
 }
 
+std::size_t SuiteOutcome::left_out() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count(cases, true, &RegressionOutcome::left_out));
+}
+
 std::size_t SuiteOutcome::failed() const noexcept {
   return dropped.size() + static_cast<std::size_t>(std::ranges::count_if(
                               cases, [](const RegressionOutcome& one) { return !one.passed(); }));
@@ -234,16 +254,19 @@ std::size_t SuiteOutcome::failed() const noexcept {
 SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
   const auto begin = Clock::now();
   const Suite chosen = only(suite, options.only);
-  std::vector<schema::StoredForces> stored;
+  StoredSuite stored;
+  SummaryCheck summary;
   std::string unreadable;
   try {
-    stored = stored_forces(suite);
+    stored = read_stored(suite);
+    summary = check_summary(suite, stored.cases);
   } catch (const schema::FormatError& error) {
     unreadable = error.what();
   } catch (const std::invalid_argument& error) {
     unreadable = error.what();
   }
-  SuiteOutcome outcome;
+  stored.errors.merge(summary.wrong);
+  SuiteOutcome outcome{.cases = {}, .dropped = {}, .notes = summary.notes};
   outcome.cases.resize(chosen.cases.size());
   for_each_case(chosen.cases, options, [&](std::size_t i) {
     const auto case_begin = Clock::now();
@@ -251,47 +274,53 @@ SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
     RegressionOutcome& result = outcome.cases[i];
     const std::string error = error_of(one, [&] {
       if (!unreadable.empty()) throw std::invalid_argument(unreadable);
-      const schema::StoredForces* const before = find(stored, one.name);
+      require_readable(stored, one.name);
+      const schema::StoredForces* const before = find(stored.cases, one.name);
       if (before == nullptr) {
         throw std::invalid_argument(fmt::format(
             "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
             suite.stored.string(), one.name, suite.file.string()));
       }
-      result = run_case(one, *before, options.tick_costs);
+      result = options.changed && changed_since(inputs_of(one), *before).empty()
+                   ? case_left_out(one, *before)
+                   : run_case(one, *before, options.tick_costs);
     });
     if (!error.empty()) result = {.about = one, .error = error};
     result.seconds = seconds_since(case_begin);
   });
-  if (options.only.empty()) outcome.dropped = dropped_from(suite, stored);
+  if (options.only.empty()) outcome.dropped = dropped_from(suite, stored.cases);
   outcome.seconds = seconds_since(begin);
   return outcome;
 }
 
 std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& options) {
-  const auto stored = stored_forces(suite);
+  const StoredSuite stored = read_stored(suite);
   const Suite chosen = only(suite, options.only);
   std::vector<StoredChange> changes(suite.cases.size());
   for_each_case(suite.cases, options, [&](std::size_t i) {
     const RegressionCase& one = suite.cases[i];
-    const schema::StoredForces* before = find(stored, one.name);
+    const schema::StoredForces* before = find(stored.cases, one.name);
     changes[i] = {.name = one.name, .asked = false};
     if (before != nullptr) changes[i].now = *before;
     if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) == 0) return;
-    const std::string error = error_of(one, [&] { changes[i] = change_of(one, before, options.tick_costs); });
+    const std::string error = error_of(one, [&] {
+      require_readable(stored, one.name);
+      changes[i] = change_of(one, before, options.tick_costs);
+    });
     if (error.empty()) return;
     changes[i].asked = true;
     changes[i].kind = ChangeKind::impossible;
     changes[i].what = error;
   });
   std::erase_if(changes, [](const StoredChange& one) { return !one.asked && one.now.channels.empty(); });
-  for (const std::string& name : dropped_from(suite, stored)) {
+  for (const std::string& name : dropped_from(suite, stored.cases)) {
     const bool asked = options.only.empty();
     changes.push_back({.name = name,
                        .kind = asked ? ChangeKind::removed : ChangeKind::unchanged,
                        .what = "its forces are removed",
                        .why = "the suite has no such case any more",
                        .asked = asked,
-                       .now = *find(stored, name)});
+                       .now = *find(stored.cases, name)});
   }
   return changes;
 }
@@ -313,6 +342,15 @@ bool changes_anything(const std::vector<StoredChange>& changes) noexcept {
   });
 }
 
+std::string completes_anything(const Suite& suite, const std::vector<StoredChange>& changes) {
+  std::vector<schema::StoredForces> all;
+  for (const StoredChange& change : changes) {
+    if (change.completes) return "trajectories of recordings are stored besides";
+    if (!change.now.channels.empty()) all.push_back(change.now);
+  }
+  return what_is_missing(suite, all);
+}
+
 void write_update(const Suite& suite, const std::vector<StoredChange>& changes, const std::string& reason) {
   if (reason.find_first_not_of(" \t\r\n") == std::string::npos)
     throw std::invalid_argument("say why the forces change: --reason WHY");
@@ -320,7 +358,9 @@ void write_update(const Suite& suite, const std::vector<StoredChange>& changes, 
   std::ranges::replace(line, '\n', ' ');
   const std::string date = schema::new_header("").created;
   std::vector<schema::StoredForces> all;
+  std::vector<std::string> gone;
   for (const StoredChange& change : changes) {
+    if (change.kind == ChangeKind::removed) gone.push_back(change.name);
     if (change.kind == ChangeKind::removed || change.now.channels.empty()) continue;
     all.push_back(change.now);
     if (change.kind == ChangeKind::unchanged || change.kind == ChangeKind::impossible) continue;
@@ -328,7 +368,7 @@ void write_update(const Suite& suite, const std::vector<StoredChange>& changes, 
     all.back().date = date;
     all.back().software = software();
   }
-  schema::write_regression(suite.stored, all);
+  write_stored(suite, all, gone);
 }
 
 }  // namespace kerf::bench

@@ -14,6 +14,7 @@
 #include "laws/law_toml.h"
 #include "laws/placement.h"
 #include "laws/plugin_laws.h"
+#include "regress/read_tolerance.h"
 #include "regress/renderers/read_renderer.h"
 #include "scene/read_motion.h"
 
@@ -25,9 +26,6 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 11> settings{"rate", "seconds", "absolute",  "relative",
                                                     "jnd",  "exact",   "tick_cost", "vibration",
                                                     "slew", "drift",   "peak"};
-/// What a channel may have of its own.
-constexpr std::array<std::string_view, 8> channel_settings{"absolute",  "relative", "jnd",   "exact",
-                                                           "vibration", "slew",     "drift", "peak"};
 
 template <typename... Names>
 std::vector<std::string_view> with_settings(Names... names) {
@@ -35,66 +33,6 @@ std::vector<std::string_view> with_settings(Names... names) {
   all.insert(all.end(), settings.begin(), settings.end());
   all.insert(all.end(), settings_of_renderers.begin(), settings_of_renderers.end());
   return all;
-}
-
-/// A bare number within bounds.
-double plain(const Place& place, const toml::node& node, std::string_view what, double lower, double upper) {
-  const double value = place.number(node, fmt::format("'{}'", what));
-  if (!(value >= lower && value <= upper))
-    place.refuse(node, "'{}' is {}, expected a number from {:g} to {:g}", what, value, lower, upper);
-  return value;
-}
-
-/// One limit: of forces, or of torques; per second if `per` says so.
-void read_limit(const Place& place, const toml::node& node, std::string_view key, const std::string& per,
-                compare::Limit& limit) {
-  const toml::table* table = node.as_table();
-  const std::string unit = table != nullptr ? place.text(*table, "unit", "") : "";
-  const std::string force = unit.substr(0, unit.find('/'));
-  const bool torque = force.find('m') != std::string::npos && force != "mN";
-  const auto values = place.measured(node, std::string(key), (torque ? "N·m" : "N") + per).values;
-  if (values.size() != 1 || !(values[0] >= 0.0)) place.refuse(node, "'{}' must be one number, >= 0", key);
-  (torque ? limit.torque : limit.force) = values[0];
-}
-
-/// One limit or a list of two, of forces and torques.
-void read_limits(const Place& place, const toml::table& table, std::string_view key, const std::string& per,
-                 compare::Limit& limit) {
-  const toml::node* given = table.get(key);
-  if (given == nullptr) return;
-  limit = {};
-  if (const toml::array* list = given->as_array()) {
-    for (const toml::node& node : *list) read_limit(place, node, key, per, limit);
-  } else {
-    read_limit(place, *given, key, per, limit);
-  }
-}
-
-/// The tolerance that a table names, over that which it inherits.
-void read_tolerance(const Place& place, const toml::table& table, Tolerance& tolerance) {
-  const bool inexact = table.contains("absolute") || table.contains("relative") || table.contains("jnd");
-  if (inexact) {
-    tolerance.force_n = tolerance.torque_n_m = tolerance.relative = tolerance.jnd = {};
-    tolerance.exact = false;
-  }
-  compare::Limit absolute{.force = tolerance.force_n, .torque = tolerance.torque_n_m};
-  read_limits(place, table, "absolute", "", absolute);
-  tolerance.force_n = absolute.force;
-  tolerance.torque_n_m = absolute.torque;
-  if (const toml::node* relative = table.get("relative"))
-    tolerance.relative = plain(place, *relative, "relative", 0.0, 1.0);
-  if (const toml::node* jnd = table.get("jnd")) tolerance.jnd = plain(place, *jnd, "jnd", 0.0, 100.0);
-  if (const toml::node* vibration = table.get("vibration"))
-    tolerance.vibration = plain(place, *vibration, "vibration", 0.0, 1e6);
-  read_limits(place, table, "slew", "/s", tolerance.slew);
-  read_limits(place, table, "drift", "", tolerance.drift);
-  read_limits(place, table, "peak", "", tolerance.peak);
-  if (const toml::node* exact = table.get("exact")) {
-    tolerance.exact = place.flag(table, "exact", false);
-    if (tolerance.exact && inexact)
-      place.refuse(*exact, "'exact' leaves no room for a tolerance; leave out either");
-    if (tolerance.exact) tolerance = {.exact = true};
-  }
 }
 
 /// Tolerances of single channels, [case.channel.NAME].
@@ -106,7 +44,7 @@ void read_channels(const Place& place, const toml::table& table, RegressionCase&
     const toml::table* own = node.as_table();
     if (own == nullptr || !std::ranges::count(axes, name, &models::LawAxis::name))
       place.refuse(node, "'{}' is no channel of the case; it has {}", name, names_in(axes));
-    place.allow_only(*own, channel_settings, "[case.channel." + name + "]");
+    place.allow_only(*own, tolerance_keys, "[case.channel." + name + "]");
     Tolerance tolerance = one.tolerance;
     tolerance.channels.clear();
     read_tolerance(place, *own, tolerance);
@@ -123,7 +61,7 @@ void read_settings(const Place& place, const toml::table& table, RegressionCase&
         read_number(place, table, {.key = "seconds", .unit = "s", .lower = 0.001, .upper = longest_motion_s});
   read_tolerance(place, table, one.tolerance);
   if (const toml::node* cost = table.get("tick_cost"))
-    one.tick_cost = plain(place, *cost, "tick_cost", 1.1, 1000.0);
+    one.tick_cost = number_within(place, *cost, "tick_cost", 1.1, 1000.0);
 }
 
 void read_motions(const Place& place, const toml::node& node, RegressionCase& one) {
@@ -216,6 +154,31 @@ void read_files(const Place& place, const toml::table& table, const fs::path& fo
   }
 }
 
+References read_references(const Place& place, const toml::table& root) {
+  const std::string form = place.text(root, "references", "hdf5");
+  if (form != "hdf5" && form != "text")
+    place.refuse(*root.get("references"), "'references' is \"{}\", expected \"hdf5\" or \"text\"", form);
+  return form == "text" ? References::text : References::hdf5;
+}
+
+/// SUITE.toml has SUITE.h5 or SUITE.forces; a suite of another ending keeps it, so that no two have the same.
+fs::path stored_beside(const fs::path& file, References form) {
+  fs::path stored = file;
+  if (file.extension() == ".toml") stored.replace_extension();
+  return stored += form == References::text ? ".forces" : ".h5";
+}
+
+/// Its forces are not stored in the place of what it reads.
+void require_own_place(const Place& place, const toml::table& table, const RegressionCase& one,
+                       const fs::path& stored) {
+  for (const fs::path& input : {one.motion.recording, one.trajectory}) {
+    if (input.empty() || input.lexically_normal() != stored.lexically_normal()) continue;
+    place.refuse(table,
+                 "{} is what case '{}' moves along, and where the forces of {} are stored: rename either",
+                 input.string(), one.name, place.file());
+  }
+}
+
 RegressionCase read_case(const Place& place, const toml::table& table, const fs::path& folder,
                          const RegressionCase& defaults) {
   const auto keys =
@@ -263,12 +226,12 @@ std::string renderer_of(const RegressionCase& one) {
 Suite read_suite(const fs::path& file) {
   const Place place(file.string());
   const toml::table root = parse_toml(read_named_file(file), file.string());
-  place.allow_only(root, {"name", "plugins", "defaults", "case"}, "a suite");
+  place.allow_only(root, {"name", "plugins", "references", "defaults", "case"}, "a suite");
   read_plugins(place, root, file.parent_path());
   Suite suite{
-      .name = place.text(root, "name", file.stem().string()), .file = file, .stored = file, .cases = {}};
-  suite.stored.replace_extension(".h5");
-  if (suite.stored == file) throw std::invalid_argument(file.string() + ": expected a suite, SUITE.toml");
+      .name = place.text(root, "name", file.stem().string()), .file = file, .stored = {}, .cases = {}};
+  suite.references = read_references(place, root);
+  suite.stored = stored_beside(file, suite.references);
   RegressionCase defaults;
   if (root.contains("defaults")) {
     const toml::table& table = place.table(root, "defaults");
@@ -284,6 +247,7 @@ Suite read_suite(const fs::path& file) {
     suite.cases.push_back(read_case(place, *node.as_table(), file.parent_path(), defaults));
     if (!names.insert(suite.cases.back().name).second)
       place.refuse(node, "there are two cases named '{}'", suite.cases.back().name);
+    require_own_place(place, *node.as_table(), suite.cases.back(), suite.stored);
   }
   return suite;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -36,10 +37,17 @@ struct RegressionCase {
 /// The law's model; of another renderer how it is called.
 [[nodiscard]] std::string renderer_of(const RegressionCase& one);
 
+/// In what form the forces of a suite are stored.
+enum class References : std::uint8_t {
+  hdf5,  ///< one file, SUITE.h5
+  text,  ///< a folder SUITE.forces with a table a case, which git merges
+};
+
 struct Suite {
   std::string name;
   std::filesystem::path file;
-  std::filesystem::path stored;  ///< SUITE.h5 beside SUITE.toml
+  std::filesystem::path stored;  ///< SUITE.h5 or SUITE.forces beside SUITE.toml
+  References references = References::hdf5;
   std::vector<RegressionCase> cases;
 };
 

@@ -56,6 +56,7 @@ const std::vector<NamedValue>& named_values() {
       {"--rerun", {words, {"all"}}},
       {"--fidelity", {words, {"exact", "strips:", "paper"}}},
       {"--case", {nothing, {}}},
+      {"--tolerance", {files, {".toml"}}},
       {"CASE", {nothing, {}}},
       {"--axis", {nothing, {}}},
       {"--along", {nothing, {}}},

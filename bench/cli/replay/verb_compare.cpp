@@ -1,3 +1,4 @@
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,6 +11,8 @@
 #include "compare/run_comparison.h"
 #include "files/whole_file.h"
 #include "program/verbs.h"
+#include "regress/read_tolerance.h"
+#include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
@@ -29,12 +32,23 @@ struct CompareVerbArguments {
   std::optional<double> slew;
   std::optional<double> drift;
   std::optional<double> peak;
+  std::string tolerance;
   double match_ms = 50.0;
   std::string output;
   bool force_output = false;
 };
 
+/// @throws std::invalid_argument if options say of it too.
+compare::Tolerance tolerance_of_file(const CompareVerbArguments& arguments) {
+  const CompareVerbArguments& a = arguments;
+  if (a.exact || a.absolute || a.absolute_torque || a.relative || a.jnd || a.vibration || a.slew || a.drift ||
+      a.peak)
+    throw std::invalid_argument("--tolerance says all that is allowed; leave out the other options that do");
+  return read_tolerance_file(arguments.tolerance);
+}
+
 compare::Tolerance tolerance_of(const CompareVerbArguments& arguments) {
+  if (!arguments.tolerance.empty()) return tolerance_of_file(arguments);
   const bool inexact = arguments.absolute || arguments.absolute_torque || arguments.relative || arguments.jnd;
   if (arguments.exact && inexact)
     throw std::invalid_argument("--exact leaves no room for a tolerance; leave out either");
@@ -58,8 +72,11 @@ void run_compare(const CompareVerbArguments& arguments, Context& context) {
       .match_s = 1e-3 * arguments.match_ms};
   if (!arguments.output.empty())
     require_output(std::filesystem::path(arguments.output) / "compare.json", arguments.force_output);
-  const ComparedRun expected = read_run(arguments.expected, arguments.force);
-  const RunComparison result = compare_runs(expected, read_run(arguments.got, arguments.force), options);
+  std::array<ComparedRun, 2> runs;
+  for_each_index(2, 2, [&](std::size_t i) {
+    runs[i] = read_run(i == 0 ? arguments.expected : arguments.got, arguments.force);
+  });
+  const RunComparison result = compare_runs(std::move(runs[0]), std::move(runs[1]), options);
   context.result = comparison_as_json(result, options);
   for (const std::string& one : result.notes) note(one);
   for (const std::string& line : comparison_lines(result)) context.say("  " + line);
@@ -76,14 +93,15 @@ void run_compare(const CompareVerbArguments& arguments, Context& context) {
 
 void add_compare(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<CompareVerbArguments>();
-  Verb verb =
-      add_verb(app, context, "compare", "Compare the forces of two runs, and say what changed",
-               "kerf compare before.h5 after.h5\n"
-               "  kerf compare expected.csv got.csv --align lag --jnd 0.5 -o compared\n\n"
-               "Runs are recordings, what 'kerf replay' writes, or tables with units in their heads:\n"
-               "time [s],x [N],rx [N·m]. Exits with 1 if the second is not within the tolerance of the\n"
-               "first. docs/comparing.md says more.",
-               [arguments, &context] { run_compare(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "compare", "Compare the forces of two runs, and say what changed",
+      "kerf compare before.h5 after.h5\n"
+      "  kerf compare expected.csv got.csv --align lag --jnd 0.5 -o compared\n\n"
+      "Runs are recordings, what 'kerf replay' writes, a suite's stored forces, or tables with units in\n"
+      "their heads:\n"
+      "time [s],x [N],rx [N·m]. Exits with 1 if the second is not within the tolerance of the\n"
+      "first. docs/comparing.md says more.",
+      [arguments, &context] { run_compare(*arguments, context); });
   verb.add_option("EXPECTED", arguments->expected, "Recording or table that is taken to be right").required();
   verb.add_option("GOT", arguments->got, "Recording or table that is compared with it").required();
   verb.add_option("--align", arguments->align, "Which rows belong together: tick, time, position or lag")
@@ -95,6 +113,9 @@ void add_compare(CLI::App& app, Context& context) {
   verb.add_flag("--measured", arguments->force.measured,
                 "The measured force of recordings, not the commanded one");
   verb.add_option("--channel", arguments->force.channel, "This force alone");
+  verb.add_option("--case", arguments->force.stored, "The case, of a suite's stored forces");
+  verb.add_option("--tolerance", arguments->tolerance,
+                  "What is allowed, also of single channels, from a file with the keys of a suite's case");
   verb.add_option("--jnd", arguments->jnd,
                   "Allowed in each tick: so many JNDs (1, if nothing is allowed otherwise)")
       .not_negative();

@@ -19,6 +19,8 @@
 #include "regress/renderers/recorded_table.h"
 #include "regress/renderers/step_cost.h"
 #include "regress/run.h"
+#include "regress/stored/suite_lock.h"
+#include "regress/stored/summary.h"
 
 namespace kerf::bench {
 namespace {
@@ -40,6 +42,7 @@ void say_case(const RegressionOutcome& one, Context& context) {
     context.say(fmt::format("  {:24} ERROR\n      {}", one.about.name, one.error));
     return;
   }
+  if (one.left_out) return context.say(fmt::format("  {:24} left out", one.about.name));
   const auto& worst = one.comparison.worst;
   const std::string apart = worst ? fmt::format("{:.2g} {}", std::abs(worst->difference()),
                                                 one.stored.channels[worst->channel].unit)
@@ -90,6 +93,7 @@ void write_page(const Suite& suite, const SuiteOutcome& outcome, const std::stri
 }
 
 void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Context& context) {
+  const SuiteLock lock(suite.file, SuiteLock::To::read);
   const SuiteOutcome outcome = run_suite(suite, arguments.options);
   context.result = outcome_as_json(suite, outcome);
   for (const RegressionOutcome& one : outcome.cases) say_case(one, context);
@@ -99,7 +103,12 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
         "      its forces are stored, and the suite has no such case any more; 'kerf regress update' removes "
         "them");
   }
-  const std::size_t all = outcome.cases.size() + outcome.dropped.size();
+  for (const std::string& one : outcome.notes) note(one);
+  const std::size_t all = outcome.cases.size() + outcome.dropped.size() - outcome.left_out();
+  if (outcome.left_out() > 0)
+    context.say(fmt::format(
+        "{} of {} cases left out: what they follow from is as it was when their forces were stored",
+        outcome.left_out(), outcome.cases.size()));
   context.say(outcome.failed() == 0
                   ? fmt::format("{}: all {} cases passed, in {:.2f} s", suite.name, all, outcome.seconds)
                   : fmt::format("{}: {} of {} cases did not pass", suite.name, outcome.failed(), all));
@@ -109,7 +118,7 @@ void run_cases(const RegressVerbArguments& arguments, const Suite& suite, Contex
     write_page(suite, outcome, arguments.output, context);
   }
   if (outcome.failed() > 0) context.exit = Exit::check_failed;
-  if (outcome.errors() < all) return;
+  if (outcome.errors() < all || all == 0) return;
   // Nothing was compared, which is no verdict on any force.
   note(outcome.cases.front().error);
   context.exit = Exit::bad_input;
@@ -146,6 +155,8 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
     throw std::invalid_argument("say why the forces change: --reason WHY");
   if (!arguments.output.empty())
     require_output(std::filesystem::path(arguments.output) / "regress.json", true);
+  refuse(arguments.options.changed, "--changed", "run");
+  const SuiteLock lock(suite.file, SuiteLock::To::store);
   const auto changes = plan_update(suite, arguments.options);
   context.result = {{"suite", suite.file.string()}, {"stored", suite.stored.string()}, {"written", false}};
   context.result["changes"] = nlohmann::ordered_json::array();
@@ -157,9 +168,11 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
                             one.why.empty() ? "" : "; ", one.why));
     if (one.kind == ChangeKind::impossible) context.exit = Exit::check_failed;
   }
+  const std::string besides = completes_anything(suite, changes);
   if (!changes_anything(changes)) {
-    context.say(fmt::format("{} stays as it is", suite.stored.string()));
-    return;
+    context.say(fmt::format("{} stays as it is", besides.empty() ? suite.stored.string() : "every force"));
+    if (besides.empty()) return;
+    context.say(besides);
   }
   if (!arguments.output.empty()) write_page(suite, what_changes(changes), arguments.output, context);
   if (!confirmed(arguments.yes, context))
@@ -167,8 +180,7 @@ void update_forces(const RegressVerbArguments& arguments, const Suite& suite, Co
         fmt::format("{} was not touched; --yes stores what is shown", suite.stored.string()));
   write_update(suite, changes, arguments.reason);
   context.result["written"] = true;
-  context.say(fmt::format("{} is written, {:.1f} kB", suite.stored.string(),
-                          1e-3 * static_cast<double>(std::filesystem::file_size(suite.stored))));
+  context.say(fmt::format("written: {} and {}", suite.stored.string(), summary_file(suite).string()));
 }
 
 /// The motion of a case as a renderer reads it.
@@ -232,6 +244,8 @@ void add_regress(CLI::App& app, Context& context) {
   verb.add_option("SUITE", arguments->suite, "The suite, SUITE.toml").required();
   verb.add_option("CASE", arguments->one, "Of 'trajectory': the case whose motion is written");
   verb.add_option("--only", arguments->options.only, "This case alone; may be repeated").one_value_each();
+  verb.add_flag("--changed", arguments->options.changed,
+                "Only cases whose law, renderer, trajectory or kerf is not the one of the stored forces");
   verb.add_option("-j,--jobs", arguments->options.jobs,
                   "Cases at a time; those whose cost is measured run alone")
       .with_default();

@@ -52,8 +52,7 @@ Finite finite_of(const Series& expected, const Series& got) {
         {.change = Change::not_finite,
          .channels = {channel},
          .remainder = 0.0,
-         .sentence = fmt::format("no finite number in {} tick{}, first in tick {}", count,
-                                 count > 1 ? "s" : "", first),
+         .sentence = fmt::format("not finite from row {}, {} row{}", first, count, count > 1 ? "s" : ""),
          .numbers = {{"row", static_cast<double>(first)}, {"count", static_cast<double>(count)}}});
   }
   return finite;

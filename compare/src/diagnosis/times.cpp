@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <fmt/core.h>
 
@@ -146,6 +147,11 @@ void add_rate(const ForcePair& pair, std::span<const double> expected, std::span
       },
       0, end);
   if (static_cast<double>(end) < 0.5 * static_cast<double>(got.size()) / std::max(1.0, fit.speed)) return;
+  // What is faster ends earlier: of a difference that begins behind that end it explains nothing.
+  const auto square = [](double sum, double one) { return sum + one * one; };
+  const auto middle = pair.difference.begin() + static_cast<std::ptrdiff_t>(end);
+  const double before = std::accumulate(pair.difference.begin(), middle, 0.0, square);
+  if (before < 0.1 * std::accumulate(middle, pair.difference.end(), before, square)) return;
   const double rate = 1.0 / pair.period_s;
   add_finding(
       found, pair,

@@ -46,10 +46,11 @@ auto fields(Is<Tail> auto& x) {
   return std::tie(x.status, x.axes, x.measures_force, x.rows, x.last, x.events, x.last_event);
 }
 auto fields(Is<ForceChannel> auto& x) { return std::tie(x.name, x.unit); }
+auto fields(Is<StoredTrajectory> auto& x) { return std::tie(x.axes, x.time_s, x.position); }
 auto fields(Is<StoredForces> auto& x) {
   return std::tie(x.name, x.model, x.law_sha256, x.trajectory_sha256, x.reason, x.date, x.software, x.history,
                   x.channels, x.force, x.faults, x.tick_cost, x.tick_cost_build, x.renderer, x.compute_time_s,
-                  x.compute_time_of, x.made_with);
+                  x.compute_time_of, x.made_with, x.trajectory);
 }
 auto fields(Is<KeyDerivation> auto& x) { return std::tie(x.kind, x.salt, x.operations, x.memory_bytes); }
 auto fields(Is<SessionLaw> auto& x) { return std::tie(x.name, x.toml); }

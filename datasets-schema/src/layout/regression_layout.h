@@ -8,6 +8,7 @@
 namespace kerf::schema {
 
 inline const std::string group_of_cases = "/cases";
+inline const std::string group_of_trajectories = "/trajectories";  ///< each under its SHA-256
 
 /// The texts of a case, under the names that they have in the file.
 struct CaseText {

@@ -43,6 +43,20 @@ void check_case(TreeCheck& tree, const std::string& name) {
   tree.only_attributes(times, {"of"});
 }
 
+void check_trajectory(TreeCheck& tree, const std::string& sha256) {
+  const std::string path = group_of_trajectories + '/' + sha256;
+  if (!tree.has_group(path)) return;
+  const auto rows = tree.extent_of(path + "/time", "float64", 1);
+  const auto extent = tree.extent_of(path + "/position", "float64", 2);
+  if (!rows || !extent) return;
+  if ((*extent)[0] != (*rows)[0])
+    return tree.fail(path, "other numbers of rows in 'time' and 'position'", "one row a tick");
+  for (const char* name : {"axes", "units"})
+    static_cast<void>(tree.has_attribute(path, {.name = name, .type = "text", .list = (*extent)[1]}));
+  tree.only_attributes(path, {"axes", "units"});
+  tree.only_children(path, {"time", "position"});
+}
+
 void check_content(const StoredForces& one, std::vector<Violation>& violations) {
   const std::string path = group_of_cases + '/' + one.name;
   if (!one.date.empty() && !is_utc_time(one.date)) {
@@ -69,7 +83,11 @@ void validate_regression(const std::filesystem::path& file, std::vector<Violatio
     TreeCheck tree(file);
     if (tree.is(regression_schema_name, regression_schema_version)) {
       tree.only_attributes("/", {"schema", "schema_version"});
-      tree.only_children("/", {"cases"});
+      tree.only_children("/", {"cases", "trajectories"});
+      if (h5::is_group(tree.file(), group_of_trajectories)) {
+        for (const std::string& sha256 : h5::children(h5::open(tree.file(), group_of_trajectories).id()))
+          check_trajectory(tree, sha256);
+      }
       if (tree.has_group(group_of_cases)) {
         tree.only_attributes(group_of_cases, {});
         const auto names = h5::children(h5::open(tree.file(), group_of_cases).id());

@@ -16,7 +16,8 @@ struct BandCoherence {
   double coherence = 0.0;  ///< magnitude squared, 0 to 1, weighted by the energy of the expected force
 };
 
-/// How one channel of a run follows that of another: got = gain expected + offset, later by a lag.
+/// How one channel of a run follows that of another: got = gain expected + offset, later by a lag. Of the
+/// rows in which both are finite; where some are not, latency and coherence are unknown.
 struct ChannelAgreement {
   ChannelName channel;
   double gain = 1.0;
@@ -24,7 +25,7 @@ struct ChannelAgreement {
   double drift = 0.0;  ///< of a straight line through the difference, over the run
   double rms_difference = 0.0;
   double correlation = 0.0;         ///< -1 to 1; 0 where either does not change
-  std::optional<double> latency_s;  ///< none where no force changes
+  std::optional<double> latency_s;  ///< none where no force changes or one is not finite
   double latency_std_error_s = 0.0;
   std::vector<BandCoherence>
       coherence;  ///< octaves from 5 Hz on; where there are four windows of a second or more

@@ -35,12 +35,13 @@ inline constexpr std::size_t most_intervals = 1000;  ///< that are kept
 struct ChannelComparison {
   ChannelName channel;
   std::size_t outside = 0;          ///< ticks outside the tolerance
-  double largest_difference = 0.0;  ///< of all ticks, also those within the tolerance
+  double largest_difference = 0.0;  ///< of all finite ticks, also those within the tolerance
   double largest_jnds = 0.0;
   double largest_expected = 0.0;  ///< largest of the expected forces
   double largest_got = 0.0;
   double rms_difference = 0.0;
   std::optional<std::size_t> first_outside;  ///< its tick
+  std::size_t not_finite = 0;                ///< ticks in which either force is no finite number
   std::vector<Interval> intervals;           ///< outside, in their order
   std::optional<double> slew;    ///< largest change of the difference from tick to tick, by the period [N/s]
   std::optional<double> drift;   ///< of a straight line through the difference, over the run [N]

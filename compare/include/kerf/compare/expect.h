@@ -25,4 +25,16 @@ struct ForcesOfTest {
 [[nodiscard]] std::string why_forces_differ(const ForcesOfTest& expected, std::span<const double> got,
                                             double jnds);
 
+/// What a test of forces comes to: `if (const auto as_it_was = within_jnd(...); !as_it_was)
+/// fail(as_it_was.why);`
+struct TestResult {
+  std::string why;  ///< they are not as expected; empty if they are
+  explicit operator bool() const noexcept { return why.empty(); }
+};
+[[nodiscard]] inline TestResult within_jnd(std::span<const double> expected, std::span<const double> got,
+                                           double jnds, double rate_hz = 1000.0,
+                                           std::string_view unit = "N") {
+  return {why_forces_differ({.value = expected, .rate_hz = rate_hz, .unit = unit}, got, jnds)};
+}
+
 }  // namespace kerf::compare

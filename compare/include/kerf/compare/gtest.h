@@ -11,8 +11,8 @@ namespace kerf::compare {
                                                                 std::span<const double> got, double jnds,
                                                                 double rate_hz = 1000.0,
                                                                 std::string_view unit = "N") {
-  const std::string why = why_forces_differ({.value = expected, .rate_hz = rate_hz, .unit = unit}, got, jnds);
-  return why.empty() ? testing::AssertionSuccess() : testing::AssertionFailure() << why;
+  const TestResult result = within_jnd(expected, got, jnds, rate_hz, unit);
+  return result ? testing::AssertionSuccess() : testing::AssertionFailure() << result.why;
 }
 
 }  // namespace kerf::compare

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include <kerf/schema/recording.h>
+#include <kerf/schema/regression.h>
 
 // Two runs compared as a user does it.
 
@@ -80,12 +81,75 @@ TEST_F(CompareProgram, SaysWhatChangedAndDrawsIt) {
   EXPECT_EQ(json.at("outside"), 0);
   EXPECT_EQ(json.at("names").at(0).at("change"), "vibration");
   EXPECT_NEAR(json.at("names").at(0).at("numbers").at("hz").get<double>(), 250.0, 0.1);
+  EXPECT_EQ(json.at("names").at(0).at("kind"), "vibration");
+  EXPECT_EQ(json.at("names").at(0).at("channel"), "x");
+  EXPECT_NEAR(json.at("names").at(0).at("value").get<double>(), 250.0, 0.1);
+  EXPECT_EQ(json.at("names").at(0).at("unit"), "Hz");
+  EXPECT_LT(json.at("names").at(0).at("remainder").get<double>(), 0.05);
   EXPECT_THAT(
       test::read_text(at("page/compare.html")),
       AllOf(HasSubstr("Not within the tolerance"), HasSubstr("a vibration of 250 Hz"), HasSubstr("<svg")));
   EXPECT_THAT(test::read_text(at("page/x.svg")), HasSubstr("got less expected"));
   EXPECT_EQ(compare({at("a.h5"), other, "--jnd", "0.5", "--vibration", "10"}).exit_status, 0);
   EXPECT_EQ(compare({at("a.h5"), other, "-o", at("page")}).exit_status, 2) << "what is there is not replaced";
+}
+
+TEST_F(CompareProgram, TakesWhatIsAllowedFromAFileAndOfEachChannel) {
+  std::string a = "time [s],x [N],rx [N·mm]\n";
+  std::string b = a;
+  for (int i = 0; i < 100; ++i) {
+    a += fmt::format("{},1,100\n", 1e-3 * i);
+    b += fmt::format("{},1.01,100.3\n", 1e-3 * i);
+  }
+  test::write_text(at("a.csv"), a);
+  test::write_text(at("b.csv"), b);
+  const auto with = [&](const std::string& text) {
+    test::write_text(at("t.toml"), text);
+    return compare({at("a.csv"), at("b.csv"), "--tolerance", at("t.toml")});
+  };
+  const std::string loose = "absolute = { value = 20, unit = \"mN\" }\n";
+  EXPECT_EQ(with(loose + "[channel.rx]\nabsolute = { value = 0.5, unit = \"mN·m\" }\n").exit_status, 0);
+  const Outcome strict = with(loose + "[channel.rx]\nabsolute = { value = 0.2, unit = \"mN·m\" }\n");
+  EXPECT_EQ(strict.exit_status, 1);
+  EXPECT_THAT(strict.output, HasSubstr("rx: expected 0.1 N·m, got 0.1003 N·m"));
+  const auto refused = [&](const std::string& text, const std::string& message) {
+    const Outcome outcome = with(text);
+    EXPECT_EQ(outcome.exit_status, 2);
+    EXPECT_THAT(outcome.errors, HasSubstr(message));
+  };
+  refused(loose, "no tolerance is given for 'rx' in N·m");
+  refused("jnd = 1\n[channel.ry]\njnd = 2\n",
+          "a tolerance is given for 'ry', and the forces are x [N], rx [N·m]");
+  refused("jnd = 1\nrate = 3\n", "t.toml:2: ");
+  refused("vibration = 1\n", "it needs one of exact, absolute, relative and jnd");
+  EXPECT_EQ(compare({at("a.csv"), at("b.csv"), "--tolerance", at("t.toml"), "--jnd", "1"}).exit_status, 2);
+}
+
+TEST_F(CompareProgram, TakesASuitesStoredForces) {
+  schema::StoredForces one{.name = "slow", .channels = {{"x", "N"}}};
+  for (int i = 0; i < 2000; ++i) one.force.push_back(force(1e-3 * i));
+  schema::StoredForces other = one;
+  other.name = "fast";
+  schema::write_regression(at("suite.h5"), {one, other});
+  EXPECT_EQ(compare({at("suite.h5"), recording("a.h5"), "--case", "slow", "--exact"}).exit_status, 0);
+  EXPECT_THAT(compare({at("suite.h5"), at("a.h5")}).errors,
+              HasSubstr("there is no case ''; --case takes one of slow, fast"));
+}
+
+TEST_F(CompareProgram, NamesWhatIsNotFinite) {
+  const std::string torn =
+      recording("b.h5", [](double t) { return t > 0.4995 && t < 0.5025 ? std::nan("") : force(t); });
+  const Outcome outcome = compare({recording("a.h5"), torn, "--json"});
+  EXPECT_EQ(outcome.exit_status, 1);
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json.at("sentences").at(0), "not finite from row 500, 3 rows");
+  EXPECT_EQ(json.at("names").at(0).at("kind"), "not_finite");
+  EXPECT_EQ(json.at("names").at(0).at("value"), 500);
+  EXPECT_EQ(json.at("names").at(0).at("unit"), "tick");
+  const auto& x = json.at("channels").at(0);
+  EXPECT_EQ(x.at("not_finite"), 3);
+  EXPECT_EQ(x.at("gain"), 1.0) << "of the rows that are numbers";
+  EXPECT_TRUE(x.at("latency_ms").is_null());
 }
 
 TEST_F(CompareProgram, TakesOutALagAndSaysHowLargeItIs) {

@@ -117,7 +117,8 @@ TEST(CompareForces, NeverPassesALostSampleOrAnAddedOne) {
   got.force.pop_back();
   EXPECT_THAT(compare_forces(stored(), got, anything).messages,
               ElementsAre("999 samples where 1000 are stored: 1 lost"));
-  EXPECT_THAT(diagnose(stored(), got), ElementsAre("what is there is the same: the end is missing"));
+  EXPECT_THAT(sentences_of(diagnose(stored(), got), stored()),
+              ElementsAre("what is there is the same: the end is missing"));
   got = as_stored(stored());
   got.force.push_back(0.0);
   EXPECT_THAT(compare_forces(stored(), got, anything).messages,
@@ -139,11 +140,13 @@ TEST(CompareForces, NeverPassesOtherChannelsOrMoreFaults) {
 TEST(CompareForces, DiagnosesAsTheLibraryDoes) {
   RenderedForces got = as_stored(stored());
   for (double& force : got.force) force *= 180.0 / std::numbers::pi;
-  EXPECT_THAT(diagnose(stored(), got), Contains(HasSubstr("180/pi: degrees where radians are meant")));
+  EXPECT_THAT(sentences_of(diagnose(stored(), got), stored()),
+              Contains(HasSubstr("180/pi: degrees where radians are meant")));
   got = as_stored(stored());
   got.force.erase(got.force.begin() + 400);
-  EXPECT_THAT(diagnose(stored(), got), ElementsAre("a sample is missing, at tick 400"));
-  EXPECT_THAT(diagnose(stored(), as_stored(stored()), {}, {.trajectory_changed = true}), IsEmpty());
+  EXPECT_THAT(sentences_of(diagnose(stored(), got), stored()),
+              ElementsAre("a sample is missing, at tick 400"));
+  EXPECT_THAT(diagnose(stored(), as_stored(stored()), {}, {.trajectory_changed = true}).names, IsEmpty());
 }
 
 }  // namespace

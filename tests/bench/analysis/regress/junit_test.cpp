@@ -72,11 +72,15 @@ TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {
 
 TEST_F(SilentLaw, IsDrawnBesideWhatWasExpected) {
   const auto figures = figures_of(outcome_.cases[0]);
-  ASSERT_THAT(figures, SizeIs(2));
+  ASSERT_THAT(figures, SizeIs(3));
   EXPECT_EQ(figures[0].name, "kelvin-worst");
   ASSERT_THAT(figures[0].chart.curves, SizeIs(2));
   EXPECT_EQ(figures[0].chart.curves[0].label, "expected");
+  EXPECT_EQ(figures[1].name, "kelvin-whole");
   EXPECT_EQ(figures[1].chart.curves[0].x.size(), 400U);
+  EXPECT_EQ(figures[2].name, "kelvin-difference");
+  EXPECT_EQ(figures[2].chart.curves[0].label, "allowed");
+  EXPECT_FALSE(figures[2].chart.bands.empty()) << "what is outside is marked";
   write_regress_page(suite_, outcome_, folder_.at("page"));
   const std::string page = test::read_text(folder_.at("page/regress.html"));
   EXPECT_THAT(page, AllOf(HasSubstr("1 of 1 cases did not pass"), HasSubstr("<svg"), HasSubstr("FAILED"),
