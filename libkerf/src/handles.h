@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -71,6 +72,11 @@ kerf_status at_set_up(char* error, std::size_t size, Action&& action) noexcept {
   return KERF_SYSTEM;
 }
 
+/// What kerf_step_axes() does for a state's law.
+using StepAxes = std::uint32_t (*)(kerf_state* state, const double* position, const double* velocity,
+                                   double elapsed_s, double* force) noexcept;
+[[nodiscard]] StepAxes step_axes_of(const OpenedLaw& law) noexcept;
+
 }  // namespace kerf
 
 // The handles of the header: of C, and so of no namespace.
@@ -81,21 +87,25 @@ struct kerf_law {
 
 struct kerf_state {
   explicit kerf_state(std::shared_ptr<const kerf::OpenedLaw> of)
-      : opened(std::move(of)), axes(opened->axes.size()), memory(opened->initial) {}
+      : opened(std::move(of)),
+        axes(opened->axes.size()),
+        step_axes(kerf::step_axes_of(*opened)),
+        memory(opened->initial) {}
 
-  /// The time of a step, from the library's clock where the host has none.
-  [[nodiscard]] double elapse(double elapsed_s) noexcept {
-    if (std::isnan(elapsed_s)) elapsed_s = clock.elapsed_s();
-    if (elapsed_s > 0.0 && std::isfinite(elapsed_s)) now_s += elapsed_s;
-    return elapsed_s;
+  /// Goes on by the time of a step.
+  void pass(double elapsed_s) noexcept {
+    if (elapsed_s > 0.0 && elapsed_s <= std::numeric_limits<double>::max()) [[likely]]
+      now_s += elapsed_s;
   }
 
   std::shared_ptr<const kerf::OpenedLaw> opened;
   std::size_t axes;  ///< how many
+  kerf::StepAxes step_axes;
   kerf::models::Law::State memory;
   kerf::drivers::VelocityFilter filter{};
-  kerf::models::SpatialMotion motion{};  ///< of the last step by axes; those that the law has not stay zero
-  double now_s = 0.0;                    ///< the sum of the elapsed times
+  alignas(64) kerf::models::SpatialMotion
+      motion{};        ///< of the last step by axes; those that the law has not stay zero
+  double now_s = 0.0;  ///< the sum of the elapsed times
   kerf::StepClock clock{};
 };
 

@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <string>
 
-// Laws of plug-ins, apart: kerf/law.h has a function of the name of kerf.h's type, and they do not go into
-// one source.
+// Laws of plug-ins, as a host has loaded them.
 
 namespace kerf {
 

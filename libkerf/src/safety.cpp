@@ -151,7 +151,8 @@ uint32_t kerf_safety_apply(kerf_safety* safety, uint32_t flags, double* force) {
 uint32_t kerf_step_safely(kerf_safety* safety, kerf_state* state, const double* position,
                           const double* velocity, double elapsed_s, double* force) {
   const bool fits = state->axes == safety->count;
-  const double time_s = state->elapse(elapsed_s);
+  const double time_s = std::isnan(elapsed_s) ? state->clock.elapsed_s() : elapsed_s;
+  state->pass(time_s);
   std::uint32_t flags = KERF_LAW_FAULT;
   if (fits && is_time(time_s)) {
     const kerf::models::SpatialMotion& motion = kerf::motion_of(*state, position, velocity);

@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <ctime>
 #include <limits>
+#include <type_traits>
 
 #include "handles.h"
 
@@ -23,7 +26,8 @@ namespace {
 
 /// The velocity along a state's only axis.
 double velocity_of(kerf_state& state, double position, double velocity) noexcept {
-  if (!std::isnan(velocity)) return velocity;
+  if (!std::isnan(velocity)) [[likely]]
+    return velocity;
   // What is not finite would stay in the filter for good; the law refuses the tick anyhow.
   if (!std::isfinite(position)) return 0.0;
   const double filtered = state.filter.update(0, position, state.now_s);
@@ -31,7 +35,33 @@ double velocity_of(kerf_state& state, double position, double velocity) noexcept
   return filtered;
 }
 
+/// Two numbers at once, as laws read them: one that was written as halves keeps its reader waiting, which
+/// takes longer than all else here.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+using Pairwise [[gnu::vector_size(2 * sizeof(std::int64_t))]] = std::int64_t;
+
+/// Takes over the motion that a host tells; of those axes that the law has not a zero at most. @returns bits
+/// where a velocity lacks.
+template <std::size_t Axes, std::size_t At = 0>
+Pairwise take_motion(models::SpatialMotion& motion, const double* position, const double* velocity) noexcept {
+  if constexpr (At >= Axes) {
+    return Pairwise{};
+  } else {
+    Pair here{position[At], 0.0};
+    Pair speed{velocity[At], 0.0};
+    if constexpr (At + 1 < Axes) {
+      std::memcpy(&here, position + At, sizeof here);
+      std::memcpy(&speed, velocity + At, sizeof speed);
+    }
+    std::memcpy(&motion.position[At], &here, sizeof here);
+    std::memcpy(&motion.velocity[At], &speed, sizeof speed);
+    return take_motion<Axes, At + 2>(motion, position, velocity) | (speed != speed);
+  }
+}
+
 constexpr double no_velocity = std::numeric_limits<double>::quiet_NaN();
+constexpr models::AxisValues no_velocities{no_velocity, no_velocity, no_velocity,
+                                           no_velocity, no_velocity, no_velocity};
 
 /// Those along the axes of a state that the host lacks. Apart: its loop would slow down who has all.
 [[gnu::noinline]] void fill_velocities(kerf_state& state) noexcept {
@@ -47,7 +77,63 @@ constexpr double no_velocity = std::numeric_limits<double>::quiet_NaN();
 
 std::uint32_t flag_of(bool fault) noexcept { return fault ? std::uint32_t{KERF_LAW_FAULT} : 0U; }
 
+template <std::size_t Axes>
+[[gnu::always_inline]] inline const models::SpatialMotion& motion_along(kerf_state& state,
+                                                                        const double* position,
+                                                                        const double* velocity) noexcept {
+  const Pairwise lacking =
+      take_motion<Axes>(state.motion, position, velocity == nullptr ? no_velocities.data() : velocity);
+  if ((lacking[0] | lacking[1]) != 0) [[unlikely]]
+    fill_velocities(state);
+  return state.motion;
+}
+
+std::uint32_t step_contact(kerf_state& state, double position, double velocity, double elapsed_s,
+                           double* force) noexcept {
+  const OpenedLaw& law = *state.opened;
+  const models::Contact& contact = law.file.contact;
+  const models::Response response =
+      law.file.law.step(state.memory, contact.motion(position, velocity), elapsed_s);
+  *force = contact.force_on_axis(response.force);
+  return flag_of(response.fault);
+}
+
+/// A step of a host that has no time. Apart: what has to be kept over the question to the clock would be put
+/// aside in every step.
+template <auto step, typename Numbers>
+[[gnu::noinline]] std::uint32_t step_by_clock(kerf_state* state, Numbers position, Numbers velocity,
+                                              double* force) noexcept {
+  return step(state, position, velocity, state->clock.elapsed_s(), force);
+}
+
+std::uint32_t step_line(kerf_state* state, const double* position, const double* velocity, double elapsed_s,
+                        double* force) noexcept {
+  return kerf_step(state, *position, velocity == nullptr ? no_velocity : *velocity, elapsed_s, force);
+}
+
+/// Of a law in space.
+template <std::size_t Axes>
+std::uint32_t step_space(kerf_state* state, const double* position, const double* velocity, double elapsed_s,
+                         double* force) noexcept {
+  if (std::isnan(elapsed_s)) [[unlikely]]
+    return step_by_clock<step_space<Axes>>(state, position, velocity, force);
+  state->pass(elapsed_s);
+  const models::SpatialMotion& motion = motion_along<Axes>(*state, position, velocity);
+  const models::SpatialResponse response = state->opened->file.law.step(state->memory, motion, elapsed_s);
+  std::memcpy(force, response.force.data(), Axes * sizeof(double));
+  return flag_of(response.fault);
+}
+
+/// By the number of axes, which the compiler then knows: loops over as many as a state says took longer than
+/// all else here.
+constexpr std::array<StepAxes, models::max_law_axes + 1> steps_in_space{
+    nullptr, step_space<1>, step_space<2>, step_space<3>, step_space<4>, step_space<5>, step_space<6>};
+
 }  // namespace
+
+StepAxes step_axes_of(const OpenedLaw& law) noexcept {
+  return law.spatial ? steps_in_space[law.axes.size()] : step_line;
+}
 
 const models::SpatialMotion& motion_of(kerf_state& state, const double* position,
                                        const double* velocity) noexcept {
@@ -65,18 +151,9 @@ const models::SpatialMotion& motion_of(kerf_state& state, const double* position
 std::uint32_t step_axes(kerf_state& state, const models::SpatialMotion& motion, double elapsed_s,
                         double* force) noexcept {
   const OpenedLaw& law = *state.opened;
-  if (!law.spatial) {
-    const models::Contact& contact = law.file.contact;
-    const models::Response response =
-        law.file.law.step(state.memory, contact.motion(motion.position[0], motion.velocity[0]), elapsed_s);
-    force[0] = contact.force_on_axis(response.force);
-    return flag_of(response.fault);
-  }
+  if (!law.spatial) return step_contact(state, motion.position[0], motion.velocity[0], elapsed_s, force);
   const models::SpatialResponse response = law.file.law.step(state.memory, motion, elapsed_s);
-  // A call of memmove() takes longer than these few numbers.
-  for (std::size_t axis = 0; axis < models::max_law_axes; ++axis) {
-    if (axis < state.axes) force[axis] = response.force[axis];
-  }
+  std::copy_n(response.force.begin(), state.axes, force);
   return flag_of(response.fault);
 }
 
@@ -120,27 +197,26 @@ double kerf_state_energy(const kerf_state* state) {
 }
 
 uint32_t kerf_step(kerf_state* state, double position, double velocity, double elapsed_s, double* force) {
-  const double time_s = state->elapse(elapsed_s);
-  const models::Contact& contact = state->opened->file.contact;
-  const models::Response response = state->opened->file.law.step(
-      state->memory, contact.motion(position, velocity_of(*state, position, velocity)), time_s);
-  *force = contact.force_on_axis(response.force);
-  return flag_of(response.fault);
+  if (std::isnan(elapsed_s)) [[unlikely]]
+    return step_by_clock<kerf_step>(state, position, velocity, force);
+  state->pass(elapsed_s);
+  return step_contact(*state, position, velocity_of(*state, position, velocity), elapsed_s, force);
 }
 
 uint32_t kerf_step_depth(kerf_state* state, double penetration, double velocity, double elapsed_s,
                          double* force) {
-  const double time_s = state->elapse(elapsed_s);
+  if (std::isnan(elapsed_s)) [[unlikely]]
+    return step_by_clock<kerf_step_depth>(state, penetration, velocity, force);
+  state->pass(elapsed_s);
   const models::Response response = state->opened->file.law.step(
       state->memory,
       models::Motion{.penetration = penetration, .velocity = velocity_of(*state, penetration, velocity)},
-      time_s);
+      elapsed_s);
   *force = response.force;
   return flag_of(response.fault);
 }
 
 uint32_t kerf_step_axes(kerf_state* state, const double* position, const double* velocity, double elapsed_s,
                         double* force) {
-  const double time_s = state->elapse(elapsed_s);
-  return step_axes(*state, motion_of(*state, position, velocity), time_s, force);
+  return state->step_axes(state, position, velocity, elapsed_s, force);
 }

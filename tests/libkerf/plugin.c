@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Both in one source: a host may bring a law of its own. */
 #include <kerf/kerf.h>
+#include <kerf/law.h>
 
 static const char* folder;
 static char error[512];
@@ -67,7 +69,7 @@ static void refuses_what_is_none(void) {
   const char* model = "";
   expect(load("missing.so", &model) == KERF_BAD_INPUT && model == NULL && says("missing.so: no such file"),
          "a file that is not there is bad input");
-  expect(load("no_law.so", NULL) == KERF_BAD_INPUT && says("exports no kerf_law()"),
+  expect(load("no_law.so", NULL) == KERF_BAD_INPUT && says("exports no kerf_plugin_law()"),
          "a shared object without a law is bad input");
   expect(load("moody_other_version.so", NULL) == KERF_BAD_INPUT && says("version 2 of kerf/law.h"),
          "a plug-in of another version is bad input");

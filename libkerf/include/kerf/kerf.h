@@ -29,10 +29,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef KERF_LAW_H
-#error "kerf/law.h (plug-ins) and kerf/kerf.h (who renders laws) both have a kerf_law: not in one source"
-#endif
-
 #if defined(__GNUC__)
 #define KERF_API __attribute__((visibility("default")))
 #else

@@ -4,7 +4,7 @@
 /*
  * A force law of your own as a shared object, in C99 (docs/own-law.md).
  *
- * It exports one function, kerf_law(), which returns a description that never changes. Everything is in SI:
+ * It exports one function, kerf_plugin_law(), which returns a description that never changes. Everything is in SI:
  * m or rad, N or N·m, s. A law along one axis sees a penetration, which grows into the tissue, and its force
  * is positive where it resists; a law with axes of its own sees their positions, and its force is what the
  * tissue exerts on the tool.
@@ -16,10 +16,6 @@
 
 #include <stddef.h>
 #include <stdint.h>
-
-#ifdef KERF_KERF_H
-#error "kerf/law.h (plug-ins) and kerf/kerf.h (who renders laws) both have a kerf_law: not in one source"
-#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -97,7 +93,7 @@ typedef struct kerf_law_v1 {
 #define KERF_LAW_EXPORT __attribute__((visibility("default")))
 
 /* What a plug-in exports. */
-KERF_LAW_EXPORT const kerf_law_v1* kerf_law(void);
+KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law(void);
 
 #ifdef __cplusplus
 }

@@ -174,7 +174,7 @@ class Described {
 /// CMake file of `kerf law new` define KERF_BUILD_LAW.
 #ifdef KERF_BUILD_LAW
 #define KERF_LAW(Law) \
-  extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_law() { return kerf::plugin::Described<Law>::law(); }
+  extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law() { return kerf::plugin::Described<Law>::law(); }
 #else
 #define KERF_LAW(Law) static_assert(sizeof(Law<double>) > 0)
 #endif

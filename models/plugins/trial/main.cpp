@@ -35,9 +35,9 @@ std::string read_name() {
 const kerf_law_v1& described(const std::string& file) {
   report("at it was opened");
   const plugins::Describe describe = plugins::describing_function(file);
-  report("at kerf_law() was called");
+  report("at kerf_plugin_law() was called");
   const kerf_law_v1* const law = describe();
-  if (law == nullptr) refuse("its kerf_law() returns nothing");
+  if (law == nullptr) refuse("its kerf_plugin_law() returns nothing");
   return *law;
 }
 

@@ -36,7 +36,7 @@ static const kerf_law_parameter_v1 parameters[] = {
     {"presliding", "m", "travel in which the friction builds up", 1e-9, 1e3, 1e-3,
      KERF_SEARCHED | KERF_LOGARITHMIC}};
 
-KERF_LAW_EXPORT const kerf_law_v1* kerf_law(void) {
+KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law(void) {
   static kerf_law_v1 law = {KERF_LAW_ABI, sizeof(kerf_law_v1), "coulomb_spring", "F = F0 + k x + b v + Fc z",
                             NULL, NULL, parameters, NULL, 5, 0, KERF_TELLS_LOOP | KERF_TELLS_RATE, 0,
                             sizeof(struct state), sizeof(double), NULL, step, NULL, 0, 0, NULL, NULL};

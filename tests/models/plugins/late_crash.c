@@ -16,7 +16,7 @@ static const kerf_law_parameter_v1 parameters[] = {
     {"stiffness", "N/m", "of a spring", 0.0, 1e6, 400.0, KERF_SEARCHED | KERF_LINEAR},
     {"life", "s", "after which it crashes", 0.0, 1e9, 1e9, 0}};
 
-KERF_LAW_EXPORT const kerf_law_v1* kerf_law(void) {
+KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law(void) {
   static kerf_law_v1 law = {KERF_LAW_ABI,
                             sizeof(kerf_law_v1),
                             "late_crash",

@@ -89,7 +89,7 @@ const kerf_law_parameter_v1 parameters[] = {
 
 }  // namespace
 
-extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_law() {
+extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law() {
   static const kerf_law_v1 law = [] {
     kerf_law_v1 made{};
     made.abi = born == Mood::other_version ? 2 : KERF_LAW_ABI;

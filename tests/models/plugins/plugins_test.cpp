@@ -56,7 +56,7 @@ TEST(Plugin, ThatIsNoneIsRefused) {
   const test::TemporaryFolder folder;
   test::write_text(folder / "text.so", "no object\n");
   EXPECT_THAT(refusal(folder / "text.so"), HasSubstr("no shared object that can be opened"));
-  EXPECT_THAT(refusal(plugin("no_law")), HasSubstr("exports no kerf_law()"));
+  EXPECT_THAT(refusal(plugin("no_law")), HasSubstr("exports no kerf_plugin_law()"));
   EXPECT_THAT(refusal(plugin("moody_other_version")), HasSubstr("made for version 2 of kerf/law.h"));
 }
 
