@@ -77,10 +77,16 @@ set(CPACK_DEBIAN_LIBKERF1_PACKAGE_CONTROL_EXTRA ${control}/symbols ${control}/sh
 set(components_kerf program udev documentation examples)
 set(components_libkerf1 runtime)
 set(components_libkerf-dev development)
+# Libraries of several architectures lie side by side; the program serves any.
+set(multi_arch_kerf foreign)
+set(multi_arch_libkerf1 same)
+set(multi_arch_libkerf-dev same)
 set(CPACK_COMPONENTS_ALL "")
 foreach(package kerf libkerf1 libkerf-dev)
   string(TOUPPER ${package} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package})
+  # CMake has a variable for the second field from 3.31 on.
+  set(CPACK_DEBIAN_${upper}_PACKAGE_PRIORITY "optional\nMulti-Arch: ${multi_arch_${package}}")
   list(APPEND CPACK_COMPONENTS_ALL ${components_${package}} debian-${package})
 endforeach()
 include(CPack)

@@ -26,9 +26,11 @@ std::string sha256_digits(std::string_view text) {
 }
 
 kerf_law* open_text(std::string text, const std::string& name) {
-  bench::LawFile file = bench::parse_law_file(
-      text, name,
-      {.advice = "which is not loaded: first kerf_plugin_load() of PATH/", .of_any_content = false});
+  bench::LawFile file =
+      bench::parse_law_file(text, name,
+                            {.advice = "which is not loaded: first kerf_plugin_load() of PATH/",
+                             .of_unknown = "one of a plug-in is known after kerf_plugin_load()",
+                             .of_any_content = false});
   return new kerf_law{std::make_shared<const OpenedLaw>(std::move(file), std::move(text))};
 }
 

@@ -130,7 +130,50 @@ static void is_a_fault_where_it_breaks(double mood) {
   kerf_law_close(law);
 }
 
+/* Whether the force along each axis is that of its own position and velocity, and none is written beyond. */
+static void steps_each_axis(kerf_state* state, int axes, const double* velocity, const double* seen) {
+  static const double position[KERF_MAX_AXES] = {0.01, 0.02, -0.03, 0.04, 0.05, -0.06};
+  double force[KERF_MAX_AXES + 1];
+  int axis;
+  for (axis = 0; axis <= KERF_MAX_AXES; ++axis) force[axis] = 7.0;
+  expect(kerf_step_axes(state, position, velocity, 1e-3, force) == 0, "a law in space is stepped");
+  for (axis = 0; axis < axes; ++axis)
+    expect(force[axis] == -100.0 * (axis + 1) * position[axis] - (axis + 1) * seen[axis],
+           "an axis feels its own position and velocity");
+  for (; axis <= KERF_MAX_AXES; ++axis) expect(force[axis] == 7.0, "what is not the law's is left alone");
+}
+
+static void goes_along_as_many_axes_as_it_has(int axes) {
+  static const double none[KERF_MAX_AXES] = {0.0};
+  static const double told[KERF_MAX_AXES] = {1.0, -2.0, 3.0, 4.0, -5.0, 6.0};
+  const kerf_value stiffness = {"stiffness", 100.0};
+  double some[KERF_MAX_AXES];
+  double seen[KERF_MAX_AXES];
+  char name[16];
+  int lacking;
+  snprintf(name, sizeof name, "axes_%d.so", axes);
+  expect(load(name, NULL) == KERF_OK, "a law in space is loaded");
+  name[6] = '\0';
+  for (lacking = 0; lacking < axes; ++lacking) {
+    kerf_law* law = made(name, &stiffness, 1);
+    kerf_state* state = state_of(law);
+    expect(state != NULL, "a law in space is made");
+    if (state == NULL) return;
+    memcpy(some, told, sizeof some);
+    memcpy(seen, told, sizeof seen);
+    some[lacking] = KERF_NONE;
+    seen[lacking] = 0.0; /* of the first step */
+    steps_each_axis(state, axes, some, seen);
+    kerf_state_reset(state);
+    steps_each_axis(state, axes, NULL, none);
+    steps_each_axis(state, axes, told, told);
+    kerf_state_destroy(state);
+    kerf_law_close(law);
+  }
+}
+
 int main(int argc, char** argv) {
+  int axes;
   if (argc != 2) return 2;
   folder = argv[1];
   is_asked_for_by_the_call_that_loads_it();
@@ -141,5 +184,6 @@ int main(int argc, char** argv) {
   is_a_fault_where_it_breaks(1.0); /* no number */
   is_a_fault_where_it_breaks(6.0); /* throws */
   is_a_fault_where_it_breaks(7.0); /* writes behind its state */
+  for (axes = 1; axes <= KERF_MAX_AXES; ++axes) goes_along_as_many_axes_as_it_has(axes);
   return failures == 0 ? 0 : 1;
 }

@@ -36,11 +36,16 @@ TYPED = {
     "kerf check --scene pun": "kerf check --scene punch.scene.toml",
     "kerf regress ru": "kerf regress run",
     "kerf regress run sui": "kerf regress run suite.toml",
+    "kerf report res": "kerf report results.h5",
+    "kerf report punch.h5 res": "kerf report punch.h5 results.json",
+    "kerf report -o r.html punch.h5 res": "kerf report -o r.html punch.h5 results.json",
+    "kerf check punch.law.toml pun": "kerf check punch.law.toml pun",
+    "kerf check --device=sim:scissors pun": "kerf check --device=sim:scissors punch.law.toml",
     "kerf import pu": "kerf import punch.",
     "kerf pag": "kerf pag",
     "kerf fit --axis pun": "kerf fit --axis pun",
 }
-FILES = ["punch.h5", "punch.law.toml", "punch.scene.toml", "punch.txt", "suite.toml", "suite.h5", "drawer/inner.h5", "drawer/inner.txt"]
+FILES = ["punch.h5", "punch.law.toml", "punch.scene.toml", "punch.txt", "suite.toml", "suite.h5", "results.h5", "results.json", "drawer/inner.h5", "drawer/inner.txt"]
 
 
 class Terminal:

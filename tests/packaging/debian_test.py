@@ -50,6 +50,10 @@ class Debian(unittest.TestCase):
         self.assertIn("libkerf1 (= %s)" % version, output_of("dpkg-deb", "--field", self.package("libkerf-dev"), "Depends"))
         self.assertIn("gnuplot", output_of("dpkg-deb", "--field", self.package("kerf"), "Recommends"))
 
+    def test_lie_beside_those_of_other_architectures(self):
+        for name, wanted in [("kerf", "foreign"), ("libkerf1", "same"), ("libkerf-dev", "same")]:
+            self.assertEqual(output_of("dpkg-deb", "--field", self.package(name), "Multi-Arch").strip(), wanted, name)
+
     def test_tell_what_the_library_shows_and_has_the_linker_told_by_a_trigger(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertEqual(output_of("dpkg-deb", "--raw-extract", self.package("libkerf1"), folder), "")

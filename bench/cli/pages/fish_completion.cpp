@@ -35,6 +35,36 @@ function __kerf_needs
     test "$words" = "$argv"
 end
 
+# __kerf_value NUMBER VERB... and __kerf_more NUMBER VERB...: the word at the cursor is the value of that number, of those without a
+# name, or one of those from it on.
+function __kerf_value
+    set -l wanted $argv[1]
+    set -l verb $argv[2..]
+    __kerf_at $verb; and test (__kerf_values_before $verb) -eq (math $wanted - 1)
+end
+function __kerf_more
+    set -l wanted $argv[1]
+    set -l verb $argv[2..]
+    __kerf_at $verb; and test (__kerf_values_before $verb) -ge (math $wanted - 1)
+end
+
+# __kerf_values_before VERB...: how many values without a name stand before the word at the cursor.
+function __kerf_values_before
+    set -l words (__kerf_words)
+    set -l count 0
+    set -l taken no
+    for word in $words[(math (count $argv) + 1)..]
+        if test $taken = yes
+            set taken no
+        else if not string match -q -- '-*' $word
+            set count (math $count + 1)
+        else if not string match -q -- '*=*' $word; and contains -- "$argv $word" $__kerf_taking
+            set taken yes
+        end
+    end
+    echo $count
+end
+
 # __kerf_files ENDING...: files that end so, and folders.
 function __kerf_files
     set -l ending (string join '|' (string escape --style=regex -- $argv))
@@ -95,13 +125,26 @@ std::string option_line(const DescribedVerb& verb, const std::string& at, const 
   return out + (has_name ? " -d " + fish_quoted(option.description) : "") + "\n";
 }
 
+/// 'VERB OPTION' for each option that takes a value, with a blank before.
+std::string options_that_take(const std::vector<DescribedVerb>& all) {
+  std::string out;
+  for (const DescribedVerb& verb : all) {
+    for (const DescribedOption& option : verb.options) {
+      if (!option.takes_value) continue;
+      for (const std::string& name : option.names)
+        out += " " + fish_quoted(fmt::format("{} {}", fmt::join(verb.words, " "), name));
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string fish_completion(const std::vector<DescribedVerb>& all, const CompletionWords& words) {
   std::string out = fmt::format(
       "# Completion of kerf for fish, made by kerf of what --help prints.\n"
-      "set -g __kerf_law_names {}\nset -g __kerf_simulated {}\n{}",
-      fmt::join(words.laws, " "), fmt::join(words.devices, " "), fish_frame);
+      "set -g __kerf_law_names {}\nset -g __kerf_simulated {}\nset -g __kerf_taking{}\n{}",
+      fmt::join(words.laws, " "), fmt::join(words.devices, " "), options_that_take(all), fish_frame);
   out += "complete -c kerf -n __kerf_needs -a help -d 'What a verb does, an example, its options'\n";
   for (const DescribedVerb& verb : all) {
     const std::string name = fmt::format("{}", fmt::join(verb.words, " "));
@@ -112,7 +155,12 @@ std::string fish_completion(const std::vector<DescribedVerb>& all, const Complet
     }
     const std::string at = name.empty() ? "__kerf_needs" : fish_quoted("__kerf_at " + name);
     for (const DescribedOption& option : verb.options) out += option_line(verb, at, option);
-    for (const DescribedOption& value : verb.values) out += option_line(verb, at, value);
+    for (std::size_t i = 0; i < verb.values.size(); ++i) {
+      const DescribedOption& value = verb.values[i];
+      const std::string place =
+          fmt::format("{} {} {}", value.repeated ? "__kerf_more" : "__kerf_value", i + 1, name);
+      out += option_line(verb, fish_quoted(place), value);
+    }
   }
   return out;
 }

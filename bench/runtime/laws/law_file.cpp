@@ -230,7 +230,13 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
       place.refuse(node != nullptr ? *node : root, "{}", error.what());
     }
   };
-  const models::LawInfo info = at("model", [&] { return models::law_info(model); });
+  const models::LawInfo info = at("model", [&] {
+    try {
+      return models::law_info(model);
+    } catch (const std::invalid_argument& unknown) {
+      throw std::invalid_argument(fmt::format("{}; {}", unknown.what(), terms.of_unknown));
+    }
+  });
   const std::string position_unit =
       unit_choice(place, root, "position_unit", info.position_unit, {"m", "rad"}, model);
   const std::string force_unit = unit_choice(place, root, "force_unit", info.force_unit, {"N", "N·m"}, model);

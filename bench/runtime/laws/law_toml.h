@@ -22,6 +22,8 @@ namespace kerf::bench {
 /// On which terms a law file takes the plug-in that it names.
 struct PluginTerms {
   std::string_view advice = "which is not given: --plugin PATH/";  ///< where it is missing, before its name
+  /// Where a law is not known and the file names no plug-in.
+  std::string_view of_unknown = "one of a plug-in is known with --plugin PATH/FILE.so";
   bool of_any_content = true;  ///< another content of the same law is told among take_plugin_notes()
 };
 

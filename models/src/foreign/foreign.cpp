@@ -86,10 +86,14 @@ Quantity quantity_of(const std::string& given, const std::string& what, std::str
   refuse(what, ": its unit '", given, "' is none of", known);
 }
 
-void check_state(std::size_t size, std::size_t alignment, std::string_view what) {
+/// The alignment of a state that can be.
+std::size_t checked_alignment(std::size_t size, std::size_t alignment, std::string_view what) {
   if (size > largest_state) refuse(what, "_size is ", size, " bytes, expected at most ", largest_state);
+  if (alignment == 0) return alignof(double);
   if (!std::has_single_bit(alignment) || alignment > largest_alignment)
-    refuse(what, "_alignment is ", alignment, ", expected a power of two up to ", largest_alignment);
+    refuse(what, "_alignment is ", alignment, ", expected a power of two up to ", largest_alignment,
+           ", or 0");
+  return alignment;
 }
 
 const kerf_law_v1& of_this_version(const kerf_law_v1& law) {
@@ -163,11 +167,12 @@ ForeignLaw::ForeignLaw(const kerf_law_v1& law, PluginFile from)
   if (law.step == nullptr) refuse("it has no step()");
   if (law.reserved != 0 || law.tells > 31)
     refuse("'tells' or 'reserved' has bits that version 1 does not know");
-  check_state(law.state_size, law.state_alignment, "state");
+  law_.state_alignment = checked_alignment(law.state_size, law.state_alignment, "state");
   if (law.step_derivatives != nullptr) {
     if (law.axis_count > 0)
       refuse("step_derivatives() is for laws along one axis, and this has axes of its own");
-    check_state(law.derivatives_state_size, law.derivatives_state_alignment, "derivatives_state");
+    law_.derivatives_state_alignment =
+        checked_alignment(law.derivatives_state_size, law.derivatives_state_alignment, "derivatives_state");
   } else if (law.init_derivatives != nullptr) {
     refuse("it has init_derivatives() without step_derivatives()");
   }

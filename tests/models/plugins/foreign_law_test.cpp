@@ -151,6 +151,12 @@ TEST(ForeignLaw, WithAxesOfItsOwnActsOnThem) {
   EXPECT_TRUE(spatial.step(state, Motion{}, 1e-3).fault);
 }
 
+TEST(ForeignLaw, ThatSaysNothingOfItsAlignmentHasThatOfADouble) {
+  kerf_law_v1 law = named("unaligned");
+  law.state_alignment = 0;
+  EXPECT_EQ(ForeignLaw(law, {}).description().state_alignment, alignof(double));
+}
+
 TEST(ForeignLaw, IsRefusedInOneLineForWhatItSaysOfItself) {
   kerf_law_v1 law = named("fine");
   EXPECT_EQ(refusal(law), "");

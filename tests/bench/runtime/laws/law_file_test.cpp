@@ -142,7 +142,9 @@ TEST(LawFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal(replaced("value = 8.0", "value = [8.0, 9.0]")), HasSubstr("has 2 values, expected 1"));
   EXPECT_THAT(refusal(replaced("{ value = 8.0, unit = \"N/rad\" }", "8.0")), HasSubstr("must be written {"));
   EXPECT_THAT(refusal(replaced("\"decreasing\"", "\"down\"")), HasSubstr(":7: 'direction' is \"down\""));
-  EXPECT_THAT(refusal(replaced("\"kelvin\"", "\"burgers\"")), HasSubstr("unknown law 'burgers'"));
+  EXPECT_THAT(refusal(replaced("\"kelvin\"", "\"burgers\"")),
+              testing::MatchesRegex(".*:1: unknown law 'burgers'; the laws are kelvin, .*; one of a plug-in "
+                                    "is known with --plugin PATH/FILE.so"));
   EXPECT_THAT(refusal(replaced("model", "modle")), HasSubstr("unknown key 'modle'"));
   EXPECT_THAT(refusal(replaced("\"rad\"", "\"deg\"")),
               HasSubstr("'position_unit' is \"deg\", expected m or rad"));
