@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "stability/device/free_motion.h"
 #include "stability/device/sampled_device.h"
@@ -43,21 +43,21 @@ class AxisSensor {
   bool started_ = false;
 };
 
-/// Commands on their way to the motor: what was computed so many whole periods ago.
+/// Commands on their way to the motor: what was computed so many whole periods ago. However many: a delay
+/// that is short at a device's own rate is long at the highest that is tried.
 class CommandDelay {
  public:
-  explicit CommandDelay(std::size_t ticks) noexcept : ticks_(ticks) {}
+  explicit CommandDelay(std::size_t ticks) : line_(ticks) {}
 
   /// Takes the command of this tick and returns the one that has arrived.
   [[nodiscard]] double pass(double force_n) noexcept {
-    if (ticks_ == 0) return force_n;
-    return std::exchange(line_[next_++ % ticks_], force_n);
+    if (line_.empty()) return force_n;
+    return std::exchange(line_[next_++ % line_.size()], force_n);
   }
 
  private:
-  std::size_t ticks_;
   std::size_t next_ = 0;
-  std::array<double, SampledDevice::max_delay_ticks> line_{};
+  std::vector<double> line_;
 };
 
 /// A delay in whole periods and the share of one that is left.
@@ -88,8 +88,8 @@ struct DeviceMotion {
 
 /// A device in a hand, closed over a rendering, in virtual time; exact between the ticks (FreeMotion).
 ///
-/// `Force`: double(const AxisReading&) noexcept, the force on the device in a tick. Allocates nothing. The
-/// hand moves by `step(push, hand_place)`: a further force on the device, and where its spring rests.
+/// `Force`: double(const AxisReading&) noexcept, the force on the device in a tick. A step allocates nothing.
+/// The hand moves by `step(push, hand_place)`: a further force on the device, and where its spring rests.
 template <typename Force>
 class SampledLoop {
  public:

@@ -84,6 +84,17 @@ TEST(LawLimits, TheLowestRateOfASpringIsItsStiffnessOverTwiceTheFriction) {
   EXPECT_FALSE(limits.depth_m.at) << "at 1 kHz it holds however deep";
 }
 
+TEST(LawLimits, ADelayCountsAsTwiceItsTimeOfThePeriod) {
+  SampledDevice late = handle;
+  late.delay_s = 0.4e-3;  // forty periods of the highest rate that is tried
+  const double values[] = {1e-9 + 400.0, 1e-9, 1e-9};
+  const AxisLaw spring{models::Law::make("kelvin", values)};
+  const LawLimits limits = limits_of(late, spring, {.depth_m = 0.01, .speed_m_s = 0.5}, 0.1);
+  ASSERT_TRUE(limits.rate_hz.at);
+  EXPECT_NEAR(*limits.rate_hz.at, 1.0 / (2.0 * (0.4 / 400.0 - late.delay_s)), 0.01 * 833.0)
+      << "b = K (T / 2 + delay)";
+}
+
 TEST(LawLimits, CoulombFrictionHoldsAWallUpToASpeedInClosedForm) {
   SampledDevice dry = handle;
   dry.coulomb_n = 0.02;
