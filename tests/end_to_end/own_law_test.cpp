@@ -170,9 +170,9 @@ TEST_F(OwnLaw, IsTakenByItsNameByEveryVerbOfLaws) {
   const Outcome chart =
       run_kerf({"chart", at("short.h5"), "--laws", own, "--no-folds", "--no-hold", "--no-cold", "--json"});
   EXPECT_THAT(chart.output, HasSubstr("\"coulomb_spring\"")) << chart.errors;
-  EXPECT_LE(run_kerf({"stability", law, "--plugin", own}).exit_status, 1);
-  // One without friction: its limits are soon found.
-  EXPECT_LE(run_kerf({"stability", plugin("moody")}).exit_status, 1);
+  // At a low rate: its searches are soon done.
+  EXPECT_LE(run_kerf({"stability", law, "--plugin", own, "--rate", "200"}).exit_status, 1);
+  EXPECT_LE(run_kerf({"stability", own, "--rate", "200"}).exit_status, 1);
   expect(run_kerf({"replay", at("r.h5"), "--through", law, "--plugin", own}), 0);
   expect(run_kerf({"check", own, "--device", "sim:pose6", "--virtual", "--seconds", "1"}), 0);
   expect(run_kerf({"report", at("r.h5"), "--fits", at("fits"), "--plugin", own, "-o", at("r.html")}), 0);
