@@ -149,7 +149,7 @@ static void goes_along_as_many_axes_as_it_has(int axes) {
   const kerf_value stiffness = {"stiffness", 100.0};
   double some[KERF_MAX_AXES];
   double seen[KERF_MAX_AXES];
-  char name[16];
+  char name[32];
   int lacking;
   snprintf(name, sizeof name, "axes_%d.so", axes);
   expect(load(name, NULL) == KERF_OK, "a law in space is loaded");
