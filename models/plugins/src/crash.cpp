@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
+#include <string>
+#include <thread>
 
 #include <unistd.h>
 
@@ -63,7 +65,41 @@ void install() {
   on_exit(on_exit_of_program, nullptr);
 }
 
+constexpr int looks = 5;  // before a call is given up, for a thread that looks seldom may have slept too
+
+[[noreturn]] void look_for_hangs(std::chrono::milliseconds patience) noexcept {
+  struct Look {
+    models::ForeignCall call;
+    int same = 0;
+  };
+  const std::string what = "has not come back for " + std::to_string(patience.count()) + " ms";
+  std::array<Look, models::watched_threads> last{};
+  for (;;) {
+    std::this_thread::sleep_for(patience / looks);
+    for (std::size_t thread = 0; thread < last.size(); ++thread) {
+      Look& look = last[thread];
+      const models::ForeignCall call = models::foreign_call(thread);
+      look.same = call.law != nullptr && call == look.call ? look.same + 1 : 0;
+      look.call = call;
+      if (look.same == looks) end_for(*call.law, what.c_str(), "");
+    }
+  }
+}
+
 }  // namespace
+
+void blame_hangs(std::chrono::milliseconds patience) {
+  static std::once_flag once;
+  std::call_once(once, [&] {
+    // Signals are for the threads that wait for them.
+    sigset_t all;
+    sigset_t before_it;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before_it);
+    std::thread(look_for_hangs, patience).detach();
+    pthread_sigmask(SIG_SETMASK, &before_it, nullptr);
+  });
+}
 
 void blame_crashes() {
   static std::once_flag once;

@@ -15,7 +15,8 @@ Describe describing_function(const std::filesystem::path& file) {
                                 (why.starts_with(path + ": ") ? why.substr(path.size() + 2) : why));
   }
   const auto describe = reinterpret_cast<Describe>(dlsym(library, "kerf_plugin_law"));
-  if (describe == nullptr) throw std::invalid_argument("it exports no kerf_plugin_law(): it is no law, or hides it");
+  if (describe == nullptr)
+    throw std::invalid_argument("it exports no kerf_plugin_law(): it is no law, or hides it");
   return describe;
 }
 

@@ -1,6 +1,7 @@
 #include "kerf/models/foreign.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -132,13 +133,38 @@ LawFacts facts_of(const kerf_law_v1& law) {
 // Of the memory that a thread begins with: a library that is loaded later would take it at the first step.
 [[gnu::tls_model("initial-exec")]] thread_local const ForeignLaw* running = nullptr;
 
+/// What others see of a thread: in a line of the cache of its own.
+struct alignas(64) Watched {
+  std::atomic<const ForeignLaw*> law{nullptr};
+  std::atomic<std::uint64_t> begun{0};
+};
+std::array<Watched, watched_threads> watched;
+std::atomic<std::size_t> threads{0};
+[[gnu::tls_model("initial-exec")]] thread_local Watched* seen_of_this = nullptr;
+
+Watched& seen() noexcept {
+  if (seen_of_this == nullptr)
+    seen_of_this = &watched[threads.fetch_add(1, std::memory_order_relaxed) % watched_threads];
+  return *seen_of_this;
+}
+
 /// While a plug-in's code runs.
 class Running {
  public:
-  explicit Running(const ForeignLaw& law) noexcept { running = &law; }
+  explicit Running(const ForeignLaw& law) noexcept : seen_(seen()) {
+    running = &law;
+    seen_.begun.store(seen_.begun.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    seen_.law.store(&law, std::memory_order_relaxed);
+  }
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
-  ~Running() { running = nullptr; }
+  ~Running() {
+    seen_.law.store(nullptr, std::memory_order_relaxed);
+    running = nullptr;
+  }
+
+ private:
+  Watched& seen_;
 };
 
 /// Never taken apart: laws, and views of their names, live as long as the program.
@@ -297,5 +323,10 @@ std::vector<const ForeignLaw*> foreign_laws() {
 }
 
 const ForeignLaw* running_foreign_law() noexcept { return running; }
+
+ForeignCall foreign_call(std::size_t thread) noexcept {
+  const Watched& one = watched[thread];
+  return {.law = one.law.load(std::memory_order_relaxed), .begun = one.begun.load(std::memory_order_relaxed)};
+}
 
 }  // namespace kerf::models

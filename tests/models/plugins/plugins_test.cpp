@@ -89,6 +89,18 @@ TEST(Plugin, ThatAllocatesInItsStepIsCounted) {
   EXPECT_LT(*trial.allocations, trial.steps);
 }
 
+TEST(Plugin, ThatDoesNotComeBackLaterEndsTheProgramByItsName) {
+  const auto step_on = [] {
+    (void)load(plugin("moody"), "12", std::chrono::milliseconds(100));
+    const models::Law law = models::Law::make("moody", std::vector{100.0, 4.0});  // sleeps for an hour
+    models::Law::State state = law.initial_state();
+    for (const double depth : {0.001, 0.003})
+      (void)law.step(state, models::Motion{.penetration = depth, .velocity = 0.0}, 1e-3);
+  };
+  EXPECT_EXIT(step_on(), testing::ExitedWithCode(4),
+              "moody.so: the law of this plug-in has not come back for 100 ms");
+}
+
 TEST(Plugin, ThatSleepsIsGivenUp) {
   EXPECT_THAT(refusal(plugin("moody_sleep"), std::chrono::milliseconds(500)),
               HasSubstr("it gave no sign for 500 ms while it was stepped"));
