@@ -136,8 +136,9 @@ KERF_API kerf_status kerf_law_make(const char* model, const kerf_value* values, 
  * its name, which `model` is given; `model` may be NULL. A file that is loaded already is that one.
  *
  * The plug-in's code runs within the program and with its rights, also while it is loaded, and a crash in it
- * is one of the program: let `kerf laws ./mylaw.so` try it before, which does so in a process of its own. A step in which it throws, gives no finite number or
- * writes behind its state is a KERF_LAW_FAULT. Not while another thread makes a law.
+ * is one of the program: let `kerf laws ./mylaw.so` try it before, which does so in a process of its own. A
+ * step in which it throws, gives no finite number or writes behind its state is a KERF_LAW_FAULT. Not while
+ * another thread makes a law.
  *
  * Errors: KERF_BAD_INPUT with the file: no such file, no plug-in, another version of kerf/law.h, a
  * description that makes no sense, the name of a law that there is already. `*model` is NULL then. */

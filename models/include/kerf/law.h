@@ -4,10 +4,10 @@
 /*
  * A force law of your own as a shared object, in C99 (docs/own-law.md).
  *
- * It exports one function, kerf_plugin_law(), which returns a description that never changes. Everything is in SI:
- * m or rad, N or N·m, s. A law along one axis sees a penetration, which grows into the tissue, and its force
- * is positive where it resists; a law with axes of its own sees their positions, and its force is what the
- * tissue exerts on the tool.
+ * It exports one function, kerf_plugin_law(), which returns a description that never changes. Everything is
+ * in SI: m or rad, N or N·m, s. A law along one axis sees a penetration, which grows into the tissue, and its
+ * force is positive where it resists; a law with axes of its own sees their positions, and its force is what
+ * the tissue exerts on the tool.
  *
  * A state is a block of bytes that Kerf owns, copies by memcpy() and gives back without a word: it holds all
  * that the law remembers, and no pointer to memory of its own. A step is called a thousand times a second: it

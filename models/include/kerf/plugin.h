@@ -173,8 +173,10 @@ class Described {
 /// Ends the header of a law. Of its own it is nothing, so that tests can include it; `kerf law build` and the
 /// CMake file of `kerf law new` define KERF_BUILD_LAW.
 #ifdef KERF_BUILD_LAW
-#define KERF_LAW(Law) \
-  extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law() { return kerf::plugin::Described<Law>::law(); }
+#define KERF_LAW(Law)                                               \
+  extern "C" KERF_LAW_EXPORT const kerf_law_v1* kerf_plugin_law() { \
+    return kerf::plugin::Described<Law>::law();                     \
+  }
 #else
 #define KERF_LAW(Law) static_assert(sizeof(Law<double>) > 0)
 #endif

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "kerf/models/foreign.h"
+#include "kerf/models/foreign_call.h"
 
 namespace kerf::plugins {
 namespace {

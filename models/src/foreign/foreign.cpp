@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "kerf/models/foreign_call.h"
+
 namespace kerf::models {
 namespace {
 
