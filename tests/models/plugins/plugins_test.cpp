@@ -90,6 +90,8 @@ TEST(Plugin, ThatAllocatesInItsStepIsCounted) {
 }
 
 TEST(Plugin, ThatDoesNotComeBackLaterEndsTheProgramByItsName) {
+  // In a process of its own: who looks after plug-ins is a thread, and a fork has none.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto step_on = [] {
     (void)load(plugin("moody"), "12", std::chrono::milliseconds(100));
     const models::Law law = models::Law::make("moody", std::vector{100.0, 4.0});  // sleeps for an hour
