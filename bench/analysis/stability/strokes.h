@@ -43,9 +43,11 @@ template <typename Force>
   double position_m = stroke.from_m;
   double held_n = 0.0;
   double gained_j = 0.0;
-  for (int leg = 0; leg < 2 * times; ++leg) {
+  // The last pass counts, and what arrives in it is of a pass, and not of the rest before.
+  const std::size_t passes = std::max(static_cast<std::size_t>(times), delay.ticks / (2 * stroke.ticks) + 3);
+  for (std::size_t leg = 0; leg < 2 * passes; ++leg) {
     const double direction = leg % 2 == 0 ? 1.0 : -1.0;
-    if (leg == 2 * times - 2) gained_j = 0.0;
+    if (leg == 2 * passes - 2) gained_j = 0.0;
     for (std::size_t tick = 0; tick < stroke.ticks; ++tick) {
       const double arrived =
           line.pass(force(sensor.read(position_m - 0.5 * direction * device.encoder_step_m)));
