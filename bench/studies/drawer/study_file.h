@@ -20,6 +20,7 @@ struct DrawerFile {
   std::string join{};            ///< another file with its own clock, below the drawer's folder
   std::string join_map{};        ///< its columns, or an import file
   std::string join_on{};         ///< channel of both that brings the clocks together, or "time"
+  std::string join_marker{};     ///< event of both that does so instead, as parse_markers() has it
   std::string join_suggested{};  ///< by names, for a person to confirm: until then nothing is made of it
   std::string tissue;
   std::string speed;
@@ -67,6 +68,9 @@ struct StudyPlan {
   /// Every map that is named, in the order of the file; some more than once.
   [[nodiscard]] std::vector<std::string> named_maps() const;
 };
+
+/// What an import refuses, with the keys of study.toml in place of options: join_on for --join-on.
+[[nodiscard]] std::string in_words_of_study(std::string message);
 
 /// Laws to begin with: the usual ones but those of which a fit takes one more arm while held-out data pay for
 /// it, ten times as long as all others together; study.toml may name them.

@@ -49,6 +49,7 @@ std::string file_text(const DrawerFile& file) {
   add_known("join_suggested", file.join_suggested);
   add_known("join_map", file.join_map);
   add_known("join_on", file.join_on);
+  add_known("join_marker", file.join_marker);
   add("tissue", file.tissue);
   add("speed", file.speed);
   add("specimen", file.specimen);
@@ -96,7 +97,7 @@ std::string study_text(const StudyPlan& study) {
       "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
       "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\". Where a file "
       "is to be\n# taken together with another one of its own clock, join_suggested becomes join, with "
-      "join_map and join_on.\n";
+      "join_map and join_on, or join_marker.\n";
   for (const DrawerFile& file : study.files) text += file_text(file);
   return text;
 }

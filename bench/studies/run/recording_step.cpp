@@ -49,7 +49,9 @@ StudiedJoin studied(const Joined& joined, const std::string& file, std::size_t r
           .shift_error_s = known(joined.clock.shift_error_s),
           .skew = joined.clock.skew,
           .skew_error = known(joined.clock.skew_error),
-          .correlation = known(joined.clock.correlation),
+          .correlation = joined.clock.markers > 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                  : known(joined.clock.correlation),
+          .markers = joined.clock.markers,
           .rows_left_out = rows_left_out};
 }
 
@@ -58,7 +60,8 @@ void join_other(const StepJoin& other, Imported& imported, StudiedRecording& res
   schema::Recording& recording = imported.recording;
   try {
     const Joined joined =
-        join(imported, {.file = other.source, .map = other.import.options.map, .on = other.on},
+        join(imported,
+             {.file = other.source, .map = other.import.options.map, .on = other.on, .marker = other.marker},
              other.import.options);
     const std::vector<bool> finite = finite_rows(recording);
     const auto left_out = static_cast<std::size_t>(std::ranges::count(finite, false));
@@ -68,7 +71,7 @@ void join_other(const StepJoin& other, Imported& imported, StudiedRecording& res
       imported.warnings.push_back(other.name + ": " + warning);
     imported.warnings.push_back(joined_line(joined));
   } catch (const std::invalid_argument& error) {
-    std::string message = error.what();
+    std::string message = in_words_of_study(error.what());
     const std::string source = other.source.string();
     if (message.starts_with(source)) message.replace(0, source.size(), other.name);
     throw std::invalid_argument(message);
@@ -79,8 +82,7 @@ void refuse_what_waits_for_a_word(const DrawerFile& file) {
   if (file.join_suggested.empty() || !file.join.empty()) return;
   throw std::invalid_argument(
       fmt::format("by its name {} is of the same recording: if so, make join_suggested join, with join_map "
-                  "and join_on; if "
-                  "not, take it away",
+                  "and join_on, or join_marker; if not, take it away",
                   file.join_suggested));
 }
 
@@ -270,7 +272,9 @@ json as_json(const ImportFile& import) {
 
 json as_json(const std::optional<StepJoin>& join) {
   if (!join) return nullptr;
-  return {{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+  json all{{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+  if (!join->marker.empty()) all["marker"] = join->marker;
+  return all;
 }
 
 json as_json(const std::optional<StudyBlanks>& blanks) {
@@ -314,7 +318,8 @@ RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file, const fs::p
     step.join = {.name = file.join,
                  .source = folder / "inputs" / fs::path(file.join),
                  .import = import_named(file.join_map, plan, folder),
-                 .on = file.join_on};
+                 .on = file.join_on,
+                 .marker = file.join_marker};
   if (plan.subtracts_blanks && !file.blank) step.blanks = blanks_of(plan, file, folder);
   return step;
 }

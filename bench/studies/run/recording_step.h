@@ -17,6 +17,7 @@ struct StepJoin {
   std::filesystem::path source;  ///< the study's copy
   ImportFile import;
   std::string on;
+  std::string marker;  ///< instead of `on`
 };
 
 /// One file of a drawer and where what is made of it goes.

@@ -101,20 +101,23 @@ StudiedJoin studied_join(const json& from) {
           .skew = from.at("skew"),
           .skew_error = number_or(from.at("skew_std_error"), no_number),
           .correlation = number_or(from.at("correlation"), no_number),
+          .markers = from.value("markers", std::uint64_t{0}),
           .rows_left_out = from.at("rows_left_out")};
 }
 
 }  // namespace
 
 json as_json(const StudiedJoin& join) {
-  return {{"file", join.file},
-          {"on", join.on},
-          {"shift_s", join.shift_s},
-          {"shift_std_error_s", number_or_null(join.shift_error_s)},
-          {"skew", join.skew},
-          {"skew_std_error", number_or_null(join.skew_error)},
-          {"correlation", number_or_null(join.correlation)},
-          {"rows_left_out", join.rows_left_out}};
+  json all{{"file", join.file},
+           {"on", join.on},
+           {"shift_s", join.shift_s},
+           {"shift_std_error_s", number_or_null(join.shift_error_s)},
+           {"skew", join.skew},
+           {"skew_std_error", number_or_null(join.skew_error)},
+           {"correlation", number_or_null(join.correlation)},
+           {"rows_left_out", join.rows_left_out}};
+  if (join.markers > 0) all["markers"] = join.markers;
+  return all;
 }
 
 json as_json(const StudiedBlank& blank) {

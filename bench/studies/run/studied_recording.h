@@ -67,8 +67,9 @@ struct StudiedJoin {
   double shift_s = 0.0;
   double shift_error_s = 0.0;  ///< standard error; NaN: it is one clock
   double skew = 0.0;
-  double skew_error = 0.0;
-  double correlation = 0.0;
+  double skew_error = 0.0;          ///< NaN also of one marker, which tells no skew
+  double correlation = 0.0;         ///< NaN of markers and of one clock
+  std::uint64_t markers = 0;        ///< that brought the clocks together; 0: it was something else
   std::uint64_t rows_left_out = 0;  ///< where one of both has nothing
 };
 
