@@ -65,11 +65,11 @@ void read_join(const Place& place, const toml::table& table, DrawerFile& file) {
 }
 
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
-  place.allow_only(table,
-                   {"path",     "sha256", "found",      "ignored",  "map",         "tissue",        "speed",
-                    "specimen", "blank",  "less_blank", "accepted", "numbers",     "sheet",         "stretch",
-                    "rig",      "join",   "join_map",   "join_on",  "join_marker", "join_suggested"},
-                   "[[file]]");
+  place.allow_only(
+      table, {"path",     "sha256", "found",      "ignored",  "map",         "tissue",         "speed",
+              "specimen", "blank",  "less_blank", "accepted", "numbers",     "sheet",          "stretch",
+              "rig",      "join",   "join_map",   "join_on",  "join_marker", "join_suggested", "axis"},
+      "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
   if (!is_below_drawer(file.path)) place.refuse(table, "a [[file]] needs a 'path' below the drawer's folder");
@@ -78,6 +78,7 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.ignored = place.text(table, "ignored", "");
   file.map = place.text(table, "map", "");
   file.sheet = place.text(table, "sheet", "");
+  file.axis = place.text(table, "axis", "");
   if (const toml::node* const stretch = table.get("stretch"); stretch != nullptr) {
     const auto number = stretch->value_exact<std::int64_t>().value_or(0);
     if (number < 1) place.refuse(*stretch, "'stretch' is a number from 1");
@@ -203,13 +204,14 @@ StudyPlan read_study(const fs::path& file) {
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
   place.allow_only(root,
                    {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
-                    "file", "layout", "prepare"},
+                    "blade", "file", "layout", "prepare"},
                    "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");
   if (folder.empty()) place.refuse(root, "a study needs 'folder', where its files lie");
   study.folder = (fs::absolute(file).parent_path() / folder).lexically_normal();
   study.map = place.text(root, "map", "");
+  study.blade = place.text(root, "blade", "");
   const std::string cycles = place.text(root, "cycles", "good");
   if (cycles != "good" && cycles != "all")
     place.refuse(*root.get("cycles"), "'cycles' is \"good\" or \"all\", not \"{}\"", cycles);

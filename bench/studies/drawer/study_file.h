@@ -17,6 +17,7 @@ struct DrawerFile {
   std::string map;               ///< of its own, or an import file; empty: that of its layout or of the study
   std::string sheet{};           ///< of a workbook; empty: the first with numbers
   std::size_t stretch = 0;       ///< of a clock that starts anew, from 1; 0: it does not
+  std::string axis{};            ///< of several, along which it is segmented and fitted; empty: not named
   std::string join{};            ///< another file with its own clock, below the drawer's folder
   std::string join_map{};        ///< its columns, or an import file
   std::string join_on{};         ///< channel of both that brings the clocks together, or "time"
@@ -53,6 +54,7 @@ struct StudyPlan {
   std::vector<StudyLayout> layouts{};
   std::vector<std::string> laws;
   bool all_cycles = false;  ///< flagged cycles count too
+  std::string blade{};      ///< law file with the shape of a blade, from the study's folder; empty: none
   std::string closing;      ///< "increasing" or "decreasing"; empty: the direction that costs more work
   std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
   std::string licence;               ///< of the data, a URL or a name; empty: none was given

@@ -29,6 +29,7 @@
 #include "recordings/row_figures.h"
 #include "recordings/whole_recording.h"
 #include "run/kept_recording.h"
+#include "run/study_blade.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -108,12 +109,17 @@ SegmentOptions segment_options(const StudyPlan& plan) {
   return options;
 }
 
-/// Cycles that the recording has stay.
+/// Cycles that the recording has stay, unless they are along another axis than the one that is named. Of
+/// several axes none is taken for the tool's way unless a person names it.
 void find_cycles_of(const RecordingStep& step, schema::Recording& recording, StudiedRecording& result) {
-  if (recording.cycles) return;
+  const std::string& named = step.file->axis;
+  SegmentOptions options = segment_options(*step.plan);
+  options.axis = find_axis(recording, named);
+  if (recording.cycles && (named.empty() || recording.cycles->axis == options.axis)) return;
+  if (recording.dimensions() > 1 && named.empty()) return;
+  recording.cycles.reset();
   try {
-    segment_recording(recording, schema::RowsInMemory(recording), segment_options(*step.plan),
-                      step.file->path);
+    segment_recording(recording, schema::RowsInMemory(recording), options, step.file->path);
   } catch (const std::invalid_argument& error) {
     result.warnings.push_back(fmt::format("it has no cycles: {}", error.what()));
   }
@@ -224,6 +230,11 @@ StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
 
 void fit_laws(const RecordingStep& step, const schema::Recording& recording, const fs::path& folder,
               std::size_t axis, const std::atomic<bool>& stop, StudiedRecording& result) {
+  result.not_fitted = why_no_axis(recording, step.file->axis);
+  if (!result.not_fitted.empty()) {
+    result.axis.clear();
+    return;
+  }
   FitRecordingOptions options;
   options.models = step.plan->laws;
   options.axis = axis;
@@ -320,17 +331,19 @@ RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file, const fs::p
                  .import = import_named(file.join_map, plan, folder),
                  .on = file.join_on,
                  .marker = file.join_marker};
+  step.shape = blade_file(plan, folder);
   if (plan.subtracts_blanks && !file.blank) step.blanks = blanks_of(plan, file, folder);
   return step;
 }
 
 std::string key_of(const RecordingStep& step) {
   const StudyPlan& plan = *step.plan;
-  const json all{
-      {"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
-      {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
-      {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
-      {"blanks", as_json(step.blanks)}};
+  json all{{"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
+           {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
+           {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
+           {"blanks", as_json(step.blanks)}};
+  if (!step.file->axis.empty()) all["axis"] = step.file->axis;
+  if (!step.shape.empty()) all["shape"] = sha256_of(step.shape);
   return sha256_of(std::string_view(all.dump()));
 }
 
@@ -340,12 +353,13 @@ StudiedRecording run_recording_step(const RecordingStep& step, const fs::path& f
   result.key = key_of(step);
   schema::Recording recording = imported_or_read(step, result);
   find_cycles_of(step, recording, result);
-  const std::size_t axis = find_cut_axis(recording, "");
+  const std::size_t axis = find_cut_axis(recording, step.file->axis);
   look_at_rows(recording, axis, result);
   take_cycles(less_the_blank(step, recording, result), result);
   result.content = content_sha256_of(schema::RowsInMemory(recording));
   schema::write_recording(folder / "recording.h5", recording, schema::Existing::replace);
   fit_laws(step, recording, folder, axis, stop, result);
+  if (!step.file->blank) result.blade = fit_blade_in_study(recording, step.shape, folder, result.warnings);
   write_json_file(folder / "result.json", as_json(result));
   return result;
 }

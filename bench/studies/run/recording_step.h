@@ -27,6 +27,7 @@ struct RecordingStep {
   std::filesystem::path source;  ///< the file itself, or the study's copy of it
   ImportFile import{};           ///< of what is no recording
   std::optional<StepJoin> join{};
+  std::filesystem::path shape{};        ///< of a blade, for six axes; empty: the study names none
   std::optional<StudyBlanks> blanks{};  ///< one of which is to be taken off
 };
 

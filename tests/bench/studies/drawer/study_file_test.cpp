@@ -18,6 +18,7 @@ StudyPlan some_plan() {
   plan.map = "time=1[s],position=2[mm],force=3[N]";
   plan.laws = {"kelvin", "exponential"};
   plan.closing = "increasing";
+  plan.blade = "../scalpel.law.toml";
   plan.compare = {"peak", "kelvin.damping"};
   plan.subtracts_blanks = true;
   plan.why_blanks = "friction is \"large\"";
@@ -29,6 +30,7 @@ StudyPlan some_plan() {
                  .found = "3 columns",
                  .sheet = "Run 2",
                  .stretch = 2,
+                 .axis = "z",
                  .join = "a_force.txt",
                  .join_map = "time=1[s],position=2[mm],force=3[N]",
                  .join_on = "position",
@@ -72,6 +74,8 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.map, plan.map);
   EXPECT_EQ(again.laws, plan.laws);
   EXPECT_EQ(again.closing, plan.closing);
+  EXPECT_EQ(again.blade, "../scalpel.law.toml");
+  EXPECT_EQ(again.files[0].axis, "z");
   EXPECT_EQ(again.compare, plan.compare);
   EXPECT_EQ(again.licence, plan.licence);
   EXPECT_EQ(again.people, plan.people);
