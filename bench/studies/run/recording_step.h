@@ -8,17 +8,9 @@
 #include "drawer/study_file.h"
 #include "imports/import_file.h"
 #include "run/study_blanks.h"
+#include "run/study_join.h"
 
 namespace kerf::bench {
-
-/// Another file with its own clock that is taken into a recording.
-struct StepJoin {
-  std::string name;              ///< below the drawer's folder
-  std::filesystem::path source;  ///< the study's copy
-  ImportFile import;
-  std::string on;
-  std::string marker;  ///< instead of `on`
-};
 
 /// One file of a drawer and where what is made of it goes.
 struct RecordingStep {
