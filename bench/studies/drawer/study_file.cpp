@@ -11,6 +11,7 @@
 
 #include <kerf/fitting/fit.h>
 
+#include "clocks/marker_fit.h"
 #include "files/file_names.h"
 #include "files/named_file.h"
 #include "fits/fit_recording.h"
@@ -38,11 +39,36 @@ bool is_below_drawer(const fs::path& path) {
   return path.has_filename() && path.filename() != "." && !path.is_absolute() && !leaves;
 }
 
+void read_join(const Place& place, const toml::table& table, DrawerFile& file) {
+  file.join = place.text(table, "join", "");
+  file.join_map = place.text(table, "join_map", "");
+  file.join_on = place.text(table, "join_on", "");
+  file.join_marker = place.text(table, "join_marker", "");
+  file.join_suggested = place.text(table, "join_suggested", "");
+  if (!file.join_marker.empty()) {
+    if (!file.join_on.empty())
+      place.refuse(*table.get("join_marker"),
+                   "'join_on' and 'join_marker' are two ways to bring clocks together; give one of them");
+    try {
+      (void)parse_markers(file.join_marker);
+    } catch (const std::invalid_argument& error) {
+      place.refuse(*table.get("join_marker"), "{}", in_words_of_study(error.what()));
+    }
+  }
+  if (file.join.empty()) return;
+  if (!is_below_drawer(file.join) || file.join == file.path)
+    place.refuse(*table.get("join"), "'join' names another file below the drawer's folder");
+  if (file.join_map.empty() || (file.join_on.empty() && file.join_marker.empty()))
+    place.refuse(*table.get("join"),
+                 "'join' needs 'join_map', such as \"time=1[s],position=2[mm],force=3[N]\", and 'join_on', a "
+                 "channel of both or \"time\", or 'join_marker', such as \"sync>2.5,trigger>1\"");
+}
+
 DrawerFile drawer_file(const Place& place, const toml::table& table) {
   place.allow_only(
-      table,
-      {"path", "sha256", "found", "ignored", "map", "tissue", "speed", "specimen", "blank", "less_blank",
-       "accepted", "numbers", "sheet", "stretch", "rig", "join", "join_map", "join_on", "join_suggested"},
+      table, {"path",     "sha256", "found",      "ignored",  "map",         "tissue",         "speed",
+              "specimen", "blank",  "less_blank", "accepted", "numbers",     "sheet",          "stretch",
+              "rig",      "join",   "join_map",   "join_on",  "join_marker", "join_suggested", "axis"},
       "[[file]]");
   DrawerFile file;
   file.path = place.text(table, "path", "");
@@ -52,21 +78,13 @@ DrawerFile drawer_file(const Place& place, const toml::table& table) {
   file.ignored = place.text(table, "ignored", "");
   file.map = place.text(table, "map", "");
   file.sheet = place.text(table, "sheet", "");
+  file.axis = place.text(table, "axis", "");
   if (const toml::node* const stretch = table.get("stretch"); stretch != nullptr) {
     const auto number = stretch->value_exact<std::int64_t>().value_or(0);
     if (number < 1) place.refuse(*stretch, "'stretch' is a number from 1");
     file.stretch = static_cast<std::size_t>(number);
   }
-  file.join = place.text(table, "join", "");
-  file.join_map = place.text(table, "join_map", "");
-  file.join_on = place.text(table, "join_on", "");
-  file.join_suggested = place.text(table, "join_suggested", "");
-  if (!file.join.empty() && (!is_below_drawer(file.join) || file.join == file.path))
-    place.refuse(*table.get("join"), "'join' names another file below the drawer's folder");
-  if (!file.join.empty() && (file.join_map.empty() || file.join_on.empty()))
-    place.refuse(*table.get("join"),
-                 "'join' needs 'join_map', such as \"time=1[s],position=2[mm],force=3[N]\", and 'join_on', a "
-                 "channel of both or \"time\"");
+  read_join(place, table, file);
   file.tissue = place.text(table, "tissue", "");
   file.speed = place.text(table, "speed", "");
   file.specimen = place.text(table, "specimen", "");
@@ -162,6 +180,16 @@ void read_compare(const Place& place, const toml::table& root, StudyPlan& study)
 
 }  // namespace
 
+std::string in_words_of_study(std::string message) {
+  for (const std::string key : {"join_on", "join_map", "join_marker"}) {
+    std::string option = "--" + key;
+    std::ranges::replace(option, '_', '-');
+    for (auto at = message.find(option); at != std::string::npos; at = message.find(option, at))
+      message.replace(at, option.size(), key);
+  }
+  return message;
+}
+
 std::vector<std::string> laws_to_begin_with() {
   std::vector<std::string> laws = usual_laws();
   std::erase_if(laws, [](const std::string& law) { return models::law_facts(law).size.grows; });
@@ -176,13 +204,14 @@ StudyPlan read_study(const fs::path& file) {
     place.refuse(root, "expected version = {}: a study.toml of 'kerf study new'", StudyPlan::version);
   place.allow_only(root,
                    {"version", "folder", "map", "laws", "cycles", "closing", "compare", "licence", "people",
-                    "file", "layout", "prepare"},
+                    "blade", "file", "layout", "prepare"},
                    "a study");
   StudyPlan study;
   const std::string folder = place.text(root, "folder", "");
   if (folder.empty()) place.refuse(root, "a study needs 'folder', where its files lie");
   study.folder = (fs::absolute(file).parent_path() / folder).lexically_normal();
   study.map = place.text(root, "map", "");
+  study.blade = place.text(root, "blade", "");
   const std::string cycles = place.text(root, "cycles", "good");
   if (cycles != "good" && cycles != "all")
     place.refuse(*root.get("cycles"), "'cycles' is \"good\" or \"all\", not \"{}\"", cycles);

@@ -17,9 +17,11 @@ struct DrawerFile {
   std::string map;               ///< of its own, or an import file; empty: that of its layout or of the study
   std::string sheet{};           ///< of a workbook; empty: the first with numbers
   std::size_t stretch = 0;       ///< of a clock that starts anew, from 1; 0: it does not
+  std::string axis{};            ///< of several, along which it is segmented and fitted; empty: not named
   std::string join{};            ///< another file with its own clock, below the drawer's folder
   std::string join_map{};        ///< its columns, or an import file
   std::string join_on{};         ///< channel of both that brings the clocks together, or "time"
+  std::string join_marker{};     ///< event of both that does so instead, as parse_markers() has it
   std::string join_suggested{};  ///< by names, for a person to confirm: until then nothing is made of it
   std::string tissue;
   std::string speed;
@@ -52,6 +54,7 @@ struct StudyPlan {
   std::vector<StudyLayout> layouts{};
   std::vector<std::string> laws;
   bool all_cycles = false;  ///< flagged cycles count too
+  std::string blade{};      ///< law file with the shape of a blade, from the study's folder; empty: none
   std::string closing;      ///< "increasing" or "decreasing"; empty: the direction that costs more work
   std::vector<std::string> compare;  ///< what tissues and speeds are compared by: peak, work, LAW.PARAMETER
   std::string licence;               ///< of the data, a URL or a name; empty: none was given
@@ -67,6 +70,9 @@ struct StudyPlan {
   /// Every map that is named, in the order of the file; some more than once.
   [[nodiscard]] std::vector<std::string> named_maps() const;
 };
+
+/// What an import refuses, with the keys of study.toml in place of options: join_on for --join-on.
+[[nodiscard]] std::string in_words_of_study(std::string message);
 
 /// Laws to begin with: the usual ones but those of which a fit takes one more arm while held-out data pay for
 /// it, ten times as long as all others together; study.toml may name them.

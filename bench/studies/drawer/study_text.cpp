@@ -45,10 +45,12 @@ std::string file_text(const DrawerFile& file) {
   const auto add_known = [&](const char* key, const std::string& value) {
     if (!value.empty()) add(key, value);
   };
+  add_known("axis", file.axis);
   add_known("join", file.join);
   add_known("join_suggested", file.join_suggested);
   add_known("join_map", file.join_map);
   add_known("join_on", file.join_on);
+  add_known("join_marker", file.join_marker);
   add("tissue", file.tissue);
   add("speed", file.speed);
   add("specimen", file.specimen);
@@ -81,6 +83,9 @@ std::string study_text(const StudyPlan& study) {
       StudyPlan::version, toml_quoted(study.folder.generic_string()), toml_quoted(study.map),
       toml_list(study.laws), study.all_cycles ? "all" : "good", toml_quoted(study.closing),
       toml_list(study.compare), toml_quoted(study.licence), toml_list(study.people));
+  if (!study.blade.empty())
+    text += fmt::format("\n# The shape of the blade that is fitted to recordings of six axes.\nblade = {}\n",
+                        toml_quoted(study.blade));
   text += fmt::format(
       "\n# \"subtract\": what the tool does without a tissue is taken off the recordings of its rig and "
       "speed, as\n# 'kerf prepare --blank' does, before they are segmented and fitted. \"leave\": it is only "
@@ -96,7 +101,7 @@ std::string study_text(const StudyPlan& study) {
       "# without a tissue. A file that is to take no part gets ignored = \"why\"; to take one in, take "
       "'ignored' away. One\n# that is doubted and counts all the same gets accepted = \"why\". Where a file "
       "is to be\n# taken together with another one of its own clock, join_suggested becomes join, with "
-      "join_map and join_on.\n";
+      "join_map and join_on, or join_marker.\n";
   for (const DrawerFile& file : study.files) text += file_text(file);
   return text;
 }

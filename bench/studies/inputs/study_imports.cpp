@@ -3,12 +3,14 @@
 #include <map>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
 #include "files/file_names.h"
 #include "files/named_file.h"
 #include "files/whole_file.h"
+#include "fits/blade_recording.h"
 
 namespace kerf::bench {
 namespace {
@@ -22,12 +24,15 @@ bool lies_outside(const std::string& named) {
   return path.is_absolute() || *path.begin() == "..";
 }
 
-/// Where each import file that the study names is read, by its name in study.toml.
+/// Where each import file, and the blade's law file, that the study names is read, by its name in study.toml.
 std::map<std::string, fs::path> places_of_imports(const StudyPlan& plan, const fs::path& folder) {
   NewNames new_names;
   std::map<std::string, fs::path> places;
-  for (const std::string& named : plan.named_maps()) {
-    if (!names_import_file(named) || places.contains(named)) continue;
+  std::vector<std::string> all = plan.named_maps();
+  std::erase_if(all, [](const std::string& map) { return !names_import_file(map); });
+  if (!plan.blade.empty()) all.push_back(plan.blade);
+  for (const std::string& named : all) {
+    if (places.contains(named)) continue;
     if (!lies_outside(named)) {
       places.emplace(named, folder / named);
       continue;
@@ -51,10 +56,18 @@ void take_imports(const StudyPlan& plan, const fs::path& folder) {
       }
     }
     if (!fs::exists(place))
-      throw std::invalid_argument(
-          fmt::format("{}: no such import file, which study.toml names", original.string()));
-    (void)read_import_file(place);
+      throw std::invalid_argument(fmt::format("{}: no such {}, which study.toml names", original.string(),
+                                              named == plan.blade ? "law file" : "import file"));
+    if (named == plan.blade) {
+      (void)blade_shape_of(read_law_file(place), place.string());
+    } else {
+      (void)read_import_file(place);
+    }
   }
+}
+
+fs::path blade_file(const StudyPlan& plan, const fs::path& folder) {
+  return plan.blade.empty() ? fs::path() : places_of_imports(plan, folder).at(plan.blade);
 }
 
 ImportFile import_named(const std::string& named, const StudyPlan& plan, const fs::path& folder) {

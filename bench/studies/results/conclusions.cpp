@@ -152,6 +152,27 @@ void add_blanks(const StudyResults& results, std::vector<Conclusion>& all) {
         {.says = Says::partly, .sentence = fmt::format("No blank was taken off {}.", fmt::join(none, ", "))});
 }
 
+/// What a blade says of six axes, and why nothing is said along one.
+void add_blades(const StudyResults& results, std::vector<Conclusion>& all) {
+  for (const DrawerRecording& one : results.recordings) {
+    if (!one.result.blade) continue;
+    const StudiedBlade& blade = *one.result.blade;
+    std::string text = one.name + ": ";
+    if (!blade.why_none.empty()) {
+      text += "no blade is fitted: " + blade.why_none;
+    } else {
+      std::vector<std::string> parameters;
+      for (const StudiedParameter& parameter : blade.parameters)
+        parameters.push_back(fmt::format("{} {:.4g} +- {:.2g} {}", parameter.name, parameter.value,
+                                         parameter.std_error, parameter.unit));
+      text += fmt::format("a blade in six axes has {} (standard errors); it errs by {:.3g} of {:.3g} N rms",
+                          fmt::join(parameters, ", "), blade.rmse, blade.rms);
+    }
+    if (!one.result.not_fitted.empty()) text += ". No other law is: " + one.result.not_fitted;
+    all.push_back({.says = blade.why_none.empty() ? Says::partly : Says::unknown, .sentence = text + "."});
+  }
+}
+
 /// What is blamed most often, without its numbers' sake: the sentence of the recording that errs most.
 std::string blame_of(const StudyResults& results, const StudiedGroup& group, const std::string& model) {
   std::string blame;
@@ -292,6 +313,7 @@ std::vector<Conclusion> conclusions_of(const StudyResults& results) {
   add_sensors(results, all);
   add_blanks(results, all);
   add_share_of_tool(results, all);
+  add_blades(results, all);
   for (const StudiedGroup& group : results.groups) all.push_back(law_in_words(results, group));
   for (Conclusion& one : on_others_in_words(results)) all.push_back(std::move(one));
   add_comparisons(results, all);

@@ -70,7 +70,11 @@ json file_entity(const fs::path& folder, const std::string& name) {
               {"contentSize", fmt::format("{}", fs::file_size(folder / name))},
               {"sha256", sha256_of(folder / name)}};
   if (name == "study.toml") entity["description"] = "What the study goes by: files, columns, factors, laws";
-  if (name.starts_with("imports/")) entity["description"] = "Columns of text files, as an import takes them";
+  if (name.starts_with("imports/") && name.ends_with(".law.toml")) {
+    entity["description"] = "Shape of the blade that is fitted to recordings of six axes";
+  } else if (name.starts_with("imports/")) {
+    entity["description"] = "Columns of text files, as an import takes them";
+  }
   if (name == "report.html") entity["description"] = "Report of the study";
   if (name == "tables/data_dictionary.csv") entity["description"] = "What each column of each table is";
   return entity;

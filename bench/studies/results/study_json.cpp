@@ -91,6 +91,7 @@ json of_recording(const DrawerRecording& one) {
           {"blank", one.file.blank},
           {"rig", one.file.rig.empty() ? json(nullptr) : json(one.file.rig)},
           {"joined", one.result.join ? as_json(*one.result.join) : json(nullptr)},
+          {"blade", one.result.blade ? as_json(*one.result.blade) : json(nullptr)},
           {"blank_taken_off", one.result.blank ? as_json(*one.result.blank) : json(nullptr)},
           {"counts", one.counts()},
           {"failure", one.result.failure.empty() ? json(nullptr) : json(one.result.failure)},

@@ -153,11 +153,16 @@ StudyTable parameters_table(const StudyResults& results) {
                     {"value", "column unit", "estimate"},
                     {"std_error", "column unit", "standard error; empty: the recording sets no limit"},
                     {"unit", "", "in SI"}}};
-  for (const DrawerRecording& one : results.recordings)
-    for (const StudiedLaw& law : one.result.laws)
-      for (const StudiedParameter& parameter : law.parameters)
-        table.add({cell(one.name), law.model, parameter.name, csv_number(parameter.value),
-                   csv_number(parameter.std_error), cell(parameter.unit)});
+  const auto add = [&](const std::string& recording, const std::string& law,
+                       const std::vector<StudiedParameter>& parameters) {
+    for (const StudiedParameter& parameter : parameters)
+      table.add({cell(recording), law, parameter.name, csv_number(parameter.value),
+                 csv_number(parameter.std_error), cell(parameter.unit)});
+  };
+  for (const DrawerRecording& one : results.recordings) {
+    for (const StudiedLaw& law : one.result.laws) add(one.name, law.model, law.parameters);
+    if (one.result.blade) add(one.name, "blade", one.result.blade->parameters);
+  }
   return table;
 }
 

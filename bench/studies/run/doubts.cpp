@@ -47,6 +47,7 @@ struct HeldQuantity {
 
 bool is_comparable(const DrawerRecording& one, const DrawerRecording& other) {
   return other.result.failure.empty() && !other.file.blank &&
+         other.result.axis.empty() == one.result.axis.empty() &&
          other.result.position_unit == one.result.position_unit &&
          other.result.force_unit == one.result.force_unit;
 }

@@ -19,16 +19,15 @@
 #include "fits/fit_series.h"
 #include "fits/row_doubts.h"
 #include "import/import.h"
-#include "import/join.h"
 #include "inputs/study_imports.h"
 #include "inspect/flagged_cycles.h"
 #include "inspect/inspection.h"
-#include "prepare/rows.h"
 #include "recordings/axes.h"
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
 #include "recordings/whole_recording.h"
 #include "run/kept_recording.h"
+#include "run/study_blade.h"
 #include "segment/segment.h"
 
 namespace kerf::bench {
@@ -39,48 +38,11 @@ using json = nlohmann::ordered_json;
 
 constexpr const char* first_result = "2";  // of what result.json holds: a number more makes all anew
 
-StudiedJoin studied(const Joined& joined, const std::string& file, std::size_t rows_left_out) {
-  const auto known = [&](double value) {
-    return joined.is_one_clock ? std::numeric_limits<double>::quiet_NaN() : value;
-  };
-  return {.file = file,
-          .on = joined.on,
-          .shift_s = joined.clock.shift_s,
-          .shift_error_s = known(joined.clock.shift_error_s),
-          .skew = joined.clock.skew,
-          .skew_error = known(joined.clock.skew_error),
-          .correlation = known(joined.clock.correlation),
-          .rows_left_out = rows_left_out};
-}
-
-/// Takes in what the other file measured; rows where it has nothing are no part of the recording.
-void join_other(const StepJoin& other, Imported& imported, StudiedRecording& result) {
-  schema::Recording& recording = imported.recording;
-  try {
-    const Joined joined =
-        join(imported, {.file = other.source, .map = other.import.options.map, .on = other.on},
-             other.import.options);
-    const std::vector<bool> finite = finite_rows(recording);
-    const auto left_out = static_cast<std::size_t>(std::ranges::count(finite, false));
-    keep_rows(recording, finite);
-    result.join = studied(joined, other.name, left_out);
-    for (const std::string& warning : joined.warnings)
-      imported.warnings.push_back(other.name + ": " + warning);
-    imported.warnings.push_back(joined_line(joined));
-  } catch (const std::invalid_argument& error) {
-    std::string message = error.what();
-    const std::string source = other.source.string();
-    if (message.starts_with(source)) message.replace(0, source.size(), other.name);
-    throw std::invalid_argument(message);
-  }
-}
-
 void refuse_what_waits_for_a_word(const DrawerFile& file) {
   if (file.join_suggested.empty() || !file.join.empty()) return;
   throw std::invalid_argument(
       fmt::format("by its name {} is of the same recording: if so, make join_suggested join, with join_map "
-                  "and join_on; if "
-                  "not, take it away",
+                  "and join_on, or join_marker; if not, take it away",
                   file.join_suggested));
 }
 
@@ -106,12 +68,17 @@ SegmentOptions segment_options(const StudyPlan& plan) {
   return options;
 }
 
-/// Cycles that the recording has stay.
+/// Cycles that the recording has stay, unless they are along another axis than the one that is named. Of
+/// several axes none is taken for the tool's way unless a person names it.
 void find_cycles_of(const RecordingStep& step, schema::Recording& recording, StudiedRecording& result) {
-  if (recording.cycles) return;
+  const std::string& named = step.file->axis;
+  SegmentOptions options = segment_options(*step.plan);
+  options.axis = find_axis(recording, named);
+  if (recording.cycles && (named.empty() || recording.cycles->axis == options.axis)) return;
+  if (recording.dimensions() > 1 && named.empty()) return;
+  recording.cycles.reset();
   try {
-    segment_recording(recording, schema::RowsInMemory(recording), segment_options(*step.plan),
-                      step.file->path);
+    segment_recording(recording, schema::RowsInMemory(recording), options, step.file->path);
   } catch (const std::invalid_argument& error) {
     result.warnings.push_back(fmt::format("it has no cycles: {}", error.what()));
   }
@@ -222,6 +189,11 @@ StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
 
 void fit_laws(const RecordingStep& step, const schema::Recording& recording, const fs::path& folder,
               std::size_t axis, const std::atomic<bool>& stop, StudiedRecording& result) {
+  result.not_fitted = why_no_axis(recording, step.file->axis);
+  if (!result.not_fitted.empty()) {
+    result.axis.clear();
+    return;
+  }
   FitRecordingOptions options;
   options.models = step.plan->laws;
   options.axis = axis;
@@ -270,7 +242,9 @@ json as_json(const ImportFile& import) {
 
 json as_json(const std::optional<StepJoin>& join) {
   if (!join) return nullptr;
-  return {{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+  json all{{"source", sha256_of(join->source)}, {"import", as_json(join->import)}, {"on", join->on}};
+  if (!join->marker.empty()) all["marker"] = join->marker;
+  return all;
 }
 
 json as_json(const std::optional<StudyBlanks>& blanks) {
@@ -314,18 +288,21 @@ RecordingStep step_of(const StudyPlan& plan, const DrawerFile& file, const fs::p
     step.join = {.name = file.join,
                  .source = folder / "inputs" / fs::path(file.join),
                  .import = import_named(file.join_map, plan, folder),
-                 .on = file.join_on};
+                 .on = file.join_on,
+                 .marker = file.join_marker};
+  step.shape = blade_file(plan, folder);
   if (plan.subtracts_blanks && !file.blank) step.blanks = blanks_of(plan, file, folder);
   return step;
 }
 
 std::string key_of(const RecordingStep& step) {
   const StudyPlan& plan = *step.plan;
-  const json all{
-      {"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
-      {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
-      {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
-      {"blanks", as_json(step.blanks)}};
+  json all{{"result", first_result},         {"program", software()},     {"source", sha256_of(step.source)},
+           {"import", as_json(step.import)}, {"laws", plan.laws},         {"all_cycles", plan.all_cycles},
+           {"closing", plan.closing},        {"blank", step.file->blank}, {"join", as_json(step.join)},
+           {"blanks", as_json(step.blanks)}};
+  if (!step.file->axis.empty()) all["axis"] = step.file->axis;
+  if (!step.shape.empty()) all["shape"] = sha256_of(step.shape);
   return sha256_of(std::string_view(all.dump()));
 }
 
@@ -335,12 +312,13 @@ StudiedRecording run_recording_step(const RecordingStep& step, const fs::path& f
   result.key = key_of(step);
   schema::Recording recording = imported_or_read(step, result);
   find_cycles_of(step, recording, result);
-  const std::size_t axis = find_cut_axis(recording, "");
+  const std::size_t axis = find_cut_axis(recording, step.file->axis);
   look_at_rows(recording, axis, result);
   take_cycles(less_the_blank(step, recording, result), result);
   result.content = content_sha256_of(schema::RowsInMemory(recording));
   schema::write_recording(folder / "recording.h5", recording, schema::Existing::replace);
   fit_laws(step, recording, folder, axis, stop, result);
+  if (!step.file->blank) result.blade = fit_blade_in_study(recording, step.shape, folder, result.warnings);
   write_json_file(folder / "result.json", as_json(result));
   return result;
 }

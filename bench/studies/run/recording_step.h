@@ -8,16 +8,9 @@
 #include "drawer/study_file.h"
 #include "imports/import_file.h"
 #include "run/study_blanks.h"
+#include "run/study_join.h"
 
 namespace kerf::bench {
-
-/// Another file with its own clock that is taken into a recording.
-struct StepJoin {
-  std::string name;              ///< below the drawer's folder
-  std::filesystem::path source;  ///< the study's copy
-  ImportFile import;
-  std::string on;
-};
 
 /// One file of a drawer and where what is made of it goes.
 struct RecordingStep {
@@ -26,6 +19,7 @@ struct RecordingStep {
   std::filesystem::path source;  ///< the file itself, or the study's copy of it
   ImportFile import{};           ///< of what is no recording
   std::optional<StepJoin> join{};
+  std::filesystem::path shape{};        ///< of a blade, for six axes; empty: the study names none
   std::optional<StudyBlanks> blanks{};  ///< one of which is to be taken off
 };
 

@@ -13,6 +13,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <kerf/schema/unfinished.h>
+
 #include "files/disk_room.h"
 #include "files/json_file.h"
 #include "files/named_file.h"
@@ -54,6 +56,17 @@ class HeldStudy {
  private:
   int descriptor_;
 };
+
+/// What killed runs left half-written, by the one that runs the study now.
+void remove_left_behind(const fs::path& folder) {
+  for (const char* place : {"", "recordings", "held_out", "imports", "inputs"})
+    if (fs::is_directory(folder / place)) (void)schema::remove_unfinished(folder / place);
+  std::error_code none;
+  std::vector<fs::path> within;  // the drawer's own folders
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "inputs", none))
+    if (entry.is_directory()) within.push_back(entry.path());
+  for (const fs::path& place : within) (void)schema::remove_unfinished(place);
+}
 
 /// Maps are asked for before the work, all at once.
 void require_maps(const fs::path& file, const StudyPlan& plan) {
@@ -195,6 +208,7 @@ StudyResults run_study(const fs::path& file, const StudyRunOptions& options, con
   const fs::path folder = fs::absolute(file).parent_path();
   results.name = folder.filename().string();
   const HeldStudy held(file);
+  remove_left_behind(folder);
   const StudyPlan& plan = results.plan;
   if (!options.only_report) {
     require_maps(file, plan);

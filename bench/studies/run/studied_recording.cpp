@@ -23,9 +23,13 @@ json parameter_as_json(const StudiedParameter& parameter) {
           {"is_positive", parameter.is_positive}};
 }
 
-json law_as_json(const StudiedLaw& law) {
+json parameters_as_json(const std::vector<StudiedParameter>& all) {
   json parameters = json::array();
-  for (const StudiedParameter& parameter : law.parameters) parameters.push_back(parameter_as_json(parameter));
+  for (const StudiedParameter& parameter : all) parameters.push_back(parameter_as_json(parameter));
+  return parameters;
+}
+
+json law_as_json(const StudiedLaw& law) {
   return {{"model", law.model},
           {"free_parameters", law.free_parameters},
           {"rmse", law.rmse},
@@ -33,7 +37,7 @@ json law_as_json(const StudiedLaw& law) {
           {"can_be_chosen", law.can_be_chosen},
           {"within_jnd", law.within_jnd},
           {"blame", law.blame},
-          {"parameters", parameters}};
+          {"parameters", parameters_as_json(law.parameters)}};
 }
 
 json cycle_as_json(const StudiedCycle& cycle) {
@@ -46,6 +50,17 @@ json cycle_as_json(const StudiedCycle& cycle) {
           {"reason", cycle.reason}};
 }
 
+std::vector<StudiedParameter> studied_parameters(const json& from) {
+  std::vector<StudiedParameter> parameters;
+  for (const json& one : from)
+    parameters.push_back({.name = one.at("name"),
+                          .unit = one.at("unit"),
+                          .value = one.at("value"),
+                          .std_error = number_or(one.at("std_error"), no_limit),
+                          .is_positive = one.at("is_positive")});
+  return parameters;
+}
+
 StudiedLaw studied_law(const json& from) {
   StudiedLaw law{.model = from.at("model"),
                  .free_parameters = from.at("free_parameters"),
@@ -55,12 +70,7 @@ StudiedLaw studied_law(const json& from) {
                  .within_jnd = from.at("within_jnd"),
                  .blame = from.at("blame"),
                  .parameters = {}};
-  for (const json& one : from.at("parameters"))
-    law.parameters.push_back({.name = one.at("name"),
-                              .unit = one.at("unit"),
-                              .value = one.at("value"),
-                              .std_error = number_or(one.at("std_error"), no_limit),
-                              .is_positive = one.at("is_positive")});
+  law.parameters = studied_parameters(from.at("parameters"));
   return law;
 }
 
@@ -93,6 +103,19 @@ StudiedBlank studied_blank(const json& from) {
   return blank;
 }
 
+StudiedBlade studied_blade(const json& from) {
+  StudiedBlade blade;
+  if (from.contains("why_none")) {
+    blade.why_none = from.at("why_none");
+    return blade;
+  }
+  blade.rows_in_tissue = from.at("rows_in_tissue");
+  blade.rmse = from.at("rmse_N");
+  blade.rms = from.at("rms_N");
+  blade.parameters = studied_parameters(from.at("parameters"));
+  return blade;
+}
+
 StudiedJoin studied_join(const json& from) {
   return {.file = from.at("file"),
           .on = from.at("on"),
@@ -101,20 +124,31 @@ StudiedJoin studied_join(const json& from) {
           .skew = from.at("skew"),
           .skew_error = number_or(from.at("skew_std_error"), no_number),
           .correlation = number_or(from.at("correlation"), no_number),
+          .markers = from.value("markers", std::uint64_t{0}),
           .rows_left_out = from.at("rows_left_out")};
 }
 
 }  // namespace
 
 json as_json(const StudiedJoin& join) {
-  return {{"file", join.file},
-          {"on", join.on},
-          {"shift_s", join.shift_s},
-          {"shift_std_error_s", number_or_null(join.shift_error_s)},
-          {"skew", join.skew},
-          {"skew_std_error", number_or_null(join.skew_error)},
-          {"correlation", number_or_null(join.correlation)},
-          {"rows_left_out", join.rows_left_out}};
+  json all{{"file", join.file},
+           {"on", join.on},
+           {"shift_s", join.shift_s},
+           {"shift_std_error_s", number_or_null(join.shift_error_s)},
+           {"skew", join.skew},
+           {"skew_std_error", number_or_null(join.skew_error)},
+           {"correlation", number_or_null(join.correlation)},
+           {"rows_left_out", join.rows_left_out}};
+  if (join.markers > 0) all["markers"] = join.markers;
+  return all;
+}
+
+json as_json(const StudiedBlade& blade) {
+  if (!blade.why_none.empty()) return {{"why_none", blade.why_none}};
+  return {{"rows_in_tissue", blade.rows_in_tissue},
+          {"rmse_N", blade.rmse},
+          {"rms_N", blade.rms},
+          {"parameters", parameters_as_json(blade.parameters)}};
 }
 
 json as_json(const StudiedBlank& blank) {
@@ -169,6 +203,7 @@ json as_json(const StudiedRecording& recording) {
               {"why_chosen", recording.why_chosen},
               {"not_fitted", recording.not_fitted}});
   if (recording.join) all["joined"] = as_json(*recording.join);
+  if (recording.blade) all["blade"] = as_json(*recording.blade);
   if (recording.blank) all["blank_taken_off"] = as_json(*recording.blank);
   return all;
 }
@@ -195,6 +230,7 @@ StudiedRecording studied_recording(const json& from) {
   recording.clipped_rows = from.at("clipped_rows");
   recording.least_shown = number_or(from.at("least_shown"), no_number);
   if (from.contains("joined")) recording.join = studied_join(from.at("joined"));
+  if (from.contains("blade")) recording.blade = studied_blade(from.at("blade"));
   if (from.contains("blank_taken_off")) recording.blank = studied_blank(from.at("blank_taken_off"));
   recording.warnings = from.at("warnings");
   for (const json& cycle : from.at("cycles")) recording.cycles.push_back(studied_cycle(cycle));

@@ -67,9 +67,19 @@ struct StudiedJoin {
   double shift_s = 0.0;
   double shift_error_s = 0.0;  ///< standard error; NaN: it is one clock
   double skew = 0.0;
-  double skew_error = 0.0;
-  double correlation = 0.0;
+  double skew_error = 0.0;          ///< NaN also of one marker, which tells no skew
+  double correlation = 0.0;         ///< NaN of markers and of one clock
+  std::uint64_t markers = 0;        ///< that brought the clocks together; 0: it was something else
   std::uint64_t rows_left_out = 0;  ///< where one of both has nothing
+};
+
+/// The law `blade`, fitted to a recording of six axes.
+struct StudiedBlade {
+  std::string why_none;  ///< why it is not; empty: it is
+  std::uint64_t rows_in_tissue = 0;
+  double rmse = 0.0;  ///< [N], of the force's vector, on what it was fitted to
+  double rms = 0.0;   ///< [N], of the force itself, in the tissue
+  std::vector<StudiedParameter> parameters{};
 };
 
 /// All that a study knows of one recording. The same recording and settings give the same, to the last bit.
@@ -80,7 +90,7 @@ struct StudiedRecording {
   std::uint64_t rows = 0;
   double duration_s = 0.0;
   double period_s = 0.0;  ///< usual step
-  std::string axis;
+  std::string axis;       ///< along which it is fitted; empty: one of several, and none is named
   std::string position_unit;
   std::string force_unit;
   double travel = 0.0;             ///< range of the positions
@@ -93,6 +103,7 @@ struct StudiedRecording {
   std::uint64_t clipped_rows = 0;
   double least_shown = 0.0;  ///< smallest force beside exact zeros, of a sensor with a dead zone; NaN: none
   std::optional<StudiedJoin> join;    ///< nothing: it is one file
+  std::optional<StudiedBlade> blade;  ///< nothing: it has not six axes
   std::optional<StudiedBlank> blank;  ///< nothing: none was to be taken off
   std::vector<std::string> warnings;
   std::vector<StudiedCycle> cycles;
@@ -108,6 +119,7 @@ struct StudiedRecording {
 
 [[nodiscard]] nlohmann::ordered_json as_json(const StudiedRecording& recording);
 [[nodiscard]] nlohmann::ordered_json as_json(const StudiedJoin& join);
+[[nodiscard]] nlohmann::ordered_json as_json(const StudiedBlade& blade);
 [[nodiscard]] nlohmann::ordered_json as_json(const StudiedBlank& blank);
 /// @throws nlohmann::json::exception for what as_json() did not write.
 [[nodiscard]] StudiedRecording studied_recording(const nlohmann::ordered_json& json);

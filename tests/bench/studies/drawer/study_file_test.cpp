@@ -18,6 +18,7 @@ StudyPlan some_plan() {
   plan.map = "time=1[s],position=2[mm],force=3[N]";
   plan.laws = {"kelvin", "exponential"};
   plan.closing = "increasing";
+  plan.blade = "../scalpel.law.toml";
   plan.compare = {"peak", "kelvin.damping"};
   plan.subtracts_blanks = true;
   plan.why_blanks = "friction is \"large\"";
@@ -29,6 +30,7 @@ StudyPlan some_plan() {
                  .found = "3 columns",
                  .sheet = "Run 2",
                  .stretch = 2,
+                 .axis = "z",
                  .join = "a_force.txt",
                  .join_map = "time=1[s],position=2[mm],force=3[N]",
                  .join_on = "position",
@@ -39,6 +41,10 @@ StudyPlan some_plan() {
                  .less_blank = "air.csv",
                  .accepted = "looked through",
                  .numbers = "7"},
+                {.path = "b_position.txt",
+                 .join = "b_force.txt",
+                 .join_map = "time=1[s],trigger=2[V],force=3[N]",
+                 .join_marker = "sync>2.5,trigger>1"},
                 {.path = "picture.png", .ignored = "no text"},
                 {.path = "air.csv", .blank = true}};
   return plan;
@@ -68,10 +74,12 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.map, plan.map);
   EXPECT_EQ(again.laws, plan.laws);
   EXPECT_EQ(again.closing, plan.closing);
+  EXPECT_EQ(again.blade, "../scalpel.law.toml");
+  EXPECT_EQ(again.files[0].axis, "z");
   EXPECT_EQ(again.compare, plan.compare);
   EXPECT_EQ(again.licence, plan.licence);
   EXPECT_EQ(again.people, plan.people);
-  ASSERT_EQ(again.files.size(), 3U);
+  ASSERT_EQ(again.files.size(), 4U);
   EXPECT_EQ(again.files[0].less_blank, "air.csv");
   EXPECT_EQ(again.files[0].path, plan.files[0].path);
   EXPECT_EQ(again.files[0].specimen, "s1");
@@ -84,7 +92,8 @@ TEST_F(StudyFile, IsReadAsItWasWritten) {
   EXPECT_EQ(again.why_blanks, plan.why_blanks);
   EXPECT_EQ(again.files[0].sheet, "Run 2");
   EXPECT_EQ(again.files[0].accepted, "looked through");
-  EXPECT_EQ(again.files[1].ignored, "no text");
+  EXPECT_EQ(again.files[1].join_marker, "sync>2.5,trigger>1");
+  EXPECT_EQ(again.files[2].ignored, "no text");
   ASSERT_EQ(again.layouts.size(), 1U);
   EXPECT_EQ(again.layouts[0].files, "rig2/*.csv");
   EXPECT_EQ(again.layouts[0].map, "../rig2.import.toml");
@@ -106,6 +115,11 @@ TEST_F(StudyFile, RefusesWhatItDoesNotKnowWithItsLine) {
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"pictures/\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"", "path = \"a\\tb.txt\""), HasSubstr("a second time"));
   EXPECT_THAT(with("join_on = \"position\"\n", ""), HasSubstr("needs 'join_map'"));
+  EXPECT_THAT(with("join_marker = \"sync>2.5,trigger>1\"\n", ""), HasSubstr("or 'join_marker'"));
+  EXPECT_THAT(with("join_marker = \"sync>2.5,trigger>1\"", "join_marker = \"sync>2.5V\""),
+              testing::AllOf(HasSubstr("study.toml:"), HasSubstr("join_marker"), HasSubstr("2.5V")));
+  EXPECT_THAT(with("join_on = \"position\"", "join_on = \"position\"\njoin_marker = \"sync\""),
+              HasSubstr("two ways"));
   EXPECT_THAT(with("join = \"a_force.txt\"", "join = \"../a_force.txt\""), HasSubstr("below the drawer"));
   EXPECT_THAT(with("path = \"picture.png\"\nignored = \"no text\"", "path = \"a_force.txt\""),
               HasSubstr("takes part itself"));

@@ -1,0 +1,134 @@
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <kerf/schema/recording.h>
+
+#include "bench/studies/rubbed.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::Outcome;
+using test::run_kerf;
+using testing::HasSubstr;
+
+std::string parameters(double edge, double normal, double tangential) {
+  return fmt::format(
+      "edge_damping = {{ value = {}, unit = \"N·s/m²\" }}\nnormal_damping = {{ value = {}, unit = "
+      "\"N·s/m³\" }}\ntangential_damping = {{ value = {}, unit = \"N·s/m³\" }}\n",
+      edge, normal, tangential);
+}
+constexpr const char* polygons =
+    "thresholds = false\npolygons = \"-0.005 0 -0.03, 0.005 0 -0.03, 0.005 0 0, -0.005 0 0\"\n"
+    "edge = \"0.005 0 -0.03, 0.005 0 0\"\n";
+
+/// A drawer of a punch along one axis and of a cut in six, simulated in a tissue that is a blade's law; the
+/// cut is a text with a rotation vector and forces in the world.
+class SixAxesInStudy : public testing::Test {
+ protected:
+  SixAxesInStudy() {
+    fs::create_directory(folder_ / "drawer");
+    test::write_text(folder_ / "drawer/skin_s1.txt",
+                     test::as_text(test::punch({.parallel_stiffness = 300.0, .seconds = 4.0})));
+    test::write_text(folder_ / "shape.law.toml",
+                     "model = \"blade\"\n[parameters]\n" + parameters(1, 1, 1) + "[fidelity]\n" + polygons);
+    test::write_text(folder_ / "scene.toml",
+                     "name = \"a half-space\"\n[tissue]\nmodel = \"blade\"\n[tissue.parameters]\n" +
+                         parameters(20, 2e4, 4e3) + "[tissue.fidelity]\n" + polygons);
+    const std::string cut = (folder_ / "cut.h5").string();
+    const Outcome recorded = run_kerf({"record", "--device", "sim:pose6", "--virtual", "--seconds", "6",
+                                       "--scene", (folder_ / "scene.toml").string(), "-o", cut});
+    EXPECT_EQ(recorded.exit_status, 0) << recorded.errors;
+    const schema::Recording rows = schema::read_recording(cut);
+    std::string text = "t,x,y,z,rx,ry,rz,fx,fy,fz\n";
+    for (std::size_t row = 0; row < rows.rows(); ++row) {
+      text += fmt::format("{}", rows.time[row]);
+      for (std::size_t i = 0; i < 6; ++i)
+        text += fmt::format(",{:.9g}", (i < 3 ? 1e3 : 1.0) * rows.position[6 * row + i]);
+      for (std::size_t i = 0; i < 3; ++i) text += fmt::format(",{:.9g}", rows.force_measured[6 * row + i]);
+      text += "\n";
+    }
+    test::write_text(folder_ / "drawer/liver_s2.csv", text);
+    const Outcome looked =
+        run_kerf({"study", "new", (folder_ / "drawer").string(), "--laws", "kelvin", "--map",
+                  "time=t[s],position=x:z[mm],orientation=rx:rz[rotvec rad],force=fx:fz[N world]", "--map",
+                  "time=1[s],position=2[mm],force=3[N]", "-o", study().string()});
+    EXPECT_EQ(looked.exit_status, 0) << looked.errors;
+  }
+  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
+  Outcome run_it() const { return run_kerf({"study", "run", (study() / "study.toml").string()}); }
+  [[nodiscard]] json cut() const {
+    const json found = json::parse(test::read_text(study() / "study.json"));
+    for (const json& one : found.at("recordings"))
+      if (one.at("name") == "liver_s2") return one;
+    return nullptr;
+  }
+  void edit(const std::string& from, const std::string& to) const {
+    std::string text = test::read_text(study() / "study.toml");
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(study() / "study.toml", text);
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SixAxesInStudy, SayWhatIsMissingForALaw) {
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  EXPECT_THAT(ran.output, HasSubstr("liver_s2: no blade is fitted: study.toml names no shape"));
+  EXPECT_THAT(ran.output, HasSubstr("it has the axes x, y, z, rx, ry, rz, and the study's laws act along"));
+  EXPECT_THAT(ran.output, HasSubstr("skin: kelvin serves"));  // the rest goes on
+  EXPECT_EQ(cut().at("counts"), false);
+  EXPECT_TRUE(cut().at("law").is_null());
+  EXPECT_EQ(schema::read_recording(study() / "recordings/liver_s2/recording.h5").dimensions(), 6U);
+  edit("\n[prepare]", "\nblade = \"../scene.toml\"\n[prepare]");
+  const Outcome none = run_it();
+  EXPECT_EQ(none.exit_status, 2);
+  EXPECT_THAT(none.errors, HasSubstr("scene.toml"));
+}
+
+// The tissue that was simulated is found again: 20 N·s/m², 2e4 and 4e3 N·s/m³.
+TEST_F(SixAxesInStudy, AreFittedByABladeWhoseShapeIsNamed) {
+  edit("\n[prepare]", "\nblade = \"../shape.law.toml\"\n[prepare]");
+  const Outcome ran = run_it();
+  ASSERT_EQ(ran.exit_status, 0) << ran.errors;
+  EXPECT_THAT(ran.output, HasSubstr("liver_s2: a blade in six axes has edge_damping "));
+  EXPECT_THAT(ran.output, HasSubstr("skin: kelvin serves"));
+  const json blade = cut().at("blade");
+  const std::array truth{20.0, 2e4, 4e3};
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const json& parameter = blade.at("parameters").at(i);
+    EXPECT_NEAR(parameter.at("value").get<double>(), truth[i], 5.0 * parameter.at("std_error").get<double>());
+    EXPECT_NEAR(parameter.at("value").get<double>(), truth[i], 0.2 * truth[i]);
+  }
+  EXPECT_TRUE(fs::exists(study() / "recordings/liver_s2/fits/blade.law.toml"));
+  EXPECT_THAT(test::read_text(study() / "tables/parameters.csv"), HasSubstr("liver_s2,blade,edge_damping,"));
+  fs::remove_all(folder_ / "drawer");
+  fs::remove(folder_ / "shape.law.toml");
+  const Outcome again = run_kerf({"study", "verify", study().string(), "--rerun", "all"});
+  EXPECT_EQ(again.exit_status, 0) << again.output << again.errors;
+}
+
+TEST_F(SixAxesInStudy, AreFittedAlongTheAxisThatIsNamed) {
+  edit("specimen = \"s2\"", "specimen = \"s2\"\naxis = \"z\"");
+  ASSERT_EQ(run_it().exit_status, 0);
+  EXPECT_EQ(json::parse(test::read_text(study() / "recordings/liver_s2/result.json")).at("axis"), "z");
+  EXPECT_EQ(cut().at("law"), "kelvin");
+  edit("axis = \"z\"", "axis = \"w\"");
+  const Outcome ran = run_it();
+  EXPECT_EQ(ran.exit_status, 1);
+  EXPECT_THAT(ran.errors, HasSubstr("liver_s2.csv: the recording has no axis 'w'"));
+}
+
+}  // namespace
+}  // namespace kerf::bench
