@@ -15,7 +15,7 @@ from sections import replace_section
 
 ALARMS = 10000
 EQUIVALENCE = 4000
-COVERAGE = 2000
+COVERAGE = 1000
 POWER = 4000
 ORACLE = 20
 

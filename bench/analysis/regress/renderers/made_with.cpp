@@ -1,5 +1,6 @@
 #include "regress/renderers/made_with.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <mutex>

@@ -38,6 +38,15 @@ void add_declaration(std::string& text, std::string_view key, std::string value)
   if (!value.empty()) text += fmt::format("# {}: {}\n", key, value);
 }
 
+/// A text of several lines, a declaration each.
+void add_declared_lines(std::string& text, std::string_view key, const std::string& lines) {
+  for (std::size_t at = 0; at < lines.size();) {
+    const std::size_t end = std::min(lines.find('\n', at), lines.size());
+    add_declaration(text, key, lines.substr(at, end - at));
+    at = end + 1;
+  }
+}
+
 void add_number_rows(std::string& text, const std::vector<double>& values, std::size_t columns, bool ticks) {
   auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -76,6 +85,7 @@ void take_declared(const fs::path& file, const std::string& key, const std::stri
     if (key == name) one.*member = value;
   }
   if (key == "history") one.history += value + '\n';
+  if (key == "made_with") one.made_with += value + '\n';
   if (key == "faults") one.faults = declared_number<std::uint64_t>(file, key, value);
   if (key == "tick_cost") one.tick_cost = declared_number<double>(file, key, value);
   if (key == schema::regression_schema_name &&
@@ -92,11 +102,8 @@ std::string forces_as_text(const schema::StoredForces& stored) {
   std::string text =
       fmt::format("# {}: {}\n", schema::regression_schema_name, schema::regression_schema_version);
   for (const auto& [name, member] : declared_texts) add_declaration(text, name, stored.*member);
-  for (std::size_t at = 0; at < stored.history.size();) {
-    const std::size_t end = std::min(stored.history.find('\n', at), stored.history.size());
-    add_declaration(text, "history", stored.history.substr(at, end - at));
-    at = end + 1;
-  }
+  add_declared_lines(text, "made_with", stored.made_with);
+  add_declared_lines(text, "history", stored.history);
   add_declaration(text, "faults", fmt::format("{}", stored.faults));
   if (stored.tick_cost) add_declaration(text, "tick_cost", fmt::format("{}", *stored.tick_cost));
   text += "tick";
