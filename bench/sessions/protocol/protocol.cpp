@@ -77,10 +77,9 @@ void read_presentation(const Place& place, const toml::table& root, Protocol& pr
                   {{"free", Presentation::free}, {"sequence", Presentation::sequence}});
   protocol.interval_s = read_seconds(place, root, "interval", protocol.interval_s, 0.1, 600.0);
   protocol.gap_s = read_seconds(place, root, "gap", protocol.gap_s, 0.0, 60.0);
-  protocol.switching =
-      read_choice(place, root, "switching",
-                  protocol.design == Design::abx ? SwitchKind::through_zero : SwitchKind::blend,
-                  {{"blend", SwitchKind::blend}, {"through-zero", SwitchKind::through_zero}});
+  protocol.switching = read_choice(
+      place, root, "switching", protocol.design == Design::abx ? SwitchKind::through_zero : SwitchKind::blend,
+      {{"blend", SwitchKind::blend}, {"through-zero", SwitchKind::through_zero}});
   protocol.ramp_s = read_seconds(place, root, "ramp", protocol.ramp_s, 0.0, 10.0);
   const auto slots = static_cast<double>(slots_of(protocol.design));
   const bool in_sequence = protocol.presentation == Presentation::sequence;
@@ -183,10 +182,10 @@ Protocol parse_protocol(const std::string& text, const std::string& name,
   const toml::table root = parse_toml(text, name);
   const Place place(name);
   place.allow_only(
-      root, {"name",     "title",    "design",   "question",  "instructions", "consent",     "trials",       "practice",
-             "feedback", "strategy", "break",     "signal",       "odd_one_out", "presentation", "interval",
-             "gap",      "longest",  "switching", "ramp",         "device",      "rate",         "loudness",
-             "sample",   "tissue",   "scale",     "motion"},
+      root, {"name",     "title",    "design",   "question",  "instructions", "consent",     "trials",
+             "practice", "feedback", "strategy", "break",     "signal",       "odd_one_out", "presentation",
+             "interval", "gap",      "longest",  "switching", "ramp",         "device",      "rate",
+             "loudness", "sample",   "tissue",   "scale",     "motion"},
       "a protocol");
   Protocol protocol;
   protocol.toml = text;

@@ -99,7 +99,7 @@ struct Protocol {
   double gap_s = 0.5;
   double longest_s = 60.0;  ///< of a trial; then zero force, and the subject may still answer
   SwitchKind switching = SwitchKind::blend;  ///< of abx through_zero, unless its file says otherwise
-  double ramp_s = 0.25;               ///< from sample to sample
+  double ramp_s = 0.25;                      ///< from sample to sample
   std::optional<std::size_t> signal;  ///< two_interval, three_interval: the sample that the question asks for
   bool odd_one_out = false;           ///< three_interval: either may be the odd one
   bool differencing = false;          ///< abx: the strategy that d' is reckoned for; else independent

@@ -7,7 +7,7 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "recordings/provenance.h"
-#include "sealed/trial_quality.h"
+#include "sealed/trials/trial_quality.h"
 #include "tables/csv.h"
 
 namespace kerf::bench {

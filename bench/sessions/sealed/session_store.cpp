@@ -8,7 +8,7 @@
 
 #include "recordings/provenance.h"
 #include "sealed/sealed_entries.h"
-#include "sealed/trial_bytes.h"
+#include "sealed/trials/trial_bytes.h"
 
 namespace kerf::bench {
 namespace {

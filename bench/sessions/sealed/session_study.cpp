@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "sealed/session_store.h"
-#include "sealed/trial_quality.h"
+#include "sealed/trials/trial_quality.h"
 
 namespace kerf::bench {
 namespace {

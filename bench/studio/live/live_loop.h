@@ -49,8 +49,8 @@ class LiveLoop {
   /// Stops the loop.
   ~LiveLoop();
 
-  /// Called by the thread that takes the rows out whenever it has, and once more when the loop is over; not any
-  /// more once stop() has returned. Set before start(); must not throw, nor start or stop the loop.
+  /// Called by the thread that takes the rows out whenever it has, and once more when the loop is over; not
+  /// any more once stop() has returned. Set before start(); must not throw, nor start or stop the loop.
   void on_rows(std::function<void()> call) { on_rows_ = std::move(call); }
 
   /// Returns once the device is open. Renders nothing at first; a force that was released stays so.

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -114,7 +116,9 @@ TEST_P(FaultyRun, WithoutANumberGetsZeroForceAndASoftStart) {
   EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
   const json result = json::parse(outcome.output);
   EXPECT_EQ(result.at("ticks_with").at("device_fault"), 1);
-  EXPECT_EQ(result.at("causes"), json({"device"}));
+  // By the wall clock a busy machine may be to blame besides.
+  if (GetParam()) EXPECT_EQ(result.at("causes"), json({"device"}));
+  EXPECT_THAT(result.at("causes").get<std::vector<std::string>>(), testing::Contains("device"));
   EXPECT_TRUE(has_event("device_fault"));
   const std::size_t row = first_row_with(schema::flag_device_fault);
   EXPECT_TRUE(std::isnan(recording_.position[2 * row])) << "the file holds what the device said";

@@ -1,4 +1,4 @@
-#include "sealed/trial_quality.h"
+#include "sealed/trials/trial_quality.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sealed/trial_bytes.h"
+#include "sealed/trials/trial_bytes.h"
 
 #include <cmath>
 
