@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include "recordings/provenance.h"
 #include "sealed/sealed_entries.h"

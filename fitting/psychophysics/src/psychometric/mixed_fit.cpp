@@ -99,9 +99,9 @@ class SubjectIntegral {
 
   double add_to(double* gradient) const {
     const auto [mode, root] = mode_and_root();
-    std::array<double, 49> logs;
-    std::array<Vector2d, 49> deviates;
-    std::array<Vector2d, 49> slopes;
+    std::array<double, 49> logs{};
+    std::array<Vector2d, 49> deviates{};
+    std::array<Vector2d, 49> slopes{};
     double largest = -std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < 49; ++i) {
       const Vector2d node(hermite_at[i / 7], hermite_at[i % 7]);
