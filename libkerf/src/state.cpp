@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <ctime>
 #include <limits>
@@ -56,7 +55,8 @@ Pairwise take_motion(models::SpatialMotion& motion, const double* position, cons
     }
     std::memcpy(&motion.position[At], &here, sizeof here);
     std::memcpy(&motion.velocity[At], &speed, sizeof speed);
-    return take_motion<Axes, At + 2>(motion, position, velocity) | std::isnan(speed);
+    return take_motion<Axes, At + 2>(motion, position, velocity) |
+           (speed != speed);  // NOLINT(misc-redundant-expression): NaN, of a vector
   }
 }
 
