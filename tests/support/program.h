@@ -48,6 +48,14 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   std::ofstream(file, std::ios::binary) << text;
 }
 
+/// The first place of a text in a file; the text has to be there.
+inline void replace_in(const std::filesystem::path& file, const std::string& from, const std::string& to) {
+  std::string text = read_text(file);
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::runtime_error("'" + from + "' is not in " + file.string());
+  write_text(file, text.replace(at, from.size(), to));
+}
+
 struct Outcome {
   int exit_status = -1;  ///< 128 + the signal's number if one ended it
   std::string output;

@@ -73,7 +73,7 @@ class Findings {
                            chances(all), if_alike(all)));
     }
     if (all.excluded_margin < 0.5)
-      show(fmt::format("{} a preference beyond {} either way is unlikely (excluded at {:.3g} %)",
+      show(fmt::format("{}a preference beyond {} either way is unlikely (excluded at {:.3g} %)",
                        average_of(all), percent_text(all.chance + all.excluded_margin), level_percent()));
     if (all.equivalence)
       write_equivalence(all,
@@ -86,8 +86,11 @@ class Findings {
   [[nodiscard]] static const char* if_alike(const AnswerGroup& all) {
     return all.subjects > 1 ? ", were all subjects alike" : "";
   }
+  /// Ahead of what holds; nothing of one subject.
   [[nodiscard]] static const char* average_of(const AnswerGroup& all) {
-    return all.subjects > 2 ? "on the average of the subjects" : all.subjects == 2 ? "for both subjects" : "";
+    return all.subjects > 2    ? "on the average of the subjects "
+           : all.subjects == 2 ? "for both subjects "
+                               : "";
   }
 
   void write_discrimination(const AnswerGroup& all) {
@@ -111,8 +114,8 @@ class Findings {
     if (!all.d_prime) return;
     if (all.equivalence) write_equivalence(all, fmt::format("d' is below {:.3g}", *options_.d_prime_bound));
     if (!(all.equivalence && all.equivalence->is_shown) && std::isfinite(all.excluded_d_prime)) {
-      show_not(fmt::format("a d' smaller than {}: what lies above is excluded {} at {:.3g} %",
-                           d_prime_text(all.excluded_d_prime), average_of(all), level_percent()));
+      show_not(fmt::format("that {}d' is below {}: only what lies above is excluded at {:.3g} %",
+                           average_of(all), d_prime_text(all.excluded_d_prime), level_percent()));
     }
   }
 
@@ -125,7 +128,7 @@ class Findings {
       each = fmt::format("; of each alone it is shown for {} of {} subjects", found.subjects_shown,
                          all.subjects);
     if (found.is_shown) {
-      show(fmt::format("{} {} ({}){}", average_of(all), what, p_text(found.p), each));
+      show(fmt::format("{}{} ({}){}", average_of(all), what, p_text(found.p), each));
     } else if (found.subjects_differ) {
       show_not(
           fmt::format("that {}: the subjects differ, and an average says nothing of each{}", what, each));

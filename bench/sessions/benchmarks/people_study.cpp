@@ -15,6 +15,7 @@
 #include <kerf/psychophysics/comparisons.h>
 #include <kerf/psychophysics/dprime.h>
 #include <kerf/psychophysics/mixed_fit.h>
+#include <kerf/psychophysics/psychometric.h>
 #include <kerf/psychophysics/random.h>
 #include <kerf/psychophysics/sign_flips.h>
 
@@ -231,20 +232,24 @@ Study drawn_levels(const LevelTruth& truth, Random& random) {
   study.scale.shape = truth.two_sided ? psychophysics::Shape::gaussian : psychophysics::Shape::weibull;
   study.scale.levels = truth.two_sided ? std::vector<double>{-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4}
                                        : std::vector<double>{0.025, 0.05, 0.1, 0.2, 0.4, 0.8};
-  constexpr double half_interquartile = 0.6744897501960817;
+  using psychophysics::Axis;
+  using psychophysics::Psychometric;
   for (int subject = 0; subject < truth.subjects; ++subject) {
     const double pse = truth.pse + 0.5 * truth.sd * truth.jnd * random.normal();
     const double jnd = truth.jnd * std::exp(0.25 * truth.sd * random.normal());
     const double weibull_slope = 2.0 * std::exp(0.125 * truth.sd * random.normal());
+    Psychometric curve{.shape = study.scale.shape, .lapse = truth.lapse};
+    if (truth.two_sided) {
+      curve.axis = Axis::linear;
+      curve.threshold = pse;
+      curve.slope = 0.6744897501960817 / jnd;  // half the way from 25 to 75 %
+      curve.guess = truth.lapse;
+    } else {
+      curve.slope = weibull_slope;
+      curve.threshold = jnd / curve.intensity_at(0.75);  // of a threshold of 1
+    }
     for (const double level : study.scale.levels) {
-      double p = 0.0;
-      if (truth.two_sided) {
-        const double f = 0.5 * std::erfc(-half_interquartile * (level - pse) / jnd / std::sqrt(2.0));
-        p = truth.lapse + (1.0 - 2.0 * truth.lapse) * f;
-      } else {
-        const double at_jnd = -std::log1p(-0.25 / (0.5 - truth.lapse));
-        p = 0.5 + (0.5 - truth.lapse) * -std::expm1(-at_jnd * std::pow(level / jnd, weibull_slope));
-      }
+      const double p = curve.probability(level);
       for (int trial = 0; trial < truth.trials; ++trial) {
         const auto right = static_cast<std::size_t>(trial % 2);
         study.judgements.push_back({.subject = fmt::format("S{}", subject),

@@ -14,7 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double max_trials = 10000.0;
 constexpr double longest_session_part_s = 3600.0;
 
 Design read_design(const Place& place, const toml::table& root) {

@@ -13,6 +13,8 @@
 
 namespace kerf::bench {
 
+inline constexpr double max_trials = 10000.0;  ///< of a subject
+
 /// A text without control characters: what a file says must not drive the terminal that shows it. With
 /// `lines` it may have several.
 [[nodiscard]] std::string read_plain_text(const Place& place, const toml::table& table, std::string_view key,

@@ -12,7 +12,6 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t max_levels = 200;
-constexpr double max_trials = 10000;
 constexpr double largest_level = 100.0;
 
 void read_varied(const Place& place, const toml::table& table, Protocol& protocol) {

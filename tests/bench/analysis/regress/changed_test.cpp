@@ -77,23 +77,21 @@ TEST(ChangedRuns, LeaveOutARendererUntilItsProgramChanges) {
   test::write_text(folder.at("spring.sh"), script);
   std::filesystem::permissions(folder.at("spring.sh"), std::filesystem::perms::owner_all);
   folder.write_suite(renderer_case);
-  const auto kerf = [&](std::vector<std::string> words) {
-    words.insert(words.begin() + 1, folder.suite());
-    words.insert(words.begin(), "regress");
-    return test::run_kerf(words);
+  const auto kerf = [&](const std::string& action, const std::vector<std::string>& more) {
+    return folder.regress(action, more);
   };
-  ASSERT_EQ(kerf({"update", "--reason", "first", "--yes"}).exit_status, 0);
-  const test::Outcome same = kerf({"run", "--changed", "--json", "--junit", folder.at("r.xml")});
+  ASSERT_EQ(kerf("update", {"--reason", "first", "--yes"}).exit_status, 0);
+  const test::Outcome same = kerf("run", {"--changed", "--json", "--junit", folder.at("r.xml")});
   EXPECT_EQ(same.exit_status, 0) << same.output;
   const auto one = nlohmann::json::parse(same.output).at("cases").at(0);
   EXPECT_TRUE(one.at("left_out").get<bool>());
   EXPECT_TRUE(one.at("passed").is_null()) << "nobody knows";
   EXPECT_THAT(test::read_text(folder.at("r.xml")), HasSubstr("skipped=\"1\""));
-  EXPECT_THAT(kerf({"run", "--changed"}).output, HasSubstr("1 of 1 cases left out"));
+  EXPECT_THAT(kerf("run", {"--changed"}).output, HasSubstr("1 of 1 cases left out"));
   test::write_text(folder.at("spring.sh"), std::string(script).replace(script.find("300"), 3, "301"));
-  const test::Outcome changed = kerf({"run", "--changed"});
+  const test::Outcome changed = kerf("run", {"--changed"});
   EXPECT_EQ(changed.exit_status, 1) << changed.output;
-  EXPECT_EQ(kerf({"update", "--changed", "--reason", "x"}).exit_status, 2) << "it is of 'run'";
+  EXPECT_EQ(kerf("update", {"--changed", "--reason", "x"}).exit_status, 2) << "it is of 'run'";
 }
 
 }  // namespace

@@ -27,9 +27,8 @@ using testing::Not;
 
 class RegressProgram : public testing::Test {
  protected:
-  [[nodiscard]] Outcome kerf(const std::string& action, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"regress", action, folder_.suite()});
-    return run_kerf(more);
+  [[nodiscard]] Outcome kerf(const std::string& action, const std::vector<std::string>& more = {}) const {
+    return folder_.regress(action, more);
   }
   void store() const {
     const Outcome outcome = kerf("update", {"--reason", "first forces", "--yes"});

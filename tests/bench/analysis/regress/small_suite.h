@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "support/program.h"
 
@@ -49,9 +50,12 @@ class SuiteFolder {
   void write_suite(const std::string& text) const { write_text(folder_ / "suite.toml", text); }
   /// The law with one text replaced by another.
   void change_law(const std::string& from, const std::string& to) const {
-    std::string text = read_text(folder_ / "kelvin.law.toml");
-    text.replace(text.find(from), from.size(), to);
-    write_text(folder_ / "kelvin.law.toml", text);
+    replace_in(folder_ / "kelvin.law.toml", from, to);
+  }
+  /// kerf regress ACTION suite.toml and more.
+  [[nodiscard]] Outcome regress(const std::string& action, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), {"regress", action, suite()});
+    return run_kerf(more);
   }
 
  private:

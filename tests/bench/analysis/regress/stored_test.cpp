@@ -33,9 +33,8 @@ using testing::Not;
 
 class StoredBeside : public testing::Test {
  protected:
-  [[nodiscard]] Outcome kerf(const std::string& action, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"regress", action, folder_.suite()});
-    return run_kerf(more);
+  [[nodiscard]] Outcome kerf(const std::string& action, const std::vector<std::string>& more = {}) const {
+    return folder_.regress(action, more);
   }
   [[nodiscard]] Outcome store(const std::string& reason = "first forces") const {
     return kerf("update", {"--reason", reason, "--yes"});
@@ -45,9 +44,7 @@ class StoredBeside : public testing::Test {
     test::write_text(folder_.at(name), text);
   }
   void replace(const std::string& name, const std::string& from, const std::string& to) const {
-    std::string text = read(name);
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    write(name, text.replace(text.find(from), from.size(), to));
+    test::replace_in(folder_.at(name), from, to);
   }
   /// The case of the suite, and the same under another name.
   void write_two_cases(const std::string& head = "") const {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/studies/rubbed.h"
+#include "bench/studies/study_folder.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -22,10 +23,9 @@ using testing::HasSubstr;
 constexpr double friction_n = 0.3;
 
 /// A drawer of three livers under a tool that rubs, and its blank.
-class BlankInStudy : public testing::Test {
+class BlankInStudy : public test::StudyFolder {
  protected:
   BlankInStudy() {
-    fs::create_directory(drawer());
     for (unsigned specimen = 1; specimen <= 3; ++specimen) {
       const test::Tissue liver{.parallel_stiffness = 300.0, .seconds = 6.0, .seed = specimen};
       test::write_text(drawer() / fmt::format("liver_slow_s{}.txt", specimen),
@@ -33,19 +33,6 @@ class BlankInStudy : public testing::Test {
     }
     const test::Tissue none{.parallel_stiffness = 0.0, .seconds = 6.0};
     test::write_text(drawer() / "blank_slow.txt", test::as_text(test::rubbed_punch(none, friction_n)));
-  }
-  [[nodiscard]] fs::path drawer() const { return folder_ / "drawer"; }
-  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
-  [[nodiscard]] std::string file() const { return (study() / "study.toml").string(); }
-  Outcome make() const {
-    return run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()});
-  }
-  [[nodiscard]] json found() const { return json::parse(test::read_text(study() / "study.json")); }
-  void edit(const std::string& from, const std::string& to) const {
-    std::string text = test::read_text(study() / "study.toml");
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    test::write_text(study() / "study.toml", text);
   }
   /// Of the first group: the mean of the parallel spring.
   [[nodiscard]] double stiffness() const {
@@ -55,7 +42,6 @@ class BlankInStudy : public testing::Test {
         return std::exp(quantity.at("estimate").at("mean").get<double>());
     return 0.0;
   }
-  test::TemporaryFolder folder_;
 };
 
 // The tissue is a Kelvin element of 300 N/m: tool and tissue together are none.

@@ -19,6 +19,7 @@
 #include <unistd.h>
 
 #include "bench/studies/rubbed.h"
+#include "bench/studies/study_folder.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -33,31 +34,28 @@ bool is_half_written(const fs::path& path) {
 }
 
 /// A study that was run to its end, of which two recordings and all results are missing again.
-class InterruptedStudy : public testing::Test {
+class InterruptedStudy : public test::StudyFolder {
  protected:
   InterruptedStudy() {
-    fs::create_directory(folder_ / "drawer");
     for (unsigned specimen = 1; specimen <= 4; ++specimen)
       test::write_text(
-          folder_ / "drawer" / fmt::format("liver_s{}.txt", specimen),
+          drawer() / fmt::format("liver_s{}.txt", specimen),
           test::as_text(test::punch(
               {.parallel_stiffness = 200.0 + 10.0 * specimen, .seconds = 3.0, .seed = specimen})));
     const Outcome looked =
-        run_kerf({"study", "new", (folder_ / "drawer").string(), "--laws", "kelvin", "-o", study().string()});
+        run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()});
     EXPECT_EQ(looked.exit_status, 0) << looked.errors;
-    EXPECT_EQ(run_it().exit_status, 0);
+    EXPECT_EQ(run_it({"-j", "1"}).exit_status, 0);
     whole_ = test::read_text(study() / "study.json");
     for (const char* missing : {"recordings/liver_s3", "recordings/liver_s4", "held_out", "study.json",
                                 "report.html", "ro-crate-metadata.json", "tables"})
       fs::remove_all(study() / missing);
     for (const char* kept : {"liver_s1", "liver_s2"}) made_[kept] = made(kept);
   }
-  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
   [[nodiscard]] fs::path recording(const std::string& name) const { return study() / "recordings" / name; }
   [[nodiscard]] fs::file_time_type made(const std::string& name) const {
     return fs::last_write_time(recording(name) / "result.json");
   }
-  Outcome run_it() const { return run_kerf({"study", "run", (study() / "study.toml").string(), "-j", "1"}); }
 
   /// Whether a recording is computed but has not its name yet.
   [[nodiscard]] bool waits_for_its_name(const std::string& name) const {
@@ -108,7 +106,7 @@ class InterruptedStudy : public testing::Test {
   }
 
   void expect_goes_on() const {
-    const Outcome again = run_it();
+    const Outcome again = run_it({"-j", "1"});
     ASSERT_EQ(again.exit_status, 0) << again.errors;
     for (const auto& [name, time] : made_) EXPECT_EQ(made(name), time) << name << " was made again";
     EXPECT_EQ(test::read_text(study() / "study.json"), whole_);
@@ -116,7 +114,6 @@ class InterruptedStudy : public testing::Test {
       EXPECT_FALSE(is_half_written(entry.path())) << entry.path();
   }
 
-  test::TemporaryFolder folder_;
   std::string whole_;
   std::map<std::string, fs::file_time_type> made_;
 };

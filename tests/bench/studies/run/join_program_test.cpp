@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/studies/rubbed.h"
+#include "bench/studies/study_folder.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -25,10 +26,9 @@ constexpr double shift_s = 0.5;  // the forces' clock begins at its first row, h
 constexpr double skew = 2e-4;
 
 /// A drawer of two livers, one of them in two files with a clock each: t = shift + (1 + skew) t_other.
-class JoinInStudy : public testing::Test {
+class JoinInStudy : public test::StudyFolder {
  protected:
   JoinInStudy() {
-    fs::create_directory(drawer());
     test::write_text(drawer() / "liver_slow_s2.txt",
                      test::as_text(test::punch({.parallel_stiffness = 320.0, .seconds = 6.0, .seed = 2})));
     const schema::Recording both = test::punch({.parallel_stiffness = 300.0, .seconds = 6.0});
@@ -42,16 +42,6 @@ class JoinInStudy : public testing::Test {
     test::write_text(drawer() / "liver_slow_s1_position.txt", motion);
     test::write_text(drawer() / "liver_slow_s1_force.txt", forces);
   }
-  [[nodiscard]] fs::path drawer() const { return folder_ / "drawer"; }
-  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
-  Outcome run_it() const { return run_kerf({"study", "run", (study() / "study.toml").string()}); }
-  void edit(const std::string& from, const std::string& to) const {
-    std::string text = test::read_text(study() / "study.toml");
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    test::write_text(study() / "study.toml", text);
-  }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(JoinInStudy, IsMadeOfTwoFilesOnceAPersonSaysSo) {

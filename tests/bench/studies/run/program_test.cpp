@@ -15,6 +15,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include "bench/studies/study_folder.h"
 #include "support/recordings.h"
 
 namespace kerf::bench {
@@ -27,18 +28,15 @@ using test::run_kerf;
 using testing::HasSubstr;
 
 /// A drawer of two tissues, of each three specimens, with one file that is none.
-class StudyProgram : public testing::Test {
+class StudyProgram : public test::StudyFolder {
  protected:
   StudyProgram() {
-    fs::create_directory(drawer());
     for (unsigned specimen = 1; specimen <= 3; ++specimen) {
       write_punch(fmt::format("liver_s{}.txt", specimen), 200.0 + 10.0 * specimen, specimen);
       write_punch(fmt::format("skin_s{}.txt", specimen + 3), 400.0 + 10.0 * specimen, specimen + 3);
     }
     test::write_text(drawer() / "notes.md", "# What was cut\n");
   }
-  [[nodiscard]] fs::path drawer() const { return folder_ / "drawer"; }
-  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
 
   void write_punch(const std::string& name, double stiffness, unsigned seed,
                    double force_factor = 1.0) const {
@@ -51,24 +49,9 @@ class StudyProgram : public testing::Test {
                           force_factor * recording.force_measured[i]);
     test::write_text(drawer() / name, text.str());
   }
-  Outcome make() const {
-    return run_kerf({"study", "new", drawer().string(), "--laws", "kelvin", "-o", study().string()});
-  }
-  Outcome run_it(std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), {"study", "run", (study() / "study.toml").string()});
-    return run_kerf(more);
-  }
-  [[nodiscard]] json found() const { return json::parse(test::read_text(study() / "study.json")); }
-  void edit(const std::string& from, const std::string& to) const {
-    std::string text = test::read_text(study() / "study.toml");
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    test::write_text(study() / "study.toml", text);
-  }
   [[nodiscard]] fs::file_time_type made(const std::string& name) const {
     return fs::last_write_time(study() / "recordings" / name / "result.json");
   }
-  test::TemporaryFolder folder_;
 };
 
 // The tissues are Kelvin elements whose parallel springs are known.

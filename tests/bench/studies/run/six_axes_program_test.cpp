@@ -11,6 +11,7 @@
 #include <kerf/schema/recording.h>
 
 #include "bench/studies/rubbed.h"
+#include "bench/studies/study_folder.h"
 #include "support/program.h"
 
 namespace kerf::bench {
@@ -34,10 +35,9 @@ constexpr const char* polygons =
 
 /// A drawer of a punch along one axis and of a cut in six, simulated in a tissue that is a blade's law; the
 /// cut is a text with a rotation vector and forces in the world.
-class SixAxesInStudy : public testing::Test {
+class SixAxesInStudy : public test::StudyFolder {
  protected:
   SixAxesInStudy() {
-    fs::create_directory(folder_ / "drawer");
     test::write_text(folder_ / "drawer/skin_s1.txt",
                      test::as_text(test::punch({.parallel_stiffness = 300.0, .seconds = 4.0})));
     test::write_text(folder_ / "shape.law.toml",
@@ -65,21 +65,12 @@ class SixAxesInStudy : public testing::Test {
                   "time=1[s],position=2[mm],force=3[N]", "-o", study().string()});
     EXPECT_EQ(looked.exit_status, 0) << looked.errors;
   }
-  [[nodiscard]] fs::path study() const { return folder_ / "S"; }
-  Outcome run_it() const { return run_kerf({"study", "run", (study() / "study.toml").string()}); }
   [[nodiscard]] json cut() const {
     const json found = json::parse(test::read_text(study() / "study.json"));
     for (const json& one : found.at("recordings"))
       if (one.at("name") == "liver_s2") return one;
     return nullptr;
   }
-  void edit(const std::string& from, const std::string& to) const {
-    std::string text = test::read_text(study() / "study.toml");
-    ASSERT_NE(text.find(from), std::string::npos) << from;
-    text.replace(text.find(from), from.size(), to);
-    test::write_text(study() / "study.toml", text);
-  }
-  test::TemporaryFolder folder_;
 };
 
 TEST_F(SixAxesInStudy, SayWhatIsMissingForALaw) {
