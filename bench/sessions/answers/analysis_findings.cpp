@@ -113,10 +113,9 @@ class Findings {
     }
     if (!all.d_prime) return;
     if (all.equivalence) write_equivalence(all, fmt::format("d' is below {:.3g}", *options_.d_prime_bound));
-    if (!(all.equivalence && all.equivalence->is_shown) && std::isfinite(all.excluded_d_prime)) {
-      show_not(fmt::format("that {}d' is below {}: only what lies above is excluded at {:.3g} %",
-                           average_of(all), d_prime_text(all.excluded_d_prime), level_percent()));
-    }
+    if (std::isfinite(all.excluded_d_prime))
+      show(fmt::format("{}a d' above {} is unlikely (excluded at {:.3g} %)", average_of(all),
+                       d_prime_text(all.excluded_d_prime), level_percent()));
   }
 
   /// Never from pooled answers, nor where subjects differ: a mean of some who hear and some who do not is

@@ -106,6 +106,9 @@ TEST(ASession, OfOneSubjectSaysNothingOfPeople) {
   Study study = study_with(Design::abx, abx_task());
   add_answers(study, "P1", "", 20, 4);
   EXPECT_THAT(analyse(study, quick()).shows_not, Contains(HasSubstr("one subject")));
+  const double excluded = psychophysics::excluded_d_prime(abx_task(), {.successes = 20, .trials = 24});
+  EXPECT_THAT(analyse(study, quick()).shows,
+              Contains(fmt::format("A d' above {:.2f} is unlikely (excluded at 5 %).", excluded)));
 }
 
 // 6 of 8 has p = 37/256, 10 of 10 has 1/1024; Holm takes the lesser twice.
