@@ -14,7 +14,7 @@ using psychophysics::FitOptions;
 using psychophysics::Interval;
 using psychophysics::PsychometricFit;
 
-constexpr std::array lapses{0.0, 0.02, 0.04, 0.06};
+constexpr std::array lapse_grid{0.0, 0.02, 0.04, 0.06};
 
 /// A normal or a Student's quantity of unit error.
 psychophysics::Estimate standard(double value, double degrees_of_freedom) {
@@ -52,7 +52,7 @@ PsychometricFit fit_with_equal_lapses(std::span<const psychophysics::Level> leve
                                       const FitOptions& options) {
   if (options.lapse) return psychophysics::fit_psychometric(levels, with_lapse(options, *options.lapse));
   std::vector<PsychometricFit> fits;
-  for (const double lapse : lapses)
+  for (const double lapse : lapse_grid)
     fits.push_back(psychophysics::fit_psychometric(levels, with_lapse(options, lapse)));
   const std::size_t best =
       static_cast<std::size_t>(std::max_element(fits.begin(), fits.end(),
@@ -67,7 +67,7 @@ PsychometricFit fit_with_equal_lapses(std::span<const psychophysics::Level> leve
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const double left = allowed - 2.0 * (result.log_likelihood - fits[i].log_likelihood);
     if (i == best || left < 1e-4) continue;
-    FitOptions narrower = with_lapse(options, lapses[i]);
+    FitOptions narrower = with_lapse(options, lapse_grid[i]);
     narrower.confidence = confidence_of(left, degrees_of_freedom);
     const PsychometricFit fit = psychophysics::fit_psychometric(levels, narrower);
     result.threshold.interval = both(result.threshold.interval, fit.threshold.interval);
