@@ -26,10 +26,10 @@ constexpr bool sanitized = __has_feature(address_sanitizer) || __has_feature(thr
 constexpr bool sanitized = false;
 #endif
 
-/// A million, and fewer where a tick takes a mesh or the sanitizers watch.
+/// A million, and fewer where the sanitizers watch.
 std::uint64_t ticks_for(std::string_view model) {
-  if (model == "scissors_mesh") return sanitized ? 500 : 20'000;
-  return sanitized ? 10'000 : 1'000'000;
+  if (sanitized) return model == "scissors_mesh" ? 500 : 10'000;
+  return 1'000'000;
 }
 
 /// Where the tool is, `seconds` after the beginning: in and out of the tissue, each time to another place.
