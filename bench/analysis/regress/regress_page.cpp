@@ -140,7 +140,14 @@ std::string html_figures(std::span<const Figure> figures, std::span<const std::s
 std::string case_section(const RegressionOutcome& outcome, std::span<const Figure> figures,
                          std::span<const std::string> drawings) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
-  if (!outcome.error.empty()) return body + html_answer(Answer::bad, escaped(outcome.error) + ".");
+  if (!outcome.error.empty()) {
+    body += html_answer(Answer::bad, escaped(outcome.error) + ".");
+    if (outcome.said.empty()) return body;
+    return body +
+           fmt::format(
+               "<p class=\"soft\">The end of its standard error:</p>\n<pre class=\"scroll\">{}</pre>\n",
+               escaped(outcome.said));
+  }
   for (const std::string& message : outcome.messages)
     body += html_answer(Answer::bad, escaped(message) + ".");
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));
