@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <span>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -13,20 +14,50 @@
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "html/html.h"
+#include "html/zoom.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::size_t most_bands = 200;  ///< intervals that are drawn
+constexpr double label_share = 0.25;     ///< of the width, that a label may take
 
-/// A column over the rows of the expected run.
-Curve curve_of(const RunComparison& result, const std::vector<double>& values, const std::string& label,
-               Colour colour, double width) {
-  Curve curve{.label = label, .y = values, .colour = colour, .width = width};
-  curve.x.reserve(values.size());
-  for (std::size_t row = 0; row < values.size(); ++row) curve.x.push_back(result.runs.expected.time_of(row));
-  return decimated(curve);
+/// Rows that are drawn: all of a short run; of a long one what shows every spike, and all around the places
+/// that a reader will want to see closer.
+std::vector<std::size_t> drawn_rows(const RunComparison& result, std::size_t channel,
+                                    std::span<const double> apart) {
+  constexpr std::size_t most = 4000;
+  constexpr std::size_t around = 500;
+  std::vector<std::size_t> rows = decimated_rows(
+      {result.runs.expected.channels[channel].value, result.runs.got.channels[channel].value, apart}, most);
+  if (rows.size() == apart.size()) return rows;
+  const auto add_around = [&](std::size_t row) {
+    const std::size_t end = std::min(apart.size(), row + around);
+    for (std::size_t i = row - std::min(row, around); i < end; ++i) rows.push_back(i);
+  };
+  if (const auto first = result.comparison.channels[channel].first_outside) add_around(*first);
+  const auto& worst = result.comparison.worst;
+  if (worst && worst->channel == channel) add_around(worst->tick);
+  std::ranges::sort(rows);
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+  return rows;
 }
+
+/// Columns over the rows of the expected run that are drawn.
+struct DrawnColumns {
+  const RunComparison& result;
+  std::vector<std::size_t> rows;
+
+  [[nodiscard]] Curve curve(const std::vector<double>& values, const std::string& label, Colour colour,
+                            double width) const {
+    Curve curve{.label = label, .colour = colour, .width = width};
+    for (const std::size_t row : rows) {
+      curve.x.push_back(result.runs.expected.time_of(row));
+      curve.y.push_back(values[row]);
+    }
+    return curve;
+  }
+};
 
 /// What columns need and a little more; empty where they hold no finite number.
 Range range_of(std::initializer_list<std::span<const double>> columns) {
@@ -60,25 +91,30 @@ void mark_outside(Chart& chart, const RunComparison& result, const compare::Tole
         {.at = middle, .label = fmt::format("vibrates, {:.0f}-{:.0f} Hz", felt->from_hz, felt->to_hz)});
   }
   const auto& worst = result.comparison.worst;
-  const bool has_worst = worst && worst->channel == channel && about.outside > 0;
-  const bool at_once = has_worst && about.first_outside == worst->tick;
-  if (about.first_outside)
-    chart.vertical.push_back(
-        {.at = time_of(*about.first_outside),
-         .label = fmt::format("first{}, tick {}", at_once ? " and worst" : "", *about.first_outside),
-         .label_after = true});
-  if (has_worst && !at_once)
-    chart.vertical.push_back(
-        {.at = time_of(worst->tick), .label = fmt::format("worst, tick {}", worst->tick)});
-}
-
-/// Two drawings below each other as one.
-std::string below_each_other(const std::string& above, const std::string& below) {
-  const auto placed = [](std::string svg, int y) {
-    return svg.replace(svg.find("<svg"), 4, fmt::format("<svg y=\"{}\"", y));
+  if (!about.first_outside) return;
+  const std::size_t first = *about.first_outside;
+  const bool has_worst = worst && worst->channel == channel && worst->tick != first;
+  const std::size_t last = has_worst ? worst->tick : first;
+  const auto share = [&](std::size_t tick) {
+    return static_cast<double>(tick) / static_cast<double>(result.runs.expected.rows());
   };
-  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 680\">{}{}</svg>\n",
-                     placed(above, 0), placed(below, 340));
+  // Outwards from both lines, where there is room for it; on one side of two that are near as one text.
+  const bool first_before = share(first) > label_share;
+  const bool last_after = share(last) < 1.0 - label_share;
+  std::string of_first =
+      fmt::format("first{}, tick {}", worst && worst->tick == first ? " and worst" : "", first);
+  std::string of_last = fmt::format("worst, tick {}", last);
+  if (!has_worst) {
+    chart.vertical.push_back({.at = time_of(first), .label = of_first, .label_after = !first_before});
+    return;
+  }
+  if (share(last) - share(first) < label_share && first_before != last_after) {
+    std::string& kept = first_before ? of_first : of_last;
+    kept = of_first + "; " + of_last;
+    (first_before ? of_last : of_first).clear();
+  }
+  chart.vertical.push_back({.at = time_of(first), .label = of_first, .label_after = !first_before});
+  chart.vertical.push_back({.at = time_of(last), .label = of_last, .label_after = last_after});
 }
 
 std::string agreement_table(const RunComparison& result) {
@@ -120,7 +156,7 @@ std::string band_table(const RunComparison& result) {
                           : "<h2>By frequency</h2>\n<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }
 
-std::string page_of(const RunComparison& result, const std::vector<std::string>& pictures) {
+std::string page_of(const RunComparison& result, const std::vector<std::string>& figures) {
   const bool passed = result.comparison.passed;
   std::string body = fmt::format("<h1>{} beside {}</h1>\n<p class=\"answer{}\">{}</p>\n", escaped(result.got),
                                  escaped(result.expected), passed ? "" : " bad",
@@ -134,44 +170,65 @@ std::string page_of(const RunComparison& result, const std::vector<std::string>&
     body += fmt::format("<p>A lag of {:+.4f} ms +- {:.4f} ms is taken out.</p>\n", 1e3 * lag->seconds,
                         1e3 * lag->std_error_s);
   body += agreement_table(result);
-  for (const std::string& picture : pictures) body += html_figure(picture);
-  return html_page(result.got + " beside " + result.expected, body + band_table(result));
+  for (const std::string& figure : figures) body += figure;
+  return html_zoom_page(result.got + " beside " + result.expected, body + band_table(result));
 }
 
 }  // namespace
 
-std::array<Chart, 2> channel_charts(const RunComparison& result, const compare::Tolerance& tolerance,
-                                    std::size_t channel) {
+std::string below_each_other(std::span<const std::string> drawings) {
+  std::string all;
+  for (std::size_t i = 0; i < drawings.size(); ++i) {
+    std::string svg = drawings[i];
+    all += svg.replace(svg.find("<svg"), 4, fmt::format("<svg y=\"{}\"", 340 * i));
+  }
+  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 {}\">{}</svg>\n",
+                     340 * drawings.size(), all);
+}
+
+ChannelCharts channel_charts(const RunComparison& result, const compare::Tolerance& tolerance,
+                             std::size_t channel) {
   const compare::Channel& expected = result.runs.expected.channels[channel];
   const compare::Channel& got = result.runs.got.channels[channel];
-  Chart forces{.title = expected.name + ": expected and got",
-               .x_label = "time [s]",
-               .y_label = fmt::format("force [{}]", expected.unit),
-               .curves = {curve_of(result, expected.value, "expected", Colour::blue, 3.0),
-                          curve_of(result, got.value, "got", Colour::vermillion, 1.3)},
-               .y_range = range_of({expected.value, got.value}),
-               .legend_below = true,
-               .left_margin = 14};
-  mark_outside(forces, result, tolerance, channel);
+  const compare::Tolerance& own = tolerance.of(expected.name);
+  const compare::Jnd jnd = compare::jnd_of(expected.unit);
   std::vector<double> apart;
   std::vector<double> above;
   std::vector<double> below;
+  std::vector<double> jnds;
   for (std::size_t row = 0; row < expected.value.size(); ++row) {
     apart.push_back(got.value[row] - expected.value[row]);
-    above.push_back(tolerance.of(expected.name).allowed(expected.unit, expected.value[row]));
+    above.push_back(own.allowed(expected.unit, expected.value[row]));
     below.push_back(-above.back());
+    jnds.push_back(apart.back() / jnd.at(expected.value[row]));
   }
+  const DrawnColumns drawn{result, drawn_rows(result, channel, apart)};
+  Chart forces{.title = expected.name + ": expected and got",
+               .y_label = fmt::format("force [{}]", expected.unit),
+               .curves = {drawn.curve(expected.value, "expected", Colour::blue, 3.0),
+                          drawn.curve(got.value, "got", Colour::vermillion, 1.3)},
+               .y_range = range_of({expected.value, got.value})};
   Chart between{.title = expected.name + ": got less expected, and what is allowed",
-                .x_label = "time [s]",
                 .y_label = fmt::format("difference [{}]", expected.unit),
-                .curves = {curve_of(result, above, "allowed", Colour::green, 1.2),
-                           curve_of(result, below, "", Colour::green, 1.2),
-                           curve_of(result, apart, "difference", Colour::vermillion, 1.3)},
-                .y_range = range_of({apart, above, below}),
-                .legend_below = true,
-                .left_margin = 14};
-  mark_outside(between, result, tolerance, channel);
-  return {std::move(forces), std::move(between)};
+                .curves = {drawn.curve(above, "allowed", Colour::green, 1.2),
+                           drawn.curve(below, "", Colour::green, 1.2),
+                           drawn.curve(apart, "difference", Colour::vermillion, 1.3)},
+                .y_range = range_of({apart, above, below})};
+  const double line = own.jnd.value_or(1.0);
+  const std::string of_line = fmt::format("{:.3g} JND{}", line, own.jnd ? " allowed" : "");
+  Chart felt{.title = expected.name + ": the same in JNDs of the expected force",
+             .y_label = "difference [JND]",
+             .curves = {drawn.curve(jnds, "difference", Colour::vermillion, 1.3)},
+             .horizontal = {{.at = line, .label = of_line}, {.at = -line, .label = ""}},
+             .y_range = range_of({jnds, std::array{-line, line}})};
+  ChannelCharts charts{std::move(forces), std::move(between), std::move(felt)};
+  for (Chart& chart : charts) {
+    chart.x_label = "time [s]";
+    chart.legend_below = true;
+    chart.left_margin = 14;
+    mark_outside(chart, result, tolerance, channel);
+  }
+  return charts;
 }
 
 void write_comparison(const std::filesystem::path& folder, const RunComparison& result,
@@ -180,16 +237,18 @@ void write_comparison(const std::filesystem::path& folder, const RunComparison& 
   for (std::size_t i = 0; i < result.runs.expected.channels.size(); ++i) {
     for (Chart& chart : channel_charts(result, options.tolerance, i)) all.push_back(std::move(chart));
   }
-  const std::vector<std::string> charts = draw_all(all);
+  const std::vector<std::string> drawings = draw_all(all);
+  constexpr std::size_t each = std::tuple_size_v<ChannelCharts>;
   WholeFolder whole(folder, schema::existing_if(replace));
-  std::vector<std::string> pictures;
+  std::vector<std::string> figures;
   NewNames names;
-  for (std::size_t i = 0; i + 1 < charts.size(); i += 2) {
-    pictures.push_back(below_each_other(charts[i], charts[i + 1]));
-    const std::string name = as_file_name(result.runs.expected.channels[i / 2].name);
-    write_whole_file(whole.path() / (names.take(name).string() + ".svg"), pictures.back());
+  for (std::size_t i = 0; i < result.runs.expected.channels.size(); ++i) {
+    const std::string picture = below_each_other(std::span(drawings).subspan(each * i, each));
+    figures.push_back(html_zoom_figure(picture, std::span(all).subspan(each * i, each)));
+    const std::string name = as_file_name(result.runs.expected.channels[i].name);
+    write_whole_file(whole.path() / (names.take(name).string() + ".svg"), picture);
   }
-  write_whole_file(whole.path() / "compare.html", page_of(result, pictures));
+  write_whole_file(whole.path() / "compare.html", page_of(result, figures));
   write_json_file(whole.path() / "compare.json", comparison_as_json(result, options));
   whole.commit();
 }

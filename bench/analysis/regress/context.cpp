@@ -65,6 +65,7 @@ json case_as_json(const RegressionOutcome& outcome) {
           {"passed", outcome.left_out ? json(nullptr) : json(outcome.passed())},
           {"left_out", outcome.left_out},
           {"error", outcome.error.empty() ? json(nullptr) : json(outcome.error)},
+          {"said", outcome.said.empty() ? json(nullptr) : json(outcome.said)},
           {"messages", outcome.messages},
           {"explained", outcome.diagnosis.explained},
           {"names", findings_as_json(outcome.diagnosis.names, named)},

@@ -3,7 +3,6 @@
 #include <kerf/version.h>
 
 #include "regress/path.h"
-#include "regress/renderers/made_with.h"
 
 namespace kerf::bench {
 namespace {
@@ -22,10 +21,10 @@ std::string unseen_of(const OutsideRenderer& renderer) {
 
 }  // namespace
 
-CaseInputs inputs_of(const RegressionCase& one) {
+CaseInputs inputs_of(const RegressionCase& one, AskedVersions& versions) {
   return {.law_sha256 = checksum(one),
           .trajectory_sha256 = checksum(path_of(one), axes_of(one).size()),
-          .made_with = made_with(one),
+          .made_with = made_with(one, versions),
           .software = one.outside ? "" : software(),
           .unseen = one.outside ? unseen_of(*one.outside) : unseen_of_law()};
 }

@@ -4,6 +4,7 @@
 
 #include <kerf/schema/regression.h>
 
+#include "regress/renderers/made_with.h"
 #include "regress/suite.h"
 
 namespace kerf::bench {
@@ -19,7 +20,7 @@ struct CaseInputs {
 };
 
 /// @throws as path_of() and made_with().
-[[nodiscard]] CaseInputs inputs_of(const RegressionCase& one);
+[[nodiscard]] CaseInputs inputs_of(const RegressionCase& one, AskedVersions& versions);
 
 /// What is not as it was when forces were stored, or not known to be, in words; empty if nothing is.
 [[nodiscard]] std::string changed_since(const CaseInputs& now, const schema::StoredForces& stored);

@@ -103,6 +103,7 @@ std::string junit_xml(const Suite& suite, const SuiteOutcome& outcome, const std
                      fmt::format("{}\n{}\n{}", fmt::join(one.messages, "\n"), one.why, context_table(one)));
     }
     xml += attachments(one, page);
+    if (!one.said.empty()) xml += fmt::format("    <system-err>{}</system-err>\n", xml_escaped(one.said));
     xml += "  </testcase>\n";
   }
   for (const std::string& dropped : outcome.dropped) {

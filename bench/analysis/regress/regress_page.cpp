@@ -1,7 +1,10 @@
 #include "regress/regress_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -9,6 +12,7 @@
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "html/html.h"
+#include "html/zoom.h"
 #include "laws/placement.h"
 #include "regress/context.h"
 
@@ -16,6 +20,8 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t ticks_around = 40;
+constexpr std::array<const char*, std::tuple_size_v<ChannelCharts>> chart_names{"-whole", "-difference",
+                                                                                "-jnd"};
 constexpr std::size_t most_channels = 6;  ///< that are drawn of one case
 
 Chart chart_around_worst(const RegressionOutcome& outcome) {
@@ -118,14 +124,34 @@ std::string summary_table(const SuiteOutcome& outcome) {
   return "<div class=\"scroll\">" + html_table(rows) + "</div>\n";
 }
 
-std::string case_section(const RegressionOutcome& outcome, const std::vector<std::string>& pictures) {
+/// `figures` and their drawings: the worst tick, then those of each channel, which are one to zoom.
+std::string html_figures(std::span<const Figure> figures, std::span<const std::string> drawings) {
+  if (figures.empty()) return {};
+  std::string html = html_figure(drawings.front());
+  constexpr std::size_t each = std::tuple_size_v<ChannelCharts>;
+  for (std::size_t i = 1; i + each <= figures.size(); i += each) {
+    std::vector<Chart> charts;
+    for (const Figure& figure : figures.subspan(i, each)) charts.push_back(figure.chart);
+    html += html_zoom_figure(below_each_other(drawings.subspan(i, each)), charts);
+  }
+  return html;
+}
+
+std::string case_section(const RegressionOutcome& outcome, std::span<const Figure> figures,
+                         std::span<const std::string> drawings) {
   std::string body = fmt::format("<h2>{}</h2>\n", escaped(outcome.about.name));
-  if (!outcome.error.empty()) return body + html_answer(Answer::bad, escaped(outcome.error) + ".");
+  if (!outcome.error.empty()) {
+    body += html_answer(Answer::bad, escaped(outcome.error) + ".");
+    if (outcome.said.empty()) return body;
+    return body +
+           fmt::format(
+               "<p class=\"soft\">The end of its standard error:</p>\n<pre class=\"scroll\">{}</pre>\n",
+               escaped(outcome.said));
+  }
   for (const std::string& message : outcome.messages)
     body += html_answer(Answer::bad, escaped(message) + ".");
   body += fmt::format("<p class=\"soft\">{}.</p>\n", escaped(outcome.why));
-  for (const std::string& picture : pictures) body += html_figure(picture);
-  return body + context_section(outcome);
+  return body + html_figures(figures, drawings) + context_section(outcome);
 }
 
 }  // namespace
@@ -137,11 +163,11 @@ std::vector<Figure> figures_of(const RegressionOutcome& outcome) {
   const RunComparison runs = whole_runs(outcome);
   for (const std::size_t channel : drawn_channels(outcome.comparison)) {
     const std::string of = figures.size() == 1 ? "" : "-" + outcome.stored.channels[channel].name;
-    auto [forces, difference] = channel_charts(runs, outcome.about.tolerance, channel);
-    forces.title = name + ", " + forces.title;
-    difference.title = name + ", " + difference.title;
-    figures.push_back({.name = name + "-whole" + of, .chart = std::move(forces)});
-    figures.push_back({.name = name + "-difference" + of, .chart = std::move(difference)});
+    ChannelCharts charts = channel_charts(runs, outcome.about.tolerance, channel);
+    for (std::size_t i = 0; i < charts.size(); ++i) {
+      charts[i].title = name + ", " + charts[i].title;
+      figures.push_back({.name = name + chart_names[i] + of, .chart = std::move(charts[i])});
+    }
   }
   return figures;
 }
@@ -170,12 +196,13 @@ void write_regress_page(const Suite& suite, const SuiteOutcome& outcome,
   std::size_t next = 0;
   for (const RegressionOutcome& one : outcome.cases) {
     if (one.passed()) continue;
-    std::vector<std::string> mine;
-    for (std::size_t i = figures_of(one).size(); i > 0; --i) mine.push_back(pictures[next++]);
-    body += case_section(one, mine);
+    const std::size_t count = figures_of(one).size();
+    body +=
+        case_section(one, std::span(figures).subspan(next, count), std::span(pictures).subspan(next, count));
+    next += count;
   }
   body += "<h2>All cases</h2>\n" + summary_table(outcome);
-  write_whole_file(folder / "regress.html", html_page(suite.name, body));
+  write_whole_file(folder / "regress.html", html_zoom_page(suite.name, body));
 }
 
 }  // namespace kerf::bench

@@ -10,6 +10,7 @@
 
 #include "recordings/provenance.h"
 #include "regress/inputs.h"
+#include "regress/renderers/child_program.h"
 #include "regress/renderers/made_with.h"
 #include "regress/renderers/step_cost.h"
 #include "regress/stored/stored_suite.h"
@@ -115,21 +116,29 @@ void for_each_case(const std::vector<RegressionCase>& cases, const SuiteOptions&
   }
 }
 
+struct CaseError {
+  std::string line;
+  std::string said{};  ///< by its renderer
+};
+
 /// What is wrong with a case, if work() cannot be done; empty if it was done.
 template <typename Work>
-std::string error_of(const RegressionCase& one, const Work& work) {
-  if (!one.error.empty()) return one.error;
+CaseError error_of(const RegressionCase& one, const Work& work) {
+  if (!one.error.empty()) return {one.error};
   try {
     work();
     return {};
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const RendererError& error) {
+    return {error.what(), error.said()};
   } catch (const std::exception& error) {
-    return error.what();
+    return {error.what()};
   }
 }
 
-RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs) {
+RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces& stored, bool tick_costs,
+                           AskedVersions& versions) {
   RegressionOutcome outcome{.about = one, .path = path_of(one), .stored = stored};
   outcome.got = rendered(one, outcome.path);
   outcome.comparison = compare_forces(stored, outcome.got, one.tolerance, outcome.path.period_s.back());
@@ -142,7 +151,7 @@ RegressionOutcome run_case(const RegressionCase& one, const schema::StoredForces
     for (std::string& line : sentences_of(outcome.diagnosis, stored))
       outcome.messages.push_back(std::move(line));
   }
-  outcome.made_with = made_with(one);
+  outcome.made_with = made_with(one, versions);
   outcome.why = why_different(outcome);
   if (one.outside) {
     for (std::string& line : judge_step_cost(*one.outside, stored, outcome.got))
@@ -194,7 +203,8 @@ schema::StoredForces stored_now(const RegressionCase& one, const SampledMotion& 
   return now;
 }
 
-StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs) {
+StoredChange change_of(const RegressionCase& one, const schema::StoredForces* before, bool tick_costs,
+                       AskedVersions& versions) {
   if (before == nullptr) {
     const SampledMotion path = path_of(one);
     const RenderedForces got = rendered(one, path);
@@ -205,9 +215,9 @@ StoredChange change_of(const RegressionCase& one, const schema::StoredForces* be
             .what = fmt::format("{} ticks of {} channel{}", got.rows(), got.channels.size(),
                                 got.channels.size() == 1 ? "" : "s"),
             .why = "nothing is stored for it yet",
-            .now = stored_now(one, path, got, cost, made_with(one))};
+            .now = stored_now(one, path, got, cost, made_with(one, versions))};
   }
-  const RegressionOutcome outcome = run_case(one, *before, tick_costs);
+  const RegressionOutcome outcome = run_case(one, *before, tick_costs, versions);
   StoredChange change{.name = one.name, .kind = ChangeKind::unchanged, .now = *before};
   change.what = how_different(outcome.comparison);
   const bool same_source = checksum(one) == before->law_sha256 &&
@@ -268,11 +278,12 @@ SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
   stored.errors.merge(summary.wrong);
   SuiteOutcome outcome{.cases = {}, .dropped = {}, .notes = summary.notes};
   outcome.cases.resize(chosen.cases.size());
+  AskedVersions versions;
   for_each_case(chosen.cases, options, [&](std::size_t i) {
     const auto case_begin = Clock::now();
     const RegressionCase& one = chosen.cases[i];
     RegressionOutcome& result = outcome.cases[i];
-    const std::string error = error_of(one, [&] {
+    const CaseError error = error_of(one, [&] {
       if (!unreadable.empty()) throw std::invalid_argument(unreadable);
       require_readable(stored, one.name);
       const schema::StoredForces* const before = find(stored.cases, one.name);
@@ -281,11 +292,11 @@ SuiteOutcome run_suite(const Suite& suite, const SuiteOptions& options) {
             "{}: no forces are stored for case '{}'; 'kerf regress update {} --reason WHY' stores them",
             suite.stored.string(), one.name, suite.file.string()));
       }
-      result = options.changed && changed_since(inputs_of(one), *before).empty()
+      result = options.changed && changed_since(inputs_of(one, versions), *before).empty()
                    ? case_left_out(one, *before)
-                   : run_case(one, *before, options.tick_costs);
+                   : run_case(one, *before, options.tick_costs, versions);
     });
-    if (!error.empty()) result = {.about = one, .error = error};
+    if (!error.line.empty()) result = {.about = one, .error = error.line, .said = error.said};
     result.seconds = seconds_since(case_begin);
   });
   if (options.only.empty()) outcome.dropped = dropped_from(suite, stored.cases);
@@ -297,20 +308,21 @@ std::vector<StoredChange> plan_update(const Suite& suite, const SuiteOptions& op
   const StoredSuite stored = read_stored(suite);
   const Suite chosen = only(suite, options.only);
   std::vector<StoredChange> changes(suite.cases.size());
+  AskedVersions versions;
   for_each_case(suite.cases, options, [&](std::size_t i) {
     const RegressionCase& one = suite.cases[i];
     const schema::StoredForces* before = find(stored.cases, one.name);
     changes[i] = {.name = one.name, .asked = false};
     if (before != nullptr) changes[i].now = *before;
     if (std::ranges::count(chosen.cases, one.name, &RegressionCase::name) == 0) return;
-    const std::string error = error_of(one, [&] {
+    const CaseError error = error_of(one, [&] {
       require_readable(stored, one.name);
-      changes[i] = change_of(one, before, options.tick_costs);
+      changes[i] = change_of(one, before, options.tick_costs, versions);
     });
-    if (error.empty()) return;
+    if (error.line.empty()) return;
     changes[i].asked = true;
     changes[i].kind = ChangeKind::impossible;
-    changes[i].what = error;
+    changes[i].what = error.line;
   });
   std::erase_if(changes, [](const StoredChange& one) { return !one.asked && one.now.channels.empty(); });
   for (const std::string& name : dropped_from(suite, stored.cases)) {

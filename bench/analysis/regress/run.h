@@ -21,6 +21,7 @@ struct RegressionOutcome {
   ForceComparison comparison;
   compare::Diagnosis diagnosis;       ///< what changed, of one that did not pass
   std::string error;                  ///< why nothing could be compared: of the case, not of its forces
+  std::string said{};                 ///< last lines of a renderer's standard error, where there is an error
   std::vector<std::string> messages;  ///< why it did not pass, and what the difference looks like
   std::string why;                    ///< law, trajectory or code: what is not as it was when it was stored
   std::optional<double> tick_cost;    ///< measured now

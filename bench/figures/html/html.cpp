@@ -5,6 +5,7 @@
 #include <kerf/version.h>
 
 #include "files/for_terminal.h"
+#include "html/whole_page.h"
 
 namespace kerf::bench {
 namespace {
@@ -25,6 +26,10 @@ p { margin: .5rem 0; }
 .answer.partly { border-color: var(--partly); border-left-style: dashed; }
 .answer.bad { border-color: var(--bad); }
 figure { margin: 1rem 0; padding: .6rem; background: #fff; border: 1px solid var(--line); border-radius: 6px; }
+figure canvas { display: block; touch-action: pan-y; cursor: crosshair; }
+figure.zoom { color: #333; font-size: .85rem; }
+figure.zoom output { display: block; min-height: 1.6em; font-variant-numeric: tabular-nums; }
+figure.zoom button { font: inherit; }
 figure svg { display: block; width: 100%; height: auto; }
 .pair { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 400px), 1fr)); gap: .8rem; margin: .8rem 0; }
 .pair figure { margin: 0; }
@@ -86,16 +91,18 @@ std::string html_answer(Answer answer, std::string_view html) {
 
 std::string html_figure(std::string_view svg) { return fmt::format("<figure>{}</figure>\n", svg); }
 
-std::string html_page(std::string_view title, std::string_view body) {
+std::string html_page(std::string_view title, std::string_view body) { return whole_page(title, body, ""); }
+
+std::string whole_page(std::string_view title, std::string_view body, std::string_view policy) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
       "http-equiv=\"Content-Security-Policy\" "
-      "content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n<meta name=\"viewport\" "
+      "content=\"default-src 'none'; {}style-src 'unsafe-inline'; img-src data:\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, "
       "initial-scale=1\">\n<meta name=\"generator\" "
       "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}"
       "</body>\n</html>\n",
-      escaped(software()), escaped(title), style, body);
+      policy, escaped(software()), escaped(title), style, body);
 }
 
 }  // namespace kerf::bench

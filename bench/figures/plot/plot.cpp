@@ -21,14 +21,13 @@
 
 #include "files/whole_file.h"
 #include "html/html.h"
+#include "plot/colours.h"
 
 namespace kerf::bench {
 namespace {
 
 constexpr std::array colours{"#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7",
                              "#E69F00", "#56B4E9", "#F0E442", "#8A8A8A"};
-
-std::string_view hex(Colour colour) { return colours[static_cast<std::size_t>(colour)]; }
 
 /// A gnuplot string: single quotes doubled, no line breaks.
 std::string gnuplot_text(std::string_view text) {
@@ -91,7 +90,7 @@ void add_cells(std::string& script, const Cells& cells) {
                      "set object rectangle from first {}, first {} to first {}, first {} behind fc rgb '{}' "
                      "fs solid 0.3 noborder\n",
                      left_bottom.first, left_bottom.second, right_top.first, right_top.second,
-                     hex(colour(begin)));
+                     hex_of(colour(begin)));
     }
   }
 }
@@ -174,29 +173,30 @@ std::string script_of(const Chart& chart, const std::string& output) {
         out,
         "set object rectangle from first {}, graph 0 to first {}, graph 1 behind fc rgb '{}' fs solid 0.18 "
         "noborder\n",
-        band.begin, band.end, hex(band.colour));
+        band.begin, band.end, hex_of(band.colour));
   }
   add_cells(script, chart.cells);
   for (const Marker& marker : chart.vertical) {
     fmt::format_to(
         out, "set arrow from first {0}, graph 0 to first {0}, graph 1 nohead lc rgb '{1}' lw 1.5 dt 3\n",
-        marker.at, hex(Colour::vermillion));
+        marker.at, hex_of(Colour::vermillion));
     fmt::format_to(out, "set label {} at first {}, graph 0.96 {} textcolor rgb '{}'\n",
                    gnuplot_text(marker.label), marker.at,
-                   marker.label_after ? "left offset 0.5,0" : "right offset -0.5,0", hex(Colour::vermillion));
+                   marker.label_after ? "left offset 0.5,0" : "right offset -0.5,0",
+                   hex_of(Colour::vermillion));
   }
   for (const Marker& marker : chart.horizontal) {
     fmt::format_to(out,
                    "set arrow from graph 0, first {0} to graph 1, first {0} nohead lc rgb '{1}' lw 1 dt 3\n",
-                   marker.at, hex(Colour::grey));
+                   marker.at, hex_of(Colour::grey));
     fmt::format_to(out, "set label {} at graph 0.99, first {} right offset 0,0.6 textcolor rgb '{}'\n",
-                   gnuplot_text(marker.label), marker.at, hex(Colour::grey));
+                   gnuplot_text(marker.label), marker.at, hex_of(Colour::grey));
   }
   for (const PointLabel& label : chart.labels) {
     if (std::isfinite(label.text_x)) {
       fmt::format_to(out,
                      "set arrow from first {}, first {} to first {}, first {} nohead lc rgb '{}' lw 0.7\n",
-                     label.x, label.y, label.text_x, label.text_y, hex(Colour::grey));
+                     label.x, label.y, label.text_x, label.text_y, hex_of(Colour::grey));
       fmt::format_to(out, "set label {} at first {}, first {} {} front font 'DejaVu Sans,11'\n",
                      gnuplot_text(label.text), label.text_x, label.text_y,
                      label.left ? "right offset -0.3,0" : "left offset 0.3,0");
@@ -210,7 +210,8 @@ std::string script_of(const Chart& chart, const std::string& output) {
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Curve& curve = curves[i];
     fmt::format_to(out, "{} $d{} using 1:2 with {} lc rgb '{}' {}", i == 0 ? "plot" : ",", i, style_of(curve),
-                   hex(curve.colour), curve.label.empty() ? "notitle" : "title " + gnuplot_text(curve.label));
+                   hex_of(curve.colour),
+                   curve.label.empty() ? "notitle" : "title " + gnuplot_text(curve.label));
   }
   return script + "\n";
 }
@@ -263,6 +264,8 @@ class NamedMemory {
 };
 
 }  // namespace
+
+std::string_view hex_of(Colour colour) noexcept { return colours[static_cast<std::size_t>(colour)]; }
 
 std::vector<std::string> draw_all(std::span<const Chart> charts) {
   std::deque<NamedMemory> outputs;

@@ -20,6 +20,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t words_kept = 4096;  ///< bytes of each stream
+constexpr int lines_kept = 20;
 constexpr std::size_t longest_in_print = 300;
 constexpr std::size_t most_others = 2;  ///< to wait for beside a program
 
@@ -152,6 +153,17 @@ std::string ChildProgram::last_words() const {
   said.erase(said.find_last_not_of(" \t\r\n") + 1);
   const std::string line = in_print(std::string_view(said).substr(said.find_last_of('\n') + 1));
   return line.empty() ? "; it said nothing" : fmt::format("; it said last: {}", line);
+}
+
+std::string last_lines(std::string_view said) {
+  said = said.substr(0, said.find_last_not_of(" \t\r\n") + 1);
+  std::string lines;
+  for (int count = 0; count < lines_kept && !said.empty(); ++count) {
+    const auto end = said.find_last_of('\n');
+    lines.insert(0, in_print(end == std::string_view::npos ? said : said.substr(end + 1)) + '\n');
+    said = said.substr(0, end == std::string_view::npos ? 0 : end);
+  }
+  return lines;
 }
 
 std::string in_print(std::string_view said) {

@@ -3,14 +3,28 @@
 #include <chrono>
 #include <filesystem>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <poll.h>
 #include <sys/types.h>
 
 namespace kerf::bench {
+
+/// What a renderer did wrong, in one line, and what it said besides.
+class RendererError : public std::invalid_argument {
+ public:
+  RendererError(const std::string& what, std::string said)
+      : std::invalid_argument(what), said_(std::move(said)) {}
+  /// The last lines of its standard error, as last_lines() gives them.
+  [[nodiscard]] const std::string& said() const noexcept { return said_; }
+
+ private:
+  std::string said_;
+};
 
 /// A descriptor that is closed at the end of its scope.
 class Descriptor {
@@ -83,6 +97,9 @@ class ChildProgram {
   bool reaped_ = false;
   int status_ = 0;
 };
+
+/// The last lines that a program said: at most 20, each as in_print() has it.
+[[nodiscard]] std::string last_lines(std::string_view said);
 
 /// The begin of what a program said, for a message: on one line, in UTF-8, without control characters.
 [[nodiscard]] std::string in_print(std::string_view said);

@@ -154,7 +154,7 @@ class Conversation {
   /// Ends it for what it has or has not done.
   [[noreturn]] void fail(const std::string& what) {
     program_->kill_group();
-    throw std::invalid_argument("the renderer " + what + program_->last_words());
+    throw RendererError("the renderer " + what + program_->last_words(), last_lines(program_->errors.said()));
   }
   /// @param done what it has not done: "answered tick 5"
   [[noreturn]] void fail(LineLink::Outcome outcome, const std::string& done) {

@@ -53,7 +53,7 @@ fs::path found_along_path(const std::string& program) {
   return {};
 }
 
-std::string version_of(const OutsideRenderer& renderer) {
+std::string printed_version(const OutsideRenderer& renderer) {
   const ProgramWords words = run_program({.command = renderer.version,
                                           .folder = renderer.folder,
                                           .timeout = std::chrono::duration<double>(renderer.timeout_s),
@@ -67,9 +67,9 @@ std::string version_of(const OutsideRenderer& renderer) {
   return line;
 }
 
-std::string of_renderer(const OutsideRenderer& renderer) {
+std::string of_renderer(const OutsideRenderer& renderer, AskedVersions& versions) {
   std::string text;
-  if (!renderer.version.empty()) text += fmt::format("version: {}\n", version_of(renderer));
+  if (!renderer.version.empty()) text += fmt::format("version: {}\n", versions.of(renderer));
   text += fmt::format("command: {}\n", sha256_of(std::string_view(called(renderer))));
   for (const std::string& word : renderer.command) {
     fs::path file = renderer.folder / word;
@@ -94,8 +94,22 @@ std::map<std::string, std::string> lines_of(const std::string& text) {
 
 }  // namespace
 
-std::string made_with(const RegressionCase& one) {
-  if (one.outside) return one.outside->command.empty() ? "" : of_renderer(*one.outside);
+std::string AskedVersions::of(const OutsideRenderer& renderer) {
+  const std::string key = fmt::format("{}\n{}", renderer.folder.string(), fmt::join(renderer.version, "\n"));
+  std::shared_future<std::string> answer;
+  {
+    const std::lock_guard lock(guard_);
+    std::shared_future<std::string>& known = all_[key];
+    // Who comes first runs it, and whoever else comes waits.
+    if (!known.valid())
+      known = std::async(std::launch::deferred, [renderer] { return printed_version(renderer); }).share();
+    answer = known;
+  }
+  return answer.get();
+}
+
+std::string made_with(const RegressionCase& one, AskedVersions& versions) {
+  if (one.outside) return one.outside->command.empty() ? "" : of_renderer(*one.outside, versions);
   const std::string plugin = plugin_in_words(one.law.law);
   const auto comma = plugin.rfind(", SHA-256 ");
   return plugin.empty() ? "" : fmt::format("{}: {}\n", plugin.substr(0, comma), plugin.substr(comma + 10));

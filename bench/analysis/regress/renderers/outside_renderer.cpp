@@ -139,17 +139,18 @@ RenderedForces render_forces(const OutsideRenderer& renderer, const SampledMotio
   write_whole_file(trajectory, trajectory_csv(motion, {renderer.axes, renderer.quaternion}));
   const ProgramWords words = run_program(run);
   if (!fs::exists(run.output)) {
-    throw std::invalid_argument(fmt::format(
+    const std::string what = fmt::format(
         "the renderer ended well and wrote no {{forces}}{}",
         words.output.empty() ? ""
                              : "; it printed '" + in_print(words.output.substr(0, words.output.find('\n'))) +
-                                   "' on standard output"));
+                                   "' on standard output");
+    throw RendererError(what, last_lines(words.errors));
   }
   try {
     return forces_of(read_number_table(run.output, at_most), renderer, motion);
   } catch (const std::invalid_argument& error) {
     // The file is gone when this is read: its name says nothing.
-    throw std::invalid_argument(with(error.what(), run.output.string(), "the forces"));
+    throw RendererError(with(error.what(), run.output.string(), "the forces"), last_lines(words.errors));
   }
 }
 

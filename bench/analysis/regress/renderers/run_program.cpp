@@ -45,11 +45,13 @@ ProgramWords run_program(const ProgramRun& run) {
   ChildProgram program({.command = run.command, .folder = run.folder});
   const std::string why = watch(run, program);
   const int status = program.kill_group();
-  if (!why.empty()) throw std::invalid_argument(why + program.last_words());
+  const auto fail = [&](const std::string& what) {
+    throw RendererError(what + program.last_words(), last_lines(program.errors.said()));
+  };
+  if (!why.empty()) fail(why);
   if (status != 0) {
     const std::string end = end_in_words(status);
-    throw std::invalid_argument(fmt::format(
-        "the renderer {}{}{}", end, end.starts_with("ended") ? ", expected 0" : "", program.last_words()));
+    fail(fmt::format("the renderer {}{}", end, end.starts_with("ended") ? ", expected 0" : ""));
   }
   return {.output = program.output.said(), .errors = program.errors.said()};
 }

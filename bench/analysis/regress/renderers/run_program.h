@@ -26,7 +26,7 @@ struct ProgramWords {
 /// Runs a program in a process group of its own, with /dev/null as its input, and kills that group in any
 /// case: at the end, after the time-out, or as soon as its file becomes too large. A process that leaves the
 /// group (setsid) is not found; nobody waits for it.
-/// @throws std::invalid_argument in one line, with the last that it said: it cannot be started, ended with
+/// @throws RendererError in one line, with the last that it said: it cannot be started, ended with
 /// another status than 0 or by a signal, took too long, or wrote too much; std::system_error.
 [[nodiscard]] ProgramWords run_program(const ProgramRun& run);
 

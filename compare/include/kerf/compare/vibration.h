@@ -8,7 +8,7 @@ namespace kerf::compare {
 
 /// Smallest vibration that a hand feels on a tool that it holds, as RMS of the force [N] at a frequency [Hz]:
 /// some 15 mN at 10 Hz, 3 mN between 160 and 250 Hz, 30 mN at 1 kHz, along straight lines of the logarithms
-/// between. Orders of magnitude of [Israr2006] (a stylus) and [Hatzfeld2012] (a fingertip), rounded; of a
+/// between. Orders of magnitude, from memory of [Israr2006] (a stylus) and [Hatzfeld2012] (a fingertip); of a
 /// torque [N·m] that of a force at the fingers (`fingers_m`), as [ZhangBoyles2018] found across a stylus.
 [[nodiscard]] double vibration_threshold(double frequency_hz, std::string_view force_unit) noexcept;
 

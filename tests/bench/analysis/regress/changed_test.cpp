@@ -23,7 +23,10 @@ class Inputs : public testing::Test {
     write_update(suite, plan_update(suite, {}), "first forces");
     stored_ = schema::read_regression(suite.stored).front();
   }
-  [[nodiscard]] CaseInputs now() const { return inputs_of(read_suite(folder_.suite()).cases.front()); }
+  [[nodiscard]] CaseInputs now() const {
+    AskedVersions versions;
+    return inputs_of(read_suite(folder_.suite()).cases.front(), versions);
+  }
   /// As they are, by a program of which all is known.
   [[nodiscard]] std::string changed() const {
     CaseInputs inputs = now();

@@ -1,5 +1,8 @@
 #include "regress/junit.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,7 +75,7 @@ TEST_F(SilentLaw, IsShownFiveTicksAroundTheWorst) {
 
 TEST_F(SilentLaw, IsDrawnBesideWhatWasExpected) {
   const auto figures = figures_of(outcome_.cases[0]);
-  ASSERT_THAT(figures, SizeIs(3));
+  ASSERT_THAT(figures, SizeIs(4));
   EXPECT_EQ(figures[0].name, "kelvin-worst");
   ASSERT_THAT(figures[0].chart.curves, SizeIs(2));
   EXPECT_EQ(figures[0].chart.curves[0].label, "expected");
@@ -80,9 +83,15 @@ TEST_F(SilentLaw, IsDrawnBesideWhatWasExpected) {
   EXPECT_EQ(figures[1].chart.curves[0].x.size(), 400U);
   EXPECT_EQ(figures[2].name, "kelvin-difference");
   EXPECT_EQ(figures[2].chart.curves[0].label, "allowed");
+  EXPECT_EQ(figures[3].name, "kelvin-jnd");
+  const Curve& jnds = figures[3].chart.curves[0];
+  const auto& worst = *outcome_.cases[0].comparison.worst;
+  EXPECT_DOUBLE_EQ(jnds.y[worst.tick], worst.difference() / std::max(0.07 * std::abs(worst.expected), 0.05));
+  EXPECT_EQ(figures[3].chart.y_label, "difference [JND]");
   EXPECT_FALSE(figures[2].chart.bands.empty()) << "what is outside is marked";
   write_regress_page(suite_, outcome_, folder_.at("page"));
   const std::string page = test::read_text(folder_.at("page/regress.html"));
+  EXPECT_THAT(page, AllOf(HasSubstr("<figure class=\"zoom\">"), HasSubstr("script-src 'sha256-")));
   EXPECT_THAT(page, AllOf(HasSubstr("1 of 1 cases did not pass"), HasSubstr("<svg"), HasSubstr("FAILED"),
                           Not(HasSubstr("<first>"))));
   EXPECT_THAT(test::read_text(folder_.at("page/kelvin-worst.svg")), HasSubstr("<svg"));

@@ -284,5 +284,20 @@ TEST_F(LockstepRenderer, IsKnownByItsVersionAndByTheProgramsThatItsCommandNames)
   EXPECT_THAT(outcome_of_sound("version = [\"true\"]").error, HasSubstr("printed none"));
 }
 
+TEST_F(LockstepRenderer, IsAskedForItsVersionOnceASuite) {
+  test::write_text(folder_ / "version.sh", "echo asked >> asked.txt\necho mysim 1.0\n");
+  static_cast<void>(outcome_of_sound("version = [\"sh\", \"version.sh\"]"));
+  const std::string one = test::read_text(folder_ / "suite.toml");
+  std::string other = one;
+  const std::string name = "name = \"a0\"";
+  other.replace(other.find(name), name.size(), "name = \"b\"");
+  test::write_text(folder_ / "suite.toml", one + other);
+  std::filesystem::remove(folder_ / "asked.txt");
+  write_update(suite(), plan_update(suite(), {.jobs = 2}), "first");
+  EXPECT_EQ(test::read_text(folder_ / "asked.txt"), "asked\n");
+  EXPECT_EQ(run_suite(suite(), {.jobs = 2}).failed(), 0U);
+  EXPECT_EQ(test::read_text(folder_ / "asked.txt"), "asked\nasked\n") << "a run asks anew";
+}
+
 }  // namespace
 }  // namespace kerf::bench

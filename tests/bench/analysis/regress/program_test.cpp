@@ -2,6 +2,7 @@
 #include <array>
 #include <fstream>
 #include <limits>
+#include <map>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -158,6 +159,45 @@ TEST_F(RegressProgram, TakesALawOfAPlugin) {
   const Outcome outcome = kerf("run");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("the plug-in mylaw.so is another file than it was"));
+}
+
+TEST_F(RegressProgram, TakesALawFileAndThePluginThatItsLawIsOf) {
+  std::filesystem::copy(std::filesystem::path(KERF_TEST_PLUGINS) / "moody.so", folder_.at("mylaw.so"));
+  for (const int stiffness : {20, 40})
+    test::write_text(
+        folder_.at(fmt::format("moody{}.law.toml", stiffness)),
+        fmt::format("model = \"moody\"\naxis = \"x\"\nposition_unit = \"m\"\nforce_unit = \"N\"\n"
+                    "contact = {{ position = {{ value = 0, unit = \"m\" }}, direction = "
+                    "\"increasing\" }}\n[parameters]\nstiffness = {{ value = {}, unit = \"N/m\" "
+                    "}}\nmood = {{ value = 0, unit = \"1\" }}\n",
+                    stiffness));
+  const std::string head = "name = \"two laws and a file\"\nplugins = [\"mylaw.so\"]\n";
+  std::string cases;
+  for (const std::string law : {"mylaw.so", "moody20.law.toml", "moody40.law.toml"})
+    cases += fmt::format(
+        "[[case]]\nname = \"{0}\"\nlaw = \"{0}\"\nexact = true\n[[case.motion]]\nkind = \"strokes\"\nfrom = "
+        "{{ value = 0, unit = \"m\" }}\nto = {{ value = 1, unit = \"cm\" }}\n",
+        law);
+  folder_.write_suite(head + cases);
+  store();
+  std::map<std::string, schema::StoredForces> stored;
+  for (schema::StoredForces& one : schema::read_regression(folder_.at("suite.h5"))) stored[one.name] = one;
+  ASSERT_EQ(stored.size(), 3U);
+  for (const auto& [name, one] : stored) {
+    EXPECT_EQ(one.model, "moody") << name;
+    EXPECT_THAT(one.made_with, HasSubstr("mylaw.so: ")) << name;
+    const double stiffness = name == "mylaw.so" ? 100.0 : name == "moody20.law.toml" ? 20.0 : 40.0;
+    EXPECT_NEAR(*std::ranges::max_element(one.force), 0.01 * stiffness, 1e-9) << name;
+  }
+  EXPECT_EQ(kerf("run").exit_status, 0);
+  test::replace_in(folder_.at("moody20.law.toml"), "value = 20", "value = 21");
+  const Outcome outcome = kerf("run", {"--json"});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_EQ(nlohmann::json::parse(outcome.output).at("failed"), 1) << "of that file alone";
+  folder_.write_suite("name = \"no plug-in named\"\n" + cases.substr(cases.find("[[case]]", 1)));
+  const auto without = nlohmann::json::parse(kerf("run", {"--json"}).output);
+  EXPECT_EQ(without.at("errors"), 2) << "there is no such law without it";
+  EXPECT_THAT(without.at("cases").at(0).at("error").get<std::string>(), HasSubstr("moody"));
 }
 
 TEST_F(RegressProgram, FindsAFolderThatCannotBeBeforeItRunsACase) {

@@ -5,6 +5,8 @@
 
 #include <kerf/schema/regression.h>
 
+#include "regress/context.h"
+#include "regress/junit.h"
 #include "regress/path.h"
 #include "regress/renderers/trajectory_table.h"
 #include "regress/run.h"
@@ -112,6 +114,22 @@ TEST_F(ScriptedRenderer, IsAnErrorOfItsCaseInOneLineWhateverItDoes) {
   EXPECT_FALSE(not_finite.passed());
   EXPECT_EQ(test::read_text(folder_ / "suite.h5"), before);
   EXPECT_TRUE(outcome_of(sound).passed());
+}
+
+TEST_F(ScriptedRenderer, HasTheEndOfWhatItSaidKeptWithItsError) {
+  static_cast<void>(outcome_of(sound));
+  write_update(suite(), plan_update(suite(), {}), "first");
+  std::string last;
+  for (int line = 11; line <= 30; ++line) last += fmt::format("line {}\n", line);
+  const RegressionOutcome outcome = outcome_of("seq -f 'line %g' 30 >&2; echo printed; exit 3");
+  EXPECT_THAT(outcome.error, HasSubstr("it said last: line 30"));
+  EXPECT_EQ(outcome.said, last) << "20 lines of standard error alone";
+  EXPECT_EQ(outcome_of("echo why >&2").said, "why\n") << "of one that ended well and wrote nothing";
+  EXPECT_LT(outcome_of("head -c 100000 /dev/zero | tr '\\0' x >&2; exit 3").said.size(), 1000U);
+  const SuiteOutcome all{.cases = {outcome}};
+  EXPECT_THAT(junit_xml(suite(), all), HasSubstr("<system-err>line 11\nline 12\n"));
+  EXPECT_THAT(outcome_as_json(suite(), all).at("cases").at(0).at("said"), last);
+  EXPECT_EQ(run_suite(suite(), {}).cases.at(0).error.find('\n'), std::string::npos);
 }
 
 TEST_F(ScriptedRenderer, MayBeAFileOfForcesAlongATrajectoryOfAFile) {

@@ -147,6 +147,10 @@ TEST_F(StoredBeside, TextIsAFileACaseAndTheSameBits) {
   ASSERT_EQ(kerf("update", {"--reason", "stiffer", "--yes", "--only", "kelvin"}).exit_status, 0);
   EXPECT_EQ(read("suite.forces/" + text_file_of("second, half as fast")), other);
   EXPECT_THAT(read("suite.forces/kelvin.csv"), HasSubstr("# history: 20"));
+  folder_.change_law("value = 8.1,", "value = 8.2,");
+  ASSERT_EQ(kerf("update", {"--reason", "stiffer still", "--yes", "--only", "kelvin"}).exit_status, 0);
+  EXPECT_THAT(read("suite.forces/kelvin.csv"), AllOf(HasSubstr(": first forces\n"), HasSubstr(": stiffer\n")))
+      << "what was read is written again";
   // A case that goes takes its file along.
   folder_.write_suite("references = \"text\"\n" + std::string(test::one_case));
   ASSERT_EQ(store("one is enough").exit_status, 0);
@@ -232,7 +236,9 @@ TEST_F(StoredBeside, TwoAtOnceAreToldApart) {
   EXPECT_THAT(update.errors, HasSubstr("another 'kerf regress' is at work on this suite"));
   EXPECT_EQ(read("suite.h5"), before);
   ASSERT_EQ(::flock(other, LOCK_EX), 0);  // as an update does
-  EXPECT_THAT(kerf("run").errors, HasSubstr("a 'kerf regress update' is storing forces of this suite"));
+  const Outcome run = kerf("run");
+  EXPECT_EQ(run.exit_status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("a 'kerf regress update' is storing forces of this suite"));
   ::close(other);
 }
 
