@@ -52,15 +52,11 @@ void require_one_axis(const Imported& imported, const std::string& name) {
         name));
 }
 
-/// A recording has a position, which a file of forces need not have: any of its columns stands for one until
-/// it is read.
+/// Read by options of its own. A recording has a position, which a file of forces need not have: any of its
+/// columns stands for one until it is read.
 Imported read_other(const JoinOptions& join_options, const ImportOptions& options) {
   ImportOptions other = options;
   other.map = join_options.map;
-  other.sheet.clear();
-  other.stretch = 0;
-  other.resample_hz = 0.0;
-  if (names(other.map, "time")) other.rate_hz = 0.0;
   const bool has_position = names(other.map, "position");
   if (!has_position) {
     const auto any =
