@@ -276,7 +276,8 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option(
       "--join-marker", arguments->join_marker,
       "CHANNEL>LEVEL: an event in both files that brings the clocks together, where the channel rises "
-      "through the level [SI] (default: half way); CHANNEL>LEVEL,OTHER>LEVEL where they differ");
+      "through the level [SI] (default: half way), or falls, CHANNEL<LEVEL; CHANNEL>LEVEL,OTHER>LEVEL where "
+      "they differ");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,
