@@ -121,15 +121,36 @@ Typed typed_verb(const CLI::App& app, const std::vector<std::string>& words) {
   return typed;
 }
 
+std::vector<std::string> options_of(const CLI::App& verb) {
+  std::vector<std::string> options;
+  for (const CLI::Option* const option : verb.get_options()) {
+    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+  }
+  return options;
+}
+
+/// Whoever gives --map to another verb may well want the other options of `kerf import` there.
+bool is_of_import_alone(const CLI::App& verb, const std::string& option,
+                        const std::vector<std::string>& options) {
+  const CLI::App* const all = verb.get_parent();
+  const bool takes_map = std::ranges::find(options, "--map") != options.end();
+  if (!takes_map || all == nullptr || all->get_parent() != nullptr) return false;
+  const std::vector<std::string> of_import = options_of(*all->get_subcommand("import"));
+  return std::ranges::find(of_import, option) != of_import.end();
+}
+
 /// What is wrong with the options: one that does not exist is said before one that is missing.
 std::string wrong_options(const Typed& typed, const CLI::ParseError& error) {
   const std::string more = fmt::format("'kerf help{}' says more", typed.name);
-  std::vector<std::string> options;
-  for (const CLI::Option* const option : typed.verb->get_options()) {
-    for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
-  }
+  const std::vector<std::string> options = options_of(*typed.verb);
   for (const std::string& word : typed.verb->remaining()) {
     const std::string option = word.substr(0, word.find('='));
+    if (is_of_import_alone(*typed.verb, option, options))
+      return fmt::format(
+          "{0} is an option of 'kerf import', and{1} has --map alone; run 'kerf import ... {0} "
+          "... -o R.h5' first, then 'kerf{1} R.h5' (sheet, stretch and rate may also stand in "
+          "a file that --map names)",
+          option, typed.name);
     if (option.starts_with('-'))
       return fmt::format("there is no option {}{} {}", option, did_you_mean(option, options), more);
   }

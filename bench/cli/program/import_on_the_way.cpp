@@ -18,6 +18,8 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/stand_in.h>
 
+#include "files/kept_pipe.h"
+#include "files/named_file.h"
 #include "import/import.h"
 #include "import/imported_text.h"
 #include "imports/import_file.h"
@@ -41,13 +43,13 @@ bool begins_as_hdf5(const std::string& file) {
          std::string_view(begin.data(), begin.size()) == signature;
 }
 
-/// Its hash is of what it holds, which a pipe gives only once.
-void require_read_twice(const std::string& file) {
-  std::error_code unknown;
-  const fs::file_status status = fs::status(file, unknown);
-  if (file == "-" || (fs::exists(status) && !fs::is_regular_file(status)))
-    throw std::invalid_argument(fmt::format(
-        "{}: --map takes a file on the way; expected a regular file, or run 'kerf import' first", file));
+/// The same text by the same map is the same recording to every verb, so that `kerf report` knows what others
+/// found of it: its UUID is made of what it holds (version 8 of RFC 9562).
+std::string uuid_of(const schema::Recording& recording, const std::string& sha256) {
+  const std::string content = content_sha256_of(schema::RowsInMemory(recording));
+  const std::string digits = sha256_of(std::string_view(sha256 + content));
+  return fmt::format("{}-{}-8{}-8{}-{}", digits.substr(0, 8), digits.substr(8, 4), digits.substr(12, 3),
+                     digits.substr(15, 3), digits.substr(18, 12));
 }
 
 /// No signal ends the program while it stands: between the making of a file and its end as a name.
@@ -90,7 +92,9 @@ void import_one(const std::string& file, const ImportOptions& options, Context& 
   Imported imported = import_text(file, options);
   for (std::string& warning : first_look_of(imported.recording))
     imported.warnings.push_back(std::move(warning));
-  nlohmann::ordered_json entry{{"file", file}, {"sha256", sha256_of(fs::path(file))}};
+  const std::string sha256 = sha256_of(fs::path(file));
+  imported.recording.header.uuid = uuid_of(imported.recording, sha256);
+  nlohmann::ordered_json entry{{"file", file}, {"sha256", sha256}};
   entry.update(imported_as_json(imported));
   entry.erase("parse_seconds");
   for (const auto& warning : entry["warnings"]) warn(fmt::format("{}: {}", file, warning.get<std::string>()));
@@ -104,8 +108,13 @@ void import_one(const std::string& file, const ImportOptions& options, Context& 
 
 }  // namespace
 
-void import_on_the_way(const std::vector<std::string>& files, Context& context) {
+void import_on_the_way(std::span<std::string> files, Context& context) {
   if (context.maps.empty()) return;
+  for (std::string& file : files) {
+    if (file == "-") file = "/dev/stdin";
+    // Verbs read a file again, for its hash.
+    if (!file.empty()) keep_pipe(file, LargestInput::import);
+  }
   std::vector<std::string> texts;
   std::ranges::copy_if(files, std::back_inserter(texts),
                        [](const std::string& file) { return !file.empty() && !begins_as_hdf5(file); });
@@ -117,10 +126,7 @@ void import_on_the_way(const std::vector<std::string>& files, Context& context) 
                           files.front()));
   ImportOptions options = import_options_of(context.maps, {});
   options.progress = show_bar;
-  for (const std::string& file : texts) {
-    require_read_twice(file);
-    import_one(file, options, context);
-  }
+  for (const std::string& file : texts) import_one(file, options, context);
 }
 
 std::vector<std::string> first_look_of(const schema::Recording& recording) {

@@ -108,16 +108,16 @@ void Verb::add_map(Context& context, const std::string& description) {
   add_option("--map", context.maps, description).one_value_each();
 }
 
-Verb& Verb::takes_texts(Context& context, const std::string& recording) {
+Verb& Verb::takes_texts(Context& context, std::string& recording) {
   add_map(
       context,
       "CHANNEL=COLUMN[unit],... or FILE.toml: take a text instead of a recording, imported on the way as by "
       "kerf import --map");
-  before_->push_back([&context, &recording] { import_on_the_way({recording}, context); });
+  before_->push_back([&context, &recording] { import_on_the_way({&recording, 1}, context); });
   return *this;
 }
 
-Verb& Verb::takes_texts(Context& context, const std::vector<std::string>& recordings) {
+Verb& Verb::takes_texts(Context& context, std::vector<std::string>& recordings) {
   add_map(context,
           "CHANNEL=COLUMN[unit],... or FILE.toml: take texts among the recordings, imported on the way as by "
           "kerf "

@@ -57,8 +57,8 @@ class Verb {
   Verb& takes_laws(Context& context);
   /// Adds --map: texts among the recordings that the variable names are imported before the verb's action
   /// runs.
-  Verb& takes_texts(Context& context, const std::string& recording);
-  Verb& takes_texts(Context& context, const std::vector<std::string>& recordings);
+  Verb& takes_texts(Context& context, std::string& recording);
+  Verb& takes_texts(Context& context, std::vector<std::string>& recordings);
   /// Adds a --map that is refused in a line with what to do: the verb changes the recording.
   Verb& refuses_texts(Context& context, const std::string& recording);
 

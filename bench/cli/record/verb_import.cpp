@@ -52,31 +52,57 @@ ImportOptions options_of_import(const ImportVerbArguments& arguments) {
   return import_options_of(arguments.maps, std::move(options));
 }
 
-std::vector<MapEntry> map_of(const std::vector<std::string>& parts) {
-  std::string map;
-  for (const std::string& part : parts) map += (map.empty() ? "" : ",") + part;
-  return parse_map(map);
+/// Of the file of --join: what --join-map says, and of the first file's options those that do not tell where
+/// in that file its numbers stand.
+ImportOptions options_of_other(const ImportVerbArguments& arguments, const ImportOptions& first) {
+  const ImportOptions shared{.velocity_window_s = first.velocity_window_s,
+                             .max_bytes = first.max_bytes,
+                             .strict = first.strict,
+                             .progress = first.progress};
+  try {
+    ImportOptions other = import_options_of(arguments.join_maps, shared);
+    const bool has_time = std::ranges::find(other.map, "time", &MapEntry::channel) != other.map.end();
+    if (!has_time && other.rate_hz == 0.0) other.rate_hz = first.rate_hz;
+    return other;
+  } catch (const std::invalid_argument& refused) {
+    const std::string message = refused.what();
+    if (!message.starts_with("--map")) throw;
+    throw std::invalid_argument("--join-map" + message.substr(5));
+  }
 }
 
 /// Takes in the file of --join, if there is one. `line` says what came in.
 nlohmann::ordered_json join_other(const ImportVerbArguments& arguments, const ImportOptions& options,
                                   Imported& imported, std::string& line) {
   if (arguments.join_file.empty()) return {};
-  if (arguments.join_maps.empty()) {
-    throw std::invalid_argument(fmt::format("{}: --join-map is needed to tell what its columns are; {}",
-                                            arguments.join_file,
-                                            explain_columns(arguments.join_file, arguments.options)));
-  }
+  const ImportOptions other = options_of_other(arguments, options);
   const Joined joined = join(imported,
                              {.file = arguments.join_file,
-                              .map = map_of(arguments.join_maps),
+                              .map = other.map,
                               .on = arguments.join_on,
                               .marker = arguments.join_marker},
-                             options);
+                             other);
   for (const std::string& warning : joined.warnings)
     imported.warnings.push_back(fmt::format("{}: {}", joined.file, warning));
   line = joined_line(joined);
   return joined_as_json(joined);
+}
+
+/// Before the first file is read, which may be long. @throws std::invalid_argument.
+void require_join_that_makes_sense(const ImportVerbArguments& arguments) {
+  if (arguments.join_file.empty()) {
+    if (!arguments.join_maps.empty() || !arguments.join_on.empty() || !arguments.join_marker.empty())
+      throw std::invalid_argument(
+          "--join-map, --join-on and --join-marker say how another file is taken in; expected --join FILE");
+    return;
+  }
+  if (arguments.join_file == "/dev/stdin" && arguments.data.front() == "/dev/stdin")
+    throw std::invalid_argument(
+        "DATA and --join are both standard input, which is read once; expected a file for one of them");
+  if (arguments.join_maps.empty()) {
+    throw std::invalid_argument(fmt::format("{}: --join-map is needed to tell what its columns are; {}",
+                                            arguments.join_file, explain_columns(arguments.join_file, {})));
+  }
 }
 
 ImportOptions options_of(const ImportVerbArguments& arguments, const std::string& example) {
@@ -172,6 +198,8 @@ void run_import(ImportVerbArguments arguments, Context& context) {
   for (std::string& file : arguments.data) {
     if (file == "-") file = "/dev/stdin";
   }
+  if (arguments.join_file == "-") arguments.join_file = "/dev/stdin";
+  require_join_that_makes_sense(arguments);
   std::error_code unknown;
   const bool is_one = arguments.data.size() == 1 && arguments.trial.empty() &&
                       !std::filesystem::is_directory(arguments.data.front(), unknown);
@@ -239,15 +267,17 @@ void add_import(CLI::App& app, Context& context) {
   verb.add_option("--trial", arguments->trial,
                   "Column by which one long table is divided into recordings, by its name or number");
   verb.add_option("--join", arguments->join_file,
-                  "Another file with its own clock, whose channels are taken in at the times of DATA");
-  verb.add_option("--join-map", arguments->join_maps, "Its columns, as --map").one_value_each();
+                  "Another file with its own clock, whose channels are taken in at the times of DATA; - is "
+                  "standard input");
+  verb.add_option("--join-map", arguments->join_maps, "Its columns, as --map, or FILE.toml").one_value_each();
   verb.add_option("--join-on", arguments->join_on,
                   "Channel of both maps that brings the clocks together by cross-correlation, or time where "
                   "they are one clock");
   verb.add_option(
       "--join-marker", arguments->join_marker,
       "CHANNEL>LEVEL: an event in both files that brings the clocks together, where the channel rises "
-      "through the level [SI] (default: half way); CHANNEL>LEVEL,OTHER>LEVEL where they differ");
+      "through the level [SI] (default: half way), or falls, CHANNEL<LEVEL; CHANNEL>LEVEL,OTHER>LEVEL where "
+      "they differ");
   verb.add_option("--sheet", arguments->options.sheet,
                   "Sheet of a workbook, by its name or its number from 1 (default: the first with numbers)");
   verb.add_option("--stretch", arguments->options.stretch,

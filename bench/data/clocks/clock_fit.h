@@ -22,6 +22,10 @@ struct ClockFit {
   std::size_t rows = 0;      ///< of the coarser series, that were compared
   std::size_t markers = 0;   ///< that were compared instead (fit_markers()); 0: the series were
   double t95 = 2.131;        ///< standard errors times this are half an interval of 95 %
+  /// Moments [s] of markers between others that only one of both has, by its own clock: spurious, or missed
+  /// by the other.
+  std::vector<double> first_alone_s = {};
+  std::vector<double> other_alone_s = {};
 };
 
 /// Blocks of the overlap that are left out by turns for the standard errors, and what follows for an interval

@@ -52,15 +52,11 @@ void require_one_axis(const Imported& imported, const std::string& name) {
         name));
 }
 
-/// A recording has a position, which a file of forces need not have: any of its columns stands for one until
-/// it is read.
+/// Read by options of its own. A recording has a position, which a file of forces need not have: any of its
+/// columns stands for one until it is read.
 Imported read_other(const JoinOptions& join_options, const ImportOptions& options) {
   ImportOptions other = options;
   other.map = join_options.map;
-  other.sheet.clear();
-  other.stretch = 0;
-  other.resample_hz = 0.0;
-  if (names(other.map, "time")) other.rate_hz = 0.0;
   const bool has_position = names(other.map, "position");
   if (!has_position) {
     const auto any =
@@ -217,6 +213,17 @@ Joined join(Imported& imported, const JoinOptions& join_options, const ImportOpt
       joined.warnings.emplace_back(
           "one marker tells the shift and nothing of the skew: clocks that differ by 100 ppm are 6 ms apart "
           "after a minute");
+    const auto tell_alone = [&](const char* which, const char* elsewhere,
+                                const std::vector<double>& times_s) {
+      if (!times_s.empty())
+        joined.warnings.push_back(fmt::format(
+            "{} of the {} file's markers, at {:.6g} s after its first row, {} not in the {}: left out, as "
+            "spurious "
+            "or missed there",
+            times_s.size(), which, fmt::join(times_s, ", "), times_s.size() == 1 ? "is" : "are", elsewhere));
+    };
+    tell_alone("first", "other", joined.clock.first_alone_s);
+    tell_alone("other", "first", joined.clock.other_alone_s);
   } else if (joined.is_one_clock) {
     joined.clock.shift_s = shared_shift(imported, other, file);
   } else {
@@ -260,16 +267,19 @@ nlohmann::ordered_json joined_as_json(const Joined& joined) {
   };
   nlohmann::ordered_json markers;
   if (joined.clock.markers > 0) markers = joined.clock.markers;
-  return {{"file", joined.file},
-          {"on", joined.on},
-          {"shift_s", joined.clock.shift_s},
-          {"shift_std_error_s", known(joined.clock.shift_error_s)},
-          {"skew", joined.clock.skew},
-          {"skew_std_error", known(joined.clock.skew_error)},
-          {"correlation", known(joined.clock.correlation)},
-          {"markers", markers},
-          {"channels", joined.channels},
-          {"rows_without", joined.rows_without}};
+  nlohmann::ordered_json all{{"file", joined.file},
+                             {"on", joined.on},
+                             {"shift_s", joined.clock.shift_s},
+                             {"shift_std_error_s", known(joined.clock.shift_error_s)},
+                             {"skew", joined.clock.skew},
+                             {"skew_std_error", known(joined.clock.skew_error)},
+                             {"correlation", known(joined.clock.correlation)},
+                             {"markers", markers},
+                             {"channels", joined.channels},
+                             {"rows_without", joined.rows_without}};
+  if (!joined.clock.first_alone_s.empty()) all["markers_of_first_alone_s"] = joined.clock.first_alone_s;
+  if (!joined.clock.other_alone_s.empty()) all["markers_of_other_alone_s"] = joined.clock.other_alone_s;
+  return all;
 }
 
 std::string joined_line(const Joined& joined) {

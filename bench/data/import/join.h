@@ -33,7 +33,8 @@ struct Joined {
 
 /// Takes what another file measured into a recording, at the recording's times: linear between its rows, NaN
 /// before, after and in its gaps, smoothed before where it is the faster one. Its channels, but for its time
-/// and the one that brings the clocks together, must not be there yet.
+/// and the one that brings the clocks together, must not be there yet. `options` are those of the other file,
+/// whose map stands in `join_options`.
 /// @throws std::invalid_argument for a recording in space, and a file or map that makes no sense, as
 /// import_text() and fit_clock() do.
 Joined join(Imported& imported, const JoinOptions& join_options, const ImportOptions& options);

@@ -103,6 +103,39 @@ TEST_F(TextsOnTheWay, GiveTheLawThatTheImportedRecordingGives) {
             hash.output.substr(0, 64));
 }
 
+TEST_F(TextsOnTheWay, ComeThroughPipes) {
+  // Their hash is asked for again after they were read.
+  const auto through = [&](const std::string& words) {
+    return test::run(
+        {"/bin/bash", "-c",
+         fmt::format("cat {} | {} {} --map '{}' --json --force", text(), KERF_PROGRAM, words, map)});
+  };
+  const std::string hash = test::run({"/usr/bin/sha256sum", text()}).output.substr(0, 64);
+  for (const auto* name : {"-", "/dev/stdin", "<(cat)"}) {
+    const Outcome outcome = through(fmt::format("fit {} --models kelvin -o {}", name, out()));
+    ASSERT_EQ(outcome.exit_status, 0) << name << ": " << outcome.errors;
+    EXPECT_EQ(nlohmann::json::parse(outcome.output).at("imported_on_the_way").at(0).at("sha256"), hash)
+        << name;
+    EXPECT_THAT(test::read_text(folder_ / "out" / "kelvin.law.toml"), HasSubstr(hash)) << name;
+    EXPECT_TRUE(std::filesystem::is_empty(scratch())) << name;
+  }
+  EXPECT_EQ(
+      test::run({"/bin/bash", "-c", fmt::format("{} info - --map '{}' < {}", KERF_PROGRAM, map, text())})
+          .exit_status,
+      0)
+      << "a regular file as standard input is no pipe";
+}
+
+TEST_F(TextsOnTheWay, AreOneRecordingToEveryVerb) {
+  const std::string fits = (folder_ / "fits").string();
+  ASSERT_EQ(with_map({"fit", text(), "--models", "kelvin", "-o", fits}).exit_status, 0);
+  const Outcome report =
+      with_map({"report", text(), fits, "-o", out()}, (folder_ / "rig.import.toml").string());
+  EXPECT_EQ(report.exit_status, 0) << report.errors;
+  const Outcome other = with_map({"report", text(), fits, "-o", out()}, "time=t[s],position=x[m],force=F[N]");
+  EXPECT_THAT(other.errors, HasSubstr("results of other recordings")) << "another map, another recording";
+}
+
 TEST_F(TextsOnTheWay, StayAsTheyAre) {
   const std::string before = test::read_text(text());
   for (const auto& words : std::vector<std::vector<std::string>>{
@@ -121,10 +154,18 @@ TEST_F(TextsOnTheWay, AreRefusedWhereTheMapHelpsNobody) {
   EXPECT_THAT(with_map({"info", recording}).errors, HasSubstr("leave --map out"));
   EXPECT_THAT(with_map({"fit", "--batch", folder_.path().string(), "-o", out()}).errors,
               HasSubstr("expected one among the recordings"));
-  EXPECT_THAT(with_map({"info", "/dev/stdin"}).errors, HasSubstr("expected a regular file"));
+  EXPECT_THAT(with_map({"info", scratch()}).errors, HasSubstr("a folder; expected a file"));
   EXPECT_THAT(with_map({"info", text()}, "time=9[s],position=2[mm]").errors,
               HasSubstr("asks for column '9'"));
   EXPECT_THAT(with_map({"info", text() + "x"}).errors, HasSubstr("cut.csvx"));
+  EXPECT_THAT(
+      with_map({"fit", text(), "--join", text(), "-o", out()}).errors,
+      HasSubstr(
+          "--join is an option of 'kerf import', and fit has --map alone; run 'kerf import ... --join"));
+  EXPECT_THAT(with_map({"inspect", text(), "--trial=a"}).errors,
+              HasSubstr("--trial is an option of 'kerf import'"));
+  EXPECT_THAT(with_map({"fit", text(), "--nothing", "-o", out()}).errors,
+              HasSubstr("there is no option --nothing"));
 }
 
 }  // namespace

@@ -158,6 +158,34 @@ TEST_F(JoinProgram, TakesASharedTimeAsItStands) {
   EXPECT_EQ(recording.channels[0].values[1], 1.5);
 }
 
+TEST_F(JoinProgram, TakesTheOtherFileFromAPipeAndByAnImportFile) {
+  test::write_text(folder_ / "b.csv",
+                   "# a stretch that was a trial\n0,9\n1,9\n2,9\n3,9\n4,9\n5,9\n6,9\n7,9\n"
+                   "8,9\n9,9\n10,9\n0,1\n1,2\n2,3\n3,4\n4,5\n5,6\n6,7\n7,8\n8,9\n9,9\n10,9\n");
+  test::write_text(folder_ / "forces.import.toml", "map = \"time=1[s],force=2[N]\"\nstretch = 2\n");
+  const auto piped = [&](const std::string& first, const std::string& how) {
+    return test::run(
+        {"/bin/bash", "-c",
+         fmt::format("cat {} | {} import {} --map 'time=1[s],position=2[mm]' --join - --join-map {} "
+                     "--join-on time -o {} --force",
+                     (folder_ / "b.csv").string(), KERF_PROGRAM, first, how, (folder_ / "r.h5").string())});
+  };
+  test::write_text(folder_ / "motion.csv", "0,1\n1,2\n2,3\n");
+  const std::string file = (folder_ / "forces.import.toml").string();
+  const auto outcome = piped((folder_ / "motion.csv").string(), file);
+  ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(schema::read_recording(folder_ / "r.h5").force_measured, ElementsAre(1.0, 2.0, 3.0))
+      << "the second stretch, as its file says";
+  EXPECT_THAT(piped("-", file).errors, HasSubstr("standard input, which is read once"));
+  EXPECT_THAT(piped((folder_ / "motion.csv").string(), "force").errors,
+              HasSubstr("--join-map: 'force' has no '='"));
+  EXPECT_THAT(
+      test::run_kerf({"import", (folder_ / "motion.csv").string(), "--map", "time=1[s],position=2[mm]",
+                      "--join-on", "time", "-o", (folder_ / "x.h5").string()})
+          .errors,
+      HasSubstr("expected --join FILE"));
+}
+
 TEST_F(JoinProgram, TakesStampsOfOneClock) {
   test::write_text(folder_ / "a.csv",
                    "2026-01-31T12:00:00Z,1\n2026-01-31T12:00:01Z,2\n2026-01-31T12:00:02Z,3\n");
