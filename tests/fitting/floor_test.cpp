@@ -72,6 +72,15 @@ TEST(Floor, OfADamperMovedAtManySpeedsNeedsTheVelocity) {
   EXPECT_THAT(words, HasSubstr("the hand, whose speed changes is most to blame"));
 }
 
+TEST(Floor, IsNotSaidToLieAboveWhatALoopReached) {
+  const Floor floor = Cycles(20, 0.3, 0.0, 0.02, damper).floor();
+  const double reached = 0.8 * floor.velocity_n;
+  EXPECT_THAT(blame(reached, floor.position_n, floor, 0.5 * reached), HasSubstr("of 2 JND"))
+      << "the error itself";
+  EXPECT_THAT(blame(reached, floor.position_n, floor, 0.5 * reached),
+              HasSubstr("nothing that was tried errs by less than 2 JND"));
+}
+
 TEST(Floor, OfCyclesThatDifferIsTheirSpread) {
   const Cycles cycles(40, 0.0, 0.2, 0.02, spring);
   const Floor floor = cycles.floor();

@@ -160,15 +160,17 @@ void add_onset_options(Verb& verb, PrepareVerbArguments& arguments) {
 }
 
 void add_blank_options(Verb& verb, PrepareVerbArguments& arguments) {
-  verb.add_option(
-      "--blank", arguments.blank,
-      "Recording of the tool cutting nothing: its friction, by position and direction, is taken off");
+  verb.add_option("--blank", arguments.blank,
+                  "Recording of the same tool that cuts nothing: what it meets by itself, by position and "
+                  "direction, and its inertia "
+                  "where the blank tells it, is taken off the force");
   verb.add_option(
           "--uncovered", arguments.uncovered,
           "With --blank: rows where it has not been stay as they are (keep, the default) or go (drop)")
       .one_of({"keep", "drop"});
   verb.add_option("--blank-speeds", arguments.blank_speeds,
-                  "With --blank: how much faster or slower than its strokes one may be (default: 2)");
+                  "With --blank: a stroke more times faster or slower than all of the blank's is not covered "
+                  "by it (default: 2)");
 }
 
 void add_filter_options(Verb& verb, PrepareVerbArguments& arguments) {

@@ -240,6 +240,16 @@ std::string about_object(const std::string& name, bool is_hdf5) {
               : "");
 }
 
+/// "'run', 'name' and 3 more": cells, texts, arrays of structs.
+std::string quoted(const std::vector<std::string>& names) {
+  constexpr std::size_t most_named = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most_named); ++i)
+    text += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > most_named) text += fmt::format(" and {} more", names.size() - most_named);
+  return text;
+}
+
 }  // namespace
 
 MatCopy::MatCopy(std::string_view bytes) {
@@ -294,8 +304,10 @@ MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLi
     }
   }
   if (taken.size() < 2)
-    throw std::invalid_argument(fmt::format("{}: no two numeric vectors of one length{}{}", limits.name,
-                                            objects.empty() ? "" : "; ", objects));
+    throw std::invalid_argument(
+        fmt::format("{}: no two numeric vectors of one length{}{}{}", limits.name,
+                    columns.passed_over.empty() ? "" : "; left out as none: ", quoted(columns.passed_over),
+                    objects.empty() ? "" : "; " + objects));
   if (!objects.empty()) table.notes.push_back(objects);
   for (const std::string& name : columns.too_large)
     table.notes.push_back(fmt::format(

@@ -176,26 +176,33 @@ void add_filter(const FilterReport& report, Lines& lines) {
 
 void add_blank(const BlankTaken& taken, Lines& lines) {
   const std::string& unit = taken.force_unit;
+  const auto share = [&](std::size_t rows) {
+    return 100.0 * static_cast<double>(rows) / static_cast<double>(taken.rows);
+  };
+  lines.push_back(fmt::format("  taken off {:.4g} {} of {:.4g} {} (rms), in {:.0f} % of the rows",
+                              taken.taken_rms, unit, taken.force_rms, unit, share(taken.covered)));
   lines.push_back(fmt::format(
-      "  {:.4g} {} rms of {:.4g} taken off; the blank's spread from cycle to cycle {:.3g}, the error of its "
-      "mean "
-      "{:.3g}; beyond two errors in {:.0f} % of the rows",
-      taken.taken_rms, unit, taken.force_rms, taken.spread_rms, taken.error_rms, 100.0 * taken.told_share));
+      "  it differs by {:.3g} {} (rms) from one cycle of the blank to the next; the mean of its {} cycles is "
+      "known "
+      "to {:.3g} {}, and more than two such errors from zero in {:.0f} % of these rows",
+      taken.spread_rms, unit, taken.tool.used.size(), taken.error_rms, unit, 100.0 * taken.told_share));
   for (const LeftOutCycle& cycle : taken.tool.left_out)
     lines.push_back(fmt::format("  cycle {} of the blank not used: {}", cycle.number, cycle.reason));
   const auto uncovered = [&](std::string_view what, const UncoveredRows& rows) {
     if (rows.rows == 0) return;
-    lines.push_back(fmt::format("  {} rows {}, at {:.4g} to {:.4g} {}: {}", rows.rows, what, rows.least,
-                                rows.most, taken.position_unit,
+    lines.push_back(fmt::format("  {} rows ({:.0f} %) {}, at {:.4g} to {:.4g} {}: {}", rows.rows,
+                                share(rows.rows), what, rows.least, rows.most, taken.position_unit,
                                 taken.are_dropped ? "left out" : "left as they were"));
   };
   uncovered("where the blank has not been", taken.out_of_range);
   uncovered("of strokes faster than the blank's", taken.too_fast);
   uncovered("of strokes slower than the blank's", taken.too_slow);
   uncovered("of no cycle", taken.of_no_cycle);
-  lines.push_back(fmt::format(
-      "  below zero before {:.1f} %, after {:.1f} %, by more than two spreads and 0.05 N {:.1f} %",
-      100.0 * taken.negative_before, 100.0 * taken.negative_after, 100.0 * taken.pulling_share));
+  lines.push_back(
+      fmt::format("  of the covered rows the force is below zero in {:.1f} % before and {:.1f} % after, in "
+                  "{:.1f} % by more than two "
+                  "spreads and 0.05 N, which the blank does not explain",
+                  100.0 * taken.negative_before, 100.0 * taken.negative_after, 100.0 * taken.pulling_share));
 }
 
 void add_score(const ContactScore& score, Lines& lines) {

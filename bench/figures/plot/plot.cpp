@@ -145,8 +145,9 @@ std::string script_of(const Chart& chart, const std::string& output) {
       "set encoding utf8\nset border 3 lc rgb '#444444'\nset tics nomirror out\nset format '%.6g'\nset grid "
       "lc rgb '#dddddd' lw "
       "1 dt 1\n"
-      "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\nset offsets graph 0, 0, "
-      "0.05, 0.05\n";
+      "set key outside right top samplen 2 spacing 1.2\nset autoscale noextend\n";
+  script +=
+      "set offsets graph 0, graph 0, graph 0.05, graph 0.05\n";  // each says of itself that it is a share
   if (chart.legend_below) {
     script += "set key outside below center horizontal\n";
     // An empty line of its own keeps the legend from the label above it.

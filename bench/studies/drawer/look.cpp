@@ -105,6 +105,9 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
   file.path = to_utf8(name);
   try {
     if (file.path != name) throw std::invalid_argument("its name is not UTF-8");
+    if (std::ranges::any_of(name, [](char letter) { return letter == '\n' || letter == '\r'; }))
+      throw std::invalid_argument("its name goes over several lines; give it another one");
+    if (path.filename().string().starts_with('.')) throw std::invalid_argument("a hidden file");
     if (fs::is_directory(path)) throw std::invalid_argument("a link to a folder, which is not followed");
     if (!fs::is_regular_file(path)) throw std::invalid_argument("it is no file, or a link to none");
     look_at(path, maps, file);
@@ -121,14 +124,20 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
   return file;
 }
 
-/// One recording must not count twice.
-void ignore_copies(std::vector<DrawerFile>& files) {
+/// One recording must not count twice. Of a file and links to it the file stays, whose name tells what it is
+/// of.
+void ignore_copies(std::vector<DrawerFile>& files, const fs::path& folder) {
   std::map<std::string, std::string> first;
-  for (DrawerFile& file : files) {
-    if (!file.ignored.empty()) continue;
-    const auto [known, is_new] = first.emplace(file.sha256, file.path);
-    if (!is_new) file.ignored = "has the content of " + known->second;
-  }
+  const auto go_through = [&](bool links) {
+    for (DrawerFile& file : files) {
+      if (!file.ignored.empty() || fs::is_symlink(folder / file.path) != links) continue;
+      const auto [known, is_new] = first.emplace(file.sha256, file.path);
+      if (!is_new)
+        file.ignored = (links ? "a link to the content of " : "has the content of ") + known->second;
+    }
+  };
+  go_through(false);
+  go_through(true);
 }
 
 }  // namespace
@@ -145,7 +154,7 @@ std::vector<DrawerFile> look_into(const fs::path& folder, const std::vector<Offe
   std::vector<DrawerFile> files;
   for (const fs::path& path : paths) files.push_back(looked_at(path, folder, maps));
   suggest_pairs(files, folder);
-  ignore_copies(files);
+  ignore_copies(files, folder);
   return files;
 }
 

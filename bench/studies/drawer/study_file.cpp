@@ -181,7 +181,7 @@ void read_compare(const Place& place, const toml::table& root, StudyPlan& study)
 }  // namespace
 
 std::string in_words_of_study(std::string message) {
-  for (const std::string key : {"join_on", "join_map", "join_marker"}) {
+  for (const std::string key : {"join_on", "join_map", "join_marker", "map", "sheet", "stretch", "rate"}) {
     std::string option = "--" + key;
     std::ranges::replace(option, '_', '-');
     for (auto at = message.find(option); at != std::string::npos; at = message.find(option, at))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/core.h>
 
@@ -19,6 +20,25 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t most_points = 1500;  // of a small chart
+constexpr double point_size = 1.6;
+constexpr double value_size = 5.0;
+
+/// From the least to the most value and a share of that beyond, so that no point lies on the frame. Empty of
+/// fewer than two.
+Range with_margins(const std::vector<Curve>& curves) {
+  constexpr double margin = 0.03;
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  for (const Curve& curve : curves) {
+    for (const double x : curve.x) {
+      if (!std::isfinite(x)) continue;
+      least = std::min(least, x);
+      most = std::max(most, x);
+    }
+  }
+  if (!(least < most)) return {};
+  return {least - margin * (most - least), most + margin * (most - least)};
+}
 
 /// Rows of the recording's cycles that are flagged.
 std::vector<std::uint32_t> flagged_numbers(const DrawerRecording& recording) {
@@ -44,9 +64,9 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
   all_cycles.cycles.by = CycleChoice::By::all;
   const AxisSeries counted = counted_series(source, all_cycles, fit.jnd).series;
   const std::vector<std::uint32_t> flagged = flagged_numbers(drawn);
-  Curve idle{.label = "idle", .colour = Colour::sky, .mark = Mark::points, .width = 1.0};
-  Curve bad{.label = "flagged", .colour = Colour::vermillion, .mark = Mark::points, .width = 1.0};
-  Curve good{.label = "counts", .colour = Colour::black, .mark = Mark::points, .width = 1.0};
+  Curve idle{.label = "idle", .colour = Colour::sky, .mark = Mark::points, .width = point_size};
+  Curve bad{.label = "flagged", .colour = Colour::vermillion, .mark = Mark::points, .width = point_size};
+  Curve good{.label = "counts", .colour = Colour::black, .mark = Mark::points, .width = point_size};
   for (std::size_t i = 0; i < whole.force.size(); ++i) {
     const bool is_idle = !counted.counts.empty() && counted.counts[i] == 0;
     const bool is_flagged =
@@ -61,6 +81,7 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
               .y_label = fmt::format("force [{}]", recording.axes[axis].force_unit)};
   for (Curve* curve : {&idle, &bad, &good})
     if (!curve->x.empty()) chart.curves.push_back(thinned(std::move(*curve), most_points));
+  chart.x_range = with_margins(chart.curves);
   chart.legend_below = true;
   chart.width_px = 420;
   chart.height_px = 300;
@@ -68,8 +89,8 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
 }
 
 Chart quantity_chart(const StudyResults& results, const std::string& quantity) {
-  Curve values{.label = "recordings", .colour = Colour::blue, .mark = Mark::circles, .width = 2.0};
-  Curve means{.label = "mean", .colour = Colour::vermillion, .mark = Mark::points, .width = 5.0};
+  Curve values{.label = "recordings", .colour = Colour::blue, .mark = Mark::circles, .width = value_size};
+  Curve means{.label = "mean", .colour = Colour::vermillion, .mark = Mark::points, .width = value_size};
   Curve intervals{.label = "95 % of the mean", .colour = Colour::vermillion};
   Chart chart{.title = quantity, .legend_below = true};
   double at = 0.0;

@@ -114,7 +114,7 @@ void study_one(const StudyPlan& plan, DrawerRecording& one, const fs::path& fold
   } catch (const std::bad_alloc&) {
     one.result.failure = "there was not enough memory";
   } catch (const std::exception& error) {
-    one.result.failure = in_one_line(error.what(), source);
+    one.result.failure = in_one_line(in_words_of_study(error.what()), source);
   }
 }
 

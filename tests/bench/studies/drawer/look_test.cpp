@@ -43,7 +43,13 @@ TEST_F(Drawer, OfRubbishSaysOfEachFileWhyItTakesNoPart) {
   test::write_text(folder_ / "log.txt", "");
   fs::resize_file(folder_ / "log.txt", std::uintmax_t{2} << 30U);
   schema::write_recording(folder_ / "liver.h5", test::punch());
+  fs::create_symlink("good.txt", folder_ / "a_link.txt");
+  test::write_text(folder_ / ".hidden.txt", "0 1 2\n1 2 3\n2 3 4\n");
+  test::write_text(folder_ / "two\nlines.txt", "0 1 2\n1 2 3\n2 3 5\n");
   const auto found = look();
+  EXPECT_EQ(found.at("a_link.txt").ignored, "a link to the content of again/good.txt");
+  EXPECT_EQ(found.at(".hidden.txt").ignored, "a hidden file");
+  EXPECT_THAT(found.at("two\nlines.txt").ignored, HasSubstr("several lines"));
   EXPECT_EQ(found.at("good.txt").ignored, "has the content of again/good.txt");
   EXPECT_EQ(found.at("again/good.txt").ignored, "");
   EXPECT_EQ(found.at("liver.h5").ignored, "");
@@ -54,7 +60,7 @@ TEST_F(Drawer, OfRubbishSaysOfEachFileWhyItTakesNoPart) {
   EXPECT_THAT(found.at("loop").ignored, HasSubstr("link to a folder"));
   EXPECT_THAT(found.at("dangling.txt").ignored, HasSubstr("link to none"));
   EXPECT_THAT(found.at("log.txt").ignored, HasSubstr("2.1 GB"));
-  EXPECT_EQ(found.size(), 10U);
+  EXPECT_EQ(found.size(), 13U);
 }
 
 TEST_F(Drawer, LeavesOutWhatDoesNotFitTheMap) {

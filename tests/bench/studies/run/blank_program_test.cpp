@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include <fmt/core.h>
@@ -42,6 +44,22 @@ class BlankInStudy : public test::StudyFolder {
         return std::exp(quantity.at("estimate").at("mean").get<double>());
     return 0.0;
   }
+  /// Over specimens: the tissue's two springs and its dashpot. The error of the one blank is common to all,
+  /// which intervals over specimens do not see.
+  void expect_the_truth_within(double share) const {
+    const std::map<std::string, double> truth{
+        {"kelvin.parallel_stiffness", 300.0}, {"kelvin.series_stiffness", 500.0}, {"kelvin.damping", 50.0}};
+    const json results = found();
+    std::size_t compared = 0;
+    for (const json& quantity : results.at("groups")[0].at("quantities")) {
+      const auto known = truth.find(quantity.at("name"));
+      if (known == truth.end()) continue;
+      ++compared;
+      EXPECT_NEAR(std::exp(quantity.at("estimate").at("mean").get<double>()) / known->second, 1.0, share)
+          << known->first;
+    }
+    EXPECT_EQ(compared, truth.size());
+  }
 };
 
 // The tissue is a Kelvin element of 300 N/m: tool and tissue together are none.
@@ -55,6 +73,7 @@ TEST_F(BlankInStudy, LeavesTheTissueAndIsSuggestedWhereItIsKnown) {
               HasSubstr("Blanks were taken off: blank_slow off liver_slow_s1 (0.308 of 1.22 N rms"));
   EXPECT_THAT(ran.output, HasSubstr("liver, slow: kelvin serves"));
   EXPECT_NEAR(stiffness(), 300.0, 6.0);
+  expect_the_truth_within(0.05);
   const json blank = found().at("recordings")[1].at("blank_taken_off");
   EXPECT_EQ(blank.at("blank"), "blank_slow");
   EXPECT_LT(blank.at("spread_rms").get<double>(), 0.5 * blank.at("taken_rms").get<double>());

@@ -1,7 +1,9 @@
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -108,6 +110,51 @@ TEST_F(SixAxesInStudy, AreFittedByABladeWhoseShapeIsNamed) {
   fs::remove(folder_ / "shape.law.toml");
   const Outcome again = run_kerf({"study", "verify", study().string(), "--rerun", "all"});
   EXPECT_EQ(again.exit_status, 0) << again.output << again.errors;
+}
+
+// The same cut as a tracker and a sensor on the tool write it: quaternions, and forces in the sensor's frame.
+TEST_F(SixAxesInStudy, AreTakenByTheVerbFromATextOfQuaternionsAndSensorForces) {
+  const schema::Recording rows = schema::read_recording(folder_ / "cut.h5");
+  std::string text = "t,x,y,z,qx,qy,qz,qw,Fx,Fy,Fz\n";
+  for (std::size_t row = 0; row < rows.rows(); ++row) {
+    const auto pose = [&](std::size_t i) { return rows.position[6 * row + i]; };
+    const std::array turn{pose(3), pose(4), pose(5)};
+    const double angle = std::hypot(turn[0], turn[1], turn[2]);
+    const double half = angle > 0.0 ? std::sin(angle / 2.0) / angle : 0.5;
+    const std::array q{half * turn[0], half * turn[1], half * turn[2]};
+    const double w = std::cos(angle / 2.0);
+    const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+      return std::array{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    // Into the sensor's frame: f' = f + 2 (w f x q + (f x q) x q), of the inverse quaternion.
+    const std::array f{rows.force_measured[6 * row], rows.force_measured[6 * row + 1],
+                       rows.force_measured[6 * row + 2]};
+    const auto once = cross(f, q);
+    const auto twice = cross(once, q);
+    text += fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", rows.time[row], 1e3 * pose(0),
+                        1e3 * pose(1), 1e3 * pose(2), q[0], q[1], q[2], w);
+    for (std::size_t i = 0; i < 3; ++i) text += fmt::format(",{:.9g}", f[i] + 2.0 * (w * once[i] + twice[i]));
+    text += "\n";
+  }
+  test::write_text(folder_ / "cut.csv", text);
+  const Outcome fitted = run_kerf(
+      {"blade", (folder_ / "cut.csv").string(), "--map",
+       "time=t[s],position=x:z[mm],orientation=qx:qw[quaternion xyzw],force=Fx:Fz[N sensor]", "--shape",
+       (folder_ / "shape.law.toml").string(), "-o", (folder_ / "found.law.toml").string(), "--json"});
+  ASSERT_EQ(fitted.exit_status, 0) << fitted.errors;
+  const json parameters = json::parse(fitted.output).at("parameters");
+  const std::array<std::pair<const char*, double>, 3> truths{
+      {{"edge_damping", 20.0}, {"normal_damping", 2e4}, {"tangential_damping", 4e3}}};
+  for (const auto& [name, truth] : truths) {
+    const json& interval = parameters.at(name).at("interval");
+    EXPECT_LT(interval.at(0).get<double>(), truth) << name;
+    EXPECT_GT(interval.at(1).get<double>(), truth) << name;
+  }
+  EXPECT_EQ(run_kerf({"check", (folder_ / "found.law.toml").string(), "--device", "sim:pose6", "--virtual",
+                      "--seconds", "1", "--scene", (folder_ / "scene.toml").string()})
+                .exit_status,
+            0)
+      << "and the law that comes out runs in a loop";
 }
 
 TEST_F(SixAxesInStudy, AreFittedAlongTheAxisThatIsNamed) {
