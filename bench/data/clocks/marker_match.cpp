@@ -98,9 +98,9 @@ ClockLine line_through(const std::vector<double>& first, const std::vector<doubl
   }
   double together = 0.0;
   for (const auto& [i, j] : pairs) {
-    const double of_other = other[j] - line.mean_other_s;
-    line.spread += of_other * of_other;
-    together += of_other * (first[i] - mean_first_s - of_other);
+    const double from_mean_s = other[j] - line.mean_other_s;
+    line.spread += from_mean_s * from_mean_s;
+    together += from_mean_s * (first[i] - mean_first_s - from_mean_s);
   }
   line.skew = pairs.size() > 1 ? together / line.spread : 0.0;
   line.shift_s = mean_first_s - (1.0 + line.skew) * line.mean_other_s;
