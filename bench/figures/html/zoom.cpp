@@ -1,14 +1,15 @@
 #include "html/zoom.h"
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <sodium.h>
 
 #include "html/whole_page.h"
 #include "plot/colours.h"
-#include "recordings/provenance.h"
 
 namespace kerf::bench {
 namespace {
@@ -63,25 +64,20 @@ std::string chart_of(const Chart& chart, const std::vector<double>*& before) {
       list_of(chart.vertical, marker), list_of(chart.horizontal, marker));
 }
 
-/// Bytes in hexadecimal as base64.
-std::string base64_of_hex(const std::string& hex) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t at = 0; at < hex.size(); at += 6) {
-    std::string three = hex.substr(at, 6);
-    const std::size_t digits = three.size();
-    three.resize(6, '0');
-    const unsigned long bits = std::stoul(three, nullptr, 16);
-    for (unsigned i = 0; i < 4; ++i) text += i <= digits / 2 ? letters[bits >> (18 - 6 * i) & 63U] : '=';
-  }
-  return text;
+std::string sha256_in_base64(std::string_view text) {
+  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
+  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(text.data()), text.size());
+  std::array<char, sodium_base64_ENCODED_LEN(crypto_hash_sha256_BYTES, sodium_base64_VARIANT_ORIGINAL)>
+      base64{};
+  return sodium_bin2base64(base64.data(), base64.size(), digest.data(), digest.size(),
+                           sodium_base64_VARIANT_ORIGINAL);
 }
 
 }  // namespace
 
 std::string page_with_script(std::string_view title, std::string_view body, std::string_view script) {
   return whole_page(title, fmt::format("{}<script>{}</script>\n", body, script),
-                    fmt::format("script-src 'sha256-{}'; ", base64_of_hex(sha256_of(script))));
+                    fmt::format("script-src 'sha256-{}'; ", sha256_in_base64(script)));
 }
 
 std::string html_zoom_page(std::string_view title, std::string_view body) {
