@@ -7,6 +7,7 @@ clipped, one is in gram-force under a map that says N, of one the clock starts a
 
     study.py HOUSE [SEEDS]   SEEDS drawers (2,000)
     study.py HOUSE time      a drawer of 19 recordings of 18,000 rows, from files to report
+    study.py HOUSE blanks [SEEDS]   drawers of four specimens whose tool rubs, and a blank (2,000)
 """
 
 import collections
@@ -24,6 +25,7 @@ import time
 
 import numpy
 from scipy.stats import beta
+from scipy.stats import t as student
 
 from sections import replace_section
 
@@ -239,8 +241,80 @@ def time_one(house):
             "The machine also did other work: %.1f processes were ready to run on average." % os.getloadavg()[0]]
 
 
+RUBBING, OF_CYCLES, OF_SPECIMENS = 0.3, 0.2, 0.03  # [N]; relative, from cycle to cycle and from specimen to specimen
+
+
+def rubbed(random, parameters, rows):
+    """Position [m] and force [N] of a punch, a little faster each time, whose tool rubs against its motion, each cycle by another factor."""
+    chirp = 0.5  # strokes a second, more each second
+    position, force = (values[::FINE, 0] for values in simulated([parameters], [0.5], [2.0 * chirp], rows))
+    time = numpy.arange(rows) / RATE
+    turns = 0.5 * (time + chirp * time * time)
+    speed = numpy.gradient(position, time)
+    against = numpy.clip(speed / (0.4 * math.pi * DEPTH * 0.5 * (1.0 + 2.0 * chirp * time)), -1.0, 1.0)
+    factors = 1.0 + OF_CYCLES * random.normal(size=int(turns[-1]) + 1)
+    rubbing = RUBBING * (1.0 + 40.0 * position) * against * factors[turns.astype(int)]
+    return position, force + rubbing + random.normal(0.0, NOISE, rows)
+
+
+def one_blank(arguments):
+    """Which intervals of one drawer hold the truth: with the blank's error in them, and without."""
+    program, seed = arguments
+    random = numpy.random.default_rng(seed)
+    counts = collections.Counter(seeds=1)
+    rows = int(SECONDS * RATE)
+    time = numpy.arange(rows) / RATE
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = pathlib.Path(scratch)
+        (folder / "drawer").mkdir()
+        for name in ["liver_slow_s%d" % (i + 1) for i in range(4)] + ["blank_slow"]:
+            parameters = numpy.array(list(MEANS.values())) * numpy.exp(random.normal(0.0, OF_SPECIMENS, 3))
+            if name == "blank_slow":
+                parameters = [0.0, 1e-9, 50.0]
+            position, force = rubbed(random, parameters, rows)
+            write_table(folder / "drawer" / (name + ".txt"), time, 1e3 * position, force)
+        study = folder / "S"
+        run = lambda *words: subprocess.run([program, "study", *words], capture_output=True, text=True, check=True)
+        run("new", str(folder / "drawer"), "--map", MAP, "--laws", "kelvin", "-o", str(study))
+        text = (study / "study.toml").read_text()
+        counts["suggested"] += '\nblank = "subtract"' in text
+        (study / "study.toml").write_text(text.replace('\nblank = "leave"', '\nblank = "subtract"'))
+        run("run", str(study / "study.toml"), "-j", "1")
+        for quantity in json.loads((study / "study.json").read_text())["groups"][0]["quantities"]:
+            parameter = quantity["name"].removeprefix("kelvin.")
+            if parameter not in MEANS:
+                continue
+            estimate, truth = quantity["estimate"], math.log(MEANS[parameter])
+            counts[parameter, "held"] += estimate["ci95"][0] <= truth <= estimate["ci95"][1]
+            alone = math.sqrt(max(0.0, estimate["std_error"] ** 2 - estimate["std_error_of_blanks"] ** 2))
+            counts[parameter, "held without"] += abs(estimate["mean"] - truth) <= student.ppf(0.975, 3) * alone
+    return counts
+
+
+def blanks_table(counts):
+    seeds = counts["seeds"]
+    lines = ["%d simulated drawers of four specimens and a blank, law `kelvin`: the tool rubs with %.1f N, by a factor that differs by %.0f %% from cycle to cycle; specimens "
+             "differ by %.0f %%. `subtract` was suggested in %d." % (seeds, RUBBING, 100 * OF_CYCLES, 100 * OF_SPECIMENS, counts["suggested"]), "",
+             "| 95 % interval of a mean | with the blank's error [%] | without [%] |", "|---|---|---|"]
+    for parameter in MEANS:
+        lower, upper = exact(counts[parameter, "held"], seeds)
+        lines.append("| %s | %.1f%s | %.1f |" % (parameter, 100.0 * counts[parameter, "held"] / seeds, " **low**" if upper < LEAST else " (high)" if lower > MOST else "",
+                                             100.0 * counts[parameter, "held without"] / seeds))
+    return lines
+
+
 def main():
     house = pathlib.Path(sys.argv[1])
+    if sys.argv[2:3] == ["blanks"]:
+        seeds = int(sys.argv[3]) if len(sys.argv) > 3 else SEEDS
+        counts = collections.Counter()
+        with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
+            for one in pool.map(one_blank, ((str(house / "build/release/bin/kerf"), seed) for seed in range(seeds))):
+                counts.update(one)
+        body = "\n".join(blanks_table(counts))
+        print(body)
+        replace_section(house / "docs/benchmarks.md", "study-blanks", "Studies whose blanks are taken off", body)
+        return
     if sys.argv[2:] == ["time"]:
         body = "\n".join(time_one(house))
         print(body)

@@ -136,11 +136,10 @@ fitting::FitOptions options_for(const std::string& model, const FitRecordingOpti
 }
 
 /// Which rows count, and what is to be known of it.
-CountedRows mark_rows(AxisSeries& series, const FitSource& source, const std::string& whose,
-                      RecordingFit& fit) {
+CountedRows rows_that_count(AxisSeries& series, const FitSource& source, const std::string& whose,
+                            RecordingFit& fit) {
   const std::size_t rows = series.force.size();
-  CountedRows counted =
-      mark_counted(series, *source.recording, source.axis, fit.rows, fit.settings.jnd.threshold);
+  CountedRows counted = mark_rows(source, fit.rows, fit.settings.jnd.threshold, series);
   if (2 * counted.contact < rows) {
     fit.warnings.push_back(
         fmt::format("{}{} of {} rows are out of contact: laws are fitted to and judged by the other {} alone "
@@ -158,7 +157,7 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
     sources.series.push_back(fit_series(*source.recording, source.axis, source.contact));
     const std::size_t left_out = sources.series.back().left_out;
     const std::string whose = all.size() > 1 ? source.name + ": " : "";
-    CountedRows counted = mark_rows(sources.series.back(), source, whose, fit);
+    CountedRows counted = rows_that_count(sources.series.back(), source, whose, fit);
     sources.rendered.emplace_back(sources.series.back(), fit.loop_rate_hz);
     fit.recordings.push_back({.name = source.name,
                               .uuid = source.recording->header.uuid,

@@ -14,6 +14,7 @@
 #include "inspect/counted_rows.h"
 #include "laws/law_file.h"
 #include "laws/render.h"
+#include "recordings/row_span.h"
 
 namespace kerf::bench {
 
@@ -38,6 +39,9 @@ struct FitSource {
   std::size_t axis = 0;
   models::Contact contact;
   double noise_n = 0.0;  ///< 0: not known
+  /// Rows whose force is not the tissue's alone: laws run through them, and are neither fitted to nor judged
+  /// by them.
+  std::vector<RowSpan> not_the_tissue{};
 };
 
 /// One law fitted to one recording or several: the result, and the law as it will be rendered.

@@ -36,12 +36,37 @@ std::string nothing_changes(const AxisSeries& series, const fitting::FitOptions&
       mean, unit, jnd, unit);
 }
 
+/// By time, since rows that are not finite are no part of a series. Returns how many are left.
+std::size_t leave_out_rows(const schema::Recording& recording, const std::vector<RowSpan>& spans,
+                           AxisSeries& series) {
+  series.counts.resize(series.force.size(), 1);
+  auto row = series.time_s.begin();
+  for (const RowSpan& span : spans) {
+    row = std::lower_bound(row, series.time_s.end(), recording.time.at(span.begin));
+    for (; row != series.time_s.end() && *row <= recording.time.at(span.end - 1); ++row)
+      series.counts[static_cast<std::size_t>(row - series.time_s.begin())] = 0;
+  }
+  return static_cast<std::size_t>(std::ranges::count(series.counts, 1));
+}
+
 }  // namespace
+
+CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double felt, AxisSeries& series) {
+  constexpr std::size_t fewest_left = 20;
+  CountedRows counted = mark_counted(series, *source.recording, source.axis, choice, felt);
+  if (source.not_the_tissue.empty()) return counted;
+  counted.rows = leave_out_rows(*source.recording, source.not_the_tissue, series);
+  if (counted.rows < fewest_left)
+    throw std::invalid_argument(
+        fmt::format("in {} rows it is in contact where its blank has been, and {} are needed", counted.rows,
+                    fewest_left));
+  return counted;
+}
 
 CountedSeries counted_series(const FitSource& source, const RowChoice& choice, const fitting::Jnd& jnd) {
   CountedSeries made{.series = fit_series(*source.recording, source.axis, source.contact), .counted = {}};
   if (made.series.force.empty()) throw std::invalid_argument("the recording has no row that is finite");
-  made.counted = mark_counted(made.series, *source.recording, source.axis, choice, jnd.threshold);
+  made.counted = mark_rows(source, choice, jnd.threshold, made.series);
   return made;
 }
 

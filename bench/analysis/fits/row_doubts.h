@@ -17,7 +17,11 @@ struct CountedSeries {
   CountedRows counted;
 };
 
-/// @throws std::invalid_argument if none is finite.
+/// Marks the rows that count: mark_counted(), less those that are not the tissue's.
+/// @throws std::invalid_argument as mark_counted() does, and where of these fewer than 20 are left.
+CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double felt, AxisSeries& series);
+
+/// @throws std::invalid_argument if none is finite, and as mark_rows() does.
 [[nodiscard]] CountedSeries counted_series(const FitSource& source, const RowChoice& choice,
                                            const fitting::Jnd& jnd);
 

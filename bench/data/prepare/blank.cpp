@@ -78,6 +78,13 @@ void choose_blank_cycles(const schema::Recording& blank, std::size_t axis, ToolF
   }
 }
 
+void leave_out_part(const CyclePart& part, std::vector<std::uint32_t>& cycles) {
+  std::vector<std::uint32_t> others;
+  for (std::size_t i = 0; i < cycles.size(); ++i)
+    if (i % part.parts != part.part) others.push_back(cycles[i]);
+  cycles = std::move(others);
+}
+
 /// Strokes of the cycles that are used, each with its half of the wait beside it.
 std::vector<BlankRows> strokes_of(const schema::Cycles& cycles, const std::vector<std::uint32_t>& used) {
   std::vector<schema::PhaseSpan> phases = cycles.phases;
@@ -127,9 +134,10 @@ BlankBranch branch_of(const std::vector<BlankRows>& strokes, bool closing,
     for (const auto& one : each) {
       if (std::isfinite(one[point])) squares += (one[point] - mean) * (one[point] - mean);
     }
-    const bool known = count >= 2.0 && 2.0 * count >= static_cast<double>(cycles);
+    const bool known =
+        count >= std::min(2.0, static_cast<double>(cycles)) && 2.0 * count >= static_cast<double>(cycles);
     branch.mean.push_back(known ? mean : unknown);
-    branch.spread.push_back(known ? std::sqrt(squares / (count - 1.0)) : unknown);
+    branch.spread.push_back(known && count > 1.0 ? std::sqrt(squares / (count - 1.0)) : unknown);
     branch.cycles.push_back(static_cast<std::size_t>(count));
   }
   return branch;
@@ -257,11 +265,13 @@ std::vector<double> acceleration_of(const schema::Recording& recording, std::siz
       });
 }
 
-ToolForce tool_force(const schema::Recording& blank, std::size_t axis, double closing_direction) {
+ToolForce tool_force(const schema::Recording& blank, std::size_t axis, double closing_direction,
+                     const std::optional<CyclePart>& left_out) {
   if (blank.force_measured.empty()) throw std::invalid_argument("it holds no measured force");
   const schema::Recording segmented = with_cycles(blank, axis, closing_direction);
   ToolForce tool{.closing_direction = closing_direction};
   choose_blank_cycles(segmented, axis, tool);
+  if (left_out) leave_out_part(*left_out, tool.used);
   const std::vector<BlankRows> strokes = strokes_of(*segmented.cycles, tool.used);
   const std::vector<double> position = column_of(blank.position, blank.dimensions(), axis);
   std::vector<double> force = column_of(blank.force_measured, blank.dimensions(), axis);

@@ -51,12 +51,20 @@ struct ToolForce {
   std::vector<LeftOutCycle> left_out;
 };
 
+/// One of so many parts of the cycles: the (part + 1)-th of every `parts` cycles.
+struct CyclePart {
+  std::size_t part = 0;
+  std::size_t parts = 0;  ///< two at least
+};
+
 /// Estimates it from the good cycles of a blank: those that `kerf inspect` flags with nothing, or only as
 /// under force, which a blank is. Cycles are those that are stored in it along the axis and in the direction
 /// that is asked for, else those that are found.
+/// With a part left out the others are all that there are: how well a blank is known is told by leaving out
+/// one part after the other.
 /// @throws std::invalid_argument without measured force, or with fewer than two good cycles.
-[[nodiscard]] ToolForce tool_force(const schema::Recording& blank, std::size_t axis,
-                                   double closing_direction);
+[[nodiscard]] ToolForce tool_force(const schema::Recording& blank, std::size_t axis, double closing_direction,
+                                   const std::optional<CyclePart>& left_out = {});
 
 /// The mean of the values of rows at each position of a uniform grid, of the rows nearest to it; linear
 /// between the first and the last that has any; NaN beyond. Rows that are not finite do not count.

@@ -193,6 +193,16 @@ void adjust_branches(schema::Cycles& cycles, const std::vector<double>& position
   cycles.opening_mean = mean_branch(cycles.opening, cycles.grid.size());
 }
 
+std::vector<RowSpan> spans_without(const std::vector<double>& off) {
+  std::vector<RowSpan> spans;
+  for (std::size_t row = 0; row < off.size(); ++row) {
+    if (std::isfinite(off[row])) continue;
+    if (spans.empty() || spans.back().end != row) spans.push_back({.begin = row, .end = row});
+    spans.back().end = row + 1;
+  }
+  return spans;
+}
+
 void add_warnings(BlankTaken& taken, double tool_closing, double tool_opening) {
   const auto compare = [&](std::string_view stroke, double own, double blank) {
     if (!(own > 0.0 && blank > 0.0) || (own < like_speeds * blank && blank < like_speeds * own)) return;
@@ -230,7 +240,7 @@ ToolForce tool_of(const BlankOptions& options, const std::string& axis, double c
   try {
     const auto at_axis = std::ranges::find(options.recording.axes, axis, &schema::Axis::name);
     return tool_force(options.recording, static_cast<std::size_t>(at_axis - options.recording.axes.begin()),
-                      closing_direction);
+                      closing_direction, options.left_out);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(fmt::format("--blank: {}: {}", options.file, error.what()));
   }
@@ -274,6 +284,8 @@ BlankTaken remove_blank(schema::Recording& recording, const BlankOptions& option
     std::vector<bool> covered;
     for (const double value : off) covered.push_back(std::isfinite(value));
     keep_rows(recording, covered);
+  } else {
+    taken.uncovered = spans_without(off);
   }
   add_warnings(taken, tool.closing.median_speed, tool.opening.median_speed);
   return taken;

@@ -9,6 +9,7 @@
 #include <kerf/schema/recording.h>
 
 #include "prepare/blank.h"
+#include "recordings/row_span.h"
 
 namespace kerf::bench {
 
@@ -18,6 +19,7 @@ struct BlankOptions {
   std::string file;           ///< its name, for messages and the history
   std::string sha256;         ///< of its file
   double speed_factor = 2.0;  ///< a stroke that much faster or slower than all of the blank's is not covered
+  std::optional<CyclePart> left_out{};  ///< of the blank's cycles
   bool drop = false;  ///< leave out the rows that are not covered, instead of leaving them as they are
 };
 
@@ -44,6 +46,7 @@ struct BlankTaken {
   UncoveredRows too_slow;
   UncoveredRows out_of_range;  ///< where no blank has been
   bool are_dropped = false;
+  std::vector<RowSpan> uncovered;  ///< rows as they were, from which nothing was taken; none if dropped
   // Over the covered rows, root mean squares in the force's unit.
   double force_rms = 0.0;  ///< before
   double taken_rms = 0.0;

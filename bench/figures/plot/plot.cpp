@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <deque>
@@ -258,6 +259,14 @@ class NamedMemory {
   NamedMemory& operator=(const NamedMemory&) = delete;
   ~NamedMemory() { close(descriptor_); }
   [[nodiscard]] const std::string& path() const { return path_; }
+  void write(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t written = ::write(descriptor_, text.data(), text.size());
+      if (written < 0 && errno != EINTR)
+        throw std::system_error(errno, std::generic_category(), "no memory for a chart");
+      if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
 
  private:
   int descriptor_;
@@ -273,10 +282,12 @@ std::vector<std::string> draw_all(std::span<const Chart> charts) {
   std::string script;
   for (const Chart& chart : charts) script += script_of(chart, outputs.emplace_back().path());
   const NamedMemory errors;
-  const std::string command = "gnuplot - 2>" + errors.path();
+  // From a file: of its standard input it reads every character by a call of its own.
+  const NamedMemory commands;
+  commands.write(script);
+  const std::string command = "gnuplot " + commands.path() + " 2>" + errors.path();
   FILE* pipe = popen(command.c_str(), "w");
   if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");
-  fwrite(script.data(), 1, script.size(), pipe);
   const int status = pclose(pipe);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127) {
     throw std::runtime_error("gnuplot is not installed; charts need it: apt-get install gnuplot-nox");

@@ -48,6 +48,20 @@ std::vector<std::uint32_t> flagged_numbers(const DrawerRecording& recording) {
   return numbers;
 }
 
+/// Whether a row of a series is among those from which a blank was taken; empty: none was to be.
+std::vector<std::uint8_t> covered_rows(const DrawerRecording& drawn, FitSource source, AxisSeries series) {
+  source.not_the_tissue = drawn.result.not_the_tissue();
+  if (source.not_the_tissue.empty()) return {};
+  RowChoice all{.rows = Counted::all};
+  all.cycles.by = CycleChoice::By::all;
+  try {
+    mark_rows(source, all, 0.0, series);
+  } catch (const std::invalid_argument&) {
+    series.counts.assign(series.force.size(), 0);  // so few that none is fitted to
+  }
+  return series.counts;
+}
+
 }  // namespace
 
 Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const std::filesystem::path& folder) {
@@ -63,15 +77,21 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
   RowChoice all_cycles;
   all_cycles.cycles.by = CycleChoice::By::all;
   const AxisSeries counted = counted_series(source, all_cycles, fit.jnd).series;
+  const std::vector<std::uint8_t> covered = covered_rows(drawn, source, whole);
   const std::vector<std::uint32_t> flagged = flagged_numbers(drawn);
   Curve idle{.label = "idle", .colour = Colour::sky, .mark = Mark::points, .width = point_size};
   Curve bad{.label = "flagged", .colour = Colour::vermillion, .mark = Mark::points, .width = point_size};
+  Curve beyond{
+      .label = "no blank there", .colour = Colour::purple, .mark = Mark::points, .width = point_size};
   Curve good{.label = "counts", .colour = Colour::black, .mark = Mark::points, .width = point_size};
   for (std::size_t i = 0; i < whole.force.size(); ++i) {
     const bool is_idle = !counted.counts.empty() && counted.counts[i] == 0;
     const bool is_flagged =
         !whole.cycle.empty() && std::ranges::find(flagged, whole.cycle[i]) != flagged.end();
-    Curve& curve = is_idle ? idle : is_flagged && !plan.all_cycles ? bad : good;
+    Curve& curve = is_idle                             ? idle
+                   : is_flagged && !plan.all_cycles    ? bad
+                   : covered.empty() || covered[i] > 0 ? good
+                                                       : beyond;
     curve.x.push_back(unit.factor * whole.penetration[i]);
     curve.y.push_back(whole.force[i]);
   }
@@ -79,7 +99,7 @@ Chart drawer_chart(const DrawerRecording& drawn, const StudyPlan& plan, const st
   Chart chart{.title = drawn.name + standing,
               .x_label = fmt::format("penetration [{}]", unit.unit),
               .y_label = fmt::format("force [{}]", recording.axes[axis].force_unit)};
-  for (Curve* curve : {&idle, &bad, &good})
+  for (Curve* curve : {&idle, &bad, &beyond, &good})
     if (!curve->x.empty()) chart.curves.push_back(thinned(std::move(*curve), most_points));
   chart.x_range = with_margins(chart.curves);
   chart.legend_below = true;

@@ -19,6 +19,11 @@ json of_spread(const std::optional<population::Spread>& spread) {
   return spread ? json{{"value", spread->value}, {"ci95", of_interval(spread->interval)}} : json(nullptr);
 }
 
+/// How far the mean errs by what was taken off several recordings; null: nothing was, or it is not known.
+json of_shared(const std::optional<population::SharedError>& error) {
+  return error ? json(error->standard_error) : json(nullptr);
+}
+
 json of_estimate(const population::GroupEstimate& estimate) {
   return {{"recordings", estimate.recordings},
           {"left_out", estimate.left_out},
@@ -28,6 +33,7 @@ json of_estimate(const population::GroupEstimate& estimate) {
           {"std_error", of_optional(estimate.standard_error)},
           {"ci95", of_interval(estimate.interval)},
           {"ci95_of_this_specimen", of_interval(estimate.of_this_specimen)},
+          {"std_error_of_blanks", of_shared(estimate.shared_error)},
           {"between_specimens", of_spread(estimate.between_specimens)},
           {"between_recordings", of_spread(estimate.between_recordings)},
           {"together", of_spread(estimate.together)},
@@ -74,6 +80,7 @@ json of_comparison(const StudiedComparison& comparison) {
           {"crossed", found.is_crossed},
           {"difference", of_optional(found.difference)},
           {"ci95", of_interval(found.interval)},
+          {"std_error_of_blanks", of_shared(found.shared_error)},
           {"hedges_g", of_optional(found.hedges_g)},
           {"p", found.test ? json(found.test->p) : json(nullptr)},
           {"p_holm", found.test ? json(found.holm_p) : json(nullptr)},

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include <boost/math/statistics/univariate_statistics.hpp>
@@ -42,14 +44,54 @@ std::optional<Estimate> over_cycles(const DrawerRecording& recording, double Stu
   return estimate;
 }
 
+const StudiedBlank* blank_of(const StudyResults& results, const std::string& recording) {
+  const auto found = std::ranges::find(results.recordings, recording, &DrawerRecording::name);
+  const auto& blank = found->result.blank;
+  return blank && blank->is_taken() ? &*blank : nullptr;
+}
+
+/// The values of a quantity with each part of a blank left out of what was taken off its recordings.
+population::Shared without_parts_of(const std::string& name, const StudyResults& results,
+                                    const StudiedQuantity& quantity) {
+  population::Shared shared;
+  for (std::size_t i = 0; i < quantity.recordings.size(); ++i) {
+    const StudiedBlank* const blank = blank_of(results, quantity.recordings[i]);
+    if (blank == nullptr || blank->name != name) continue;
+    std::vector<double> own;
+    for (const population::Estimate& value : quantity.values) own.push_back(value.value);
+    shared.without.resize(std::max(shared.without.size(), blank->without.size()), own);
+    for (std::size_t part = 0; part < shared.without.size(); ++part) {
+      constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+      double value = unknown;
+      if (part < blank->without.size()) {
+        const auto found = blank->without[part].find(quantity.name);
+        if (found != blank->without[part].end()) value = found->second;
+      }
+      shared.without[part][i] = quantity.is_logarithm ? (value > 0.0 ? std::log(value) : unknown) : value;
+    }
+  }
+  return shared;
+}
+
+void add_blanks(const StudyResults& results, StudiedQuantity& quantity) {
+  std::set<std::string> names;
+  for (const std::string& recording : quantity.recordings)
+    if (const StudiedBlank* const blank = blank_of(results, recording)) names.insert(blank->name);
+  for (const std::string& name : names)
+    quantity.blanks.push_back({.name = name, .values = without_parts_of(name, results, quantity)});
+}
+
 /// As a logarithm if all values are positive, and are so by nature.
-void settle(StudiedQuantity& quantity, bool positive_by_nature) {
+void settle(const StudyResults& results, StudiedQuantity& quantity, bool positive_by_nature) {
   quantity.is_logarithm = positive_by_nature && std::ranges::all_of(quantity.values, [](const Estimate& one) {
                             return one.value > 0.0;
                           });
   if (quantity.is_logarithm)
     std::ranges::transform(quantity.values, quantity.values.begin(), population::log_of);
-  quantity.estimate = population::estimate_group(quantity.values);
+  add_blanks(results, quantity);
+  std::vector<population::Shared> shared;
+  for (const SharedBlank& blank : quantity.blanks) shared.push_back(blank.values);
+  quantity.estimate = population::estimate_group(quantity.values, {.shared = shared});
 }
 
 StudiedQuantity cycle_quantity(const StudyResults& results, const StudiedGroup& group,
@@ -63,7 +105,7 @@ StudiedQuantity cycle_quantity(const StudyResults& results, const StudiedGroup& 
     found.recordings.push_back(recording.name);
     found.values.push_back(*value);
   }
-  settle(found, true);
+  settle(results, found, true);
   return found;
 }
 
@@ -91,7 +133,7 @@ std::vector<StudiedQuantity> parameters_in_group(const StudyResults& results, co
                                .specimen = specimen_of(recording)});
     }
   }
-  for (std::size_t i = 0; i < found.size(); ++i) settle(found[i], positive[i]);
+  for (std::size_t i = 0; i < found.size(); ++i) settle(results, found[i], positive[i]);
   return found;
 }
 
@@ -160,6 +202,27 @@ std::string law_of_study(const StudyResults& results) {
   return best;
 }
 
+/// The blanks of two groups; of a blank that is one group's alone, the other has its own values.
+std::vector<population::SharedByGroups> shared_by(const StudiedQuantity& first,
+                                                  const StudiedQuantity& second) {
+  std::map<std::string, population::SharedByGroups> blanks;
+  for (const SharedBlank& blank : first.blanks) blanks[blank.name].first = blank.values;
+  for (const SharedBlank& blank : second.blanks) blanks[blank.name].second = blank.values;
+  const auto fill = [](const StudiedQuantity& quantity, population::Shared& shared, std::size_t parts) {
+    std::vector<double> own;
+    for (const population::Estimate& value : quantity.values) own.push_back(value.value);
+    shared.without.resize(parts, own);
+  };
+  std::vector<population::SharedByGroups> shared;
+  for (auto& [name, one] : blanks) {
+    const std::size_t parts = std::max(one.first.without.size(), one.second.without.size());
+    fill(first, one.first, parts);
+    fill(second, one.second, parts);
+    shared.push_back(std::move(one));
+  }
+  return shared;
+}
+
 /// A pair of groups, each by one quantity that both have.
 void add_comparison(const StudiedGroup& first, const StudiedGroup& second, const std::string& what,
                     const std::string& by, std::vector<StudiedComparison>& comparisons,
@@ -178,7 +241,7 @@ void add_comparison(const StudiedGroup& first, const StudiedGroup& second, const
                          .first = first.name(),
                          .second = second.name(),
                          .found = {}});
-  pairs.push_back({.first = one->values, .second = other->values});
+  pairs.push_back({.first = one->values, .second = other->values, .shared = shared_by(*one, *other)});
 }
 
 void compare_groups(StudyResults& results) {

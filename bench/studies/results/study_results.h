@@ -17,6 +17,12 @@
 
 namespace kerf::bench {
 
+/// A blank that was taken off recordings, whose error they share.
+struct SharedBlank {
+  std::string name;
+  population::Shared values;  ///< of all recordings, those less other blanks as they are
+};
+
 /// A quantity of the recordings of a group, over its specimens.
 struct StudiedQuantity {
   std::string name;  ///< "peak", "work", "kelvin.series_stiffness"
@@ -24,6 +30,7 @@ struct StudiedQuantity {
   bool is_logarithm = false;            ///< the estimate is of natural logarithms, and differences are ratios
   std::vector<std::string> recordings;  ///< of the values
   std::vector<population::Estimate> values;  ///< one a recording, of logarithms as they are
+  std::vector<SharedBlank> blanks{};         ///< that were taken off any of these recordings
   population::GroupEstimate estimate;
 };
 

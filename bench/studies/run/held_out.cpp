@@ -65,7 +65,8 @@ GroupSources sources_of_group(const StudyPlan& plan, const std::vector<DrawerRec
     all.sources.push_back({.recording = &recording,
                            .name = recordings[at].name,
                            .axis = axis,
-                           .contact = contact_of(recording, axis)});
+                           .contact = contact_of(recording, axis),
+                           .not_the_tissue = recordings[at].result.not_the_tissue()});
   }
   all.options.models = plan.laws;
   all.options.rows.cycles.by = plan.all_cycles ? CycleChoice::By::all : CycleChoice::By::good;

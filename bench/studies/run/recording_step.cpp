@@ -26,6 +26,7 @@
 #include "recordings/provenance.h"
 #include "recordings/row_figures.h"
 #include "recordings/whole_recording.h"
+#include "run/blank_parts.h"
 #include "run/kept_recording.h"
 #include "run/study_blade.h"
 #include "segment/segment.h"
@@ -36,7 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 using json = nlohmann::ordered_json;
 
-constexpr const char* first_result = "2";  // of what result.json holds: a number more makes all anew
+constexpr const char* first_result = "3";  // of what result.json holds: a number more makes all anew
 
 void refuse_what_waits_for_a_word(const DrawerFile& file) {
   if (file.join_suggested.empty() || !file.join.empty()) return;
@@ -101,23 +102,28 @@ void add_clipped(std::vector<FlaggedCycle>& cycles, const std::vector<FlaggedCyc
   }
 }
 
-/// Takes a blank off where that is asked for, and flags the cycles by what is left.
+/// Takes a blank off where that is asked for, and flags the cycles by what is left. Returns these, and the
+/// recording as it was, if a blank was taken off.
 std::vector<FlaggedCycle> less_the_blank(const RecordingStep& step, schema::Recording& recording,
-                                         StudiedRecording& result) {
+                                         std::optional<schema::Recording>& before, StudiedRecording& result) {
   if (!recording.cycles) {
     if (step.blanks) result.blank.emplace().why_none = "it has no cycles";
     return {};
   }
   std::vector<FlaggedCycle> flagged = flags_of(recording);
   if (step.blanks) {
+    before = recording;
     result.blank = take_blank_off(recording, *step.blanks, result.warnings);
     if (result.blank->is_taken()) {
       const std::vector<FlaggedCycle> measured = std::move(flagged);
       flagged = flags_of(recording);
       add_clipped(flagged, measured);
+    } else {
+      before.reset();
     }
   }
   recording.cycle_flags = stored_flags(flagged, felt_along(recording.axes[recording.cycles->axis]));
+  if (before) before->cycle_flags = recording.cycle_flags;
   result.closing_direction = recording.cycles->closing_direction;
   return flagged;
 }
@@ -187,22 +193,42 @@ StudiedLaw studied(const RecordingFit& fit, const FittedLaw& law) {
   return one;
 }
 
-void fit_laws(const RecordingStep& step, const schema::Recording& recording, const fs::path& folder,
-              std::size_t axis, const std::atomic<bool>& stop, StudiedRecording& result) {
-  result.not_fitted = why_no_axis(recording, step.file->axis);
-  if (!result.not_fitted.empty()) {
-    result.axis.clear();
-    return;
-  }
+FitRecordingOptions fit_options(const RecordingStep& step, const schema::Recording& recording,
+                                std::size_t axis, const std::atomic<bool>& stop) {
   FitRecordingOptions options;
   options.models = step.plan->laws;
   options.axis = axis;
   options.rows.cycles.by = step.plan->all_cycles ? CycleChoice::By::all : CycleChoice::By::good;
   options.stop = &stop;
   take_jnd_of(recording.axes[axis], options.fit);
-  const FitSource source{
-      .recording = &recording, .name = "recording", .axis = axis, .contact = contact_of(recording, axis)};
-  const AxisSeries series = counted_series(source, options.rows, options.fit.jnd).series;
+  return options;
+}
+
+fs::path blank_taken(const RecordingStep& step, const StudiedRecording& result) {
+  return std::ranges::find(step.blanks->all, result.blank->name, &StudyBlank::name)->recording;
+}
+
+void fit_laws(const RecordingStep& step, const schema::Recording& recording, const fs::path& folder,
+              const FitRecordingOptions& options, StudiedRecording& result) {
+  const std::size_t axis = options.axis;
+  result.not_fitted = why_no_axis(recording, step.file->axis);
+  if (!result.not_fitted.empty()) {
+    result.axis.clear();
+    return;
+  }
+  const FitSource source{.recording = &recording,
+                         .name = "recording",
+                         .axis = axis,
+                         .contact = contact_of(recording, axis),
+                         .not_the_tissue = result.not_the_tissue()};
+  AxisSeries series;
+  try {
+    series = counted_series(source, options.rows, options.fit.jnd).series;
+  } catch (const std::invalid_argument& error) {
+    if (source.not_the_tissue.empty()) throw;
+    result.not_fitted = error.what();
+    return;
+  }
   const fitting::Series counted = fitted_view(series);
   result.rms = fitting::rms_of(counted);
   result.jnd = options.fit.jnd.at(result.rms);
@@ -314,10 +340,16 @@ StudiedRecording run_recording_step(const RecordingStep& step, const fs::path& f
   find_cycles_of(step, recording, result);
   const std::size_t axis = find_cut_axis(recording, step.file->axis);
   look_at_rows(recording, axis, result);
-  take_cycles(less_the_blank(step, recording, result), result);
+  std::optional<schema::Recording> before;
+  take_cycles(less_the_blank(step, recording, before, result), result);
   result.content = content_sha256_of(schema::RowsInMemory(recording));
   schema::write_recording(folder / "recording.h5", recording, schema::Existing::replace);
-  fit_laws(step, recording, folder, axis, stop, result);
+  const FitRecordingOptions options = fit_options(step, recording, axis, stop);
+  fit_laws(step, recording, folder, options, result);
+  if (before)
+    result.blank->without = without_parts(
+        {.recording = &*before, .blank = blank_taken(step, result), .axis = axis, .options = options}, result,
+        step.plan->all_cycles);
   if (!step.file->blank) result.blade = fit_blade_in_study(recording, step.shape, folder, result.warnings);
   write_json_file(folder / "result.json", as_json(result));
   return result;

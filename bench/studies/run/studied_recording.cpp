@@ -100,6 +100,12 @@ StudiedBlank studied_blank(const json& from) {
   blank.negative_before = from.at("negative_before");
   blank.negative_after = from.at("negative_after");
   blank.pulling_share = from.at("pulling_share");
+  for (const json& span : from.value("rows_not_covered", json::array()))
+    blank.uncovered.push_back({.begin = span.at(0), .end = span.at(1)});
+  for (const json& part : from.value("without_parts", json::array())) {
+    auto& values = blank.without.emplace_back();
+    for (const auto& [name, value] : part.items()) values[name] = number_or(value, no_number);
+  }
   return blank;
 }
 
@@ -153,6 +159,13 @@ json as_json(const StudiedBlade& blade) {
 
 json as_json(const StudiedBlank& blank) {
   if (!blank.is_taken()) return {{"blank", nullptr}, {"why_none", blank.why_none}};
+  json uncovered = json::array();
+  for (const RowSpan& span : blank.uncovered) uncovered.push_back({span.begin, span.end});
+  json without = json::array();
+  for (const auto& values : blank.without) {
+    json& part = without.emplace_back(json::object());
+    for (const auto& [name, value] : values) part[name] = number_or_null(value);
+  }
   return {{"blank", blank.name},
           {"rows", blank.rows},
           {"rows_covered", blank.covered},
@@ -162,7 +175,9 @@ json as_json(const StudiedBlank& blank) {
           {"spread_rms", blank.spread_rms},
           {"negative_before", blank.negative_before},
           {"negative_after", blank.negative_after},
-          {"pulling_share", blank.pulling_share}};
+          {"pulling_share", blank.pulling_share},
+          {"rows_not_covered", std::move(uncovered)},
+          {"without_parts", std::move(without)}};
 }
 
 std::vector<double> of_cycles(const StudiedRecording& recording, double StudiedCycle::*quantity,

@@ -2,11 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "recordings/row_span.h"
 
 namespace kerf::bench {
 
@@ -54,6 +57,10 @@ struct StudiedBlank {
   double negative_before = 0.0;  ///< share of the rows below zero
   double negative_after = 0.0;
   double pulling_share = 0.0;  ///< below zero by more than two spreads and what is felt, after
+  /// Rows from which nothing was taken: laws run through them, and are not fitted to them.
+  std::vector<RowSpan> uncovered{};
+  /// without_parts(): quantities by name, with one part of the blank's cycles left out after the other.
+  std::vector<std::map<std::string, double>> without{};
 
   [[nodiscard]] bool is_taken() const { return !name.empty(); }
   /// What was taken off differs by more than half of itself from one cycle of the blank to the next.
@@ -111,6 +118,11 @@ struct StudiedRecording {
   std::string chosen;  ///< the simplest law that serves, or the best; empty: none
   std::string why_chosen;
   std::string not_fitted;  ///< why no law was; a blank, or no force that is felt
+
+  /// Rows by which no law is fitted or judged.
+  [[nodiscard]] std::vector<RowSpan> not_the_tissue() const {
+    return blank ? blank->uncovered : std::vector<RowSpan>{};
+  }
 };
 
 /// What good cycles (or all) have of a quantity, in their order.

@@ -30,7 +30,8 @@ StudiedBlank studied(const BlankTaken& taken) {
           .spread_rms = taken.spread_rms,
           .negative_before = taken.negative_before,
           .negative_after = taken.negative_after,
-          .pulling_share = taken.pulling_share};
+          .pulling_share = taken.pulling_share,
+          .uncovered = taken.uncovered};
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
+#include <string>
 
 #include <boost/math/distributions/students_t.hpp>
 
@@ -10,6 +12,7 @@
 
 #include "estimate.h"
 #include "permutation.h"
+#include "shared.h"
 #include "specimens.h"
 #include "verdicts.h"
 
@@ -73,9 +76,9 @@ void take_interval(const GroupEstimate& first, const GroupEstimate& second, doub
   result.degrees_of_freedom =
       error > 0.0 ? (a + b) * (a + b) / (a * a / first.degrees_of_freedom + b * b / second.degrees_of_freedom)
                   : first.degrees_of_freedom + second.degrees_of_freedom;
-  const double t =
-      boost::math::quantile(boost::math::students_t(result.degrees_of_freedom), 0.5 + 0.5 * confidence);
-  result.interval = Interval{*result.difference - t * error, *result.difference + t * error};
+  result.interval =
+      interval_of(*result.difference,
+                  {.standard_error = error, .degrees_of_freedom = result.degrees_of_freedom}, confidence);
   take_model_p(result);
 }
 
@@ -126,22 +129,35 @@ Cell cell_of(const Specimen& specimen, const GroupEstimate& group) {
   return {.mean = sum / weight, .variance = 1.0 / weight};
 }
 
-Comparison crossed(const std::vector<Estimate>& first, const std::vector<Estimate>& second,
-                   const CompareOptions& options) {
-  const Specimens a = specimens_of(first);
+const Specimen& named(const Specimens& specimens, const std::string& name) {
+  return *std::ranges::find(specimens.all, name, &Specimen::name);
+}
+
+/// Between the two levels of each specimen, which are in both.
+std::vector<Estimate> differences_within(const std::vector<Estimate>& first,
+                                         const std::vector<Estimate>& second) {
   const Specimens b = specimens_of(second);
   const GroupEstimate of_first = estimate(first, {});
   const GroupEstimate of_second = estimate(second, {});
   std::vector<Estimate> differences;
-  std::vector<Block> blocks;
-  for (const Specimen& one : a.all) {
-    const auto other =
-        std::find_if(b.all.begin(), b.all.end(), [&](const Specimen& s) { return s.name == one.name; });
+  for (const Specimen& one : specimens_of(first).all) {
     const Cell x = cell_of(one, of_first);
-    const Cell y = cell_of(*other, of_second);
+    const Cell y = cell_of(named(b, one.name), of_second);
     std::optional<double> error;
     if (x.variance && y.variance) error = std::sqrt(*x.variance + *y.variance);
     differences.push_back({.value = x.mean - y.mean, .standard_error = error, .specimen = one.name});
+  }
+  return differences;
+}
+
+Comparison crossed(const std::vector<Estimate>& first, const std::vector<Estimate>& second,
+                   const CompareOptions& options) {
+  const Specimens a = specimens_of(first);
+  const Specimens b = specimens_of(second);
+  const std::vector<Estimate> differences = differences_within(first, second);
+  std::vector<Block> blocks;
+  for (const Specimen& one : a.all) {
+    const Specimen* const other = &named(b, one.name);
     Block block{.values = one.values, .first = one.values.size()};
     block.values.insert(block.values.end(), other->values.begin(), other->values.end());
     if (!options.exchanges_recordings)
@@ -158,18 +174,77 @@ Comparison crossed(const std::vector<Estimate>& first, const std::vector<Estimat
   return result;
 }
 
-Comparison compare_one(const Pair& pair, const CompareOptions& options) {
+/// The estimates of two groups that their design takes.
+struct Design {
+  bool is_crossed = false;
+  std::vector<Estimate> first;
+  std::vector<Estimate> second;
+};
+
+Design design_of(const Pair& pair) {
   const Specimens first = specimens_of(pair.first);
   const Specimens second = specimens_of(pair.second);
-  const std::size_t all = pair.first.size() + pair.second.size();
   // Estimates without limits take no part in finding out which specimens both groups have.
   const bool has_specimens = first.unit == Unit::specimens && second.unit == Unit::specimens;
   const std::set<std::string> shared = has_specimens ? shared_by(first, second) : std::set<std::string>{};
   const bool is_crossed = shared.size() > 1;
-  const std::vector<Estimate> a = has_specimens ? only(pair.first, shared, is_crossed) : pair.first;
-  const std::vector<Estimate> b = has_specimens ? only(pair.second, shared, is_crossed) : pair.second;
-  Comparison result = is_crossed ? crossed(a, b, options) : nested(a, b, options);
-  result.left_out = all - specimens_of(a).recordings - specimens_of(b).recordings;
+  return {.is_crossed = is_crossed,
+          .first = has_specimens ? only(pair.first, shared, is_crossed) : pair.first,
+          .second = has_specimens ? only(pair.second, shared, is_crossed) : pair.second};
+}
+
+/// The difference alone, NaN where there is none.
+double difference_of(const Design& design) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (design.is_crossed)
+    return estimate(differences_within(design.first, design.second), {}).mean.value_or(unknown);
+  return estimate(design.first, {}).mean.value_or(unknown) -
+         estimate(design.second, {}).mean.value_or(unknown);
+}
+
+/// The difference with one part of what is shared left out after the other.
+WithoutParts differences_without(const Pair& pair) {
+  WithoutParts differences;
+  for (const SharedByGroups& source : pair.shared) {
+    if (source.first.without.size() != source.second.without.size())
+      throw std::invalid_argument("what two groups share has not the same parts in both");
+    std::vector<double>& of_source = differences.emplace_back();
+    for (std::size_t part = 0; part < source.first.without.size(); ++part) {
+      const Pair changed{.first = with_values(pair.first, source.first.without[part]),
+                         .second = with_values(pair.second, source.second.without[part])};
+      of_source.push_back(difference_of(design_of(changed)));
+    }
+  }
+  return differences;
+}
+
+/// Puts what recordings share into the difference.
+void add_shared_error(const Pair& pair, double confidence, Comparison& result) {
+  if (!result.difference) return;
+  result.has_shared = true;
+  result.shared_error = error_of(differences_without(pair));
+  result.model_p.reset();
+  if (!result.shared_error || !result.standard_error) {
+    result.standard_error.reset();
+    result.interval.reset();
+    return;
+  }
+  const SharedError both =
+      together({.standard_error = *result.standard_error, .degrees_of_freedom = result.degrees_of_freedom},
+               *result.shared_error);
+  result.standard_error = both.standard_error;
+  result.degrees_of_freedom = both.degrees_of_freedom;
+  result.interval = interval_of(*result.difference, both, confidence);
+  take_model_p(result);
+}
+
+Comparison compare_one(const Pair& pair, const CompareOptions& options) {
+  const Design design = design_of(pair);
+  Comparison result = design.is_crossed ? crossed(design.first, design.second, options)
+                                        : nested(design.first, design.second, options);
+  result.left_out = pair.first.size() + pair.second.size() - specimens_of(design.first).recordings -
+                    specimens_of(design.second).recordings;
+  if (!pair.shared.empty()) add_shared_error(pair, options.confidence, result);
   return result;
 }
 
@@ -241,7 +316,8 @@ void judge(std::vector<Comparison>& comparisons, double level) {
     one.benjamini_hochberg_p = shares[k];
     one.least_holm_p = least_holm[k];
     if (least_holm[k] > level) continue;
-    one.verdict = holm[k] <= level ? Verdict::differ : Verdict::not_told_apart;
+    const bool differs = holm[k] <= level && (!one.has_shared || one.holm_model_p.value_or(1.0) <= level);
+    one.verdict = differs ? Verdict::differ : Verdict::not_told_apart;
   }
 }
 

@@ -2,12 +2,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include <kerf/population/group.h>
 
 #include "estimate.h"
 #include "reml.h"
+#include "shared.h"
 #include "specimens.h"
 #include "spreads.h"
 
@@ -79,6 +78,46 @@ void add_limits(const Scaled& units, const Model& model, double confidence, Grou
         scaled_by(units.scale, within_limits(units.specimens, model, confidence));
 }
 
+Interval widened(const Interval& interval, double middle, double by) {
+  return {.lower = middle - std::hypot(middle - interval.lower, by),
+          .upper = middle + std::hypot(interval.upper - middle, by)};
+}
+
+/// The mean with a part left out after the other.
+WithoutParts means_without(std::span<const Estimate> estimates, std::span<const Shared> shared) {
+  WithoutParts means;
+  for (const Shared& source : shared) {
+    std::vector<double>& of_source = means.emplace_back();
+    for (const std::vector<double>& values : source.without)
+      of_source.push_back(estimate(with_values(estimates, values), {}).mean.value_or(std::nan("")));
+  }
+  return means;
+}
+
+/// Puts what recordings share into what is said of them all.
+void add_shared(std::span<const Estimate> estimates, const Wanted& wanted, GroupEstimate& result) {
+  if (!result.mean) return;
+  result.shared_error = error_of(means_without(estimates, wanted.shared));
+  if (!result.shared_error) {
+    result.standard_error.reset();
+    result.interval.reset();
+    result.of_this_specimen.reset();
+    result.of_the_next.reset();
+    return;
+  }
+  const SharedError& shared = *result.shared_error;
+  const double alone = interval_of(0.0, shared, wanted.confidence).upper;
+  if (result.of_this_specimen)
+    result.of_this_specimen = widened(*result.of_this_specimen, *result.mean, alone);
+  if (result.of_the_next) result.of_the_next = widened(*result.of_the_next, *result.mean, alone);
+  if (!result.standard_error) return;
+  const SharedError both = together({.standard_error = *result.standard_error,
+                                     .degrees_of_freedom = static_cast<double>(result.degrees_of_freedom)},
+                                    shared);
+  result.standard_error = both.standard_error;
+  result.interval = interval_of(*result.mean, both, wanted.confidence);
+}
+
 /// Of two units at least: mean, interval, spreads.
 void estimate_units(const std::vector<Specimen>& specimens, const Wanted& wanted, GroupEstimate& result) {
   const Scaled units = scaled(specimens);
@@ -97,10 +136,10 @@ void estimate_units(const std::vector<Specimen>& specimens, const Wanted& wanted
   const Variances variances = reml(units.specimens, model);
   const Fitted fit = fitted(units.specimens, variances);
   const double error = units.scale * std::sqrt(fit.q / (degrees * fit.weight));
-  const double t = boost::math::quantile(boost::math::students_t(degrees), 0.5 + 0.5 * wanted.confidence);
   result.mean = units.centre + units.scale * fit.mean;
   result.standard_error = error;
-  result.interval = Interval{*result.mean - t * error, *result.mean + t * error};
+  result.interval =
+      interval_of(*result.mean, {.standard_error = error, .degrees_of_freedom = degrees}, wanted.confidence);
   const Spread between = spread_of(variances.between, model.least.between, units.scale);
   (model.has_within ? result.between_specimens : result.together) = between;
   if (model.has_within)
@@ -144,6 +183,7 @@ GroupEstimate estimate(std::span<const Estimate> estimates, const Wanted& wanted
   } else if (specimens.all.size() == 1) {
     estimate_one(specimens.all.front(), wanted, result);
   }
+  if (!wanted.shared.empty()) add_shared(estimates, wanted, result);
   return result;
 }
 
@@ -151,7 +191,8 @@ GroupEstimate estimate_group(std::span<const Estimate> estimates, const GroupOpt
   if (!(options.confidence > 0.0 && options.confidence < 1.0))
     throw std::invalid_argument("the confidence is " + std::to_string(options.confidence) +
                                 "; it must lie between 0 and 1");
-  return estimate(estimates, {.confidence = options.confidence, .has_limits = true});
+  return estimate(estimates,
+                  {.confidence = options.confidence, .has_limits = true, .shared = options.shared});
 }
 
 }  // namespace kerf::population

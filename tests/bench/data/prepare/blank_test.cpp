@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -122,6 +123,44 @@ TEST(Blank, KnowsTheFrictionWithinItsError) {
     beyond += std::abs(tool.closing.mean[middle] - truth) > 2.0 * error ? 1 : 0;
   }
   EXPECT_LE(beyond, 2);
+}
+
+// The jackknife of a mean over cycles is its standard error: spread / sqrt(n).
+TEST(Blank, IsAsWellKnownAsItsPartsSay) {
+  const schema::Recording blank = cut({.spread = 0.03});
+  const ToolForce whole = tool_force(blank, 0, 1.0);
+  const std::size_t parts = whole.used.size();
+  const std::size_t middle = whole.grid.size() / 2;
+  double mean = 0.0;
+  double squares = 0.0;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const ToolForce others = tool_force(blank, 0, 1.0, CyclePart{.part = part, .parts = parts});
+    EXPECT_EQ(others.used.size(), parts - 1);
+    EXPECT_EQ(std::ranges::count(others.used, whole.used[part]), 0);
+    const double off = others.closing.mean[middle] - whole.closing.mean[middle];
+    mean += off / static_cast<double>(parts);
+    squares += off * off;
+  }
+  EXPECT_NEAR(mean, 0.0, 1e-3);
+  const double error = whole.closing.spread[middle] / std::sqrt(static_cast<double>(parts));
+  const double n = static_cast<double>(parts);
+  EXPECT_NEAR(std::sqrt((n - 1.0) / n * squares) / error, 1.0, 0.05);
+}
+
+TEST(Blank, NamesTheRowsThatItDoesNotCover) {
+  const Prepared prepared =
+      prepare(cut({.stiffness = 8.0, .reach = 0.6, .seed = 2}), {.blank = blank_of({})});
+  const BlankTaken& taken = *prepared.blank;
+  std::size_t named = 0;
+  std::size_t beyond = 0;
+  for (const RowSpan& span : taken.uncovered) {
+    named += span.end - span.begin;
+    for (std::size_t row = span.begin; row < span.end; ++row)
+      beyond += prepared.recording.position[row] > 0.52 ? 1 : 0;
+  }
+  EXPECT_EQ(named, taken.rows - taken.covered);
+  EXPECT_EQ(beyond, static_cast<std::size_t>(std::ranges::count_if(prepared.recording.position,
+                                                                   [](double x) { return x > 0.52; })));
 }
 
 TEST(Blank, CountsAlongATurnedAxis) {

@@ -44,8 +44,7 @@ class BlankInStudy : public test::StudyFolder {
         return std::exp(quantity.at("estimate").at("mean").get<double>());
     return 0.0;
   }
-  /// Over specimens: the tissue's two springs and its dashpot. The error of the one blank is common to all,
-  /// which intervals over specimens do not see.
+  /// Over specimens: the tissue's two springs and its dashpot, near the truth and in intervals with it.
   void expect_the_truth_within(double share) const {
     const std::map<std::string, double> truth{
         {"kelvin.parallel_stiffness", 300.0}, {"kelvin.series_stiffness", 500.0}, {"kelvin.damping", 50.0}};
@@ -57,6 +56,10 @@ class BlankInStudy : public test::StudyFolder {
       ++compared;
       EXPECT_NEAR(std::exp(quantity.at("estimate").at("mean").get<double>()) / known->second, 1.0, share)
           << known->first;
+      const json& interval = quantity.at("estimate").at("ci95");
+      EXPECT_LE(interval.at(0).get<double>(), std::log(known->second)) << known->first;
+      EXPECT_GE(interval.at(1).get<double>(), std::log(known->second)) << known->first;
+      EXPECT_GT(quantity.at("estimate").at("std_error_of_blanks").get<double>(), 0.0) << known->first;
     }
     EXPECT_EQ(compared, truth.size());
   }

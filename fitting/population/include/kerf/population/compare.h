@@ -38,7 +38,8 @@ struct CompareOptions {
 };
 
 enum class Verdict {
-  differ,          ///< p, corrected for all comparisons of the study, is at most the level
+  differ,  ///< p, corrected for all comparisons of the study, is at most the level, and where recordings
+           ///< share something, that of the t of the interval is, too
   not_told_apart,  ///< it is not; `interval` says how large a difference is still possible
   cannot_be_told,  ///< with so few no data could have told them apart, or there is no data to compare
 };
@@ -58,8 +59,10 @@ struct Comparison {
   std::optional<double> standard_error;
   std::optional<Interval> interval;  ///< of the difference over all such specimens
   double degrees_of_freedom = 0.0;
+  bool has_shared = false;                  ///< recordings share something
+  std::optional<SharedError> shared_error;  ///< of the difference; it is in `standard_error` and `interval`
   /// Of the difference by its t, two-sided; takes specimens as normal, and so may be smaller than `test->p`
-  /// can. The verdict does not ask it.
+  /// can. The verdict asks it only where recordings share something, which no permutation knows of.
   std::optional<double> model_p;
   std::optional<double> holm_model_p;  ///< by Holm over all comparisons that have one
   /// Hedges' g [Hedges1981], over specimens: the difference in pooled standard deviations of specimens;
@@ -67,10 +70,17 @@ struct Comparison {
   std::optional<double> hedges_g;
 };
 
+/// What recordings of one or of both groups share; both have the same number of parts.
+struct SharedByGroups {
+  Shared first;
+  Shared second;
+};
+
 /// Two groups whose difference is asked for.
 struct Pair {
   std::vector<Estimate> first;
   std::vector<Estimate> second;
+  std::vector<SharedByGroups> shared{};
 };
 
 /// Whether groups differ: all comparisons of a study at once, because they are corrected for each other.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <kerf/psychophysics/binomial.h>
 
@@ -35,8 +36,22 @@ struct Spread {
       interval;  ///< nothing below two units; begins at 0 where no spread would do as well
 };
 
+/// What several recordings have in common beside their specimen, a blank that was taken off each of them: its
+/// error is in no spread among them. Their values with one part of it after the other left out, a row a part,
+/// in the order of the estimates; a recording that it was not taken off has its own value in each.
+struct Shared {
+  std::vector<std::vector<double>> without;  ///< of logarithms as the estimates are
+};
+
+/// A standard error and the degrees of freedom by which it is known.
+struct SharedError {
+  double standard_error = 0.0;
+  double degrees_of_freedom = 0.0;
+};
+
 struct GroupOptions {
-  double confidence = 0.95;  ///< of every interval, between 0 and 1
+  double confidence = 0.95;          ///< of every interval, between 0 and 1
+  std::span<const Shared> shared{};  ///< by several recordings; each source is independent of the others
 };
 
 /// What is known of a group (a tissue at a speed). Whatever cannot be known of so few is nothing, never 0.
@@ -53,6 +68,11 @@ struct GroupEstimate {
   std::optional<double> standard_error;  ///< of the mean, by Hartung and Knapp; nothing below two units
   std::optional<Interval> interval;      ///< of the mean of all such specimens, by t of units - 1
   int degrees_of_freedom = 0;            ///< units - 1
+
+  /// Of the mean, by what recordings share; `standard_error` and intervals of the mean and of what is next
+  /// have it in them. Nothing without anything shared; unknown where values are not finite, and then the
+  /// intervals are, too.
+  std::optional<SharedError> shared_error;
 
   /// Of one specimen alone: the interval of that specimen's mean, over its recordings.
   std::optional<Interval> of_this_specimen;
@@ -82,6 +102,11 @@ struct GroupEstimate {
 /// exact interval of the Q-profile [Viechtbauer2007], sum_ij a_ij (y_ij - m_i)^2 ~ chi^2 of N - n; that
 /// between specimens a generalized one [Weerahandi1993]: the Q-profile over specimens, averaged over what the
 /// former leaves open of t_w; the next specimen the fiducial mixture over both [WangHannigIyer2012].
+///
+/// What recordings share has an error e_s that is in none of these: by the jackknife of K groups
+/// [ShaoTu1995], e_s^2 = (K - 1) / K sum_k (mu_k - mean)^2, with mu_k the mean (its weights as they are) of
+/// the values that leave part k out. Then the standard error is sqrt(q + e_s^2), its t that of Welch and
+/// Satterthwaite [Welch1947], and what is next as wide as both in squares.
 ///
 /// Refuses a negative standard error, one that is NaN, and a confidence outside of 0 to 1.
 [[nodiscard]] GroupEstimate estimate_group(std::span<const Estimate> estimates,
