@@ -1,6 +1,5 @@
 #include "experiment/session_log.h"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -40,31 +39,15 @@ OpenedExperiment open_experiment(const fs::path& file_or_folder, KeyArguments& k
 
 std::optional<ExperimentLog> log_beside(const fs::path& session_file, const schema::Session& session,
                                         KeyArguments& key) {
-  if (!membership_of(session)) return std::nullopt;
-  const fs::path log_file = log_of(session_file);
+  const std::optional<fs::path> log_file = log_of_session(session_file, session);
+  if (!log_file) return std::nullopt;
   std::error_code ignored;
-  if (!fs::exists(log_file, ignored)) {
+  if (!fs::exists(*log_file, ignored)) {
     warn(fmt::format("{}: a session of an experiment, whose {} is not beside it: nothing is logged",
-                     session_file.string(), log_file.filename().string()));
+                     session_file.string(), log_file->filename().string()));
     return std::nullopt;
   }
-  return ExperimentLog(log_file, key_for(key, ExperimentLog::derivation_of(log_file)));
-}
-
-void require_takes_part(const fs::path& session_file, const ExperimentLog& log,
-                        const schema::Session& session) {
-  const StudyState state = study_state(session_file.parent_path() / "experiment.toml", log);
-  const Participant* who = state.find(session.subject);
-  const bool is_assigned =
-      who != nullptr && std::ranges::count(who->sessions, session.uuid, &AssignedSession::uuid) > 0;
-  if (!is_assigned)
-    throw std::invalid_argument(
-        fmt::format("{}: the experiment beside it assigned this session to nobody", session_file.string()));
-  if (who->is_out())
-    throw std::invalid_argument(fmt::format(
-        "{}: {} was {} ({}); 'kerf session new --replaces {}' makes a "
-        "session for somebody else",
-        session_file.string(), who->code, who->dropped ? "dropped" : "excluded", who->reason, who->code));
+  return ExperimentLog(*log_file, key_for(key, ExperimentLog::derivation_of(*log_file)));
 }
 
 void log_opening(const fs::path& session_file, const SessionStore& store, KeyArguments& key,

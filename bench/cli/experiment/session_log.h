@@ -5,6 +5,7 @@
 #include <string>
 
 #include "experiment/key_arguments.h"
+#include "registered/logged_run.h"
 #include "registered/study_state.h"
 #include "sealed/session_store.h"
 
@@ -24,10 +25,6 @@ struct OpenedExperiment {
 /// The log beside a session that is of an experiment; of any other session, or where it is missing, nothing.
 [[nodiscard]] std::optional<ExperimentLog> log_beside(const std::filesystem::path& session_file,
                                                       const schema::Session& session, KeyArguments& key);
-
-/// Refuses to run the session of a participant who is out, or who was never assigned it.
-void require_takes_part(const std::filesystem::path& session_file, const ExperimentLog& log,
-                        const schema::Session& session);
 
 /// Keeps in the log what a session was opened by itself for. @throws std::invalid_argument: the study is
 /// under way, and no reason was given.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -108,6 +109,14 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
     named.push_back({.file = file, .session = &store});
   }
   hold_against(receipts, named, context);
+  for (auto one = named.begin(); one != named.end(); ++one) {
+    const auto twin = std::find_if(named.begin(), one, [&](const NamedSession& other) {
+      return other.session->session().subject == one->session->session().subject;
+    });
+    if (twin != one)
+      mind(fmt::format("{} and {} are two sessions of {}, who is counted as one person", twin->file,
+                       one->file, one->session->session().subject));
+  }
   Study study = study_of(sessions);
   study.remarks = std::move(remarks);
   return study;

@@ -2,9 +2,11 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "answer_pages/analysis_words.h"
 #include "answer_pages/experiment_words.h"
 #include "experiment/session_log.h"
 #include "experiment/verb_session.h"
@@ -17,6 +19,7 @@ struct SessionDropVerbArguments {
   std::string participant;
   std::string reason;
   std::string rule;
+  std::vector<std::string> receipts;  ///< of the log
   KeyArguments key;
 };
 
@@ -63,14 +66,25 @@ void tell_status(SessionDropVerbArguments& arguments, Context& context) {
     if (each.is_out() || each.completed()) continue;
     context.say(fmt::format("  {} {}", each.code, each.begun() ? "has begun" : "is still to come"));
   }
-  for (const std::string& problem : state.problems) warn(problem);
-  if (!state.problems.empty()) context.exit = Exit::check_failed;
-  context.say(fmt::format("{} looks so far; {}", state.looks.size(),
+  std::vector<std::string> problems = state.problems;
+  for (const std::string& receipt : arguments.receipts) {
+    if (!opened.log.bears_out(receipt))
+      problems.push_back(
+          fmt::format("receipt {}: experiment.log has not the lines that it had: it was cut short, or "
+                      "an older copy was put back",
+                      receipt));
+  }
+  for (const std::string& problem : problems) warn(problem);
+  if (!problems.empty()) context.exit = Exit::check_failed;
+  context.say(fmt::format("{} so far; {}", plural(state.looks.size(), "look"),
                           state.is_over() ? "everybody is through" : "the study is under way"));
   context.say("log: receipt " + opened.log.receipt());
-  context.result = {{"name", state.experiment.name}, {"flow", flow_json(state, flow)},
-                    {"over", state.is_over()},       {"looks", state.looks.size()},
-                    {"files", state.problems},       {"log_receipt", opened.log.receipt()}};
+  context.result = {{"name", state.experiment.name},
+                    {"flow", flow_json(state, flow)},
+                    {"over", state.is_over()},
+                    {"looks", state.looks.size()},
+                    {"files", problems},
+                    {"log_receipt", opened.log.receipt()}};
 }
 
 }  // namespace
@@ -97,10 +111,15 @@ void add_session_status(CLI::App& session, Context& context) {
   Verb verb = add_verb(session, context, "status",
                        "Where an experiment stands: its participants and files; no answer is looked at",
                        "kerf session status study --key-file keeper.key\n\n"
-                       "Exits with 1 where a session is missing, foreign, there twice, or older than it was.",
+                       "Exits with 1 where a session is missing, foreign, there twice, or older than it was, "
+                       "or where a receipt\n"
+                       "of the log is not borne out.",
                        [arguments, &context] { tell_status(*arguments, context); });
   verb.add_option("EXPERIMENT", arguments->experiment, "The study's folder, or its experiment.toml")
       .required();
+  verb.add_option("--receipt", arguments->receipts,
+                  "Receipt of the log, as this verb prints it (may be repeated)")
+      .one_value_each();
   add_key_options(verb, arguments->key);
 }
 

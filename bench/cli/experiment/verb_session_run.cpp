@@ -163,18 +163,6 @@ std::string session_of(SessionRunVerbArguments& arguments) {
                            : fmt::format("--visit: {} has {}", who->code, who->sessions.size()));
 }
 
-/// What the log of its experiment keeps of a run, the receipt above all.
-void log_run(const SessionRunVerbArguments& arguments, const SessionStore& store,
-             std::optional<ExperimentLog>& log) {
-  if (!log) return;
-  log->append("run", {{"participant", store.session().subject},
-                      {"session", store.session().uuid},
-                      {"entries", store.session().entries.size()},
-                      {"finished", store.finished()},
-                      {"rehearsal", arguments.rehearse},
-                      {"receipt", receipt_of(store).in_full()}});
-}
-
 /// Their number alone: the address of the subject's page may be among them.
 void note_unprinted(SessionStore& store) {
   const std::size_t lines = unprinted_errors().size();
@@ -210,7 +198,7 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
     } catch (const std::exception&) {
       answering = {};  // the subject's screen
       give_receipt(arguments, store, context);
-      log_run(arguments, store, log);
+      if (log) log->append("run", run_facts(store, arguments.rehearse));
       throw;
     }
   }
@@ -218,7 +206,7 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
   store.close();
   report(arguments, context, result);
   give_receipt(arguments, store, context);
-  log_run(arguments, store, log);
+  if (log) log->append("run", run_facts(store, arguments.rehearse));
 }
 
 }  // namespace

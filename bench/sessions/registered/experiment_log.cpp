@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -23,6 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view chain_mark = R"(,"chain":")";
 constexpr std::size_t digits = 64;
+constexpr std::size_t receipt_digits = 16;
 
 std::span<const std::uint8_t> as_bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -171,13 +173,28 @@ void ExperimentLog::read(std::string_view text) {
     chain_ = chain;
     line_facts.erase("chain");
     lines_.push_back({line_facts["kind"].get<std::string>(), line_facts["time"].get<std::string>(),
-                      std::move(line_facts)});
+                      std::move(line_facts), chain_});
   }
   if (lines_.empty()) refuse_line(file_, 1, "is empty: the log was cut off");
 }
 
 std::string ExperimentLog::receipt() const {
-  return fmt::format("{}/{}", lines_.size(), chain_.substr(0, 16));
+  return fmt::format("{}/{}", lines_.size(), chain_.substr(0, receipt_digits));
+}
+
+bool ExperimentLog::bears_out(const std::string& receipt) const {
+  std::size_t number = 0;
+  const std::size_t slash = receipt.find('/');
+  const char* const end = receipt.data() + std::min(slash, receipt.size());
+  const auto read_number = std::from_chars(receipt.data(), end, number);
+  const std::string chain = slash == std::string::npos ? std::string() : receipt.substr(slash + 1);
+  if (read_number.ec != std::errc() || read_number.ptr != end || number == 0 ||
+      chain.size() < receipt_digits || chain.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw std::invalid_argument(fmt::format(
+        "'{}' is no receipt of an experiment's log; expected one as 'kerf session status' prints it, such as "
+        "22/0fec241f4a6f0311",
+        receipt));
+  return number <= lines_.size() && lines_[number - 1].chain.starts_with(chain);
 }
 
 void ExperimentLog::append(const std::string& kind, const Facts& facts) {

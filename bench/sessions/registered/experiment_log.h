@@ -21,6 +21,7 @@ struct LogLine {
   std::string kind;
   std::string time;              ///< ISO 8601, UTC
   nlohmann::ordered_json facts;  ///< of this kind; with kind and time
+  std::string chain;             ///< after it
 };
 
 /// experiment.log, beside the sessions of a study: JSON Lines to which lines are added and from which none is
@@ -48,6 +49,8 @@ class ExperimentLog {
   [[nodiscard]] const LogLine& registered() const { return lines_.front(); }
   /// The first digits of the chain after all lines, to be kept elsewhere.
   [[nodiscard]] std::string receipt() const;
+  /// Whether the log still has the lines of a receipt. @throws std::invalid_argument for what is none.
+  [[nodiscard]] bool bears_out(const std::string& receipt) const;
   /// What is odd and no tampering: a torn last line that was dropped.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 

@@ -40,10 +40,11 @@ std::string exclusion_lines(const ExclusionPlan& plan) {
 
 std::string stopping_lines(const StoppingRule& rule) {
   std::string text = fmt::format(
-      "\n[analysis.stopping]\nrule = \"{}\"   # or \"fixed\", \"alpha-spending\", \"bayes-factor\"\n",
+      "\n[analysis.stopping]\nrule = \"{}\"   # one of \"fixed\", \"alpha-spending\", \"bayes-factor\"\n",
       name_of(rule.kind));
   if (rule.kind == StoppingKind::alpha_spending)
-    text += fmt::format("spending = \"{}\"   # or \"obrien-fleming\", \"pocock\"\n", name_of(rule.spending));
+    text +=
+        fmt::format("spending = \"{}\"   # one of \"obrien-fleming\", \"pocock\"\n", name_of(rule.spending));
   if (rule.kind == StoppingKind::bayes_factor)
     text += fmt::format("evidence = {}   # ends at this Bayes factor, or at one over it\n", rule.evidence);
   if (!rule.looks.empty())
@@ -60,10 +61,10 @@ std::string experiment_text(const Experiment& experiment) {
       "name = {:?}\nprotocol = {:?}\n\n[participants]\ntarget = {}\nvisits = {}   # sessions of each\n",
       experiment.name, experiment.protocol, people.target, people.visits);
   if (!people.groups.empty()) text += fmt::format("groups = {}   # of equal size\n", quoted(people.groups));
-  text += fmt::format("replace = \"{}\"   # or \"never\", \"dropped\", \"dropped-or-excluded\"\n",
+  text += fmt::format("replace = \"{}\"   # one of \"never\", \"dropped\", \"dropped-or-excluded\"\n",
                       name_of(people.replace));
   const AnalysisPlan& plan = experiment.analysis;
-  text += fmt::format("\n[analysis]\ntest = \"{}\"   # or \"difference\", \"equivalence\"\nalpha = {}\n",
+  text += fmt::format("\n[analysis]\ntest = \"{}\"   # one of \"difference\", \"equivalence\"\nalpha = {}\n",
                       name_of(plan.test), plan.alpha);
   return text + margin_lines(plan) + exclusion_lines(plan.exclude) + stopping_lines(plan.stopping);
 }

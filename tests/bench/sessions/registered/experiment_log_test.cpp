@@ -99,6 +99,20 @@ TEST_F(ExperimentLogTest, IsForgedByNobodyWithoutTheKey) {
                                            HasSubstr("experiment.log:1: does not open with this key")));
 }
 
+TEST_F(ExperimentLogTest, IsHeldAgainstAReceiptThatWasKept) {
+  const std::string before = log().receipt();
+  log().append("look", {{"look", 1}});
+  const std::string after = log().receipt();
+  EXPECT_TRUE(log().bears_out(before));
+  EXPECT_TRUE(log().bears_out(after));
+  take_out(3);
+  EXPECT_TRUE(log().bears_out(before));
+  EXPECT_FALSE(log().bears_out(after)) << "the end was cut off, which the log itself cannot tell";
+  for (const char* none :
+       {"", "3", "3/", "0/0fec241f4a6f0311", "3/0fec", "x/0fec241f4a6f0311", "3/0FEC241F4A6F0311"})
+    EXPECT_THROW((void)log().bears_out(none), std::invalid_argument) << none;
+}
+
 TEST_F(ExperimentLogTest, DropsALastLineThatACrashHasTorn) {
   const std::string whole = kerf::test::read_text(file_);
   kerf::test::write_text(file_, whole + R"({"kind":"look","ti)");

@@ -239,6 +239,22 @@ TEST_F(ExperimentProgram, FindsALookThatWasTakenOutOfTheLog) {
   expect_refused(analyze(), "experiment.log:3: was changed, or a line before it was taken out");
 }
 
+TEST_F(ExperimentProgram, HoldsItsLogAgainstAReceipt) {
+  begin_study();
+  const Outcome status = session({"status", study()});
+  const std::string before = read_text(study("experiment.log"));
+  run("S01");
+  const Outcome later = session({"status", study()});
+  std::smatch receipt;
+  ASSERT_TRUE(std::regex_search(later.output, receipt, std::regex("receipt ([0-9]+/[0-9a-f]{16})")));
+  EXPECT_EQ(session({"status", study(), "--receipt", receipt[1]}).exit_status, 0);
+  write_text(study("experiment.log"), before);
+  const Outcome cut = session({"status", study(), "--receipt", receipt[1]});
+  EXPECT_EQ(cut.exit_status, 1);
+  EXPECT_THAT(cut.errors, HasSubstr("experiment.log has not the lines that it had"));
+  expect_refused(session({"status", study(), "--receipt", "nonsense"}), "'nonsense' is no receipt");
+}
+
 TEST_F(ExperimentProgram, OpensNoSessionBehindTheStudysBack) {
   begin_study();
   run("S01");
