@@ -17,8 +17,11 @@ void add_session(CLI::App& app, Context& context) {
       "docs/sessions.md\n"
       "says how to plan and run a study, docs/blinding.md what the seal protects from and what not.");
   add_session_key(session, context);
+  add_session_plan(session, context);
   add_session_new(session, context);
   add_session_run(session, context);
+  add_session_drop(session, context);
+  add_session_status(session, context);
   add_session_analyze(session, context);
   add_session_open(session, context);
   add_session_simulate(session, context);

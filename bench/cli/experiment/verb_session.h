@@ -11,6 +11,9 @@ void add_session_new(CLI::App& session, Context& context);
 void add_session_run(CLI::App& session, Context& context);
 void add_session_analyze(CLI::App& session, Context& context);
 void add_session_open(CLI::App& session, Context& context);
+void add_session_plan(CLI::App& session, Context& context);
+void add_session_drop(CLI::App& session, Context& context);
+void add_session_status(CLI::App& session, Context& context);
 void add_session_simulate(CLI::App& session, Context& context);
 
 }  // namespace kerf::bench

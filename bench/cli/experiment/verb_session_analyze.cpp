@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -9,7 +10,9 @@
 #include "answer_pages/analysis_json.h"
 #include "answer_pages/analysis_page.h"
 #include "answers/answers_table.h"
+#include "experiment/analyze_experiment.h"
 #include "experiment/key_arguments.h"
+#include "experiment/session_log.h"
 #include "experiment/verb_session.h"
 #include "files/whole_file.h"
 #include "sealed/opening.h"
@@ -26,6 +29,8 @@ struct SessionAnalyzeVerbArguments {
   std::string reason;
   std::string design;
   std::string correction = "holm";
+  std::string test;
+  std::optional<double> level;
   std::vector<double> jnd_margins;
   double bootstrap = AnalysisOptions{}.bootstrap;
   AnalysisOptions options;
@@ -90,6 +95,9 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
     record_opening(file, key, arguments.reason);
     stores.push_back(std::make_unique<SessionStore>(file, key, SessionStore::Purpose::read));
     const SessionStore& store = *stores.back();
+    log_opening(file, store, arguments.key, arguments.reason);
+    if (membership_of(store.session()))
+      mind(fmt::format("{}: a session of an experiment, analysed outside of it", file));
     sessions.push_back(&store);
     for (const std::string& warning : store.warnings()) mind(warning);
     for (const std::string& opening : store.early_openings()) {
@@ -101,9 +109,42 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
     named.push_back({.file = file, .session = &store});
   }
   hold_against(receipts, named, context);
+  for (auto one = named.begin(); one != named.end(); ++one) {
+    const auto twin = std::find_if(named.begin(), one, [&](const NamedSession& other) {
+      return other.session->session().subject == one->session->session().subject;
+    });
+    if (twin != one)
+      mind(fmt::format("{} and {} are two sessions of {}, who is counted as one person", twin->file,
+                       one->file, one->session->session().subject));
+  }
   Study study = study_of(sessions);
   study.remarks = std::move(remarks);
   return study;
+}
+
+AnalysedExperiment analysed(SessionAnalyzeVerbArguments& arguments, Context& context) {
+  AnalysisOptions& options = arguments.options;
+  const std::string& first = arguments.files.front();
+  if (!is_experiment(first)) {
+    if (!arguments.test.empty())
+      throw std::invalid_argument("--test is for an experiment: a session has the main test of its design");
+    if (arguments.level) options.level = *arguments.level;
+    Study study = is_table(first) ? read_table(arguments) : read_sessions(arguments, context);
+    Analysis analysis = analyse(study, options);
+    return {.study = std::move(study), .analysis = std::move(analysis)};
+  }
+  if (arguments.files.size() != 1 || !arguments.receipts.empty() || !arguments.design.empty())
+    throw std::invalid_argument(
+        "an experiment is analysed alone, and knows its design and its receipts; leave out all else");
+  return analyse_experiment({.experiment = first,
+                             .reason = arguments.reason,
+                             .test = arguments.test,
+                             .alpha = arguments.level,
+                             .margin = options.margin,
+                             .d_prime = options.d_prime_bound,
+                             .jnd_margins = options.jnd_margins,
+                             .options = options},
+                            arguments.key, context);
 }
 
 void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {
@@ -115,9 +156,7 @@ void analyze(SessionAnalyzeVerbArguments& arguments, Context& context) {
   if (arguments.correction == "bh") options.correction = FamilyCorrection::benjamini_hochberg;
   if (!arguments.jnd_margins.empty())
     options.jnd_margins = psychophysics::Interval{arguments.jnd_margins[0], arguments.jnd_margins[1]};
-  const Study study =
-      is_table(arguments.files.front()) ? read_table(arguments) : read_sessions(arguments, context);
-  const Analysis analysis = analyse(study, options);
+  const auto [study, analysis] = analysed(arguments, context);
   nlohmann::ordered_json json = analysis_as_json(analysis);
   if (!context.result.is_null()) json.update(context.result);
   context.result = std::move(json);
@@ -135,17 +174,24 @@ void add_session_analyze(CLI::App& session, Context& context) {
   AnalysisOptions& options = arguments->options;
   Verb verb = add_verb(
       session, context, "analyze", "What the answers of sessions show, and what they do not",
-      "kerf session analyze study/S*.h5 --key-file keeper.key -o analysis\n"
+      "kerf session analyze study --key-file keeper.key -o analysis\n"
+      "  kerf session analyze S*.h5 --key-file keeper.key -o analysis\n"
       "  kerf session analyze examples/sessions/okamura2003-table-1.csv\n\n"
-      "Takes the sessions of one protocol, or a table of answers. Margins belong in the protocol of\n"
-      "a study, before its first session. docs/sessions-analysis.md and docs/psychophysics.md have the "
-      "equations.",
+      "Takes an experiment (its folder), the sessions of one protocol, or a table of answers. An experiment\n"
+      "is analysed as it was registered: a look before the end is refused, or paid for by its stopping "
+      "rule,\n"
+      "and kept in its log; what the command line has otherwise is called a deviation. docs/experiments.md,\n"
+      "docs/sessions-analysis.md and docs/psychophysics.md have the rest.",
       [arguments, &context] { analyze(*arguments, context); });
   verb.takes_laws(context);
-  verb.add_option("FILES", arguments->files, "Session files, or one table of answers (.csv)").required();
+  verb.add_option("FILES", arguments->files, "An experiment, session files, or one table of answers (.csv)")
+      .required();
   add_key_options(verb, arguments->key);
   verb.add_option("-o,--output", arguments->output, "Folder for the page, the tables and the charts");
-  verb.add_option("--reason", arguments->reason, "Why a session is opened before its end; kept in the file");
+  verb.add_option(
+      "--reason", arguments->reason,
+      "Why a session is opened before its end, or an experiment looked at although its rule has no look; "
+      "kept in the file, and in the log");
   verb.add_option("--receipt", arguments->receipts,
                   "Receipt of 'session run', or a file of them (may be repeated); 1 where a file does not "
                   "bear one out")
@@ -154,9 +200,12 @@ void add_session_analyze(CLI::App& session, Context& context) {
   verb.add_option("--confidence", options.confidence, "Confidence level of the intervals")
       .within(0.5, 0.999)
       .with_default();
-  verb.add_option("--level", options.level, "Significance level of the tests")
-      .within(0.001, 0.5)
-      .with_default();
+  verb.add_option("--level", arguments->level,
+                  "Significance level of the tests (default: 0.05; of an experiment its alpha)")
+      .within(0.001, 0.5);
+  verb.add_option("--test", arguments->test,
+                  "Primary test of an experiment in place of the registered one: difference or equivalence")
+      .one_of({"difference", "equivalence"});
   verb.add_option("--margin", options.margin,
                   "Equivalence margin of a preference, 50 % +- this (default: none)")
       .within(0.001, 0.5);

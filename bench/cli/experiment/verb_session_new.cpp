@@ -8,9 +8,11 @@
 #include <fmt/core.h>
 
 #include "experiment/key_arguments.h"
+#include "experiment/new_experiment.h"
 #include "experiment/verb_session.h"
 #include "files/whole_file.h"
 #include "protocol/samples.h"
+#include "registered/assignment.h"
 #include "run/run.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
@@ -24,6 +26,7 @@ namespace fs = std::filesystem;
 struct SessionNewVerbArguments {
   std::string protocol;
   std::string subject;
+  std::string replaces;
   std::size_t subjects = 0;  ///< 0: one session, for `subject`
   std::string output;
   std::string device;
@@ -36,6 +39,21 @@ void check_arguments(const SessionNewVerbArguments& arguments) {
   if (arguments.subject.empty() == (arguments.subjects == 0))
     throw std::invalid_argument(
         "give the subject's code with --subject, or how many subjects the study has with --subjects");
+  if (arguments.output.empty())
+    throw std::invalid_argument("-o: say where the sessions are to stand; an experiment has its folder");
+  if (!arguments.replaces.empty())
+    throw std::invalid_argument("--replaces is for an experiment; 'kerf session plan' begins one");
+}
+
+void check_arguments_of_experiment(const SessionNewVerbArguments& arguments) {
+  if (arguments.subjects > 0 || !arguments.output.empty() || arguments.replace)
+    throw std::invalid_argument(
+        "an experiment says how many participants it has, and its sessions stand beside it and are never "
+        "replaced: leave out --subjects, -o and --force");
+  if (!arguments.subject.empty() && arguments.replaces.empty())
+    throw std::invalid_argument(
+        "--subject: the participants of an experiment have the codes S01 and so on; "
+        "one that takes another's place has its code with --replaces");
 }
 
 void check_on_device(const SessionNewVerbArguments& arguments, const Protocol& protocol) {
@@ -48,12 +66,6 @@ void check_on_device(const SessionNewVerbArguments& arguments, const Protocol& p
   }
   const StopOnSignal signals;
   for (const std::string& remark : check_samples(protocol, uri, signals.requested())) warn(remark);
-}
-
-/// S01, S02, ...: as many digits as the last one has, two at least.
-std::string code_of(std::size_t number, std::size_t subjects) {
-  const std::size_t digits = std::max<std::size_t>(2, std::to_string(subjects).size());
-  return fmt::format("S{:0{}}", number, digits);
 }
 
 /// Of the subjects; one that is named alone keeps the code.
@@ -93,18 +105,37 @@ std::vector<fs::path> in_folder(const fs::path& folder, const std::vector<std::s
   return files;
 }
 
-void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
-  check_arguments(arguments);
-  Protocol protocol = read_protocol(arguments.protocol);
+/// Makes the samples of a tissue as strong if they are to be, and tries all of them on the device.
+void prepare(const SessionNewVerbArguments& arguments, Protocol& protocol, Context& context) {
   match_loudness(protocol);
   for (const SessionSample& sample : protocol.samples) {
     if (sample.gain != 1.0)
       context.say(fmt::format("  {:24} forces times {:.4g}, to be as strong", sample.name, sample.gain));
   }
   check_on_device(arguments, protocol);
-  if (context.seed_given)
-    warn("whoever knows the seed knows the order: keep --seed from subject and experimenter");
-  const std::uint64_t seed = context.seed_given ? context.seed : random_seed();
+}
+
+std::uint64_t seed_of_orders(const Context& context) {
+  if (!context.seed_given) return random_seed();
+  warn("whoever knows the seed knows the order: keep --seed from subject and experimenter");
+  return context.seed;
+}
+
+void make_sessions(SessionNewVerbArguments& arguments, Context& context) {
+  if (is_experiment(arguments.protocol)) {
+    check_arguments_of_experiment(arguments);
+    make_experiment({.experiment = arguments.protocol,
+                     .replaces = arguments.replaces,
+                     .participant = arguments.subject,
+                     .seed = arguments.replaces.empty() ? seed_of_orders(context) : 0,
+                     .prepare = [&](Protocol& protocol) { prepare(arguments, protocol, context); }},
+                    arguments.key, context);
+    return;
+  }
+  check_arguments(arguments);
+  Protocol protocol = read_protocol(arguments.protocol);
+  prepare(arguments, protocol, context);
+  const std::uint64_t seed = seed_of_orders(context);
   const std::vector<std::string> codes = codes_of(arguments);
   const auto plans = make_plans(protocol, codes.size(), seed);
 
@@ -153,18 +184,24 @@ void add_session_new(CLI::App& session, Context& context) {
   Verb verb = add_verb(
       session, context, "new", "Make the sealed session of a subject, or of all subjects of a study",
       "kerf session new abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5\n"
-      "  kerf session new abx.protocol.toml --subjects 12 --key-file keeper.key -o study\n\n"
+      "  kerf session new abx.protocol.toml --subjects 12 --key-file keeper.key -o study\n"
+      "  kerf session new study/experiment.toml --key-file keeper.key\n\n"
       "Sessions of one study made together are counterbalanced over its subjects. Protocol and laws\n"
-      "are copied into the session; docs/sessions.md has the protocol's format.",
+      "are copied into the session; docs/sessions.md has the protocol's format. Of an experiment ('kerf "
+      "session\n"
+      "plan') it registers the plan and makes the sessions of all participants beside it.",
       [arguments, &context] { make_sessions(*arguments, context); });
   verb.takes_laws(context);
-  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
+  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml, or an experiment")
+      .required();
   verb.add_option("--subject", arguments->subject,
                   "Code of the subject, no name: letters, digits, _ and -, 16 at most");
   verb.add_option("--subjects", arguments->subjects,
                   "Number of sessions to make, S01.h5 and so on, in the folder -o");
-  verb.add_option("-o,--output", arguments->output, "The session file, or with --subjects a folder")
-      .required();
+  verb.add_option("-o,--output", arguments->output,
+                  "The session file, or with --subjects a folder; an experiment has its own");
+  verb.add_option("--replaces", arguments->replaces,
+                  "Of an experiment: a session in the order of this participant, who was dropped");
   verb.add_option("--device", arguments->device,
                   "Check the laws on this simulated device (default: the protocol's)");
   add_key_options(verb, arguments->key);

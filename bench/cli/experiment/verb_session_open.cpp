@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "experiment/key_arguments.h"
+#include "experiment/session_log.h"
 #include "experiment/verb_session.h"
 #include "sealed/opening.h"
 #include "sealed/session_export.h"
@@ -25,6 +26,7 @@ void open(SessionOpenVerbArguments& arguments, Context& context) {
   record_opening(arguments.file, key, arguments.reason);
   const SessionStore store(arguments.file, key, SessionStore::Purpose::read);
   for (const std::string& warning : store.warnings()) warn(warning);
+  log_opening(arguments.file, store, arguments.key, arguments.reason);
   export_session(store, arguments.output, arguments.replace);
   context.result = {{"file", arguments.file},
                     {"output", arguments.output},
@@ -43,8 +45,8 @@ void add_session_open(CLI::App& session, Context& context) {
   Verb verb = add_verb(
       session, context, "open", "Lift the blinding: answers as a table, each trial as a recording",
       "kerf session open S01.h5 --key-file keeper.key -o S01\n\n"
-      "Before a session is finished it takes a --reason, and the file keeps both: every analysis of\n"
-      "it says that it was opened early.",
+      "Before a session is finished, or the experiment that it is of, it takes a --reason, and the file or\n"
+      "the experiment's log keeps both: every analysis says that it was opened early.",
       [arguments, &context] { open(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("FILE", arguments->file, "The session").required();

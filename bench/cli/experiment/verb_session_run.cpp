@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -7,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "experiment/key_arguments.h"
+#include "experiment/session_log.h"
 #include "experiment/verb_session.h"
 #include "program/standard_streams.h"
 #include "run/check.h"
@@ -24,6 +27,8 @@ namespace {
 
 struct SessionRunVerbArguments {
   std::string file;
+  std::string participant;  ///< of an experiment
+  std::size_t visit = 0;    ///< 0: the first that is not finished
   std::string device;
   KeyArguments key;
   RunOptions loop;
@@ -133,6 +138,31 @@ void give_receipt(const SessionRunVerbArguments& arguments, const SessionStore& 
   }
 }
 
+/// The session of a participant of an experiment: by its code, lest somebody go on with another's.
+std::string session_of(SessionRunVerbArguments& arguments) {
+  const OpenedExperiment opened = open_experiment(arguments.file, arguments.key);
+  const auto& all = opened.state.participants;
+  if (arguments.participant.empty()) {
+    const auto next =
+        std::ranges::find_if(all, [](const Participant& each) { return !each.is_out() && !each.begun(); });
+    throw std::invalid_argument(
+        fmt::format("say with --subject whose session it is{}",
+                    next == all.end() ? std::string("; nobody is still to come")
+                                      : fmt::format("; {} is the next who has not begun", next->code)));
+  }
+  const Participant* who = opened.state.find(arguments.participant);
+  if (who == nullptr)
+    throw std::invalid_argument(
+        fmt::format("--subject: there is no participant {} in this experiment", arguments.participant));
+  for (const AssignedSession& session : who->sessions) {
+    const bool is_asked = arguments.visit == 0 ? !session.finished : session.visit == arguments.visit;
+    if (is_asked) return session.file.string();
+  }
+  throw std::invalid_argument(
+      arguments.visit == 0 ? fmt::format("{} is through: every session of theirs is finished", who->code)
+                           : fmt::format("--visit: {} has {}", who->code, who->sessions.size()));
+}
+
 /// Their number alone: the address of the subject's page may be among them.
 void note_unprinted(SessionStore& store) {
   const std::size_t lines = unprinted_errors().size();
@@ -143,12 +173,15 @@ void note_unprinted(SessionStore& store) {
 void run(SessionRunVerbArguments& arguments, Context& context) {
   if (arguments.rehearse && (arguments.page || arguments.buttons))
     throw std::invalid_argument("--rehearse needs nobody to answer: leave out --page and --buttons");
+  if (is_experiment(arguments.file)) arguments.file = session_of(arguments);
   const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
   SessionStore store(arguments.file, key, SessionStore::Purpose::run);
   for (const std::string& warning : store.warnings()) warn(warning);
   if (store.finished())
     throw std::invalid_argument(
         fmt::format("{}: the session is finished; 'kerf session analyze' opens it", arguments.file));
+  std::optional<ExperimentLog> log = log_beside(arguments.file, store.session(), arguments.key);
+  if (log) require_takes_part(arguments.file, *log, store.session());
   const StopOnSignal signals;
   if (!arguments.no_check) {
     for (const std::string& remark :
@@ -165,6 +198,7 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
     } catch (const std::exception&) {
       answering = {};  // the subject's screen
       give_receipt(arguments, store, context);
+      if (log) log->append("run", run_facts(store, arguments.rehearse));
       throw;
     }
   }
@@ -172,6 +206,7 @@ void run(SessionRunVerbArguments& arguments, Context& context) {
   store.close();
   report(arguments, context, result);
   give_receipt(arguments, store, context);
+  if (log) log->append("run", run_facts(store, arguments.rehearse));
 }
 
 }  // namespace
@@ -180,7 +215,8 @@ void add_session_run(CLI::App& session, Context& context) {
   auto arguments = std::make_shared<SessionRunVerbArguments>();
   Verb verb = add_verb(
       session, context, "run", "Run a session with its subject, or go on with it",
-      "kerf session run S01.h5 --key-file keeper.key --device falcon:0 --page\n\n"
+      "kerf session run S01.h5 --key-file keeper.key --device falcon:0 --page\n"
+      "  kerf session run study --subject S01 --key-file keeper.key --page\n\n"
       "Whoever keeps the blinding gives the key; nothing on the screen tells the samples apart. The\n"
       "subject answers at this keyboard, on a page (--page), or by the buttons of the device\n"
       "(--buttons). Ctrl-C, a crash or a pulled cable lose at most the trial at work. The receipt that is\n"
@@ -188,7 +224,9 @@ void add_session_run(CLI::App& session, Context& context) {
       "'kerf session analyze --receipt'.",
       [arguments, &context] { run(*arguments, context); });
   verb.takes_laws(context);
-  verb.add_option("FILE", arguments->file, "The session").required();
+  verb.add_option("FILE", arguments->file, "The session, or an experiment (with --subject)").required();
+  verb.add_option("--subject", arguments->participant, "Whose session of the experiment it is");
+  verb.add_option("--visit", arguments->visit, "Which visit (default: the first that is not finished)");
   verb.add_option("--device", arguments->device, "Device URI (default: the protocol's)");
   verb.add_option("--sensor", arguments->loop.sensor_uri, "URI of a force sensor beside the device");
   add_key_options(verb, arguments->key);

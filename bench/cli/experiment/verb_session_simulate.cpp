@@ -14,6 +14,7 @@
 #include "observers/simulated_design.h"
 #include "observers/simulation_report.h"
 #include "program/progress.h"
+#include "registered/experiment.h"
 
 namespace kerf::bench {
 namespace {
@@ -49,6 +50,26 @@ SimulationOptions options_of(const SessionSimulateVerbArguments& arguments, cons
   return options;
 }
 
+/// Of an experiment its number, its test and its stopping rule come with it.
+Protocol protocol_to_simulate(const SessionSimulateVerbArguments& arguments, SimulationOptions& options) {
+  if (!is_experiment(arguments.protocol)) return read_protocol(arguments.protocol);
+  const fs::path file = experiment_file(arguments.protocol);
+  const Experiment experiment = read_experiment(file);
+  if (options.subjects != 1 || options.analysis.margin || options.analysis.d_prime_bound)
+    throw std::invalid_argument(
+        "the experiment has the number of its participants and its margins: leave out --subjects, --margin "
+        "and "
+        "--equal-below");
+  options.subjects = experiment.participants.target;
+  options.visits = experiment.participants.visits;
+  options.analysis.level = experiment.analysis.alpha;
+  options.analysis.margin = experiment.analysis.margin;
+  options.analysis.d_prime_bound = experiment.analysis.d_prime;
+  options.analysis.jnd_margins = experiment.analysis.jnd_margins;
+  options.experiment = experiment;
+  return protocol_of(experiment, file);
+}
+
 void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptions& options) {
   const Judging judging = judging_of(protocol);
   const bool by_distances = judging != Judging::strongest && judging != Judging::preference;
@@ -78,10 +99,10 @@ void write_files(const SessionSimulateVerbArguments& arguments, const Simulation
 }
 
 void run(const SessionSimulateVerbArguments& arguments, Context& context) {
-  Protocol protocol = read_protocol(arguments.protocol);
+  SimulationOptions options = options_of(arguments, context);
+  Protocol protocol = protocol_to_simulate(arguments, options);
   if (arguments.trials > 0) protocol = with_trials(std::move(protocol), arguments.trials);
   match_loudness(protocol);
-  const SimulationOptions options = options_of(arguments, context);
   warn_of_what_has_no_bearing(protocol, options);
   if (!arguments.output.empty()) {
     for (const char* file : {"simulate.html", "simulate.json", "simulate.csv"})
@@ -103,15 +124,17 @@ void add_session_simulate(CLI::App& session, Context& context) {
   auto arguments = std::make_shared<SessionSimulateVerbArguments>();
   Verb verb = add_verb(
       session, context, "simulate", "Let simulated observers feel the laws: the power of a design",
-      "kerf session simulate abx.protocol.toml --jnd 7 --subjects 12 -o power\n\n"
+      "kerf session simulate abx.protocol.toml --jnd 7 --subjects 12 -o power\n"
+      "  kerf session simulate study/experiment.toml -o power\n\n"
       "The observers feel what the laws really render on a simulated device, limits included, and go\n"
       "through whole sessions, whose answers are analysed as real ones: how often is a difference\n"
       "found, how many trials does it take, do intervals cover the truth, are false alarms as rare as\n"
-      "the test says.",
+      "the test says. An experiment brings its number of participants, its test and its looks.",
       [arguments, &context] { run(*arguments, context); });
   verb.takes_laws(context);
   Observer& observer = arguments->simulation.observer;
-  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml").required();
+  verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml, or an experiment")
+      .required();
   verb.add_option("--jnd", arguments->jnd_percent, "The observers' JND of force [%]")
       .positive()
       .with_default();

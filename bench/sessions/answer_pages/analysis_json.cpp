@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/experiment_words.h"
 #include "answer_pages/levels_json.h"
 #include "files/json_number.h"
 
@@ -295,6 +296,7 @@ json analysis_as_json(const Analysis& analysis) {
   result["response_times"] = times_as_json(analysis.times);
   result["quality"] = quality_as_json(analysis.quality);
   result["corrections"] = corrections_as_json(analysis);
+  result["experiment"] = analysis.experiment ? experiment_json(*analysis.experiment) : json(nullptr);
   result["shown"] = analysis.shows;
   result["not_shown"] = analysis.shows_not;
   result["warnings"] = analysis.warnings;

@@ -8,6 +8,7 @@
 #include "answer_pages/analysis_charts.h"
 #include "answer_pages/analysis_json.h"
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/experiment_words.h"
 #include "answers/answers_table.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
@@ -188,6 +189,7 @@ std::string analysis_page(const Analysis& analysis, std::span<const std::string>
       "<h1>{}</h1>\n<p class=\"soft\">{}: {} of {}{}.</p>\n", escaped(analysis.name),
       name_of(analysis.design), plural(analysis.trials, "trial"), plural(analysis.subjects.size(), "subject"),
       analysis.practice > 0 ? fmt::format(", {} of practice left out", analysis.practice) : std::string());
+  if (analysis.experiment) body += experiment_section(*analysis.experiment);
   body += list_of("What the answers show", analysis.shows);
   body += list_of("What they do not show", analysis.shows_not);
   body += list_of("To be minded", analysis.warnings);

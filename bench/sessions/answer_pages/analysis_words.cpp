@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "answer_pages/experiment_words.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -243,6 +245,9 @@ std::vector<std::string> summary_lines(const Analysis& analysis) {
   add_ranking_lines(analysis, lines);
   if (analysis.levels) add_level_lines(analysis, lines);
   if (analysis.times.trials > 0) lines.push_back(times_text(analysis.times));
+  if (analysis.experiment) {
+    for (std::string& line : experiment_lines(*analysis.experiment)) lines.push_back(std::move(line));
+  }
   for (const auto& [title, sentences] : {std::pair{"shown", &analysis.shows},
                                          {"not shown", &analysis.shows_not},
                                          {"mind", &analysis.warnings}}) {

@@ -12,6 +12,7 @@
 #include "answers/rankings.h"
 #include "answers/response_times.h"
 #include "answers/tracks.h"
+#include "registered/experiment_report.h"
 
 // What the answers of blind sessions say, and what they do not: docs/sessions-analysis.md.
 
@@ -23,6 +24,10 @@ enum class FamilyCorrection : std::uint8_t { holm, benjamini_hochberg };
 struct AnalysisOptions {
   double confidence = 0.95;  ///< of intervals
   double level = 0.05;       ///< of tests; also of each of the two of an equivalence
+  /// Of a look at a study under way: alpha of the whole, of which `level` is what this look may spend.
+  /// Whether there are subjects enough for a test of people, and whether they differ, is judged by it.
+  std::optional<double> alpha;
+  [[nodiscard]] double whole_level() const noexcept { return alpha.value_or(level); }
   /// A preference is none within 50 % +- this. None unless somebody set it: a margin that follows the answers
   /// shows nothing.
   std::optional<double> margin;
@@ -71,9 +76,10 @@ struct Analysis {
   std::vector<AdaptiveTrack> tracks;
   ResponseTimes times;
   AnswerQuality quality;
-  std::vector<std::string> remarks;    ///< of the study; among the warnings, too
-  std::vector<std::string> shows;      ///< sentences
-  std::vector<std::string> shows_not;  ///< what one might read into it
+  std::vector<std::string> remarks;            ///< of the study; among the warnings, too
+  std::optional<ExperimentReport> experiment;  ///< that it is of; add_experiment()
+  std::vector<std::string> shows;              ///< sentences
+  std::vector<std::string> shows_not;          ///< what one might read into it
   std::vector<std::string> warnings;
 };
 

@@ -138,7 +138,7 @@ void add_main_test(const Study& study, AnswerGroup& group, const SubjectCounts& 
   group.over_subjects = psychophysics::flip_signs(beyond, {.seed = options.seed});
   // Of as many subjects as there are, not of those that by chance are at chance exactly.
   const double least = std::exp2((group.one_sided ? 0.0 : 1.0) - static_cast<double>(subjects.size()));
-  group.tests_subjects = least <= options.level;
+  group.tests_subjects = least <= options.whole_level();
   if (!group.tests_subjects) return;
   group.p_value = group.one_sided ? group.over_subjects->p_greater : group.over_subjects->p_two_sided;
 }
@@ -162,8 +162,8 @@ void add_equivalence(const Study& study, AnswerGroup& group, const SubjectCounts
   result.p = of_mean.p;
   result.interval = of_mean.interval;
   result.subjects_differ =
-      psychophysics::equal_proportions(subjects, {.seed = options.seed}).p <= options.level ||
-      is_one_beyond_chance(group, subjects, options.level);
+      psychophysics::equal_proportions(subjects, {.seed = options.seed}).p <= options.whole_level() ||
+      is_one_beyond_chance(group, subjects, options.whole_level());
   result.is_shown = of_mean.is_shown && !result.subjects_differ;
   group.equivalence = result;
 }

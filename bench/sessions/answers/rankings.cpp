@@ -57,7 +57,7 @@ void add_over_subjects(TissueRanking& ranking, const std::vector<psychophysics::
     ranking.note = refused.what();
     return;
   }
-  ranking.tests_subjects = ranking.over_subjects->least_p <= options.level;
+  ranking.tests_subjects = ranking.over_subjects->least_p <= options.whole_level();
 }
 
 void put_on_scale(TissueRanking& ranking, const std::vector<psychophysics::Wins>& by_subject,

@@ -46,11 +46,16 @@ Study simulated_study(const Protocol& protocol, const Sensation& sensation, cons
   psychophysics::Random random(seed);
   const Judging judging = judging_of(protocol);
   const std::size_t slots = slots_of(protocol.design);
-  std::vector<Plan> plans = make_plans(protocol, participants.subjects, random.below(SIZE_MAX));
-  for (std::size_t subject = 0; subject < plans.size(); ++subject) {
+  Person person;
+  std::vector<std::vector<Plan>> visits;
+  for (std::size_t visit = 0; visit < participants.visits; ++visit)
+    visits.push_back(make_plans(protocol, participants.subjects, random.below(SIZE_MAX)));
+  for (std::size_t at = 0; at < participants.subjects * participants.visits; ++at) {
+    const std::size_t subject = at / participants.visits;
+    const std::size_t visit = at % participants.visits;
     const std::string code = fmt::format("S{:02}", subject + 1);
-    const Person person = drawn_person(participants, random);
-    TrialSequence sequence(protocol, std::move(plans[subject]));
+    if (visit == 0) person = drawn_person(participants, random);
+    TrialSequence sequence(protocol, std::move(visits[visit][subject]));
     while (const std::optional<TrialPlan> trial = sequence.next()) {
       const FeltTrial felt{.judging = judging,
                            .slots = slots,
@@ -58,6 +63,7 @@ Study simulated_study(const Protocol& protocol, const Sensation& sensation, cons
                            .d_prime = person.sensitivity * sensation.jnds(trial->pair, trial->level)};
       const std::size_t answer = drawn_answer(person.observer, felt, random);
       study.judgements.push_back({.subject = code,
+                                  .session = visit + 1,
                                   .tissue = protocol.tissues[trial->tissue].name,
                                   .pair = trial->pair,
                                   .level = trial->level,

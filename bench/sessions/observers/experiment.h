@@ -12,6 +12,7 @@ namespace kerf::bench {
 struct Participants {
   Observer observer;
   std::size_t subjects = 1;
+  std::size_t visits = 1;  ///< sessions of each
   /// There is nothing to find, so that what a test finds is a false alarm: nobody feels a difference; where
   /// tastes differ (preference_spread), their mean is none.
   bool nothing_to_find = false;

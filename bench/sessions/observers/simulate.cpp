@@ -8,13 +8,21 @@
 
 #include "observers/simulated_design.h"
 #include "observers/simulated_findings.h"
+#include "observers/simulated_looks.h"
 #include "threads/for_each_index.h"
 
 namespace kerf::bench {
 namespace {
 
 /// What a seed is for: experiments of different kinds share none.
-enum SeedKind : std::uint64_t { of_experiments = 1, of_nulls = 2, of_confirmation = 3, of_curve = 100 };
+enum SeedKind : std::uint64_t {
+  of_experiments = 1,
+  of_nulls = 2,
+  of_confirmation = 3,
+  of_looks = 4,
+  of_null_looks = 5,
+  of_curve = 100
+};
 
 constexpr std::size_t max_needed = 100000;
 
@@ -23,6 +31,22 @@ std::size_t curve_experiments_of(const Protocol& protocol, const SimulationOptio
   if (options.curve_experiments > 0) return options.curve_experiments;
   return has_levels(protocol.design) ? std::max<std::size_t>(2, options.experiments / 5)
                                      : options.experiments;
+}
+
+bool has_looks(const SimulationOptions& options) {
+  return options.experiment && options.experiment->analysis.stopping.kind != StoppingKind::fixed;
+}
+
+LookedAt looked_at(const std::vector<StudyCourse>& courses, const std::vector<Look>& looks) {
+  LookedAt result{.ended = std::vector<SimulatedShare>(looks.size())};
+  for (const StudyCourse& course : courses) {
+    count(result.shown, course.is_shown);
+    count(result.none, course.is_none);
+    for (std::size_t i = 0; i < looks.size(); ++i) count(result.ended[i], course.look == i);
+    result.participants +=
+        static_cast<double>(looks[course.look].participants.size()) / static_cast<double>(courses.size());
+  }
+  return result;
 }
 
 class Simulator {
@@ -49,8 +73,10 @@ class Simulator {
                                options_.analysis.level);
     result.theory = power_by_theory(protocol_);
     result.mean_session_s = session_seconds(
-        protocol_, result.found.trials / static_cast<double>(options_.subjects), options_.answer_s);
+        protocol_, result.found.trials / static_cast<double>(options_.subjects * options_.visits),
+        options_.answer_s);
     add_false_alarms(result);
+    add_looks(result);
     add_needed(result);
     add_curve(result);
     add_example(result);
@@ -58,9 +84,36 @@ class Simulator {
   }
 
  private:
+  [[nodiscard]] Participants participants_of(bool nothing_to_find) const {
+    return {.observer = options_.observer,
+            .subjects = options_.subjects,
+            .visits = options_.visits,
+            .nothing_to_find = nothing_to_find};
+  }
+
+  LookedAt looked_at_studies(const std::vector<Look>& looks, std::uint64_t kind) {
+    const Participants participants = participants_of(kind == of_null_looks);
+    std::vector<StudyCourse> courses(options_.experiments);
+    for_each_index(options_.experiments, options_.jobs, [&](std::size_t i) {
+      const Study study =
+          simulated_study(protocol_, sensation_, participants, experiment_seed(options_.seed, kind, i));
+      courses[i] = course_of(study, *options_.experiment, looks, options_.analysis);
+      ++done_;
+    });
+    return looked_at(courses, looks);
+  }
+
+  void add_looks(Simulation& result) {
+    if (!has_looks(options_)) return;
+    const bool two_sided = is_two_sided(protocol_, options_.experiment->analysis.test);
+    result.looks.emplace();
+    result.looks->looks = planned_looks(*options_.experiment, two_sided);
+    result.looks->found = looked_at_studies(result.looks->looks, of_looks);
+    result.looks->nothing = looked_at_studies(result.looks->looks, of_null_looks);
+  }
+
   std::vector<MainResult> results_of(const Protocol& protocol, std::uint64_t kind, std::size_t experiments) {
-    const Participants participants{
-        .observer = options_.observer, .subjects = options_.subjects, .nothing_to_find = kind == of_nulls};
+    const Participants participants = participants_of(kind == of_nulls);
     AnalysisOptions analysis = options_.analysis;
     analysis.curves = kind != of_nulls && kind != of_confirmation;
     std::vector<MainResult> results(experiments);
@@ -83,7 +136,7 @@ class Simulator {
 
   double power_by_theory(const Protocol& protocol) const {
     if (std::isnan(truth_.share)) return truth_.share;
-    const auto answers = protocol.trials * cells_of(protocol) * options_.subjects;
+    const auto answers = protocol.trials * cells_of(protocol) * options_.subjects * options_.visits;
     return psychophysics::binomial_power(binomial(), static_cast<int>(answers));
   }
 
@@ -112,7 +165,7 @@ class Simulator {
     } catch (const std::invalid_argument&) {
       return;  // too close to chance
     }
-    const std::size_t cells = cells_of(protocol_) * options_.subjects;
+    const std::size_t cells = cells_of(protocol_) * options_.subjects * options_.visits;
     const std::size_t each = (result.needed_total + cells - 1) / cells;
     if (result.needed_total <= max_needed / 10)
       result.confirmed = point_of(each, of_confirmation, options_.experiments);
@@ -139,8 +192,7 @@ class Simulator {
   }
 
   void add_example(Simulation& result) {
-    const Participants participants{.observer = options_.observer, .subjects = options_.subjects};
-    result.example = simulated_study(protocol_, sensation_, participants,
+    result.example = simulated_study(protocol_, sensation_, participants_of(false),
                                      experiment_seed(options_.seed, of_experiments, 0));
     if (!has_levels(protocol_.design)) return;
     std::vector<const Judgement*> counted;
@@ -184,7 +236,8 @@ void require_options(const SimulationOptions& options) {
 }  // namespace
 
 std::size_t simulated_experiments(const Protocol& protocol, const SimulationOptions& options) noexcept {
-  return 3 * options.experiments + options.curve_points * curve_experiments_of(protocol, options);
+  return (has_looks(options) ? 5 : 3) * options.experiments +
+         options.curve_points * curve_experiments_of(protocol, options);
 }
 
 Simulation simulate(const Protocol& protocol, const SimulationOptions& options,

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 
 #include "answers/analysis.h"
 #include "observers/simulated_truth.h"
+#include "registered/looks.h"
 
 // What a design can find, and whether its analysis keeps its promises: docs/sessions.md.
 
@@ -22,8 +24,10 @@ struct SimulationOptions {
   AnalysisOptions analysis;
   std::size_t experiments = 1000;
   std::size_t subjects = 1;
-  double power = 0.8;            ///< wanted
-  std::size_t curve_points = 8;  ///< numbers of trials of the power curve; 0: none
+  std::size_t visits = 1;                ///< sessions of each
+  std::optional<Experiment> experiment;  ///< whose stopping rule is tried too
+  double power = 0.8;                    ///< wanted
+  std::size_t curve_points = 8;          ///< numbers of trials of the power curve; 0: none
   /// At each of them; 0: as many as `experiments`, of designs with levels, which take longer, a fifth of it.
   std::size_t curve_experiments = 0;
   double answer_s = 2.0;  ///< that a subject takes to answer
@@ -64,6 +68,20 @@ struct PowerPoint {
   SimulatedFindings found;
 };
 
+/// What studies came to that were looked at as their experiment plans.
+struct LookedAt {
+  SimulatedShare shown;               ///< the registered hypothesis, at one of the looks
+  SimulatedShare none;                ///< a Bayes factor said that there is no difference
+  std::vector<SimulatedShare> ended;  ///< at each look
+  double participants = 0.0;          ///< mean number when they ended
+};
+
+struct SimulatedLooks {
+  std::vector<Look> looks;
+  LookedAt found;    ///< with the observers of the simulation
+  LookedAt nothing;  ///< with observers who feel no difference
+};
+
 struct Simulation {
   SimulationOptions options;
   std::string name;
@@ -75,8 +93,9 @@ struct Simulation {
   SimulatedTruth truth;
   SimulatedFindings found;
   double theory = std::numeric_limits<double>::quiet_NaN();  ///< power by the exact probability
-  double mean_session_s = 0.0;  ///< of one subject: presentations, answers, breaks; practice included
-  SimulatedShare false_alarms;  ///< of observers who feel no difference
+  double mean_session_s = 0.0;          ///< of one subject: presentations, answers, breaks; practice included
+  SimulatedShare false_alarms;          ///< of observers who feel no difference
+  std::optional<SimulatedLooks> looks;  ///< of an experiment that is looked at before its end
   std::vector<PowerPoint> curve;
   std::size_t curve_experiments = 0;    ///< at each point of the curve
   std::string curve_of;                 ///< what is counted: "trials of each pair"

@@ -13,11 +13,6 @@
 namespace kerf::bench {
 namespace {
 
-void count(SimulatedShare& share, bool is_so) {
-  ++share.count.trials;
-  share.count.successes += is_so ? 1 : 0;
-}
-
 bool holds(const psychophysics::Interval& interval, double value) {
   return interval.lower <= value && value <= interval.upper;
 }
@@ -71,6 +66,11 @@ std::vector<std::string> counted_notes(const std::vector<MainResult>& results) {
 }
 
 }  // namespace
+
+void count(SimulatedShare& share, bool is_so) {
+  ++share.count.trials;
+  share.count.successes += is_so ? 1 : 0;
+}
 
 double SimulatedShare::value() const noexcept {
   if (count.trials == 0) return std::numeric_limits<double>::quiet_NaN();

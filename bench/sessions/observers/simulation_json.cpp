@@ -68,6 +68,23 @@ ordered_json json_of(const SimulatedTruth& truth) {
           {"cells", std::move(cells)}};
 }
 
+ordered_json json_of(const LookedAt& found) {
+  ordered_json ended = ordered_json::array();
+  for (const SimulatedShare& share : found.ended) ended.push_back(json_of(share));
+  return {{"shown", json_of(found.shown)},
+          {"none", json_of(found.none)},
+          {"participants", found.participants},
+          {"ended", std::move(ended)}};
+}
+
+ordered_json json_of(const SimulatedLooks& looks) {
+  ordered_json at = ordered_json::array();
+  for (const Look& look : looks.looks)
+    at.push_back(
+        {{"participants", look.participants.size()}, {"alpha_spent", look.spent}, {"nominal", look.nominal}});
+  return {{"looks", std::move(at)}, {"found", json_of(looks.found)}, {"nothing", json_of(looks.nothing)}};
+}
+
 }  // namespace
 
 ordered_json simulation_json(const Simulation& simulation) {
@@ -100,6 +117,7 @@ ordered_json simulation_json(const Simulation& simulation) {
       {"found", json_of(simulation.found)},
       {"power_by_theory", json_number(simulation.theory)},
       {"false_alarms", json_of(simulation.false_alarms)},
+      {"looks", simulation.looks ? json_of(*simulation.looks) : ordered_json(nullptr)},
       {"session_s", simulation.mean_session_s},
       {"power_wanted", options.power},
       {"answers_needed",

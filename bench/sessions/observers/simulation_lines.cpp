@@ -92,6 +92,32 @@ void add_power(const Simulation& simulation, std::vector<std::string>& lines) {
     lines.push_back(fmt::format("Called equivalent in {}.", with_interval(found.equivalent)));
 }
 
+void add_looks(const Simulation& simulation, std::vector<std::string>& lines) {
+  if (!simulation.looks) return;
+  const SimulatedLooks& looks = *simulation.looks;
+  const Experiment& experiment = *simulation.options.experiment;
+  const bool by_evidence = experiment.analysis.stopping.kind == StoppingKind::bayes_factor;
+  const auto tell = [&](const char* whom, const LookedAt& found) {
+    std::string line =
+        fmt::format("With looks, {}: {} is shown in {}", whom,
+                    experiment.analysis.test == PrimaryTest::difference ? "a difference" : "an equivalence",
+                    with_interval(found.shown));
+    if (by_evidence) line += fmt::format(", that there is none in {}", with_interval(found.none));
+    lines.push_back(line + fmt::format("; {:.1f} participants on the average.", found.participants));
+  };
+  tell("these observers", looks.found);
+  tell("observers who feel no difference", looks.nothing);
+  for (std::size_t i = 0; i < looks.looks.size(); ++i) {
+    const Look& look = looks.looks[i];
+    const std::string level = by_evidence ? std::string() : fmt::format(", p <= {:.2g}", look.nominal);
+    lines.push_back(
+        fmt::format("  look {} at {} participants{}: {:.1f} % of the studies end there, {:.1f} % of those "
+                    "with nothing to find",
+                    look.number, look.participants.size(), level, 100.0 * looks.found.ended[i].value(),
+                    100.0 * looks.nothing.ended[i].value()));
+  }
+}
+
 void add_jnd(const Simulation& simulation, std::vector<std::string>& lines) {
   const SimulatedTruth& truth = simulation.truth;
   const SimulatedFindings& found = simulation.found;
@@ -152,6 +178,7 @@ std::vector<std::string> simulation_lines(const Simulation& simulation) {
       observer_line(simulation.options), felt_line(simulation)};
   add_cells(simulation, lines);
   add_power(simulation, lines);
+  add_looks(simulation, lines);
   add_jnd(simulation, lines);
   add_d_prime(simulation, lines);
   add_needed(simulation, lines);

@@ -1,6 +1,8 @@
 #include "server/session_host.h"
 
 #include <chrono>
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -9,6 +11,7 @@
 #include "http/routes.h"
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
+#include "registered/logged_run.h"
 #include "sealed/session_store.h"
 #include "session/device_check.h"
 #include "session/receipt.h"
@@ -42,6 +45,16 @@ std::string end_in_words(const SessionRunResult& result) {
   }
 }
 
+/// Of a session of an experiment the log beside it; a session without one runs as any other does.
+std::optional<ExperimentLog> open_log(const SessionHost::Order& order, const SessionStore& store) {
+  const auto file = log_of_session(order.file, store.session());
+  std::error_code ignored;
+  if (!file || !std::filesystem::exists(*file, ignored)) return std::nullopt;
+  ExperimentLog log(*file, key_of(order, ExperimentLog::derivation_of(*file)));
+  require_takes_part(order.file, log, store.session());
+  return log;
+}
+
 }  // namespace
 
 /// A session that is open, until its thread has ended.
@@ -49,7 +62,8 @@ class SessionHost::Running {
  public:
   explicit Running(const Order& order)
       : order_(order),
-        store_(order.file, key_of(order, derivation_of(order.file)), SessionStore::Purpose::run) {
+        store_(order.file, key_of(order, derivation_of(order.file)), SessionStore::Purpose::run),
+        log_(open_log(order, store_)) {
     order_.passphrase.assign(order_.passphrase.size(), '\0');
     if (store_.finished())
       throw RequestError(409, "the session is finished; 'kerf session analyze' opens it");
@@ -59,6 +73,7 @@ class SessionHost::Running {
 
   Order order_;
   SessionStore store_;
+  std::optional<ExperimentLog> log_;
 };
 
 SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake,
@@ -133,6 +148,7 @@ void SessionHost::run(Running& running) {
     const Receipt receipt = receipt_of(running.store_);
     ended += fmt::format(". Receipt {}: keep it away from the file", receipt.in_short());
     keep_receipt(running.order_.file, receipt);
+    if (running.log_) running.log_->append("run", run_facts(running.store_, false));
   } catch (const drivers::DeviceError& error) {
     ended = error.what();
     tell_fault_(ended);

@@ -33,9 +33,18 @@ using Words = std::vector<std::string>;
 // Verbs that read no file: what they need is in the program, or on the USB.
 const std::set<Words> without_input{{"devices"}, {"laws"}, {"law", "new"}, {"reproduce"}, {"session", "key"}};
 // Verbs that write no file, or one only where it was named as their input.
-const std::set<Words> without_output{
-    {"devices"}, {"laws"},           {"info"},         {"inspect"},         {"validate"},
-    {"studio"},  {"session", "run"}, {"study", "run"}, {"study", "report"}, {"study", "verify"}};
+const std::set<Words> without_output{{"devices"},
+                                     {"laws"},
+                                     {"info"},
+                                     {"inspect"},
+                                     {"validate"},
+                                     {"studio"},
+                                     {"session", "run"},
+                                     {"session", "drop"},
+                                     {"session", "status"},
+                                     {"study", "run"},
+                                     {"study", "report"},
+                                     {"study", "verify"}};
 
 const std::vector<Words> with_input{
     {"demo", "--text", "INPUT", "-o", "FOLDER/out"},
@@ -89,6 +98,9 @@ const std::vector<Words> with_input{
     {"session", "open", "INPUT", "--key-file", "FOLDER/key", "-o", "FOLDER/out"},
     {"session", "open", "FOLDER/s.h5", "--key-file", "INPUT", "-o", "FOLDER/out"},
     {"session", "simulate", "INPUT"},
+    {"session", "plan", "INPUT", "--participants", "2", "-o", "FOLDER/out"},
+    {"session", "drop", "INPUT", "S01", "--reason", "a test", "--key-file", "FOLDER/key"},
+    {"session", "status", "INPUT", "--key-file", "FOLDER/key"},
     {"study", "new", "FOLDER/nowhere", "-o", "FOLDER/out"},
     {"study", "new", "FOLDER/k.law.toml", "-o", "FOLDER/out"},
     {"study", "run", "INPUT"},
@@ -130,6 +142,7 @@ const std::vector<Words> with_output{
     {"session", "key", "OUTPUT"},
     {"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1", "--key-file", "FOLDER/key",
      "-o", "OUTPUT"},
+    {"session", "plan", "FOLDER/p.protocol.toml", "--participants", "2", "-o", "BELOW"},
     {"session", "analyze", KERF_SOURCE_DIR "/examples/sessions/okamura2003-table-1.csv", "--bootstrap", "0",
      "-o", "BELOW"},
     {"session", "open", "FOLDER/s.h5", "--key-file", "FOLDER/key", "--reason", "a test", "-o", "BELOW"},

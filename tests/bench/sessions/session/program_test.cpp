@@ -154,6 +154,18 @@ TEST(SessionProgram, MakesTheSessionsOfAWholeStudy) {
   expect_refused(run_kerf(command), "S01.h5");
 }
 
+TEST(SessionProgram, SaysWhenOneCodeHasTwoSessions) {
+  const SessionFolder folder;
+  ASSERT_EQ(folder.make().exit_status, 0);
+  ASSERT_EQ(folder.run().exit_status, 0);
+  std::filesystem::copy_file(folder.path("s.h5"), folder.path("first.h5"));
+  ASSERT_EQ(folder.make({"--force"}).exit_status, 0);
+  ASSERT_EQ(folder.run().exit_status, 0);
+  const Outcome both = folder.analyze({folder.path("first.h5")});
+  EXPECT_EQ(both.exit_status, 0) << both.errors;
+  EXPECT_THAT(both.errors, HasSubstr("are two sessions of S01, who is counted as one person"));
+}
+
 TEST(SessionProgram, GivesAReceiptThatFindsAFileCutShort) {
   const SessionFolder folder;
   ASSERT_EQ(folder.make().exit_status, 0);

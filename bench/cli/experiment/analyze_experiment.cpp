@@ -1,0 +1,231 @@
+#include "experiment/analyze_experiment.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <ranges>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "answers/look_decision.h"
+#include "experiment/session_log.h"
+#include "files/named_file.h"
+#include "session/receipt.h"
+
+namespace kerf::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The sessions of one participant who is through, open.
+struct OpenParticipant {
+  std::string code;
+  std::vector<std::unique_ptr<SessionStore>> stores;
+};
+
+/// The registered plan, with what the command line has otherwise.
+AnalysisPlan plan_as_made(const AnalysisPlan& registered, const ExperimentAnalysisArguments& arguments) {
+  AnalysisPlan plan = registered;
+  if (arguments.alpha) plan.alpha = *arguments.alpha;
+  if (arguments.margin) plan.margin = arguments.margin;
+  if (arguments.d_prime) plan.d_prime = arguments.d_prime;
+  if (arguments.jnd_margins) plan.jnd_margins = arguments.jnd_margins;
+  if (arguments.test == "difference") plan.test = PrimaryTest::difference;
+  if (arguments.test == "equivalence") plan.test = PrimaryTest::equivalence;
+  return plan;
+}
+
+class ExperimentAnalysis {
+ public:
+  ExperimentAnalysis(const ExperimentAnalysisArguments& arguments, KeyArguments& key, Context& context)
+      : arguments_(arguments),
+        key_(key),
+        context_(context),
+        opened_(open_experiment(arguments.experiment, key)),
+        plan_(plan_as_made(opened_.state.experiment.analysis, arguments)) {}
+
+  AnalysedExperiment run() {
+    require_may_look();
+    open_sessions();
+    exclude_by_measure();
+    const Look look = look_of(codes());
+    if (look.is_new) opened_.log.append("look", facts_of(look));
+    if (look.is_new) note_in_sessions(look);
+    Study study = study_of_all();
+    Analysis analysis = analyse(study, options_at(plan_, look, arguments_.options));
+    analysis.experiment = report_of(study, analysis, look);
+    if (!opened_.state.problems.empty()) context_.exit = Exit::check_failed;
+    return {.study = std::move(study), .analysis = std::move(analysis)};
+  }
+
+ private:
+  [[nodiscard]] Experiment experiment_as_made() const {
+    Experiment made = opened_.state.experiment;
+    made.analysis = plan_;
+    return made;
+  }
+
+  [[nodiscard]] Look look_of(std::vector<std::string> participants) const {
+    StudyState state = opened_.state;
+    state.experiment = experiment_as_made();
+    return look_at(
+        state,
+        {.participants = std::move(participants), .reason = arguments_.reason, .two_sided = two_sided_});
+  }
+
+  /// Before any session is opened, by who is through.
+  void require_may_look() {
+    std::vector<std::string> through;
+    for (const Participant& each : opened_.state.participants) {
+      if (each.completed() && !each.is_out()) through.push_back(each.code);
+    }
+    (void)look_of(through);
+  }
+
+  void open_sessions() {
+    for (const Participant& each : opened_.state.participants) {
+      if (!each.completed() || each.is_out()) continue;
+      open_.push_back({.code = each.code, .stores = {}});
+      for (const AssignedSession& session : each.sessions) {
+        open_.back().stores.push_back(std::make_unique<SessionStore>(
+            session.file, key_for(key_, derivation_of(session.file)), SessionStore::Purpose::read));
+        check_store(session.file.string(), *open_.back().stores.back());
+      }
+    }
+    if (open_.empty()) return;
+    const Protocol& protocol = open_.front().stores.front()->protocol();
+    require_fits(experiment_as_made(), protocol, opened_.file.string());
+    two_sided_ = is_two_sided(protocol, plan_.test);
+  }
+
+  /// What its seals and the receipts of the log say of a session.
+  void check_store(const std::string& file, const SessionStore& store) {
+    const auto member = membership_of(store.session());
+    if (!member || member->experiment != digest_of(opened_.state.experiment.toml))
+      throw std::invalid_argument(fmt::format(
+          "{}: is sealed for another plan than {} registers: one of the two was put in another's place", file,
+          log_of(opened_.file).string()));
+    for (const std::string& warning : store.warnings()) warn(warning);
+    for (const std::string& opening : store.early_openings())
+      opened_.state.openings.push_back(fmt::format("{} was opened before its end: {}", file, opening));
+    std::vector<Receipt> own;
+    for (const std::string& text : opened_.state.receipts) {
+      Receipt receipt = parse_receipt(text);
+      if (receipt.session == store.session().uuid) own.push_back(std::move(receipt));
+    }
+    if (own.empty()) return;
+    for (const ReceiptFinding& finding : held_against(own, {{.file = file, .session = &store}})) {
+      if (!finding.holds) opened_.state.problems.push_back(finding.text);
+    }
+  }
+
+  /// Participants with more trials of a kind than the plan allows for.
+  void exclude_by_measure() {
+    const ExclusionPlan& rules = plan_.exclude;
+    if (!rules.faulty && !rules.unfelt) return;
+    for (const OpenParticipant& each : open_) {
+      std::vector<const SessionStore*> stores;
+      for (const auto& store : each.stores) stores.push_back(store.get());
+      double trials = 0.0;
+      double faulty = 0.0;
+      double unfelt = 0.0;
+      for (const Judgement& judgement : study_of(stores).judgements) {
+        if (judgement.practice) continue;
+        trials += 1.0;
+        faulty += judgement.is_sound == false ? 1.0 : 0.0;
+        unfelt += judgement.is_felt == false ? 1.0 : 0.0;
+      }
+      if (rules.faulty && faulty > *rules.faulty * trials)
+        exclude(each.code, "faulty", faulty / trials, *rules.faulty);
+      if (rules.unfelt && unfelt > *rules.unfelt * trials)
+        exclude(each.code, "unfelt", unfelt / trials, *rules.unfelt);
+    }
+    std::erase_if(open_,
+                  [&](const OpenParticipant& each) { return opened_.state.find(each.code)->is_out(); });
+  }
+
+  void exclude(const std::string& code, const std::string& rule, double share, double most) {
+    const auto who = std::ranges::find(opened_.state.participants, code, &Participant::code);
+    who->excluded = true;
+    who->rule = rule;
+    who->reason =
+        fmt::format("{:.1f} % of the trials, at most {:.1f} % were registered", 100.0 * share, 100.0 * most);
+  }
+
+  [[nodiscard]] std::vector<std::string> codes() const {
+    std::vector<std::string> all;
+    for (const OpenParticipant& each : open_) all.push_back(each.code);
+    return all;
+  }
+
+  /// So that a log whose end is cut off is told from what the sessions to come know.
+  void note_in_sessions(const Look& look) {
+    for (const Participant& each : opened_.state.participants) {
+      if (each.is_out()) continue;
+      for (const AssignedSession& session : each.sessions) {
+        if (!session.is_there || session.finished) continue;
+        try {
+          SessionStore store(session.file, key_for(key_, derivation_of(session.file)),
+                             SessionStore::Purpose::run);
+          store.note("look", fmt::format("look {} of the study", look.number));
+          store.close();
+        } catch (const std::invalid_argument& error) {
+          warn(fmt::format("the look is not noted in a session to come: {}", error.what()));
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Study study_of_all() const {
+    std::vector<const SessionStore*> stores;
+    for (const OpenParticipant& each : open_) {
+      for (const auto& store : each.stores) stores.push_back(store.get());
+    }
+    return study_of(stores);
+  }
+
+  [[nodiscard]] std::string experiment_now() const {
+    std::error_code ignored;
+    return fs::exists(opened_.file, ignored) ? read_named_file(opened_.file) : std::string();
+  }
+
+  ExperimentReport report_of(const Study& study, const Analysis& analysis, const Look& look) {
+    const StudyState& state = opened_.state;
+    AnalysisAsMade made{
+        .plan = plan_,
+        .experiment_toml = experiment_now(),
+        .experiment_name = opened_.file.string(),
+        .protocol_file = (opened_.file.parent_path() / state.experiment.protocol).lexically_normal().string(),
+        .main_test = analysis.main_test};
+    made.tests_people = plan_.test != PrimaryTest::difference || !analysis.all || analysis.levels ||
+                        analysis.all->tests_subjects;
+    ExperimentReport report{.state = state,
+                            .flow = flow_of(state),
+                            .look = look,
+                            .decision = decide(study, experiment_as_made(), look, primary_figures(analysis)),
+                            .deviations = deviations_of(state, look, made, opened_.log.registered().facts),
+                            .log_receipt = opened_.log.receipt()};
+    for (const std::string& problem : state.problems) warn(problem);
+    return report;
+  }
+
+  const ExperimentAnalysisArguments& arguments_;
+  KeyArguments& key_;
+  Context& context_;
+  OpenedExperiment opened_;
+  AnalysisPlan plan_;
+  bool two_sided_ = false;
+  std::vector<OpenParticipant> open_;
+};
+
+}  // namespace
+
+AnalysedExperiment analyse_experiment(const ExperimentAnalysisArguments& arguments, KeyArguments& key,
+                                      Context& context) {
+  return ExperimentAnalysis(arguments, key, context).run();
+}
+
+}  // namespace kerf::bench
