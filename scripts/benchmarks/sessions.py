@@ -1,5 +1,5 @@
 # peers: python3-numpy python3-scipy r-base-core r-cran-lme4 r-cran-jsonlite
-# targets: kerf_people_study
+# targets: kerf_people_study kerf_looks_study
 """Tests of people over simulated studies: false alarms, equivalence, coverage and power; numbers against lme4, glm and SciPy."""
 
 import json
@@ -17,6 +17,7 @@ ALARMS = 10000
 EQUIVALENCE = 4000
 COVERAGE = 1000
 POWER = 4000
+LOOKS = 10000
 ORACLE = 20
 
 
@@ -74,6 +75,21 @@ def power_table(rows):
     return lines
 
 
+def looks_table(rows):
+    """Of a Bayes factor no level was promised."""
+    lines = ["**Looks** at half, three quarters and all of the participants, 12 trials each, primary test at 5 %%, %d studies a cell [%%]: false alarms "
+             "where nothing is to be found and the logits of people have a standard deviation; power, and how many participants it took, where their mean is 0.5 and "
+             "their sd 0.5. **more**: the exact 99.9 %% interval of the share lies above 5 %%. Unpaid: 5 %% at each look." % rows[0]["studies"], "",
+             "| rule | design | participants | sd 0 | sd 1 | sd 2 | power | participants it took |", "|---|---|---|---|---|---|---|---|"]
+    for rule, design, subjects in dict.fromkeys((row["rule"], row["design"], row["subjects"]) for row in rows):
+        cells = [row for row in rows if (row["rule"], row["design"], row["subjects"]) == (rule, design, subjects)]
+        alarms = [alarm(row["shown"], row["studies"]) for row in cells if row["mean"] == 0]
+        found = next(row for row in cells if row["mean"] > 0)
+        lines.append("| %s | %s | %d | %s | %s | %.1f |" % (rule, design, subjects, " | ".join(alarms), share(found["shown"], found["studies"]),
+                                                       found["participants"]))
+    return lines
+
+
 def largest_differences(house, program):
     printed = subprocess.run([program, "oracle", str(ORACLE)], check=True, capture_output=True, text=True).stdout
     ours = [json.loads(line) for line in printed.splitlines()]
@@ -106,6 +122,7 @@ def largest_differences(house, program):
 
 def main(house, scale=1.0):
     program = str(house / "build" / "release" / "bin" / "kerf_people_study")
+    looks = rows_of(str(house / "build" / "release" / "bin" / "kerf_looks_study"), str(max(10, int(scale * LOOKS))))
 
     def run(what, studies):
         return rows_of(program, what, str(max(10, int(scale * studies))))
@@ -118,7 +135,7 @@ def main(house, scale=1.0):
                         lambda row: "low" in told(row["jnd"], row["told"]) or (row["pse"] >= 0 and "low" in told(row["pse"], row["told"])),
                         lambda row: (row["design"], row["sd"], row["subjects"]))
     lines = [*largest_differences(house, program), "", *alarm_table(alarms), "", *equivalence_table(run("equivalence", EQUIVALENCE)), "",
-             *coverage_table(coverage), "", *power_table(run("power", POWER))]
+             *coverage_table(coverage), "", *power_table(run("power", POWER)), "", *looks_table(looks)]
     print("\n".join(lines))
     replace_section(house / "docs" / "benchmarks.md", "sessions", "Sessions: what holds for people", "\n".join(lines))
 

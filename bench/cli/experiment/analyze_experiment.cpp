@@ -48,6 +48,7 @@ class ExperimentAnalysis {
         plan_(plan_as_made(opened_.state.experiment.analysis, arguments)) {}
 
   AnalysedExperiment run() {
+    for (const std::string& found : opened_.state.problems) warn(found);
     require_may_look();
     open_sessions();
     exclude_by_measure();
@@ -118,7 +119,9 @@ class ExperimentAnalysis {
     }
     if (own.empty()) return;
     for (const ReceiptFinding& finding : held_against(own, {{.file = file, .session = &store}})) {
-      if (!finding.holds) opened_.state.problems.push_back(finding.text);
+      if (finding.holds) continue;
+      warn(finding.text);
+      opened_.state.problems.push_back(finding.text);
     }
   }
 
@@ -208,7 +211,6 @@ class ExperimentAnalysis {
                             .decision = decide(study, experiment_as_made(), look, primary_figures(analysis)),
                             .deviations = deviations_of(state, look, made, opened_.log.registered().facts),
                             .log_receipt = opened_.log.receipt()};
-    for (const std::string& problem : state.problems) warn(problem);
     return report;
   }
 

@@ -36,6 +36,15 @@ void tell_assigned(const fs::path& folder, const ExperimentLog::Facts& facts, st
                           is_adaptive(protocol.design) ? "at most " : "", trials));
 }
 
+/// What stands there is nobody's to replace. @throws std::invalid_argument.
+void require_free(const fs::path& file) {
+  if (fs::exists(file))
+    throw std::invalid_argument(fmt::format(
+        "{}: exists already; the sessions of an experiment are made in a folder that has none of their names",
+        file.string()));
+  require_output(file, false);
+}
+
 void register_experiment(const NewExperimentArguments& arguments, const fs::path& file, KeyArguments& key,
                          Context& context) {
   if (fs::exists(log_of(file)))
@@ -50,7 +59,7 @@ void register_experiment(const NewExperimentArguments& arguments, const fs::path
   std::vector<std::string> names;
   for (const Assignment& each : assignments) names.push_back(each.file_name(experiment));
   const fs::path folder = fs::absolute(file).parent_path();
-  for (const std::string& name : names) require_output(folder / name, false);
+  for (const std::string& name : names) require_free(folder / name);
   StudyFolder study(folder, names, false);
   ExperimentLog::Lines lines;
   for (const Assignment& each : assignments) {
@@ -94,7 +103,7 @@ void replace_participant(const NewExperimentArguments& arguments, KeyArguments& 
                                 .replaces = left.code,
                                 .plan = store.plan()};
     const fs::path file = folder / assignment.file_name(experiment);
-    require_output(file, false);
+    require_free(file);
     const schema::KeyDerivation derivation = new_derivation(key.key_file.empty());
     made.emplace_back(create_assigned(file, assignment, experiment, store.protocol(),
                                       new_key_for(key, derivation), derivation),

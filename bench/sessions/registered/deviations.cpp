@@ -107,7 +107,7 @@ class Deviations {
     for (const Participant& each : state.participants) {
       if (each.excluded && !is_registered(each.rule))
         add("{} was excluded by no registered rule: {}", each.code, each.reason);
-      if (each.excluded && !state.looks.empty() && each.at > state.looks.front().time)
+      if (each.excluded && each.after_look)
         add("{} was excluded after the answers had been looked at: {}", each.code, each.reason);
       for (const AssignedSession& session : each.sessions) {
         if (session.rehearsed && !each.is_out())
@@ -133,7 +133,8 @@ class Deviations {
     for (const std::string& opening : state.openings) add("{}", opening);
     const std::size_t target = state.experiment.participants.target;
     if (look.is_last && look.participants.size() != target)
-      add("{} participants are analysed, and {} were registered", look.participants.size(), target);
+      add("the number of analysed participants is {}, and {} was registered", look.participants.size(),
+          target);
   }
 
   [[nodiscard]] std::vector<std::string> all() && { return std::move(all_); }

@@ -84,7 +84,7 @@ class LogReader {
       (line.kind == "dropped" ? who.dropped : who.excluded) = true;
       who.reason = text("reason");
       who.rule = text("rule");
-      who.at = line.time;
+      who.after_look = !state_.looks.empty();
     }
     if (line.kind == "look")
       state_.looks.push_back({.time = line.time,

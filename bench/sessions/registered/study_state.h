@@ -32,9 +32,9 @@ struct Participant {
   std::vector<AssignedSession> sessions;  ///< one a visit
   bool dropped = false;
   bool excluded = false;
-  std::string reason;  ///< of either
-  std::string rule;    ///< of an exclusion: the registered one, if it is one
-  std::string at;      ///< when either was logged
+  std::string reason;       ///< of either
+  std::string rule;         ///< of an exclusion: the registered one, if it is one
+  bool after_look = false;  ///< the answers had been looked at by then
 
   [[nodiscard]] bool begun() const;
   [[nodiscard]] bool completed() const;  ///< every visit is finished

@@ -173,6 +173,26 @@ TEST_F(ExperimentProgram, NamesWhatIsOtherThanItWasRegistered) {
   EXPECT_THAT(deviations(), HasSubstr("is missing; the plan is the one that the log registered"));
 }
 
+TEST_F(ExperimentProgram, NamesAnExclusionAfterALook) {
+  begin_study({"--participants", "3", "--exclude", "left-handed"});
+  for (const char* who : {"S01", "S02", "S03"}) run(who);
+  ASSERT_EQ(session({"drop", study(), "S01", "--reason", "seen", "--rule", "left-handed"}).exit_status, 0);
+  EXPECT_THAT(deviations(), Not(HasSubstr("after the answers had been looked at")));
+  ASSERT_EQ(session({"drop", study(), "S02", "--reason", "odd answers"}).exit_status, 0);
+  const std::string found = deviations();
+  EXPECT_THAT(found, HasSubstr("S02 was excluded by no registered rule: odd answers"));
+  EXPECT_THAT(found, HasSubstr("S02 was excluded after the answers had been looked at"));
+  EXPECT_THAT(found, HasSubstr("the number of analysed participants is 1, and 3 was registered"));
+}
+
+TEST_F(ExperimentProgram, MakesNoSessionInThePlaceOfAnother) {
+  plan();
+  write_text(study("S02.h5"), "theirs");
+  expect_refused(session({"new", study(), "--no-check"}), "S02.h5: exists already");
+  EXPECT_FALSE(fs::exists(study("S01.h5"))) << "all of them or none";
+  EXPECT_FALSE(fs::exists(study("experiment.log")));
+}
+
 TEST_F(ExperimentProgram, NamesAnExclusionByNoRule) {
   begin_study({"--participants", "2", "--exclude", "left-handed"});
   run("S01");
@@ -213,6 +233,18 @@ TEST_F(ExperimentProgram, FindsASessionThatIsMissingOrOlderThanItWas) {
   const Outcome restored = session({"status", study()});
   EXPECT_EQ(restored.exit_status, 1);
   EXPECT_THAT(restored.errors, HasSubstr("it was cut short, or an older copy was put back"));
+}
+
+TEST_F(ExperimentProgram, ShowsNothingOfAStudyWithAnAlteredSession) {
+  begin_study();
+  run("S01");
+  run("S02");
+  const std::string log = read_text(study("experiment.log"));
+  std::string bytes = read_text(study("S02.h5"));
+  bytes.replace(bytes.find("sim:scissors"), 1, "t");
+  write_text(study("S02.h5"), bytes);
+  expect_refused(analyze(), "S02.h5");
+  EXPECT_EQ(read_text(study("experiment.log")), log) << "and it was no look";
 }
 
 TEST_F(ExperimentProgram, FindsAnOlderCopyThatWasRunOn) {
