@@ -18,8 +18,8 @@
 // terminal, and all numbers as JSON. The trials are numbered, and each draws its noise from a seed of its
 // own, so that the result does not depend on the number of processors.
 //
-//     kerf_coverage_study [trials] [FILE.json] [seconds of recording, 0: all] [first trial] [number of a
-//     cell]
+//     kerf_coverage_study [trials, 0: name the cells alone] [FILE.json] [seconds of recording, 0: all]
+//                         [first trial] [number of a cell]
 
 namespace kerf::test {
 namespace {
@@ -74,14 +74,17 @@ Row row_of(const std::vector<Estimates>& trials, std::size_t k, double target) {
 
 std::vector<Row> rows_of(const Scenario& scenario, const Noise& noise, std::size_t count,
                          std::uint64_t seed) {
-  const std::vector<double> target = targets(scenario);
-  const std::vector<Estimates> trials = trials_of(scenario, noise, count, seed);
-  std::vector<Row> rows;
-  for (std::size_t k = 0; k < target.size(); ++k) {
-    rows.push_back(row_of(trials, k, target[k]));
-    rows.back().scenario = scenario.name;
-    rows.back().noise = noise.name;
-    rows.back().duration_s = tick_s * static_cast<double>(scenario.path.size());
+  std::vector<Row> rows(1);
+  if (count > 0) {
+    const std::vector<double> target = targets(scenario);
+    const std::vector<Estimates> trials = trials_of(scenario, noise, count, seed);
+    rows.resize(target.size());
+    for (std::size_t k = 0; k < target.size(); ++k) rows[k] = row_of(trials, k, target[k]);
+  }
+  for (Row& row : rows) {
+    row.scenario = scenario.name;
+    row.noise = noise.name;
+    row.duration_s = tick_s * static_cast<double>(scenario.path.size());
   }
   return rows;
 }
@@ -180,7 +183,7 @@ void run(std::size_t count, const std::string& path, double only_s, std::uint64_
                                   Noise::low_passed(),
                                   Noise::pink()};
   constexpr std::size_t of_variants = 2;  // quantised and misspecified: white noise and noise with a memory
-  if (only_cell == 0) print_costs(noises);
+  if (only_cell == 0 && count > 0) print_costs(noises);
   std::printf("coverage of 95 %% (half the interval over 1.96 true standard errors), %zu trials\n", count);
   std::vector<Row> all;
   std::uint64_t seed = 1;
@@ -194,7 +197,7 @@ void run(std::size_t count, const std::string& path, double only_s, std::uint64_
         if ((only_s > 0.0 && only_s != duration_s) || (only_cell > 0 && only_cell != cell)) continue;
         std::vector<Row> rows = rows_of(scenario, noises[i], count, seed + first);
         for (Row& row : rows) row.cell = cell;
-        print(rows, count);
+        if (count > 0) print(rows, count);
         all.insert(all.end(), rows.begin(), rows.end());
       }
     }

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
@@ -19,15 +20,19 @@
 
 // Makes a recording, fits it, and prints what came out and how long the fit alone took, as JSON.
 //
-//     kerf_fit_benchmark make LAW FILE           60 s at 1 kHz: time, penetration, velocity, force, as
-//     float64 kerf_fit_benchmark fit LAW FILE [TURNS [white]] parameters, covariance and intervals
-//     kerf_fit_benchmark laws FILE               every law, with cross-validation by cycle
-//     kerf_fit_benchmark nist FOLDER [TURNS]     the hardest problems of NIST StRD
+//     kerf_fit_benchmark make LAW FILE [ROWS]
+//         60,000 rows at 1 kHz: time, penetration, velocity, force, as float64
+//     kerf_fit_benchmark fit LAW FILE [TURNS [white]]
+//         parameters, covariance and intervals
+//     kerf_fit_benchmark laws FILE
+//         every law, with cross-validation by cycle
+//     kerf_fit_benchmark nist FOLDER [TURNS]
+//         the hardest problems of NIST StRD
 
 namespace kerf {
 namespace {
 
-constexpr std::size_t rows = 60000;
+constexpr int usual_rows = 60000;
 constexpr double period_s = 1e-3;
 constexpr double noise_n = 0.02;
 constexpr double stroke_hz = 0.7;
@@ -61,14 +66,14 @@ models::Law truth_of(const std::string& name) {
 }
 
 /// Strokes of a hand, 12 mm deep, and the force of a law there, with white noise.
-Recording made(const std::string& law_name) {
+Recording made(const std::string& law_name, int rows) {
   const models::Law law = truth_of(law_name);
   models::Law::State state = law.initial_state();
   std::mt19937_64 random(6);
   std::normal_distribution<double> normal(0.0, noise_n);
   Recording made;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const double t = period_s * static_cast<double>(i);
+  for (int i = 0; i < rows; ++i) {
+    const double t = period_s * i;
     const double phase = 2.0 * std::numbers::pi * stroke_hz * t;
     const double depth = 0.006 * (1.0 - std::cos(phase));
     const double speed = 0.006 * 2.0 * std::numbers::pi * stroke_hz * std::sin(phase);
@@ -93,6 +98,7 @@ void write(const Recording& recording, const std::string& path) {
 
 Recording read(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
+  const std::size_t rows = std::filesystem::file_size(path) / (4 * sizeof(double));
   Recording recording;
   for (auto* column : {&recording.time_s, &recording.penetration, &recording.velocity, &recording.force}) {
     column->resize(rows);
@@ -196,15 +202,17 @@ void solve_all(const std::string& folder, int turns) {
 
 void run(const std::vector<std::string>& given) {
   const std::string what = given.empty() ? "" : given[0];
-  const auto turns_at = [&](std::size_t i) { return given.size() > i ? std::stoi(given[i]) : 1; };
+  const auto number_at = [&](std::size_t i, int usual = 1) {
+    return given.size() > i ? std::stoi(given[i]) : usual;
+  };
   std::cout << std::setprecision(17);
-  if (what == "make" && given.size() == 3) return write(made(given[1]), given[2]);
+  if (what == "make" && given.size() >= 3) return write(made(given[1], number_at(3, usual_rows)), given[2]);
   if (what == "fit" && given.size() >= 3)
-    return fit_one(given[1], given[2], turns_at(3), given.size() > 4 && given[4] == "white");
+    return fit_one(given[1], given[2], number_at(3), given.size() > 4 && given[4] == "white");
   if (what == "laws" && given.size() == 2) return fit_all(given[1]);
-  if (what == "nist" && given.size() >= 2) return solve_all(given[1], turns_at(2));
+  if (what == "nist" && given.size() >= 2) return solve_all(given[1], number_at(2));
   throw std::invalid_argument(
-      "usage: kerf_fit_benchmark make LAW FILE | fit LAW FILE [TURNS [white]] | laws FILE | "
+      "usage: kerf_fit_benchmark make LAW FILE [ROWS] | fit LAW FILE [TURNS [white]] | laws FILE | "
       "nist FOLDER [TURNS]");
 }
 

@@ -8,6 +8,7 @@
 #include <glog/logging.h>
 
 #include "least_squares.h"
+#include "minimise_over_kinks.h"
 
 namespace kerf::fitting {
 namespace {
@@ -206,6 +207,9 @@ void settle(Minimum& minimum, const Objective& objective, const Bounds& bounds, 
   }
 }
 
+/// Tolerances above this ask for the error at a minimum, not for the minimum.
+constexpr double to_the_last_digits = 1e-11;
+
 /// Near the minimum a few plain steps do; they are tried before the trust region and after its first descent.
 void descend(Minimum& minimum, const Objective& objective, const Bounds& bounds,
              const MinimiseOptions& options) {
@@ -216,6 +220,11 @@ void descend(Minimum& minimum, const Objective& objective, const Bounds& bounds,
   search(minimum, objective, bounds, coarse);
   if (minimum.converged && finished()) return;
   search(minimum, objective, bounds, options);
+  if (!minimum.converged || options.function_tolerance > to_the_last_digits) return;
+  Minimum beyond = step_over_kinks(minimum, objective, bounds);
+  if (!(beyond.sums.squares < (1.0 - to_the_last_digits) * minimum.sums.squares)) return;
+  search(beyond, objective, bounds, options);
+  if (beyond.sums.squares < minimum.sums.squares) minimum = std::move(beyond);
 }
 
 }  // namespace

@@ -43,16 +43,24 @@ struct NoiseFilter {
             .denominator = {2.0 * (w * w - 1.0) * norm, (1.0 - std::numbers::sqrt2 * w + w * w) * norm}};
   }
 
-  void add_to(Eigen::VectorXd& values, double deviation, std::mt19937_64& random) const {
+  void add_to(Eigen::VectorXd& values, double gain, std::mt19937_64& random) const {
     constexpr int transient = 5000;
     std::normal_distribution<double> normal(0.0, 1.0);
-    const double gain = deviation / std::sqrt(power());
     std::array<double, 2> x{};
     std::array<double, 2> y{};
     for (Eigen::Index i = -transient; i < values.size(); ++i) {
       const double output = filtered(gain * normal(random), x, y);
       if (i >= 0) values[i] += output;
     }
+  }
+
+  /// Of what comes out when white noise of variance one goes in.
+  [[nodiscard]] double power() const {
+    std::array<double, 2> x{};
+    std::array<double, 2> y{};
+    double sum = 0.0;
+    for (int i = 0; i < 100'000; ++i) sum += std::pow(filtered(i == 0 ? 1.0 : 0.0, x, y), 2);
+    return sum;
   }
 
  private:
@@ -63,18 +71,12 @@ struct NoiseFilter {
     y = {output, y[0]};
     return output;
   }
-  [[nodiscard]] double power() const {
-    std::array<double, 2> x{};
-    std::array<double, 2> y{};
-    double sum = 0.0;
-    for (int i = 0; i < 100'000; ++i) sum += std::pow(filtered(i == 0 ? 1.0 : 0.0, x, y), 2);
-    return sum;
-  }
 };
 
 struct Noise {
   std::string name;
-  std::vector<NoiseFilter> parts;  ///< of equal variance
+  std::vector<NoiseFilter> parts;                 ///< of equal variance
+  std::vector<double> powers = powers_of(parts);  ///< once, not for every drawing: the longest loop of all
 
   static Noise white() { return {"white", {NoiseFilter{}}}; }
   static Noise first_order(const std::string& name, double pole) {
@@ -84,19 +86,27 @@ struct Noise {
   static Noise low_passed() { return {"low-passed at 20 Hz", {NoiseFilter::butterworth(20.0)}}; }
   /// About 1/f from 0.04 Hz upwards: one part an octave.
   static Noise pink() {
-    Noise noise{"pink", {}};
+    std::vector<NoiseFilter> octaves;
     for (double time = 1.0; time <= 4096.0; time *= 2.0) {
-      noise.parts.push_back(NoiseFilter::first_order(std::exp(-1.0 / time)));
+      octaves.push_back(NoiseFilter::first_order(std::exp(-1.0 / time)));
     }
-    return noise;
+    return {"pink", octaves};
   }
   [[nodiscard]] Eigen::VectorXd draw(Eigen::Index count, double deviation, std::uint64_t seed) const {
     std::mt19937_64 random(seed);
     Eigen::VectorXd values = Eigen::VectorXd::Zero(count);
-    for (const NoiseFilter& part : parts) {
-      part.add_to(values, deviation / std::sqrt(static_cast<double>(parts.size())), random);
+    const double share = deviation / std::sqrt(static_cast<double>(parts.size()));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      parts[i].add_to(values, share / std::sqrt(powers[i]), random);
     }
     return values;
+  }
+
+ private:
+  static std::vector<double> powers_of(const std::vector<NoiseFilter>& parts) {
+    std::vector<double> powers;
+    for (const NoiseFilter& part : parts) powers.push_back(part.power());
+    return powers;
   }
 };
 

@@ -1,11 +1,18 @@
 #include "fitting/nist/nist.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include "minimise_over_kinks.h"
 
 namespace kerf::test {
 namespace {
@@ -74,6 +81,67 @@ TEST(Minimise, ComesToTheEndOfAMisfitInFewSteps) {
     EXPECT_LT(minimum.iterations, 15) << bend;
     EXPECT_NEAR(minimum.at[0], 0.0, 1e-6) << bend;
   }
+}
+
+/// A unit spring that only pushes, F = max(u - b, 0), and forces that are not zero where it begins to: the
+/// sum of squares over b has a kink at every u, and is a parabola between two of them.
+struct PushingSpring {
+  Eigen::VectorXd u, force;
+
+  explicit PushingSpring(int number, Eigen::Index count = 1000) : u(count), force(count) {
+    const double pace = 1.0 + 0.037 * number;
+    std::vector<std::pair<double, double>> points;
+    for (int i = 0; i < count; ++i) {
+      const double at = 2.0 * std::fmod(0.6180339887498949 * i, 1.0) - 1.0;
+      points.emplace_back(at, std::max(at - 0.1, 0.0) + 0.3 * (1.0 + std::sin(std::fmod(pace * i * i, 7.0))));
+    }
+    std::ranges::sort(points, std::greater<>());
+    for (Eigen::Index i = 0; i < count; ++i) std::tie(u[i], force[i]) = points[static_cast<std::size_t>(i)];
+  }
+  /// By the least of all parabolas, each between its kinks.
+  [[nodiscard]] double least_squares() const {
+    double least = std::numeric_limits<double>::infinity();
+    double sum = 0.0;
+    for (Eigen::Index k = 1; k <= u.size(); ++k) {
+      sum += u[k - 1] - force[k - 1];
+      const double next = k < u.size() ? u[k] : -std::numeric_limits<double>::infinity();
+      least = std::min(least, squares_at(std::clamp(sum / static_cast<double>(k), next, u[k - 1])));
+    }
+    return least;
+  }
+  [[nodiscard]] double squares_at(double b) const {
+    return ((u.array() - b).max(0.0) - force.array()).square().sum();
+  }
+};
+
+class PushingObjective final : public fitting::DenseObjective {
+ public:
+  explicit PushingObjective(const PushingSpring& spring) : spring_(spring) {}
+  [[nodiscard]] Eigen::Index size() const override { return 1; }
+  [[nodiscard]] bool rows(const Eigen::VectorXd& at, Eigen::VectorXd& residual,
+                          Eigen::MatrixXd& jacobian) const override {
+    residual = (spring_.u.array() - at[0]).max(0.0) - spring_.force.array();
+    jacobian = (spring_.u.array() > at[0]).select(Eigen::VectorXd::Constant(spring_.u.size(), -1.0), 0.0);
+    return true;
+  }
+
+ private:
+  const PushingSpring& spring_;
+};
+
+TEST(Minimise, StepsOverTheKinksOfALawThatOnlyPushes) {
+  const auto bounds = bounds_of(Eigen::VectorXd::Constant(1, -2.0), Eigen::VectorXd::Constant(1, 2.0));
+  int held_up = 0;
+  for (int number = 0; number < 60; ++number) {
+    const PushingSpring spring(number);
+    const PushingObjective objective(spring);
+    const double least = spring.least_squares();
+    const Minimum first = minimise(objective, Eigen::VectorXd::Constant(1, 0.3), bounds);
+    held_up += first.sums.squares > (1.0 + 1e-9) * least ? 1 : 0;
+    const Minimum beyond = step_over_kinks(first, objective, bounds);
+    EXPECT_LE(minimise(objective, beyond.at, bounds).sums.squares, (1.0 + 1e-9) * least) << number;
+  }
+  EXPECT_GT(held_up, 0) << "nothing to step over";
 }
 
 TEST(Minimise, StaysInItsBoundsToTheLastDigit) {

@@ -82,6 +82,19 @@ TEST_F(BadRows, OfOneForceThroughoutAreRefused) {
     expect_refused(outcome, "the force is 2.5 throughout");
 }
 
+TEST_F(BadRows, OfAColumnOfZerosAreRefused) {
+  keep(with([](std::size_t, double) { return 0.0; }));
+  for (const Outcome& outcome : {fit(), choose()}) expect_refused(outcome, "the force is zero throughout");
+  expect_refused(chart(), "no force at all is within the JND of 0.05 N too");
+  EXPECT_THAT(segment().errors, HasSubstr("which of them is closing is a guess"));
+  schema::Recording still = test::punch();
+  std::ranges::fill(still.position, 0.0);
+  keep(still);
+  for (const Outcome& outcome : {fit(), choose(), chart()})
+    expect_refused(outcome, "the position is constant");
+  expect_refused(segment(), "no cycle of opening and closing");
+}
+
 TEST_F(BadRows, OfOneCycleSayNothingOfTheNext) {
   schema::Recording recording = test::punch({.seconds = 1.24});  // in and out again
   keep(recording);

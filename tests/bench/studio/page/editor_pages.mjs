@@ -62,6 +62,8 @@ async function onCurve(page, branch, share) {
 export async function drawByMouse(page, studio) {
   await openEditor(page, studio);
   expectEqual(await count(page), 2, "breakpoints at first");
+  const caption = await page.textContent("table.figures caption");
+  expect(caption.includes("without what cycles differ by"), "it says what the error is towards");
   const before = await error(page);
   for (const share of [0.15, 0.45, 0.7]) {
     const at = await onCurve(page, "closing", share);
