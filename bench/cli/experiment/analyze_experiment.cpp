@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <ranges>
 #include <stdexcept>
 #include <utility>
 #include <vector>

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/levels_json.h"
 #include "files/json_number.h"
 #include "html/html.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <ranges>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -169,7 +169,7 @@ class FileMatcher {
     if (session.file != assigned)
       problem("{}: the session of {} was {} when it was assigned", session.file.string(), who.code,
               name_in(assigned));
-    for (const FoundSession* copy : copies | std::views::drop(1))
+    for (const FoundSession* copy : std::span(copies).subspan(1))
       problem("{}: the session of {} is there twice; {} alone is counted", copy->file.string(), who.code,
               name_in(session.file));
     const std::size_t entries = copies.front()->facts["entries"].size();
