@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -120,11 +121,11 @@ Blanks studied(int studies, std::uint64_t seed) {
   for (int study = 0; study < studies; ++study) {
     std::vector<Group> speeds(2);
     std::vector<std::vector<double>> cycles(2);
-    for (int speed = 0; speed < 2; ++speed)
+    for (std::size_t speed = 0; speed < 2; ++speed)
       for (int i = 0; i < 6; ++i) cycles[speed].push_back(0.1 * std::sqrt(6.0) * random.normal());
     for (int specimen = 0; specimen < 8; ++specimen) {
       const double own = 0.1 * random.normal();
-      for (int speed = 0; speed < 2; ++speed) {
+      for (std::size_t speed = 0; speed < 2; ++speed) {
         double blank = 0.0;
         for (const double one : cycles[speed]) blank += one / 6.0;
         speeds[speed].push_back({.value = own + blank + 0.05 * random.normal(),
