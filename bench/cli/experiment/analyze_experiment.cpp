@@ -69,7 +69,7 @@ class ExperimentAnalysis {
   }
 
   [[nodiscard]] Look look_of(std::vector<std::string> participants) const {
-    StudyState state = opened_.state;
+    ExperimentState state = opened_.state;
     state.experiment = experiment_as_made();
     return look_at(
         state,
@@ -195,7 +195,7 @@ class ExperimentAnalysis {
   }
 
   ExperimentReport report_of(const Study& study, const Analysis& analysis, const Look& look) {
-    const StudyState& state = opened_.state;
+    const ExperimentState& state = opened_.state;
     AnalysisAsMade made{
         .plan = plan_,
         .experiment_toml = experiment_now(),

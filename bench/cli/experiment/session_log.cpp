@@ -33,7 +33,7 @@ OpenedExperiment open_experiment(const fs::path& file_or_folder, KeyArguments& k
                     log_file.string(), file.string()));
   ExperimentLog log(log_file, key_for(key, ExperimentLog::derivation_of(log_file)));
   for (const std::string& warning : log.warnings()) warn(warning);
-  StudyState state = study_state(file, log);
+  ExperimentState state = experiment_state(file, log);
   return {.file = file, .log = std::move(log), .state = std::move(state)};
 }
 
@@ -54,7 +54,7 @@ void log_opening(const fs::path& session_file, const SessionStore& store, KeyArg
                  const std::string& reason) {
   auto log = log_beside(session_file, store.session(), key);
   if (!log) return;
-  const StudyState state = study_state(session_file.parent_path() / "experiment.toml", *log);
+  const ExperimentState state = experiment_state(session_file.parent_path() / "experiment.toml", *log);
   if (state.is_over() && !state.looks.empty()) return;
   if (is_blank(reason))
     throw std::invalid_argument(fmt::format(

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "experiment/key_arguments.h"
+#include "registered/experiment_state.h"
 #include "registered/logged_run.h"
-#include "registered/study_state.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench {
@@ -15,7 +15,7 @@ namespace kerf::bench {
 struct OpenedExperiment {
   std::filesystem::path file;  ///< experiment.toml, which may be missing by now
   ExperimentLog log;
-  StudyState state;
+  ExperimentState state;
 };
 
 /// @throws std::invalid_argument: no log, another key, a log that was changed.

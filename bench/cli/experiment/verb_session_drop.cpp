@@ -59,7 +59,7 @@ void drop_participant(SessionDropVerbArguments& arguments, Context& context) {
 
 void tell_status(SessionDropVerbArguments& arguments, Context& context) {
   const OpenedExperiment opened = open_experiment(arguments.experiment, arguments.key);
-  const StudyState& state = opened.state;
+  const ExperimentState& state = opened.state;
   const auto flow = flow_of(state);
   for (const std::string& line : flow_lines(state, flow)) context.say(line);
   for (const Participant& each : state.participants) {

@@ -84,7 +84,7 @@ std::string list_section(const char* title, const std::vector<std::string>& sent
   return html + "</ul>\n";
 }
 
-std::vector<std::string> leavings(const StudyState& state) {
+std::vector<std::string> leavings(const ExperimentState& state) {
   std::vector<std::string> lines;
   for (const Participant& each : state.participants) {
     if (each.is_out()) lines.push_back(leaving_line(each));
@@ -94,14 +94,14 @@ std::vector<std::string> leavings(const StudyState& state) {
 
 }  // namespace
 
-std::vector<std::string> flow_lines(const StudyState& state, const std::vector<FlowCounts>& flow) {
+std::vector<std::string> flow_lines(const ExperimentState& state, const std::vector<FlowCounts>& flow) {
   std::vector<std::string> lines;
   for (const FlowCounts& counts : flow) lines.push_back(counts_line(counts));
   for (std::string& line : leavings(state)) lines.push_back("  " + std::move(line));
   return lines;
 }
 
-Json flow_json(const StudyState& state, const std::vector<FlowCounts>& flow) {
+Json flow_json(const ExperimentState& state, const std::vector<FlowCounts>& flow) {
   Json facts = counts_json(flow.front());
   facts["groups"] = Json::array();
   for (std::size_t i = 1; i < flow.size(); ++i) facts["groups"].push_back(counts_json(flow[i]));

@@ -19,7 +19,7 @@ struct PrimaryFigures {
 
 /// What the registered rule makes of them. `study` is asked for a Bayes factor alone.
 [[nodiscard]] LookDecision decide(const Study& study, const Experiment& experiment, const Look& look,
-                              const PrimaryFigures& figures);
+                                  const PrimaryFigures& figures);
 
 /// The options of an analysis under a plan, at the level that a look may spend.
 [[nodiscard]] AnalysisOptions options_at(const AnalysisPlan& plan, const Look& look, AnalysisOptions options);

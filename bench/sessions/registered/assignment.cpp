@@ -72,7 +72,8 @@ ExperimentLog::Facts registered_facts(const Experiment& experiment, const Protoc
   return {{"experiment", experiment.toml}, {"protocol", digest_of(protocol.toml)}, {"laws", std::move(laws)}};
 }
 
-std::string replacement_code(const StudyState& state, const std::string& leaving, const std::string& code) {
+std::string replacement_code(const ExperimentState& state, const std::string& leaving,
+                             const std::string& code) {
   const auto refuse = [](const std::string& what) { throw std::invalid_argument(what); };
   const Participant* left = state.find(leaving);
   if (left == nullptr)

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "registered/study_state.h"
+#include "registered/experiment_state.h"
 #include "sealed/session_store.h"
 
 namespace kerf::bench {
@@ -43,7 +43,7 @@ ExperimentLog::Facts create_assigned(const std::filesystem::path& file, const As
 /// Whether `leaving` may be replaced by `code` under the registered rule; an empty code stands for the next
 /// one that is free, which is returned.
 /// @throws std::invalid_argument: nobody of that name, not dropped, replaced already, a code that is taken.
-[[nodiscard]] std::string replacement_code(const StudyState& state, const std::string& leaving,
+[[nodiscard]] std::string replacement_code(const ExperimentState& state, const std::string& leaving,
                                            const std::string& code);
 
 }  // namespace kerf::bench

@@ -98,7 +98,7 @@ class Deviations {
     }
   }
 
-  void participants(const StudyState& state) {
+  void participants(const ExperimentState& state) {
     const ExclusionPlan& plan = state.experiment.analysis.exclude;
     const auto is_registered = [&](const std::string& rule) {
       return (rule == "faulty" && plan.faulty) || (rule == "unfelt" && plan.unfelt) ||
@@ -117,7 +117,7 @@ class Deviations {
     }
   }
 
-  void looks(const StudyState& state, const Look& look) {
+  void looks(const ExperimentState& state, const Look& look) {
     for (std::size_t i = 0; i < state.looks.size(); ++i) {
       const PastLook& past = state.looks[i];
       if (past.paid || (!look.is_new && i + 1 == state.looks.size())) continue;
@@ -145,8 +145,8 @@ class Deviations {
 
 }  // namespace
 
-std::vector<std::string> deviations_of(const StudyState& state, const Look& look, const AnalysisAsMade& made,
-                                       const ExperimentLog::Facts& registered) {
+std::vector<std::string> deviations_of(const ExperimentState& state, const Look& look,
+                                       const AnalysisAsMade& made, const ExperimentLog::Facts& registered) {
   Deviations deviations;
   deviations.compare(state.experiment.analysis, made.plan, "in this analysis");
   deviations.compare(state.experiment, made);

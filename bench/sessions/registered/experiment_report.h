@@ -9,7 +9,7 @@ namespace kerf::bench {
 
 /// What an analysis has to tell of the experiment that it is of.
 struct ExperimentReport {
-  StudyState state;
+  ExperimentState state;
   std::vector<FlowCounts> flow;  ///< with the exclusions by measured criteria
   Look look;
   LookDecision decision;
@@ -28,7 +28,7 @@ struct AnalysisAsMade {
 };
 
 /// In the order of the study: what was changed, who left, what was looked at.
-[[nodiscard]] std::vector<std::string> deviations_of(const StudyState& state, const Look& look,
+[[nodiscard]] std::vector<std::string> deviations_of(const ExperimentState& state, const Look& look,
                                                      const AnalysisAsMade& made,
                                                      const ExperimentLog::Facts& registered);
 

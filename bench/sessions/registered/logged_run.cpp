@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "registered/study_state.h"
+#include "registered/experiment_state.h"
 #include "session/receipt.h"
 
 namespace kerf::bench {
@@ -18,7 +18,7 @@ std::optional<std::filesystem::path> log_of_session(const std::filesystem::path&
 
 void require_takes_part(const std::filesystem::path& session_file, const ExperimentLog& log,
                         const schema::Session& session) {
-  const StudyState state = study_state(session_file.parent_path() / "experiment.toml", log);
+  const ExperimentState state = experiment_state(session_file.parent_path() / "experiment.toml", log);
   const Participant* who = state.find(session.subject);
   const bool is_assigned =
       who != nullptr && std::ranges::count(who->sessions, session.uuid, &AssignedSession::uuid) > 0;

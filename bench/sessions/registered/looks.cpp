@@ -12,7 +12,7 @@ bool has_reason(const std::string& reason) {
   return reason.find_first_not_of(" \t\r\n") != std::string::npos;
 }
 
-[[noreturn]] void refuse_early(const StudyState& state, std::size_t through) {
+[[noreturn]] void refuse_early(const ExperimentState& state, std::size_t through) {
   throw std::invalid_argument(
       fmt::format("{} of {} participants are through, and the registered rule \"fixed\" has no look before "
                   "the end; say why "
@@ -21,7 +21,7 @@ bool has_reason(const std::string& reason) {
 }
 
 /// Numbers of participants of the looks that were paid for, each with more than the one before.
-std::vector<std::size_t> paid_before(const StudyState& state) {
+std::vector<std::size_t> paid_before(const ExperimentState& state) {
   std::vector<std::size_t> numbers;
   for (const PastLook& look : state.looks) {
     if (look.paid && (numbers.empty() || look.participants.size() > numbers.back()))
@@ -47,13 +47,13 @@ std::vector<LookLevel> look_levels(const Experiment& experiment, const std::vect
   return levels;
 }
 
-Look look_at(const StudyState& state, const LookRequest& request) {
+Look look_at(const ExperimentState& state, const LookRequest& request) {
   const Experiment& experiment = state.experiment;
   const StoppingKind kind = experiment.analysis.stopping.kind;
   const std::size_t through = request.participants.size();
   if (through == 0) throw std::invalid_argument("no participant is through: there is nothing to look at");
   Look look{.is_last = state.is_over(), .participants = request.participants, .reason = request.reason};
-  StudyState before = state;
+  ExperimentState before = state;
   look.is_new = state.looks.empty() || state.looks.back().participants != request.participants;
   if (!look.is_new) {
     look.reason = before.looks.back().reason;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "registered/study_state.h"
+#include "registered/experiment_state.h"
 
 namespace kerf::bench {
 
@@ -33,7 +33,7 @@ struct LookRequest {
 
 /// The look that these participants make, after those of the log.
 /// @throws std::invalid_argument: nobody is through; the rule refuses it, and no reason was given.
-[[nodiscard]] Look look_at(const StudyState& state, const LookRequest& request);
+[[nodiscard]] Look look_at(const ExperimentState& state, const LookRequest& request);
 
 /// What a study may spend at these numbers of participants, of a fixed rule all at the target.
 struct LookLevel {

@@ -88,7 +88,7 @@ std::string session_schema_as_markdown() {
   text +=
       row({code("/entries"), code(session_layout::type_of_entries), "E",
            "What happened, oldest first: `plan`, `run`, `plugin` (name and SHA-256 of one that a run had), "
-           "`trial`, `quit`, `opened`, `finished`; texts of "
+           "`trial`, `quit`, `opened`, `finished`; of an experiment `registered` and `look`; texts of "
            "fixed length"});
   text +=
       row({code("/sealed/NNNNNN"), code("uint8"), "any",

@@ -22,8 +22,8 @@ std::vector<std::string> first_of_all(std::size_t count) {
 }
 
 /// Of twelve participants so many are through.
-StudyState state_with(std::size_t through, const std::string& stopping) {
-  StudyState state;
+ExperimentState state_with(std::size_t through, const std::string& stopping) {
+  ExperimentState state;
   state.experiment = parse_experiment(
       "name = \"x\"\nprotocol = \"p\"\n[participants]\ntarget = 12\n"
       "[analysis]\nstopping = { " +
@@ -38,12 +38,12 @@ StudyState state_with(std::size_t through, const std::string& stopping) {
 
 const std::string pocock = "rule = \"alpha-spending\", spending = \"pocock\", looks = [6, 9]";
 
-Look look_of(const StudyState& state, std::size_t through, const std::string& reason = "") {
+Look look_of(const ExperimentState& state, std::size_t through, const std::string& reason = "") {
   return look_at(state, {.participants = first_of_all(through), .reason = reason, .two_sided = false});
 }
 
 TEST(Look, IsRefusedBeforeTheEndOfAFixedStudyUnlessSomebodySaysWhy) {
-  const StudyState state = state_with(7, "rule = \"fixed\"");
+  const ExperimentState state = state_with(7, "rule = \"fixed\"");
   EXPECT_THAT([&] { (void)look_of(state, 7); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("7 of 12 participants are through")));
   EXPECT_THROW((void)look_of(state, 7, "  "), std::invalid_argument);
@@ -62,7 +62,7 @@ TEST(Look, AtTheEndHasAllOfAlpha) {
 }
 
 TEST(Look, IsPaidBySpendingWhereverItIsTaken) {
-  StudyState state = state_with(7, pocock);
+  ExperimentState state = state_with(7, pocock);
   const Look first = look_of(state, 7);
   EXPECT_TRUE(first.is_paid);
   EXPECT_FALSE(first.is_planned);
@@ -71,7 +71,7 @@ TEST(Look, IsPaidBySpendingWhereverItIsTaken) {
   state.looks.push_back({.time = "t", .participants = first.participants, .paid = true, .reason = ""});
   EXPECT_FALSE(look_of(state, 7).is_new) << "the same participants again are the same look";
   EXPECT_DOUBLE_EQ(look_of(state, 7).nominal, first.nominal);
-  StudyState later = state_with(12, pocock);
+  ExperimentState later = state_with(12, pocock);
   later.looks = state.looks;
   const Look last = look_of(later, 12);
   EXPECT_EQ(last.number, 2U);
@@ -80,7 +80,7 @@ TEST(Look, IsPaidBySpendingWhereverItIsTaken) {
 }
 
 TEST(Look, WithNobodyMoreIsPaidByNothing) {
-  StudyState state = state_with(6, pocock);
+  ExperimentState state = state_with(6, pocock);
   state.looks.push_back(
       {.time = "t", .participants = {"S02", "S03", "S04", "S05", "S06", "S07"}, .paid = true, .reason = ""});
   const Look look = look_of(state, 6);
@@ -90,7 +90,7 @@ TEST(Look, WithNobodyMoreIsPaidByNothing) {
 }
 
 TEST(Study, IsOverWhenEveryOrderHasSomebodyWhoIsThroughOrIsNotReplaced) {
-  StudyState state = state_with(11, "rule = \"fixed\"");
+  ExperimentState state = state_with(11, "rule = \"fixed\"");
   EXPECT_FALSE(state.is_over());
   state.participants[11].dropped = true;
   EXPECT_FALSE(state.is_over()) << "somebody may take the place";
@@ -111,7 +111,7 @@ TEST(Study, IsOverWhenEveryOrderHasSomebodyWhoIsThroughOrIsNotReplaced) {
 }
 
 TEST(Replacement, TakesAPlaceThatIsFreeUnderACodeThatIsFree) {
-  StudyState state = state_with(3, "rule = \"fixed\"");
+  ExperimentState state = state_with(3, "rule = \"fixed\"");
   const auto expect_refused = [&](const std::string& leaving, const std::string& code,
                                   const std::string& why) {
     EXPECT_THAT([&] { (void)replacement_code(state, leaving, code); },

@@ -50,7 +50,7 @@ struct PastLook {
 };
 
 /// Where a study stands: what the log says, held against the files of its folder.
-struct StudyState {
+struct ExperimentState {
   Experiment experiment;  ///< as it was registered
   std::vector<Participant> participants;
   std::vector<PastLook> looks;
@@ -65,7 +65,8 @@ struct StudyState {
 };
 
 /// @throws std::invalid_argument: a log whose facts are none; std::system_error.
-[[nodiscard]] StudyState study_state(const std::filesystem::path& experiment_file, const ExperimentLog& log);
+[[nodiscard]] ExperimentState experiment_state(const std::filesystem::path& experiment_file,
+                                               const ExperimentLog& log);
 
 /// What binds a session to its experiment: an entry "registered" of its file.
 struct SessionMembership {
@@ -89,6 +90,6 @@ struct FlowCounts {
   std::size_t analysed = 0;
 };
 /// Of all, then of each group where there are any.
-[[nodiscard]] std::vector<FlowCounts> flow_of(const StudyState& state);
+[[nodiscard]] std::vector<FlowCounts> flow_of(const ExperimentState& state);
 
 }  // namespace kerf::bench

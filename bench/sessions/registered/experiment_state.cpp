@@ -1,4 +1,4 @@
-#include "registered/study_state.h"
+#include "registered/experiment_state.h"
 
 #include <algorithm>
 #include <charconv>
@@ -73,7 +73,7 @@ std::string name_in(const fs::path& file) { return file.filename().string(); }
 /// What the log says, line by line.
 class LogReader {
  public:
-  LogReader(const fs::path& folder, StudyState& state) : folder_(folder), state_(state) {}
+  LogReader(const fs::path& folder, ExperimentState& state) : folder_(folder), state_(state) {}
 
   void take(const LogLine& line) {
     const Json& facts = line.facts;
@@ -128,14 +128,15 @@ class LogReader {
   }
 
   const fs::path& folder_;
-  StudyState& state_;
+  ExperimentState& state_;
   std::map<std::string, std::size_t> entries_;  ///< of a session, when it was last run
 };
 
 /// The files of the folder, each dealt to the session that it is.
 class FileMatcher {
  public:
-  FileMatcher(StudyState& state, std::vector<FoundSession> found) : state_(state), found_(std::move(found)) {}
+  FileMatcher(ExperimentState& state, std::vector<FoundSession> found)
+      : state_(state), found_(std::move(found)) {}
 
   void match(const LogReader& log) {
     for (Participant& each : state_.participants) {
@@ -182,7 +183,7 @@ class FileMatcher {
     for (FoundSession* copy : copies) copy->facts = nullptr;
   }
 
-  StudyState& state_;
+  ExperimentState& state_;
   std::vector<FoundSession> found_;
 };
 
@@ -196,12 +197,12 @@ bool Participant::completed() const {
   return !sessions.empty() && std::ranges::all_of(sessions, [](const auto& each) { return each.finished; });
 }
 
-const Participant* StudyState::find(std::string_view code) const {
+const Participant* ExperimentState::find(std::string_view code) const {
   const auto known = std::ranges::find(participants, code, &Participant::code);
   return known == participants.end() ? nullptr : &*known;
 }
 
-bool StudyState::is_over() const {
+bool ExperimentState::is_over() const {
   const ReplacementRule rule = experiment.participants.replace;
   return std::ranges::all_of(participants, [&](const Participant& each) {
     if (!each.replaced_by.empty()) return true;
@@ -211,8 +212,8 @@ bool StudyState::is_over() const {
   });
 }
 
-StudyState study_state(const fs::path& experiment_file, const ExperimentLog& log) {
-  StudyState state;
+ExperimentState experiment_state(const fs::path& experiment_file, const ExperimentLog& log) {
+  ExperimentState state;
   const fs::path folder = experiment_file.parent_path();
   try {
     state.experiment = parse_experiment(log.registered().facts.at("experiment").get<std::string>(),
@@ -249,7 +250,7 @@ std::optional<SessionMembership> membership_of(const schema::Session& session) {
                            .visit = facts.value("visit", std::size_t{1})};
 }
 
-std::vector<FlowCounts> flow_of(const StudyState& state) {
+std::vector<FlowCounts> flow_of(const ExperimentState& state) {
   std::vector<FlowCounts> flow(1);
   for (const std::string& group : state.experiment.participants.groups) flow.push_back({.group = group});
   for (FlowCounts& counts : flow) {
