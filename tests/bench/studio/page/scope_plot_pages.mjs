@@ -55,6 +55,7 @@ export const tests = {
     await page.keyboard.press("End");
     for (let i = 0; i < 5; ++i) await page.keyboard.press("+");
     await asked;
+    await until("all five steps are shown", async () => (await page.textContent(".time_reading")).includes("(156 ms)"));
     const still = await page.textContent(".time_reading");
     await page.waitForTimeout(300);
     expectEqual(await page.textContent(".time_reading"), still, "what is shown while it is paused");
