@@ -52,14 +52,13 @@ std::size_t leave_out_rows(const schema::Recording& recording, const std::vector
 }  // namespace
 
 CountedRows mark_rows(const FitSource& source, const RowChoice& choice, double felt, AxisSeries& series) {
-  constexpr std::size_t fewest_left = 20;
   CountedRows counted = mark_counted(series, *source.recording, source.axis, choice, felt);
   if (source.not_the_tissue.empty()) return counted;
   counted.rows = leave_out_rows(*source.recording, source.not_the_tissue, series);
-  if (counted.rows < fewest_left)
+  if (counted.rows < fewest_counted)
     throw std::invalid_argument(
         fmt::format("in {} rows it is in contact where its blank has been, and {} are needed", counted.rows,
-                    fewest_left));
+                    fewest_counted));
   return counted;
 }
 

@@ -14,8 +14,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr std::size_t fewest_left = 20;
-
 std::vector<CycleVerdict> cycles_without_verdict(const schema::Cycles& cycles) {
   std::map<std::uint32_t, CycleVerdict> all;
   for (const schema::PhaseSpan& phase : cycles.phases)
@@ -63,7 +61,7 @@ bool leave_out(AxisSeries& series, const std::vector<CycleVerdict>& cycles) {
     const std::uint32_t cycle = series.cycle[row];
     if (cycle > 0 && numbers.at(cycle) == 0) counts[row] = 0;
   }
-  if (static_cast<std::size_t>(std::ranges::count(counts, 1)) < fewest_left) return false;
+  if (static_cast<std::size_t>(std::ranges::count(counts, 1)) < fewest_counted) return false;
   series.counts = std::move(counts);
   for (std::uint32_t& cycle : series.cycle) {
     if (cycle > 0) cycle = numbers.at(cycle);

@@ -43,6 +43,9 @@ struct LeftOutCycle {
   std::string reason;
 };
 
+/// No choice may leave fewer rows.
+inline constexpr std::size_t fewest_counted = 20;
+
 /// What a choice of rows comes to.
 struct CountedRows {
   std::size_t rows = 0;                ///< that count

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <deque>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -259,14 +259,6 @@ class NamedMemory {
   NamedMemory& operator=(const NamedMemory&) = delete;
   ~NamedMemory() { close(descriptor_); }
   [[nodiscard]] const std::string& path() const { return path_; }
-  void write(std::string_view text) const {
-    while (!text.empty()) {
-      const ssize_t written = ::write(descriptor_, text.data(), text.size());
-      if (written < 0 && errno != EINTR)
-        throw std::system_error(errno, std::generic_category(), "no memory for a chart");
-      if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
 
  private:
   int descriptor_;
@@ -284,7 +276,7 @@ std::vector<std::string> draw_all(std::span<const Chart> charts) {
   const NamedMemory errors;
   // From a file: of its standard input it reads every character by a call of its own.
   const NamedMemory commands;
-  commands.write(script);
+  std::ofstream(commands.path()) << script;
   const std::string command = "gnuplot " + commands.path() + " 2>" + errors.path();
   FILE* pipe = popen(command.c_str(), "w");
   if (pipe == nullptr) throw std::system_error(errno, std::generic_category(), "cannot start gnuplot");

@@ -50,6 +50,12 @@ const StudiedBlank* blank_of(const StudyResults& results, const std::string& rec
   return blank && blank->is_taken() ? &*blank : nullptr;
 }
 
+std::vector<double> values_of(const StudiedQuantity& quantity) {
+  std::vector<double> values;
+  for (const Estimate& one : quantity.values) values.push_back(one.value);
+  return values;
+}
+
 /// The values of a quantity with each part of a blank left out of what was taken off its recordings.
 population::Shared without_parts_of(const std::string& name, const StudyResults& results,
                                     const StudiedQuantity& quantity) {
@@ -57,9 +63,7 @@ population::Shared without_parts_of(const std::string& name, const StudyResults&
   for (std::size_t i = 0; i < quantity.recordings.size(); ++i) {
     const StudiedBlank* const blank = blank_of(results, quantity.recordings[i]);
     if (blank == nullptr || blank->name != name) continue;
-    std::vector<double> own;
-    for (const population::Estimate& value : quantity.values) own.push_back(value.value);
-    shared.without.resize(std::max(shared.without.size(), blank->without.size()), own);
+    shared.without.resize(std::max(shared.without.size(), blank->without.size()), values_of(quantity));
     for (std::size_t part = 0; part < shared.without.size(); ++part) {
       constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
       double value = unknown;
@@ -208,16 +212,11 @@ std::vector<population::SharedByGroups> shared_by(const StudiedQuantity& first,
   std::map<std::string, population::SharedByGroups> blanks;
   for (const SharedBlank& blank : first.blanks) blanks[blank.name].first = blank.values;
   for (const SharedBlank& blank : second.blanks) blanks[blank.name].second = blank.values;
-  const auto fill = [](const StudiedQuantity& quantity, population::Shared& shared, std::size_t parts) {
-    std::vector<double> own;
-    for (const population::Estimate& value : quantity.values) own.push_back(value.value);
-    shared.without.resize(parts, own);
-  };
   std::vector<population::SharedByGroups> shared;
   for (auto& [name, one] : blanks) {
     const std::size_t parts = std::max(one.first.without.size(), one.second.without.size());
-    fill(first, one.first, parts);
-    fill(second, one.second, parts);
+    one.first.without.resize(parts, values_of(first));
+    one.second.without.resize(parts, values_of(second));
     shared.push_back(std::move(one));
   }
   return shared;

@@ -69,16 +69,13 @@ void take_interval(const GroupEstimate& first, const GroupEstimate& second, doub
   if (!first.mean || !second.mean) return;
   result.difference = *first.mean - *second.mean;
   if (!first.standard_error || !second.standard_error) return;
-  const double a = *first.standard_error * *first.standard_error;
-  const double b = *second.standard_error * *second.standard_error;
-  const double error = std::sqrt(a + b);
-  result.standard_error = error;
-  result.degrees_of_freedom =
-      error > 0.0 ? (a + b) * (a + b) / (a * a / first.degrees_of_freedom + b * b / second.degrees_of_freedom)
-                  : first.degrees_of_freedom + second.degrees_of_freedom;
-  result.interval =
-      interval_of(*result.difference,
-                  {.standard_error = error, .degrees_of_freedom = result.degrees_of_freedom}, confidence);
+  const SharedError both = together({.standard_error = *first.standard_error,
+                                     .degrees_of_freedom = static_cast<double>(first.degrees_of_freedom)},
+                                    {.standard_error = *second.standard_error,
+                                     .degrees_of_freedom = static_cast<double>(second.degrees_of_freedom)});
+  result.standard_error = both.standard_error;
+  result.degrees_of_freedom = both.degrees_of_freedom;
+  result.interval = interval_of(*result.difference, both, confidence);
   take_model_p(result);
 }
 

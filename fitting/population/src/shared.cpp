@@ -28,8 +28,8 @@ std::optional<SharedError> error_of_parts(const std::vector<double>& without) {
 SharedError together(const SharedError& one, const SharedError& other) {
   const double a = one.standard_error * one.standard_error;
   const double b = other.standard_error * other.standard_error;
-  if (b == 0.0) return one;
-  if (a == 0.0) return other;
+  if (a + b == 0.0)
+    return {.standard_error = 0.0, .degrees_of_freedom = one.degrees_of_freedom + other.degrees_of_freedom};
   return {.standard_error = std::sqrt(a + b),
           .degrees_of_freedom =
               (a + b) * (a + b) / (a * a / one.degrees_of_freedom + b * b / other.degrees_of_freedom)};
