@@ -1,7 +1,8 @@
 """Which files a run of scripts/test is about: all that differ from where this work began.
 
 That is the last commit shared with the default branch of `origin`; where nothing was done since then, the commit before the
-last one. What is not yet committed, or not yet known to git, counts too. Without git or without history: every file.
+last one. Or so many commits ago as is asked for. What is not yet committed, or not yet known to git, counts too. Without git or
+without so much history: every file.
 """
 
 import subprocess
@@ -13,17 +14,29 @@ def _git(root: Path, *arguments: str) -> str | None:
     return result.stdout if result.returncode == 0 else None
 
 
-def changed_files(root: Path) -> set[Path] | None:
-    """Paths below `root` that changed and still exist, or None for all of them."""
+def commits_asked_for(arguments: list[str]) -> int | None:
+    """Takes `--commits N` out of the words of a command line."""
+    if "--commits" not in arguments:
+        return None
+    at = arguments.index("--commits")
+    _, number = arguments[at:at + 2]
+    del arguments[at:at + 2]
+    return int(number)
+
+
+def changed_files(root: Path, commits: int | None = None) -> set[Path] | None:
+    """Paths below `root` that changed, in the last `commits` if they are given, and still exist; None for all of them."""
     head = _git(root, "rev-parse", "HEAD")
     if head is None:
         return None
-    base = None
+    base = _git(root, "rev-parse", "--verify", "--quiet", f"HEAD~{commits}") if commits else None
+    if commits and base is None:
+        return None
     for branch in ("origin/HEAD", "origin/main"):
         base = base or _git(root, "merge-base", "HEAD", branch)
     untracked = _git(root, "ls-files", "--others", "--exclude-standard") or ""
     edited = _git(root, "diff", "--name-only", "HEAD") or ""
-    if base is None or base == head:
+    if base is None or base == head and not commits:
         base = head if edited or untracked else _git(root, "rev-parse", "HEAD~")
     if base is None:
         return None

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compiles headers alone, as the first and only include of a source: those that changed, or all of them.
 
-    scripts/test.d/headers_alone.py [--all] BUILD
+    scripts/test.d/headers_alone.py [--all | --commits N] BUILD        --commits: those that changed in the last N
 
 A header that includes a changed one counts as changed: it may have lived on what the other included. What has changed is
 said in changed_files.py. Only read, no code is made of it. Exit status: 0 if every one compiles, 1 if not, 2 for bad usage.
@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from changed_files import changed_files
+from changed_files import changed_files, commits_asked_for
 from compile_commands import ROOT, Unit, read_units, without_precompiled_header
 
 
@@ -43,14 +43,15 @@ def what_is_wrong(unit: Unit) -> str | None:
 
 
 def main(arguments: list[str]) -> int:
+    commits = commits_asked_for(arguments)
     everything = "--all" in arguments
     folders = [word for word in arguments if word != "--all"]
     if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
-        print("usage: scripts/test.d/headers_alone.py [--all] BUILD, a folder with compile_commands.json", file=sys.stderr)
+        print("usage: scripts/test.d/headers_alone.py [--all | --commits N] BUILD, a folder with compile_commands.json", file=sys.stderr)
         return 2
     build = Path(folders[0]).resolve()
     alone = {unit.includes[0]: unit for unit in read_units(build) if unit.is_header_alone and unit.includes}
-    changed = None if everything else changed_files(ROOT)
+    changed = None if everything else changed_files(ROOT, commits)
     affected = alone if changed is None else with_users(changed, {header: included_names(header) for header in alone})
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         failures = [text for text in pool.map(what_is_wrong, (alone[header] for header in sorted(affected))) if text is not None]

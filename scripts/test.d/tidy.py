@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Runs clang-tidy with the checks of .clang-tidy, on what changed or on everything, in parallel, and keeps the results.
 
-    scripts/test.d/tidy.py [--all] [--fresh] BUILD        BUILD: a folder that Clang has compiled, for example build/dev
+    scripts/test.d/tidy.py [--all | --commits N] [--fresh] BUILD
 
-What has changed is said in changed_files.py: a changed source is read by itself; a changed header alone, or in a source that
-includes it. Where everything is read, sources that clash in no name are read together, since most of the time goes into what
-they all include. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
+BUILD is a folder that Clang has compiled, for example build/dev; --commits asks for what changed in the last N.
+What has changed is said in changed_files.py; a changed header is read in a changed source that includes it, else alone, else in
+another source that does. Sources that clash in no name are read together, since most of the time goes into what they all include. A result is kept in build/tidy-cache under the hash of the preprocessed text with its comments (which hold the
 NOLINTs), the command, the checks and the version of clang-tidy; with --fresh none is looked up or kept, which saves reading
 everything a second time where nothing is known from before.
 
@@ -24,8 +24,9 @@ import sys
 import time
 from pathlib import Path
 
-from changed_files import changed_files
+from changed_files import changed_files, commits_asked_for
 from compile_commands import ROOT, Unit, read_units, without_precompiled_header
+from headers_alone import included_names
 from joint_sources import joined
 
 SOURCES = {".cpp"}
@@ -37,14 +38,16 @@ def by_itself(unit: Unit, source: Path) -> Unit:
 
 
 def units_of_changes(units: list[Unit], changed: set[Path]) -> list[Unit]:
-    """What has to be read for every changed file to be read once."""
+    """What has to be read for every changed file to be read."""
     chosen: dict[Path, Unit] = {}
-    for path in sorted(changed):
+    included: set[str] = set()  # names, of all that the chosen sources include
+    for path in sorted(changed, key=lambda path: (path.suffix not in SOURCES, path)):
         if path.suffix in SOURCES:
             holders = [unit for unit in units if unit.source == path or path in unit.includes]
             if holders:
                 chosen[path] = by_itself(holders[0], path)
-        elif path.suffix in HEADERS:
+                included |= included_names(path)
+        elif path.suffix in HEADERS and path.name not in included:
             alone = [unit for unit in units if unit.is_header_alone and path in unit.includes]
             user = None if alone else source_that_includes(path, units)
             if alone:
@@ -149,16 +152,17 @@ def each_once(texts: list[str]) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     everything = "--all" in arguments
+    commits = commits_asked_for(arguments)
     folders = [word for word in arguments if word not in ("--all", "--fresh")]
     if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
-        print("usage: scripts/test.d/tidy.py [--all] [--fresh] BUILD, a folder with compile_commands.json", file=sys.stderr)
+        print("usage: scripts/test.d/tidy.py [--all | --commits N] [--fresh] BUILD, a folder with compile_commands.json", file=sys.stderr)
         return 2
     tidy = shutil.which("clang-tidy")
     if not tidy:
         print("clang-tidy is missing: scripts/set-up --tests installs it", file=sys.stderr)
         return 2
     units = read_units(Path(folders[0]).resolve())
-    changed = None if everything else changed_files(ROOT)
+    changed = None if everything else changed_files(ROOT, commits)
     if changed is None:
         units = [unit for unit in units if not unit.is_header_alone]
         # Tests are compiled in smaller batches than can be read together.
@@ -167,6 +171,8 @@ def main(arguments: list[str]) -> int:
         units = [unit for unit in units if unit not in small] + together(lone, ROOT / "build" / "tidy-together")
     else:
         units = units_of_changes(units, changed)
+        sources = [unit for unit in units if not unit.is_header_alone]
+        units = [unit for unit in units if unit.is_header_alone] + together(sources, ROOT / "build" / "tidy-together")
     cache = None if "--fresh" in arguments else Cache(ROOT / "build" / "tidy-cache", tidy)
     # The longest first, so that none is left for one processor at the end.
     units.sort(key=lambda unit: -sum(path.stat().st_size for path in unit.includes or (unit.source,)))

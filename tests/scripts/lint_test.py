@@ -41,8 +41,8 @@ class Repository:
         self.git("add", "--all")
         self.git("commit", "--quiet", "--message", "so")
 
-    def changed(self):
-        files = changed_files(self.folder)
+    def changed(self, commits=None):
+        files = changed_files(self.folder, commits)
         return files and sorted(path.name for path in files)
 
 
@@ -74,6 +74,13 @@ class WhatChanged(unittest.TestCase):
         self.repository.commit("c.cpp")
         self.repository.write("d.cpp")
         self.assertEqual(self.repository.changed(), ["b.cpp", "c.cpp", "d.cpp"])
+
+    def test_is_what_the_last_commits_changed_where_that_is_asked(self):
+        for name in ("c.cpp", "d.cpp", "e.cpp"):
+            self.repository.commit(name)
+        self.branch_off()
+        self.assertEqual(self.repository.changed(commits=2), ["d.cpp", "e.cpp"])
+        self.assertIsNone(self.repository.changed(commits=4))
 
     def test_is_what_is_not_committed_where_nothing_was_committed(self):
         self.repository.commit("b.cpp")
@@ -134,6 +141,10 @@ class House(unittest.TestCase):
 
     def test_reads_a_changed_header_alone(self):
         self.assertEqual(self.read_for("include/law.h"), ["law.h.cxx"])
+
+    def test_reads_a_changed_header_in_a_changed_source_that_includes_it(self):
+        self.assertEqual(self.read_for("include/law.h", "src/a.cpp"), ["a.cpp"])
+        self.assertEqual(self.read_for("include/law.h", "src/c.cpp"), ["c.cpp", "law.h.cxx"])
 
     def test_reads_a_private_header_in_a_source_that_includes_it(self):
         self.assertEqual(self.read_for("src/private.h"), ["a.cpp"])

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -88,6 +89,20 @@ class ScratchFolder {
   std::string path_;
 };
 
+/// What `kerf import` reads, by its name; whatever else is no recording is told of by who reads it.
+void refuse_table_without_map(const std::string& file) {
+  static const std::set<std::string> tables{".csv",  ".dat", ".gz",  ".lvm", ".mat",
+                                            ".tdms", ".tsv", ".txt", ".xls", ".xlsx"};
+  std::error_code ignored;
+  if (!tables.contains(fs::path(file).extension().string()) || !fs::is_regular_file(file, ignored) ||
+      begins_as_hdf5(file))
+    return;
+  throw std::invalid_argument(fmt::format(
+      "{}: not an HDF5 file; expected a recording, or say how a table is imported on the way: --map "
+      "'time=COLUMN,position=COLUMN,force=COLUMN' (kerf import {} lists the columns)",
+      file, file));
+}
+
 void import_one(const std::string& file, const ImportOptions& options, Context& context) {
   Imported imported = import_text(file, options);
   for (std::string& warning : first_look_of(imported.recording))
@@ -109,7 +124,10 @@ void import_one(const std::string& file, const ImportOptions& options, Context& 
 }  // namespace
 
 void import_on_the_way(std::span<std::string> files, Context& context) {
-  if (context.maps.empty()) return;
+  if (context.maps.empty()) {
+    for (const std::string& file : files) refuse_table_without_map(file);
+    return;
+  }
   for (std::string& file : files) {
     if (file == "-") file = "/dev/stdin";
     // Verbs read a file again, for its hash.

@@ -9,6 +9,7 @@
 //     ./spring TRAJECTORY FORCES
 
 #include <cstdio>
+#include <cstdlib>
 
 namespace {
 
@@ -33,8 +34,15 @@ int main(int count, char** arguments) {
   std::fputs("# sign: resisting\ntime[s],fx[N],fy[N]\n", forces);
   double lag = 0.0;
   double last = 0.0;
-  double now, x, vx, y, vy;
-  while (std::fscanf(trajectory, "%*d,%lf,%lf,%lf,%lf,%lf,%*f", &now, &x, &vx, &y, &vy) == 5) {
+  char line[512];
+  while (std::fgets(line, sizeof line, trajectory) != nullptr) {
+    double row[6];  // tick, time, and position and velocity of both axes
+    char* at = line;
+    for (double& value : row) {
+      value = std::strtod(at, &at);
+      if (*at == ',') ++at;
+    }
+    const double now = row[1], x = row[2], vx = row[3], vy = row[5];
     const double period = now - last;
     last = now;
     const double depth = x - surface;
@@ -43,6 +51,6 @@ int main(int count, char** arguments) {
     const double fy = depth > 0.0 ? 100.0 * depth * vy / 0.1 : 0.0;
     std::fprintf(forces, "%.17g,%.17g,%.17g\n", now, fx, fy);
   }
-  std::fclose(trajectory);
+  (void)std::fclose(trajectory);
   return std::fclose(forces) == 0 ? 0 : 4;
 }

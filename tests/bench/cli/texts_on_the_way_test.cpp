@@ -148,6 +148,18 @@ TEST_F(TextsOnTheWay, StayAsTheyAre) {
   EXPECT_TRUE(std::filesystem::is_empty(scratch()));
 }
 
+TEST_F(TextsOnTheWay, AreNoRecordingsWithoutAMapWhichIsNamed) {
+  for (const std::string verb :
+       {"info", "inspect", "fit", "replay", "choose", "chart", "report", "validate"}) {
+    const auto outcome = run_kerf({verb, text()});
+    EXPECT_EQ(outcome.exit_status, 2) << verb;
+    if (outcome.errors.find("is required") != std::string::npos)
+      continue;  // an option that the verb cannot do without
+    EXPECT_THAT(outcome.errors, HasSubstr(text() + ": not an HDF5 file; expected a recording")) << verb;
+    EXPECT_THAT(outcome.errors, HasSubstr("--map 'time=COLUMN,position=COLUMN,force=COLUMN'")) << verb;
+  }
+}
+
 TEST_F(TextsOnTheWay, AreRefusedWhereTheMapHelpsNobody) {
   const std::string recording = (folder_ / "cut.h5").string();
   ASSERT_EQ(run_kerf({"import", text(), "--map", map, "-o", recording}).exit_status, 0);
