@@ -10,8 +10,10 @@ clipped, one is in gram-force under a map that says N, of one the clock starts a
     study.py HOUSE blanks [SEEDS]   drawers of four specimens whose tool rubs, and a blank (2,000)
 """
 
+import ast
 import collections
 import concurrent.futures
+import hashlib
 import json
 import math
 import os
@@ -303,14 +305,40 @@ def blanks_table(counts):
     return lines
 
 
+TOGETHER = 50  # seeds that are kept as one
+
+
+def some_seeds(program, kept, one, begin, end):
+    """Counts of these seeds, made now or before."""
+    if not kept.exists():
+        counts = collections.Counter()
+        for seed in range(begin, end):
+            counts.update(one((program, seed)))
+        partial = kept.with_suffix(".part")
+        partial.write_text(repr(dict(counts)))
+        partial.rename(kept)
+    return collections.Counter(ast.literal_eval(kept.read_text()))
+
+
+def over_seeds(house, one, seeds):
+    """Counts of all seeds. They are kept in build/drawers/ by the program that they are of: what was interrupted goes on where it was."""
+    program = house / "build/release/bin/kerf"
+    folder = house / "build/drawers" / ("%s-%s" % (one.__name__, hashlib.sha256(program.read_bytes()).hexdigest()[:12]))
+    folder.mkdir(parents=True, exist_ok=True)
+    counts = collections.Counter()
+    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
+        spans = [(begin, min(begin + TOGETHER, seeds)) for begin in range(0, seeds, TOGETHER)]
+        parts = [pool.submit(some_seeds, str(program), folder / ("%d-%d" % span), one, *span) for span in spans]
+        for part in parts:
+            counts.update(part.result())
+    return counts
+
+
 def main():
     house = pathlib.Path(sys.argv[1])
     if sys.argv[2:3] == ["blanks"]:
         seeds = int(sys.argv[3]) if len(sys.argv) > 3 else SEEDS
-        counts = collections.Counter()
-        with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-            for one in pool.map(one_blank, ((str(house / "build/release/bin/kerf"), seed) for seed in range(seeds))):
-                counts.update(one)
+        counts = over_seeds(house, one_blank, seeds)
         body = "\n".join(blanks_table(counts))
         print(body)
         replace_section(house / "docs/benchmarks.md", "study-blanks", "Studies whose blanks are taken off", body)
@@ -321,11 +349,7 @@ def main():
         replace_section(house / "docs/benchmarks.md", "study-time", "How long a study takes", body)
         return
     seeds = int(sys.argv[2]) if len(sys.argv) > 2 else SEEDS
-    program = str(house / "build/release/bin/kerf")
-    counts = collections.Counter()
-    with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:
-        for one in pool.map(one_seed, ((program, seed) for seed in range(seeds))):
-            counts.update(one)
+    counts = over_seeds(house, one_seed, seeds)
     body = "\n".join(table(counts))
     print(body)
     replace_section(house / "docs/benchmarks.md", "study", "Studies of simulated drawers", body)
