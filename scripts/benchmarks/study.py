@@ -26,6 +26,7 @@ import tempfile
 import time
 
 import numpy
+from scipy.signal import lfilter
 from scipy.stats import beta
 from scipy.stats import t as student
 
@@ -54,19 +55,15 @@ def simulated(parameters, rates, chirps, rows):
     """Positions [m] and forces [N] at FINE steps a row of Kelvin elements, each pushed `rates` times a second, faster by `chirps` a second."""
     k1, k2, b = numpy.array(parameters).T
     rates, chirps = numpy.array(rates), numpy.array(chirps)
-    step = 1.0 / (RATE * FINE)
-    arm = numpy.zeros(len(rates))
-    decay = numpy.exp(-k2 / b * step)
-    force = numpy.zeros((rows * FINE, len(rates)))
-    position = numpy.zeros((rows * FINE, len(rates)))
-    for i in range(rows * FINE):
-        time = i * step
-        position[i] = 0.5 * DEPTH * (1.0 - numpy.cos(2.0 * math.pi * rates * (time + 0.5 * chirps * time * time)))
-        force[i] = k1 * position[i] + arm
-        time += 0.5 * step
-        turns = rates * (time + 0.5 * chirps * time * time)
-        speed = math.pi * DEPTH * rates * (1.0 + chirps * time) * numpy.sin(2.0 * math.pi * turns)
-        arm = arm * decay + b * speed * (1.0 - decay)
+    time = (numpy.arange(rows * FINE) / (RATE * FINE))[:, None]
+    position = 0.5 * DEPTH * (1.0 - numpy.cos(2.0 * math.pi * rates * (time + 0.5 * chirps * time * time)))
+    middle = time + 0.5 / (RATE * FINE)
+    turns = rates * (middle + 0.5 * chirps * middle * middle)
+    speed = math.pi * DEPTH * rates * (1.0 + chirps * middle) * numpy.sin(2.0 * math.pi * turns)
+    decay = numpy.exp(-k2 / b / (RATE * FINE))
+    force = k1 * position
+    for at in range(len(rates)):  # the arm's force at the beginning of each step
+        force[1:, at] += lfilter([b[at] * (1.0 - decay[at])], [1.0, -decay[at]], speed[:-1, at])
     return position, numpy.maximum(force, 0.0)
 
 
