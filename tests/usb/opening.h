@@ -4,12 +4,11 @@
 #include <cstddef>
 #include <filesystem>
 #include <iterator>
-#include <stdexcept>
 #include <string>
 
-#include <unistd.h>
-
 #include <kerf/drivers/device.h>
+
+#include "support/as_nobody.h"
 
 namespace kerf::test {
 
@@ -27,19 +26,6 @@ inline std::string refusal(const std::string& uri, const std::atomic<bool>* stop
   }
   return "it was opened";
 }
-
-/// While it lives, this process is a user without rights.
-class AsNobody {
- public:
-  AsNobody() {
-    if (seteuid(65534) != 0) throw std::runtime_error("only root can become nobody");
-  }
-  AsNobody(const AsNobody&) = delete;
-  AsNobody& operator=(const AsNobody&) = delete;
-  ~AsNobody() {
-    if (seteuid(0) != 0) std::terminate();
-  }
-};
 
 /// What this process holds, and a device that was closed does not leave behind.
 struct Held {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/core.h>
 
-#include "files/named_file.h"
+#include "files/file_names.h"
 #include "files/whole_folder.h"
 #include "fits/fit_files.h"
 #include "recordings/whole_recording.h"
@@ -40,16 +41,17 @@ void fit_one(BatchEntry& entry, const fs::path& file, const BatchOptions& batch)
 }  // namespace
 
 std::vector<fs::path> recordings_in(const fs::path& folder) {
-  require_named_folder(folder);
-  std::vector<fs::path> files;
-  for (const auto& file : fs::recursive_directory_iterator(folder)) {
-    if (file.is_regular_file() && file.path().extension() == ".h5") files.push_back(file.path());
-  }
+  std::vector<fs::path> files = files_within(folder);
+  std::erase_if(files, [](const fs::path& file) {
+    std::error_code ignored;
+    const bool is_recording = fs::is_regular_file(file, ignored) && file.extension() == ".h5";
+    const bool is_locked_folder = fs::is_directory(file, ignored) && !fs::is_symlink(file);
+    return !is_recording && !is_locked_folder;
+  });
   if (files.empty()) {
     throw std::invalid_argument(
         fmt::format("{}: holds no recordings (*.h5); 'kerf import' makes them from text", folder.string()));
   }
-  std::sort(files.begin(), files.end());
   return files;
 }
 

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <system_error>
 
 #include <fmt/core.h>
+
+#include "files/named_file.h"
 
 namespace kerf::bench {
 
@@ -22,6 +25,24 @@ std::string as_file_name(const std::string& text) {
   }
   if (name.starts_with('.')) name.front() = '_';
   return name;
+}
+
+std::vector<std::filesystem::path> files_within(
+    const std::filesystem::path& folder, const std::function<bool(const std::filesystem::path&)>& enters) {
+  require_named_folder(folder);
+  std::vector<std::filesystem::path> files;
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder);
+       entry != std::filesystem::recursive_directory_iterator(); ++entry) {
+    const std::filesystem::path& path = entry->path();
+    const bool is_folder = !entry->is_symlink() && entry->is_directory();
+    const bool is_entered = is_folder && enters(path);
+    std::error_code locked;
+    if (is_entered) (void)std::filesystem::directory_iterator(path, locked);
+    if (!is_entered || locked) entry.disable_recursion_pending();
+    if (!is_folder || locked) files.push_back(path);
+  }
+  std::ranges::sort(files);
+  return files;
 }
 
 std::filesystem::path NewNames::take(const std::filesystem::path& wanted) {

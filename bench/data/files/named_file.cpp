@@ -116,7 +116,7 @@ std::string read_named_file(const std::filesystem::path& file, std::uintmax_t at
 void require_named_folder(const std::filesystem::path& folder) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(folder, ignored)) refuse(folder, "there is no such folder");
-  if (access(folder.c_str(), R_OK | X_OK) != 0) refuse_unreadable(folder);
+  if (faccessat(AT_FDCWD, folder.c_str(), R_OK | X_OK, AT_EACCESS) != 0) refuse_unreadable(folder);
 }
 
 }  // namespace kerf::bench

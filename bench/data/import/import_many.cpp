@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "files/file_names.h"
-#include "files/named_file.h"
 #include "import/imported_text.h"
 
 namespace kerf::bench {
@@ -30,19 +29,14 @@ bool is_within(const fs::path& file, const fs::path& folder) {
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, const fs::path& output) {
-  require_named_folder(folder);
-  std::vector<fs::path> files;
   const auto is_hidden = [](const fs::path& path) { return path.filename().string().starts_with('.'); };
-  for (auto entry = fs::recursive_directory_iterator(folder); entry != fs::recursive_directory_iterator();
-       ++entry) {
+  std::vector<fs::path> files = files_within(
+      folder, [&](const fs::path& within) { return !is_hidden(within) && !is_within(within, output); });
+  std::erase_if(files, [&](const fs::path& file) {
     std::error_code unknown;
-    const bool is_folder = entry->is_directory(unknown);
-    if (is_folder && (is_hidden(entry->path()) || is_within(entry->path(), output)))
-      entry.disable_recursion_pending();
-    if (!is_folder && !is_hidden(entry->path())) files.push_back(entry->path());
-  }
+    return is_hidden(file) || (fs::is_symlink(file) && fs::is_directory(file, unknown));
+  });
   if (files.empty()) throw std::invalid_argument(fmt::format("{}: a folder without a file", folder.string()));
-  std::sort(files.begin(), files.end());
   return files;
 }
 

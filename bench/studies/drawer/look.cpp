@@ -10,6 +10,7 @@
 
 #include "drawer/name_factors.h"
 #include "drawer/pair_files.h"
+#include "files/file_names.h"
 #include "files/named_file.h"
 #include "formats/file_text.h"
 #include "import/column_map.h"
@@ -108,7 +109,9 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
     if (std::ranges::any_of(name, [](char letter) { return letter == '\n' || letter == '\r'; }))
       throw std::invalid_argument("its name goes over several lines; give it another one");
     if (path.filename().string().starts_with('.')) throw std::invalid_argument("a hidden file");
-    if (fs::is_directory(path)) throw std::invalid_argument("a link to a folder, which is not followed");
+    if (fs::is_symlink(path) && fs::is_directory(path))
+      throw std::invalid_argument("a link to a folder, which is not followed");
+    if (fs::is_directory(path)) require_named_folder(path);
     if (!fs::is_regular_file(path)) throw std::invalid_argument("it is no file, or a link to none");
     look_at(path, maps, file);
     const NameFactors factors = name_factors(file.path);
@@ -143,14 +146,8 @@ void ignore_copies(std::vector<DrawerFile>& files, const fs::path& folder) {
 }  // namespace
 
 std::vector<DrawerFile> look_into(const fs::path& folder, const std::vector<OfferedMap>& maps) {
-  require_named_folder(folder);
+  const std::vector<fs::path> paths = files_within(folder);
   for (const OfferedMap& map : maps) (void)parse_map(map.import.map);
-  std::vector<fs::path> paths;
-  for (const auto& entry :
-       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied)) {
-    if (entry.is_symlink() || !entry.is_directory()) paths.push_back(entry.path());
-  }
-  std::ranges::sort(paths);
   std::vector<DrawerFile> files;
   for (const fs::path& path : paths) files.push_back(looked_at(path, folder, maps));
   suggest_pairs(files, folder);

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/as_nobody.h"
 #include "support/program.h"
 #include "support/recordings.h"
 
@@ -61,6 +62,22 @@ TEST_F(Drawer, OfRubbishSaysOfEachFileWhyItTakesNoPart) {
   EXPECT_THAT(found.at("dangling.txt").ignored, HasSubstr("link to none"));
   EXPECT_THAT(found.at("log.txt").ignored, HasSubstr("2.1 GB"));
   EXPECT_EQ(found.size(), 13U);
+}
+
+TEST_F(Drawer, TellsOfAFolderWithinThatCannotBeRead) {
+  test::write_text(folder_ / "good.txt", some_numbers);
+  fs::create_directory(folder_ / "locked");
+  test::write_text(folder_ / "locked/more.txt", some_numbers);
+  fs::permissions(folder_.path(), fs::perms(0755));
+  fs::permissions(folder_ / "locked", fs::perms::none);
+  {
+    const test::AsNobody without_rights;
+    const auto found = look();
+    EXPECT_EQ(found.at("good.txt").ignored, "");
+    EXPECT_EQ(found.at("locked").ignored, "cannot be read: Permission denied");
+    EXPECT_EQ(found.size(), 2U);
+  }
+  fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 
 TEST_F(Drawer, LeavesOutWhatDoesNotFitTheMap) {
