@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/disks/small_disk.h"
 #include "support/program.h"
 #include "support/recordings.h"
-#include "support/small_disk.h"
 
 namespace kerf::bench {
 namespace {

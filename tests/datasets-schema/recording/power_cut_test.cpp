@@ -20,7 +20,7 @@
 #include <kerf/schema/repair.h>
 
 #include "datasets-schema/recording/sample_recording.h"
-#include "support/disk_log.h"
+#include "support/disks/disk_log.h"
 #include "support/program.h"
 
 namespace kerf::schema {

@@ -21,7 +21,7 @@
 #include "datasets-schema/recording/live_rows.h"
 #include "datasets-schema/recording/same_recording.h"
 #include "datasets-schema/recording/sample_recording.h"
-#include "support/full_disk.h"
+#include "support/disks/full_disk.h"
 #include "support/program.h"
 
 namespace kerf::schema {

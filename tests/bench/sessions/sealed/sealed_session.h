@@ -12,7 +12,7 @@
 
 #include "sealed/seal.h"
 #include "sealed/sealed_entries.h"
-#include "support/full_disk.h"
+#include "support/disks/full_disk.h"
 #include "support/program.h"
 
 namespace kerf::test {

@@ -22,7 +22,7 @@
 #include "session/rehearsal.h"
 #include "subject/subject_page.h"
 #include "subject/subject_terminal.h"
-#include "support/full_disk.h"
+#include "support/disks/full_disk.h"
 #include "support/plain_client.h"
 
 namespace kerf::test {

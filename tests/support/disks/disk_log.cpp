@@ -1,4 +1,4 @@
-#include "support/disk_log.h"
+#include "support/disks/disk_log.h"
 
 #include <array>
 #include <mutex>
