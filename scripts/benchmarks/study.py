@@ -312,15 +312,17 @@ def some_seeds(program, kept, one, begin, end):
         for seed in range(begin, end):
             counts.update(one((program, seed)))
         partial = kept.with_suffix(".part")
-        partial.write_text(repr(dict(counts)))
+        partial.write_text(repr({what: int(number) for what, number in counts.items()}))
         partial.rename(kept)
     return collections.Counter(ast.literal_eval(kept.read_text()))
 
 
 def over_seeds(house, one, seeds):
-    """Counts of all seeds. They are kept in build/drawers/ by the program that they are of: what was interrupted goes on where it was."""
+    """Counts of all seeds. They are kept in build/drawers/ by the program and the script that made them: what was interrupted goes on
+    where it was."""
     program = house / "build/release/bin/kerf"
-    folder = house / "build/drawers" / ("%s-%s" % (one.__name__, hashlib.sha256(program.read_bytes()).hexdigest()[:12]))
+    makers = hashlib.sha256(program.read_bytes() + pathlib.Path(__file__).read_bytes()).hexdigest()[:12]
+    folder = house / "build/drawers" / ("%s-%s" % (one.__name__, makers))
     folder.mkdir(parents=True, exist_ok=True)
     counts = collections.Counter()
     with concurrent.futures.ProcessPoolExecutor(os.cpu_count()) as pool:

@@ -5,6 +5,7 @@ last one. Or so many commits ago as is asked for. What is not yet committed, or 
 without so much history: every file.
 """
 
+import argparse
 import subprocess
 from pathlib import Path
 
@@ -14,14 +15,20 @@ def _git(root: Path, *arguments: str) -> str | None:
     return result.stdout if result.returncode == 0 else None
 
 
-def commits_asked_for(arguments: list[str]) -> int | None:
-    """Takes `--commits N` out of the words of a command line."""
-    if "--commits" not in arguments:
-        return None
-    at = arguments.index("--commits")
-    _, number = arguments[at:at + 2]
-    del arguments[at:at + 2]
-    return int(number)
+def parser_of(description: str) -> argparse.ArgumentParser:
+    """Of a command that looks at what changed in a build, or at everything."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=_build_folder, metavar="BUILD", help="with compile_commands.json, for example build/dev")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--all", action="store_true", help="everything")
+    which.add_argument("--commits", type=int, metavar="N", help="what the last N changed")
+    return parser
+
+
+def _build_folder(name: str) -> Path:
+    if not (Path(name) / "compile_commands.json").exists():
+        raise argparse.ArgumentTypeError(f"{name} has no compile_commands.json")
+    return Path(name).resolve()
 
 
 def changed_files(root: Path, commits: int | None = None) -> set[Path] | None:

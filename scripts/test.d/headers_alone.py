@@ -14,7 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from changed_files import changed_files, commits_asked_for
+from changed_files import changed_files, parser_of
 from compile_commands import ROOT, Unit, read_units, without_precompiled_header
 
 
@@ -43,15 +43,9 @@ def what_is_wrong(unit: Unit) -> str | None:
 
 
 def main(arguments: list[str]) -> int:
-    commits = commits_asked_for(arguments)
-    everything = "--all" in arguments
-    folders = [word for word in arguments if word != "--all"]
-    if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
-        print("usage: scripts/test.d/headers_alone.py [--all | --commits N] BUILD, a folder with compile_commands.json", file=sys.stderr)
-        return 2
-    build = Path(folders[0]).resolve()
-    alone = {unit.includes[0]: unit for unit in read_units(build) if unit.is_header_alone and unit.includes}
-    changed = None if everything else changed_files(ROOT, commits)
+    asked = parser_of(__doc__).parse_args(arguments)
+    alone = {unit.includes[0]: unit for unit in read_units(asked.build) if unit.is_header_alone and unit.includes}
+    changed = None if asked.all else changed_files(ROOT, asked.commits)
     affected = alone if changed is None else with_users(changed, {header: included_names(header) for header in alone})
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         failures = [text for text in pool.map(what_is_wrong, (alone[header] for header in sorted(affected))) if text is not None]

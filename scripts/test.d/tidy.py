@@ -24,7 +24,7 @@ import sys
 import time
 from pathlib import Path
 
-from changed_files import changed_files, commits_asked_for
+from changed_files import changed_files, parser_of
 from compile_commands import ROOT, Unit, read_units, without_precompiled_header
 from headers_alone import included_names
 from joint_sources import joined
@@ -151,18 +151,15 @@ def each_once(texts: list[str]) -> list[str]:
 
 
 def main(arguments: list[str]) -> int:
-    everything = "--all" in arguments
-    commits = commits_asked_for(arguments)
-    folders = [word for word in arguments if word not in ("--all", "--fresh")]
-    if len(folders) != 1 or not (Path(folders[0]) / "compile_commands.json").exists():
-        print("usage: scripts/test.d/tidy.py [--all | --commits N] [--fresh] BUILD, a folder with compile_commands.json", file=sys.stderr)
-        return 2
+    parser = parser_of(__doc__)
+    parser.add_argument("--fresh", action="store_true", help="no result is looked up or kept")
+    asked = parser.parse_args(arguments)
     tidy = shutil.which("clang-tidy")
     if not tidy:
         print("clang-tidy is missing: scripts/set-up --tests installs it", file=sys.stderr)
         return 2
-    units = read_units(Path(folders[0]).resolve())
-    changed = None if everything else changed_files(ROOT, commits)
+    units = read_units(asked.build)
+    changed = None if asked.all else changed_files(ROOT, asked.commits)
     if changed is None:
         units = [unit for unit in units if not unit.is_header_alone]
         # Tests are compiled in smaller batches than can be read together.
@@ -173,7 +170,7 @@ def main(arguments: list[str]) -> int:
         units = units_of_changes(units, changed)
         sources = [unit for unit in units if not unit.is_header_alone]
         units = [unit for unit in units if unit.is_header_alone] + together(sources, ROOT / "build" / "tidy-together")
-    cache = None if "--fresh" in arguments else Cache(ROOT / "build" / "tidy-cache", tidy)
+    cache = None if asked.fresh else Cache(ROOT / "build" / "tidy-cache", tidy)
     # The longest first, so that none is left for one processor at the end.
     units.sort(key=lambda unit: -sum(path.stat().st_size for path in unit.includes or (unit.source,)))
     with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:

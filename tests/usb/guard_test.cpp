@@ -52,8 +52,8 @@ std::vector<Guarded> guarded() {
   }
   return all;
 }
-/// One of each driver, for what does not depend on how a generation takes its orders: in a guest a tick takes
-/// four.
+/// One of each driver, for what does not depend on how a generation takes its orders: a second in the guest
+/// takes four.
 std::vector<Guarded> guarded_of_each_driver() {
   const std::vector<Guarded> all = guarded();
   return {all.front(), all.back()};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -93,10 +94,10 @@ class ScratchFolder {
 void refuse_table_without_map(const std::string& file) {
   static const std::set<std::string> tables{".csv",  ".dat", ".gz",  ".lvm", ".mat",
                                             ".tdms", ".tsv", ".txt", ".xls", ".xlsx"};
+  std::string extension = fs::path(file).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
   std::error_code ignored;
-  if (!tables.contains(fs::path(file).extension().string()) || !fs::is_regular_file(file, ignored) ||
-      begins_as_hdf5(file))
-    return;
+  if (!tables.contains(extension) || !fs::is_regular_file(file, ignored) || begins_as_hdf5(file)) return;
   throw std::invalid_argument(fmt::format(
       "{}: not an HDF5 file; expected a recording, or say how a table is imported on the way: --map "
       "'time=COLUMN,position=COLUMN,force=COLUMN' (kerf import {} lists the columns)",

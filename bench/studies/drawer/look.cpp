@@ -109,9 +109,10 @@ DrawerFile looked_at(const fs::path& path, const fs::path& folder, const std::ve
     if (std::ranges::any_of(name, [](char letter) { return letter == '\n' || letter == '\r'; }))
       throw std::invalid_argument("its name goes over several lines; give it another one");
     if (path.filename().string().starts_with('.')) throw std::invalid_argument("a hidden file");
-    if (fs::is_symlink(path) && fs::is_directory(path))
-      throw std::invalid_argument("a link to a folder, which is not followed");
-    if (fs::is_directory(path)) require_named_folder(path);
+    if (fs::is_directory(path)) {
+      if (fs::is_symlink(path)) throw std::invalid_argument("a link to a folder, which is not followed");
+      require_named_folder(path);
+    }
     if (!fs::is_regular_file(path)) throw std::invalid_argument("it is no file, or a link to none");
     look_at(path, maps, file);
     const NameFactors factors = name_factors(file.path);
