@@ -9,9 +9,11 @@
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
 #include "kerf/drivers/force_sensor_u6.h"
+#include "kerf/drivers/simulated_drive.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
 #include "kerf/drivers/simulated_scissors.h"
+#include "kerf/drivers/simulated_sensor.h"
 #include "kerf/drivers/spacemouse.h"
 #include "kerf/drivers/uri.h"
 #include "kerf/drivers/usb/usb_device.h"
@@ -37,6 +39,14 @@ std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroun
   if (parsed.name == "sim:premium") {
     return std::make_unique<SimulatedPremium>(uri, SimulatedPremium::parse_options(std::move(parsed)),
                                               std::move(surroundings));
+  }
+  if (parsed.name == "sim:axis") {
+    return std::make_unique<SimulatedDrive>(uri, SimulatedDrive::parse_options(std::move(parsed)),
+                                            std::move(surroundings));
+  }
+  if (parsed.name == "sim:sensor") {
+    return std::make_unique<SimulatedSensor>(uri, SimulatedSensor::parse_options(std::move(parsed)),
+                                             std::move(surroundings));
   }
   refuse_name(parsed.name);
 }
@@ -136,7 +146,7 @@ std::unique_ptr<Device> open_device(std::string_view uri) {
 
 std::vector<DeviceInfo> list_devices() {
   return {open_device("sim:scissors")->info(), open_device("sim:pose6")->info(),
-          open_device("sim:premium")->info()};
+          open_device("sim:premium")->info(), open_device("sim:axis")->info()};
 }
 
 std::vector<AttachedDevice> list_attached() {

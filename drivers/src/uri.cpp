@@ -31,18 +31,22 @@ Uri parse_uri(std::string_view text) {
   return uri;
 }
 
-double UriOptions::number(const std::string& name, const Quantity& quantity) {
-  known_.push_back(name);
-  const auto place = uri_.options.find(name);
-  if (place == uri_.options.end()) return quantity.standard;
-  const std::string& text = place->second;
+bool names_a_file(std::string_view device, std::string_view option) noexcept {
+  return option == "calibration" || option == "firmware" || (option == "model" && device == "sim:axis");
+}
+
+double UriOptions::number_from(std::string_view text, const std::string& name,
+                               const Quantity& quantity) const {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
   const double factor = quantity.unit == "deg" ? std::numbers::pi / 180.0 : 1.0;
   value *= factor;
   const bool plain = quantity.unit == "1" && unit.empty();
-  if (error != std::errc{} || (unit != quantity.unit && !plain) ||
+  const bool in_thousandths = (quantity.unit == "m" || quantity.unit == "s" || quantity.unit == "N") &&
+                              unit.starts_with('m') && unit.substr(1) == quantity.unit;
+  if (in_thousandths) value *= 1e-3;
+  if (error != std::errc{} || (unit != quantity.unit && !plain && !in_thousandths) ||
       !(value >= quantity.lower && value <= quantity.upper)) {
     std::ostringstream message;
     message << "device '" << uri_.name << "': option '" << name << "' is '" << text << "', expected a number"
@@ -51,6 +55,34 @@ double UriOptions::number(const std::string& name, const Quantity& quantity) {
     throw DeviceError(message.str());
   }
   return value;
+}
+
+double UriOptions::number(const std::string& name, const Quantity& quantity) {
+  known_.push_back(name);
+  const auto place = uri_.options.find(name);
+  return place == uri_.options.end() ? quantity.standard : number_from(place->second, name, quantity);
+}
+
+std::vector<double> UriOptions::numbers(const std::string& name, const Quantity& quantity,
+                                        std::size_t count) {
+  known_.push_back(name);
+  const auto place = uri_.options.find(name);
+  if (place == uri_.options.end()) return {};
+  std::vector<double> values;
+  std::string_view rest = place->second;
+  while (true) {
+    const auto comma = std::min(rest.find(','), rest.size());
+    values.push_back(number_from(rest.substr(0, comma), name, quantity));
+    if (comma == rest.size()) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (values.size() == 1) values.resize(count, values.front());
+  if (values.size() != count) {
+    throw DeviceError("device '" + uri_.name + "': option '" + name + "' has " +
+                      std::to_string(values.size()) + " values, expected one or " + std::to_string(count) +
+                      ", one an axis");
+  }
+  return values;
 }
 
 std::uint64_t UriOptions::count(const std::string& name, std::uint64_t standard) {
@@ -82,7 +114,7 @@ std::optional<std::string> UriOptions::text(const std::string& name) {
 }
 
 std::optional<std::string> UriOptions::file(const std::string& name) {
-  if (std::find(file_options.begin(), file_options.end(), name) == file_options.end())
+  if (!names_a_file(uri_.name, name))
     throw std::logic_error(name + " is not among the options that name files");
   return text(name);
 }

@@ -7,9 +7,11 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "kerf/fitting/checked_recordings.h"
 #include "least_squares.h"
 #include "samples.h"
 #include "training/held_out.h"
+#include "training/trained_memory.h"
 #include "uncertainty/estimates.h"
 
 namespace kerf::fitting {
@@ -36,18 +38,19 @@ auto in_test(const Samples& samples) {
 
 void measure_errors(FitResult& result, const std::vector<double>& residuals, const Samples& samples,
                     const Jnd& jnd) {
-  double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0;
+  double n = 0.0, squares = 0.0, sum = 0.0, sum_of_squares = 0.0, felt = 0.0, most = 0.0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples.fold[i] == Samples::test || samples.counts[i] == 0) continue;
     n += 1.0;
     squares += residuals[i] * residuals[i];
     sum += samples.force[i];
     sum_of_squares += samples.force[i] * samples.force[i];
-    result.max_abs = std::max(result.max_abs, std::abs(residuals[i]));
+    most = std::max(most, std::abs(residuals[i]));
     felt += std::abs(residuals[i]) > jnd.at(samples.force[i]) ? 1.0 : 0.0;
   }
   const double total = sum_of_squares - sum * sum / n;
   result.rmse = std::sqrt(squares / n);
+  result.max_abs = most;
   result.r2 = total > 0.0 ? 1.0 - squares / total : 0.0;
   result.jnd_fraction = felt / n;
   result.effective_samples = n;
@@ -64,8 +67,10 @@ void measure_rendered(FitResult& result, const std::vector<double>& residuals, c
 
 /// A sensor at the end of its range repeats its largest number.
 void warn_of_the_sensor(FitResult& result, const Samples& samples, const std::string& unit) {
-  const auto by_size = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  const double largest = *std::max_element(samples.force.begin(), samples.force.end(), by_size);
+  double most = 0.0;
+  for (const double force : samples.force) most = std::max(most, std::abs(force));
+  const double largest =
+      *std::ranges::find(samples.force, most, [](double force) { return std::abs(force); });
   std::size_t longest = 0;
   std::size_t count = 0;
   std::size_t row = 0;
@@ -110,13 +115,14 @@ void warn_of_pulling(FitResult& result, const std::vector<double>& residuals, co
 }
 
 /// The error of the whole way to a law, choice of its size and all, on samples that it was not shown.
-void cross_validate(FitResult& result, const FitOptions& options, const Samples& samples) {
+void cross_validate(FitResult& result, const FitOptions& options, const Samples& samples,
+                    TrainedMemory& memory) {
   if (samples.folds < 2) return;
   FitOptions alone(options);
   alone.threads = 1;  // the folds are shared out already
-  const HeldOut errors =
-      held_out([&](const Weights& seen) { return train(result.model, alone, samples, seen, of_a_fold); },
-               samples, all_of(samples), options.threads, options.render);
+  const HeldOut errors = held_out(
+      [&](const Weights& seen) { return train(result.model, alone, samples, seen, of_a_fold, &memory); },
+      samples, all_of(samples), options.threads, options.render);
   result.cv_rmse = errors.fitted.rmse;
   result.cv_std_error = standard_error(errors.fitted);
   result.cv_folds = errors.fitted.folds;
@@ -126,8 +132,20 @@ void cross_validate(FitResult& result, const FitOptions& options, const Samples&
   result.rendered.cv_folds = errors.rendered.folds;
 }
 
+/// The errors of a law that was found, and what is said of them.
+void measure(FitResult& result, const Trained& law, const Samples& samples, const FitOptions& options) {
+  const std::vector<double> residuals = residuals_of(law.problem, law.solution.values, samples);
+  measure_errors(result, residuals, samples, options.jnd);
+  measure_rendered(result, rendered_residuals(law.problem, law.solution.values, samples, options.render),
+                   samples);
+  warn_of_a_misfit(result);
+  warn_of_pulling(result, residuals, samples);
+}
+
 FitResult fit_samples(std::string_view model, const Samples& samples, const FitOptions& options) {
-  const Trained law = train(model, options, samples, all_of(samples));
+  TrainedMemory memory;
+  const Trained law =
+      train(model, options, samples, all_of(samples), options.brief ? of_a_fold : of_a_law, &memory);
   FitResult result{.model = std::string(model), .law_options = law.problem.law_options};
   result.free_parameters = static_cast<std::size_t>(law.problem.coordinates());
   result.samples = static_cast<std::size_t>(std::ranges::count(samples.counts, 1));
@@ -140,19 +158,14 @@ FitResult fit_samples(std::string_view model, const Samples& samples, const FitO
   }
   result.converged = law.solution.converged;
   result.iterations = law.solution.iterations;
-  const std::vector<double> residuals = residuals_of(law.problem, law.solution.values, samples);
-  measure_errors(result, residuals, samples, options.jnd);
-  measure_rendered(result, rendered_residuals(law.problem, law.solution.values, samples, options.render),
-                   samples);
-  warn_of_a_misfit(result);
-  warn_of_pulling(result, residuals, samples);
+  measure(result, law, samples, options);
   estimate_parameters(result, law.problem, samples, law.weights, law.solution, options, law.loss);
   if (!result.converged && result.undetermined_arms > 0) {  // a valley without an end, and all of it as good
     result.converged = true;
     result.message = "the sum of squares stands still along an arm that is not determined";
   }
   result.weigh_information(result.effective_samples / std::max(1.0, result.correlation_time));
-  cross_validate(result, options, samples);
+  cross_validate(result, options, samples, memory);
   return result;
 }
 
@@ -210,12 +223,24 @@ void check_model(std::string_view model) {
   throw std::invalid_argument(message);
 }
 
+CheckedRecordings::CheckedRecordings(std::span<const Series> recordings, const FitOptions& options)
+    : samples_(std::make_unique<const Samples>(
+          check_series(recordings, {.folds = options.folds, .test_share = options.test_share}))) {}
+
+CheckedRecordings::~CheckedRecordings() = default;
+
+FitResult fit(std::string_view model, const CheckedRecordings& recordings, const FitOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  check_model(model);
+  FitResult result = fit_samples(model, recordings.samples(), options);
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
 FitResult fit(std::string_view model, std::span<const Series> recordings, const FitOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   check_model(model);
-  const Samples samples =
-      check_series(recordings, {.folds = options.folds, .test_share = options.test_share});
-  FitResult result = fit_samples(model, samples, options);
+  FitResult result = fit(model, CheckedRecordings(recordings, options), options);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace kerf::fitting {
 
@@ -100,14 +101,14 @@ bool LawObjective::evaluate(const Eigen::VectorXd& at, Sums& sums) const {
     return LawPoint{.values = values[run], .slope = slope, .options = problem_.law_options};
   };
   if (samples_.runs.size() == 1) {
-    return kernel_.sums(point(0, slopes(values[0])), view_of(samples_, weights_, 0), loss_, sums);
+    return kernel_.sums(point(0, slopes(values[0])), summed_view_of(samples_, weights_, 0), loss_, sums);
   }
   sums.squares = 0.0;
   sums.score = Eigen::VectorXd::Zero(size());
   sums.normal = Eigen::MatrixXd::Zero(size(), size());
   Sums part;
   for (std::size_t run = 0; run < samples_.runs.size(); ++run) {
-    if (!kernel_.sums(point(run, slopes(values[run])), view_of(samples_, weights_, run), loss_, part))
+    if (!kernel_.sums(point(run, slopes(values[run])), summed_view_of(samples_, weights_, run), loss_, part))
       return false;
     const auto places = of_run(run);
     sums.squares += part.squares;
@@ -119,33 +120,71 @@ bool LawObjective::evaluate(const Eigen::VectorXd& at, Sums& sums) const {
 
 bool LawObjective::rows(const Eigen::VectorXd& at, Eigen::VectorXd& force, Eigen::MatrixXd& jacobian) const {
   const Values values = values_at(at);
-  force.resize(static_cast<Eigen::Index>(samples_.size()));
-  jacobian.setZero(force.size(), size());
+  const auto point = [&](std::size_t run, const std::vector<double>& slope) {
+    return LawPoint{.values = values[run], .slope = slope, .options = problem_.law_options};
+  };
+  const auto counted_in = [&](std::size_t begin, std::size_t end) {
+    const std::span<const double> those(weights_.data() + begin, end - begin);
+    return std::ranges::count_if(those, [](double weight) { return weight != 0.0; });
+  };
+  force.resize(counted_in(0, weights_.size()));
+  jacobian.resize(force.size(), size());
+  const auto view = [&](std::size_t run) {
+    RunView those = summed_view_of(samples_, weights_, run);
+    those.only_those_that_count = true;
+    return those;
+  };
+  if (samples_.runs.size() == 1) return kernel_.rows(point(0, slopes(values[0])), view(0), force, jacobian);
+  jacobian.setZero();
+  Eigen::Index first = 0;
   for (std::size_t run = 0; run < samples_.runs.size(); ++run) {
     const auto places = of_run(run);
-    const auto [begin, end, noise] = samples_.runs[run];
-    const auto first = static_cast<Eigen::Index>(begin);
-    const auto count = static_cast<Eigen::Index>(end - begin);
-    const auto slope = slopes(values[run]);
-    const LawPoint point{.values = values[run], .slope = slope, .options = problem_.law_options};
+    const Eigen::Index count = counted_in(samples_.runs[run].begin, samples_.runs[run].end);
     Eigen::MatrixXd part(count, static_cast<Eigen::Index>(places.size()));
-    if (!kernel_.rows(point, view_of(samples_, weights_, run), force.segment(first, count), part))
+    if (!kernel_.rows(point(run, slopes(values[run])), view(run), force.segment(first, count), part))
       return false;
     for (std::size_t k = 0; k < places.size(); ++k) {
       jacobian.col(places[k]).segment(first, count) = part.col(static_cast<Eigen::Index>(k));
+    }
+    first += count;
+  }
+  return true;
+}
+
+namespace {
+
+/// False, and nothing done, where a kernel is no quicker than the law itself.
+bool forces_by_kernel(const Problem& problem, const Values& values, const Samples& samples,
+                      std::vector<double>& force) {
+  const LawKernel* const kernel = kernel_if_any(problem.model);
+  if (kernel == nullptr) return false;
+  const std::vector<double> held(problem.parameters.size(), 0.0);
+  for (std::size_t run = 0; run < samples.runs.size(); ++run) {
+    const auto [begin, end, noise] = samples.runs[run];
+    const RunView view{
+        .motion = &samples.motion[begin], .period_s = &samples.period_s[begin], .count = end - begin};
+    force.resize(end);
+    const LawPoint point{.values = values[run], .slope = held, .options = problem.law_options};
+    if (!kernel->forces(point, view, &force[begin])) {
+      force.clear();
+      return false;
     }
   }
   return true;
 }
 
+}  // namespace
+
 std::vector<double> rendered(const Problem& problem, const Values& values, const Samples& samples) {
   std::vector<double> force;
-  force.reserve(samples.size());
+  if (samples.runs.size() > 1) force.reserve(samples.size());
+  if (forces_by_kernel(problem, values, samples, force)) return force;
   for (std::size_t run = 0; run < samples.runs.size(); ++run) {
     const models::Law law = models::Law::make(problem.model, values[run], problem.law_options);
     const auto [begin, end, noise] = samples.runs[run];
-    const auto part = law.along(std::span(samples.motion).subspan(begin, end - begin),
-                                std::span(samples.period_s).subspan(begin, end - begin));
+    auto part = law.along(std::span(samples.motion).subspan(begin, end - begin),
+                          std::span(samples.period_s).subspan(begin, end - begin));
+    if (samples.runs.size() == 1) return part;
     force.insert(force.end(), part.begin(), part.end());
   }
   return force;

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "kerf/fitting/segmented.h"
 #include "kernels/law_kernel.h"
 
 namespace kerf::fitting {
@@ -23,6 +24,7 @@ struct Problem {
   std::size_t runs = 1;
   std::vector<double> breakpoints;  ///< inner knots that were given by hand
   std::size_t points_per_segment = 4;
+  Polish polish = Polish::thorough;  ///< of curves of segments
   std::shared_ptr<SegmentedMemory> segmented_memory{};
 
   [[nodiscard]] const models::LawFacts& facts() const { return models::law_facts(model); }
@@ -55,7 +57,7 @@ class LawObjective final : public Objective {
                RobustLoss loss = {});
   [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(all_.size()); }
   [[nodiscard]] bool evaluate(const Eigen::VectorXd& at, Sums& sums) const override;
-  /// Force of all samples and its derivatives by the coordinates.
+  /// Force of the samples that count and its derivatives by the coordinates, one after the other.
   [[nodiscard]] bool rows(const Eigen::VectorXd& at, Eigen::VectorXd& force, Eigen::MatrixXd& jacobian) const;
   [[nodiscard]] Values values_at(const Eigen::VectorXd& at) const;
 

@@ -7,8 +7,6 @@
 
 #include <boost/math/statistics/univariate_statistics.hpp>
 
-#include "training/trained_memory.h"
-
 namespace kerf::fitting {
 namespace {
 
@@ -62,13 +60,20 @@ void check_columns(const Series& series) {
 
 std::vector<double> periods(std::span<const double> time_s, double& median_period_s) {
   std::vector<double> all(time_s.size(), 0.0);
+  double shortest = time_s[1] - time_s[0];
+  double longest = shortest;
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     all[i] = time_s[i] - time_s[i - 1];
-    if (!(all[i] > 0.0)) refuse("the time does not increase at sample " + std::to_string(i));
+    shortest = std::min(shortest, all[i]);
+    longest = std::max(longest, all[i]);
   }
   all[0] = all[1];
-  const auto [shortest, longest] = std::minmax_element(all.begin(), all.end());
-  if (*longest - *shortest < 1e-6 * *shortest) {
+  if (!(shortest > 0.0)) {
+    const auto first =
+        std::find_if(all.begin() + 1, all.end(), [](double period) { return !(period > 0.0); });
+    refuse("the time does not increase at sample " + std::to_string(first - all.begin()));
+  }
+  if (longest - shortest < 1e-6 * shortest) {
     median_period_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
     all.assign(all.size(), median_period_s);
     return all;
@@ -107,7 +112,7 @@ void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_
   if (!by_cycle) {
     const std::size_t blocks = blocks_of(kept, folds);
     for (std::size_t k = 0; k < blocks; ++k)
-      std::fill(at(k * kept / blocks), at((k + 1) * kept / blocks), k % folds);
+      std::fill(at(k * kept / blocks), at((k + 1) * kept / blocks), static_cast<std::uint32_t>(k % folds));
     std::fill(at(kept), at(count), Samples::test);
     return;
   }
@@ -117,7 +122,7 @@ void assign_folds(Samples& samples, const Run& run, std::span<const std::uint32_
     if (over) {
       *at(i) = Samples::test;
     } else if (cycle[i] > 0 && folds >= 2) {
-      *at(i) = (cycle[i] - 1) % folds;
+      *at(i) = (cycle[i] - 1) % static_cast<std::uint32_t>(folds);
     }
   }
 }
@@ -130,7 +135,6 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     refuse("the share that is held back for a test must be from 0 to 0.9");
   }
   Samples samples;
-  samples.trained = std::make_shared<TrainedMemory>();
   for (const Series& series : recordings) {
     check_columns(series);
     const Run run{
@@ -144,10 +148,9 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     samples.counts.resize(samples.size(), 1);
     samples.cycle.insert(samples.cycle.end(), series.cycle.begin(), series.cycle.end());
     samples.cycle.resize(samples.size(), 0);
-    samples.motion.reserve(samples.size());
-    for (std::size_t i = 0; i < series.force.size(); ++i) {
-      samples.motion.push_back({.penetration = series.penetration[i], .velocity = series.velocity[i]});
-    }
+    samples.motion.resize(samples.size());
+    for (std::size_t i = 0; i < series.force.size(); ++i)
+      samples.motion[run.begin + i] = {.penetration = series.penetration[i], .velocity = series.velocity[i]};
     samples.duration_s = std::max(samples.duration_s, series.time_s.back() - series.time_s.front());
     samples.fold.resize(samples.size(), Samples::no_fold);
     samples.has_cycles = samples.has_cycles ||
@@ -155,11 +158,11 @@ Samples check_series(std::span<const Series> recordings, const FoldOptions& opti
     assign_folds(samples, run, series.cycle, options);
     samples.runs.push_back(run);
   }
-  const auto [least, most] =
-      std::minmax_element(samples.motion.begin(), samples.motion.end(),
-                          [](const auto& a, const auto& b) { return a.penetration < b.penetration; });
-  samples.least = least->penetration;
-  samples.most = most->penetration;
+  samples.least = samples.most = samples.motion.front().penetration;
+  for (const models::Motion& motion : samples.motion) {
+    samples.least = std::min(samples.least, motion.penetration);
+    samples.most = std::max(samples.most, motion.penetration);
+  }
   if (!(samples.most > samples.least))
     refuse("the position is constant, so no law over it can be told from another");
   return samples;
@@ -177,9 +180,11 @@ Samples thinned(const Samples& samples, std::size_t count) {
   for (const Run& run : samples.runs) {
     Run short_run{.begin = few.size(), .end = 0, .noise_n = run.noise_n};
     double period_s = 0.0;
+    std::size_t until_next = 1;
     for (std::size_t i = run.begin; i < run.end; ++i) {
       period_s += samples.period_s[i];
-      if ((i - run.begin) % step != 0) continue;
+      if (--until_next > 0) continue;
+      until_next = step;
       few.motion.push_back(samples.motion[i]);
       // Equal but for rounding is equal: laws keep what they derive from the period.
       const double usual_s = static_cast<double>(step) * samples.median_period_s;

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,8 +16,6 @@ struct Run {
   double noise_n = 0.0;  ///< 0: not known
 };
 
-class TrainedMemory;
-
 /// A checked copy of the recordings in the form in which residuals are computed.
 struct Samples {
   std::vector<models::Motion> motion;
@@ -26,7 +23,7 @@ struct Samples {
   std::vector<double> force;
   std::vector<std::uint8_t> counts;  ///< 0: a law only runs through it
   std::vector<std::uint32_t> cycle;  ///< 0 for none
-  std::vector<std::size_t> fold;     ///< held out in that fold of the cross-validation; no_fold: never
+  std::vector<std::uint32_t> fold;   ///< held out in that fold of the cross-validation; no_fold: never
   std::vector<Run> runs;
   std::size_t folds = 0;
   double least = 0.0;  ///< smallest penetration
@@ -34,11 +31,9 @@ struct Samples {
   double median_period_s = 0.0;
   double duration_s = 0.0;  ///< of the longest run
   bool has_cycles = false;
-  std::shared_ptr<TrainedMemory>
-      trained{};  ///< of the one fit that these are checked for; none: nothing is kept
 
-  static constexpr std::size_t no_fold = static_cast<std::size_t>(-1);
-  static constexpr std::size_t test = static_cast<std::size_t>(-2);  ///< a fold that no fit sees
+  static constexpr std::uint32_t no_fold = static_cast<std::uint32_t>(-1);
+  static constexpr std::uint32_t test = static_cast<std::uint32_t>(-2);  ///< a fold that no fit sees
   [[nodiscard]] std::size_t size() const noexcept { return force.size(); }
 };
 

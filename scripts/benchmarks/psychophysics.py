@@ -1,6 +1,6 @@
-# peers: python3-numpy python3-scipy
+# peers: python3-numpy python3-scipy psignifit
 # targets: kerf_psychophysics_benchmark
-"""The statistics of blind sessions against SciPy, and how often their intervals hold the truth."""
+"""The statistics of blind sessions against SciPy and psignifit, and how often their intervals hold the truth."""
 
 import json
 import math
@@ -116,6 +116,24 @@ class Likelihood:
         return kerf - self.loss(here), abs(axis(row["threshold"]) - theirs), max(ends)
 
 
+def psignifit_errors(row):
+    """Of Debian's psignifit 2.5.6: how far Kerf's log-likelihood is below its own, and the thresholds apart (as above). It prints six digits."""
+    mine = Likelihood(row)
+    is_weibull = row["shape"] == "weibull"  # which psignifit has over the level itself, and the others over what they are given
+    data = "".join("%.17g %d %d\n" % (math.exp(x) if is_weibull else x, k, n) for x, k, n in zip(mine.x, mine.k, mine.n))
+    lapse = "#fix_lambda %.17g" % row["lapse"] if row["lapse_fixed"] else "#lambda_limits 0 0.06"
+    shape = {"weibull": "weibull", "logistic": "logistic", "gaussian": "cumulative gaussian"}[row["shape"]]
+    asked = "#shape %s\n#n_intervals 1\n#fix_gamma %.17g\n%s\n#matrix_format xrn\n#runs 0\n#verbose false\n#write_pa_est -\n" % (
+        shape, row["guess"], lapse)
+    out = subprocess.run(["psignifit"], input="#data\n" + data + asked, check=True, capture_output=True, text=True).stdout
+    alpha, beta, _, lapse = (float(number) for number in out.replace(",", " ").split())
+    location, slope = (math.log(alpha), beta) if is_weibull else (alpha, 1.0 / beta)
+    axis = math.log if row["logarithmic"] else float
+    kerf = mine.loss((axis(row["alpha"]), math.log(row["beta"]), row["lapse"], 0.0))
+    theirs = location + mine.quantile(lapse) / slope
+    return kerf - mine.loss((location, math.log(slope), lapse, 0.0)), abs(axis(row["threshold"]) - theirs)
+
+
 def main():
     house = pathlib.Path(sys.argv[1])
     program = str(house / "build/release/bin/kerf_psychophysics_benchmark")
@@ -126,15 +144,21 @@ def main():
     back = [abs(row["d"] - row["back"]) for row in tasks]
     fits = rows_of(program, "fits")
     errors = numpy.array([Likelihood(row).errors() for row in fits])
+    theirs = numpy.array([psignifit_errors(row) for row in fits if not row["overdispersed"]])
     times = sorted(row["seconds"] for row in fits if not row["overdispersed"])
     pooled = sorted(row["seconds"] for row in fits if row["overdispersed"])
-    lines = ["| against SciPy | cases | largest difference |", "|---|---|---|",
+    lines = ["| against SciPy, and psignifit 2.5.6 | cases | largest difference |", "|---|---|---|",
              "| exact tests, intervals of Clopper-Pearson and Wilson | %d | %.1e |" % (len(binomial), max(binomial)),
              "| proportion correct of d', eight tasks | %d | %.1e |" % (len(tasks), max(forth)),
              "| d' there and back | %d | %.1e |" % (len(tasks), max(back)),
              "| psychometric functions: log-likelihood below SciPy's best | %d | %.1e |" % (len(fits), errors[:, 0].max()),
              "| threshold (relative; absolute on a linear axis) | %d | %.1e |" % (len(fits), errors[:, 1].max()),
              "| twice the loss of log-likelihood at the ends of the 95 %% intervals | %d | %.1e |" % (len(fits), errors[:, 2].max()),
+             "| psychometric functions without overdispersion: log-likelihood below psignifit's (it prints six digits) | %d | %.1e |" % (
+                 len(theirs), theirs[:, 0].max()),
+             "| threshold against psignifit's (relative; absolute on a linear axis): median | %d | %.1e |" % (
+                 len(theirs), numpy.median(theirs[:, 1])),
+             "| the same: largest | %d | %.1e |" % (len(theirs), theirs[:, 1].max()),
              "", "A fit with its intervals: %.2f ms (median), %.0f ms with overdispersion (36 rows)." % (
                  1e3 * times[len(times) // 2], 1e3 * pooled[len(pooled) // 2]), "",
              "**Coverage** of the 95 %% intervals over %d simulated experiments a row (one standard error: 0.7 %%), and false alarms at "

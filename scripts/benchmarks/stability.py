@@ -83,7 +83,7 @@ def main():
         lines.append("| %s | %.2f | %.2f | %.2f |" % (name, medians[name], min(values), max(values)))
     ticks = CELLS * CELLS * TICKS
     lines += ["", "%d million ticks. On one thread Kerf takes %.1f times as long as NumPy, which only steps linear walls, all at once: Kerf "
-              "also finds three boundaries of each of the 100 rows by bisection, solves the eigenvalues of every wall and prints 10,000 "
+              "also finds two boundaries of each of the 100 rows, solves the eigenvalues of every wall and prints 10,000 "
               "cells as JSON; encoders and Coulomb friction, with the moment at which a wall sticks found within a tick, have no such "
               "array form. The two agree in %.2f %% of the cells. Simulation and eigenvalues agree in %.2f %% of the cells, the "
               "boundaries within %.2f %%."

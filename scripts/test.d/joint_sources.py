@@ -60,7 +60,7 @@ def joined(sources: Iterable[Path], most: int, most_bytes: int,
     return [group for _, group in groups]
 
 
-MOST_TESTS, MOST_BYTES_OF_TESTS = 6, 45_000
+MOST_TESTS, MOST_BYTES_OF_TESTS = 14, 120_000
 
 
 def main(sources: list[str]) -> int:

@@ -4,9 +4,9 @@ was missing.
 
     scripts/test.d/run_tests.py [--totals FILE] CTEST_ARGUMENT...
 
-The very last line is "N passed, N failed, N skipped". A GoogleTest case that is skipped within a test which ran (a suite over
-USB is one test) counts as a skip of its own. Where the environment says CI=true a skip is a failure, unless
-tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file, and a line for every
+The very last line is "N passed, N failed, N skipped". Where a test is a whole suite of GoogleTest (over USB, or under the
+sanitizers), each of its cases counts, and is named, as a test of its own. Where the environment says CI=true a skip is a failure,
+unless tests/skips-allowed.txt names it with its reason. --totals appends "passed failed skipped" to a file, and a line for every
 test that failed: "failed NAME".
 
 Exit status: ctest's own; 1 if ctest passed and a skip was a failure.
@@ -27,6 +27,8 @@ ALLOWED = Path(__file__).resolve().parents[2] / "tests" / "skips-allowed.txt"
 # Of what a failed test said, at the end: this many lines, and of each this many characters.
 SHOWN = 12
 LONGEST_LINE = 300
+
+SAYS_NOTHING = "it says nothing"
 
 # What brings what is missing, for reasons that do not say so themselves.
 REMEDIES = [
@@ -56,25 +58,32 @@ class Outcome:
 
 def last_line(text: str) -> str:
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    return lines[-1].removeprefix("skipped: ") if lines else "it says nothing"
+    return lines[-1].removeprefix("skipped: ") if lines else SAYS_NOTHING
 
 
-def skipped_cases(output: str) -> list[Skip]:
-    """The cases that GoogleTest skipped, with the first line of what each says."""
-    skips = []
-    reason = ""
-    awaits_reason = False
-    for line in output.splitlines():
-        if match := re.match(r"\[  SKIPPED \] (\S+) \(\d+ ms\)", line):
-            skips.append(Skip(match[1], reason or "it says nothing"))
-            reason = ""
-            awaits_reason = False
-        elif re.search(r":\d+: Skipped$", line):
-            awaits_reason = True
-        elif awaits_reason and line.strip():
-            reason = line.strip()
-            awaits_reason = False
-    return skips
+@dataclass(frozen=True)
+class Case:
+    """A case of GoogleTest, as its program printed it."""
+
+    name: str
+    result: str  # OK, FAILED, SKIPPED, or nothing where the program ended within it
+    output: str
+
+
+def cases_in(output: str) -> list[Case]:
+    cases = []
+    for begin in re.finditer(r"^\[ RUN      \] (\S+)\n", output, re.MULTILINE):
+        name = begin[1]
+        end = re.compile(rf"^\[ +(OK|FAILED|SKIPPED) +\] {re.escape(name)}(,.*)? \(\d+ ms\)", re.MULTILINE).search(output, begin.end())
+        stop = end.start() if end else len(output)
+        cases.append(Case(name, end[1] if end else "", output[begin.end():stop]))
+    return cases
+
+
+def reason_of_skip(output: str) -> str:
+    """The first line of what a skipped case says."""
+    said = re.search(r":\d+: Skipped\s*\n\s*(\S.*)", output)
+    return said[1].strip() if said else SAYS_NOTHING
 
 
 def telling_lines(output: str) -> tuple[str, ...]:
@@ -87,22 +96,27 @@ def telling_lines(output: str) -> tuple[str, ...]:
 def outcome_of(junit: str) -> Outcome:
     """Reads what `ctest --output-junit` writes. There, "notrun" is both a skip and a program that is missing."""
     outcome = Outcome(0, [], [])
-    for case in ElementTree.fromstring(junit).iter("testcase"):
-        name = case.get("name", "")
-        status = case.get("status")
-        output = case.findtext("system-out") or ""
-        skipped = case.find("skipped")
-        cases = skipped_cases(output)
+    for test in ElementTree.fromstring(junit).iter("testcase"):
+        name = test.get("name", "")
+        status = test.get("status")
+        output = test.findtext("system-out") or ""
+        skipped = test.find("skipped")
+        cases = cases_in(output)
+        own = {case.name: case.name if name in (case.name, case.name.split(".")[0]) else f"{name}: {case.name}" for case in cases}
+        outcome.passed += sum(case.result == "OK" for case in cases)
+        outcome.skips += [Skip(own[case.name], reason_of_skip(case.output)) for case in cases if case.result == "SKIPPED"]
         if status == "disabled":
             outcome.skips.append(Skip(name, "it is disabled"))
         elif status == "notrun" and skipped is not None and skipped.get("message", "").startswith("SKIP_"):
-            outcome.skips.append(Skip(name, cases[0].reason if cases else last_line(output)))
+            if not cases:
+                outcome.skips.append(Skip(name, last_line(output)))
+        elif status == "run":
+            outcome.passed += not cases
         else:
-            if status == "run":
-                outcome.passed += 1
-            else:
+            failed = [case for case in cases if case.result in ("FAILED", "")]
+            outcome.failures += [Failure(own[case.name], telling_lines(case.output)) for case in failed]
+            if not failed:
                 outcome.failures.append(Failure(name, telling_lines(output)))
-            outcome.skips += [Skip(f"{name}: {skip.name}", skip.reason) for skip in cases]
     return outcome
 
 

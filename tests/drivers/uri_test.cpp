@@ -54,6 +54,29 @@ TEST(Uri, KnowsWhichOptionsNameFiles) {
   EXPECT_THROW((void)options.file("led"), std::logic_error);
 }
 
+TEST(Uri, TakesAModelForAFileOfTheSimulatedAxisAlone) {
+  EXPECT_TRUE(names_a_file("sim:axis", "model"));
+  EXPECT_FALSE(names_a_file("hid:1234:0006", "model")) << "woody-2019";
+  EXPECT_TRUE(names_a_file("u6:0", "calibration"));
+}
+
+TEST(Uri, TakesLengthsTimesAndForcesInThousandths) {
+  UriOptions options(parse_uri("x?step=0.05mm&delay=2.5ms&noise=20mN&mass=3mkg"));
+  EXPECT_DOUBLE_EQ(options.number("step", {"m", 0.0, 0.0, 1.0}), 0.05e-3);
+  EXPECT_DOUBLE_EQ(options.number("delay", {"s", 0.0, 0.0, 1.0}), 2.5e-3);
+  EXPECT_DOUBLE_EQ(options.number("noise", {"N", 0.0, 0.0, 1.0}), 20e-3);
+  EXPECT_THROW((void)options.number("mass", {"kg", 0.0, 0.0, 1.0}), DeviceError);
+}
+
+TEST(Uri, TakesANumberForAllAxesOrOneForEach) {
+  UriOptions options(parse_uri("x?mass=1kg&delay=1ms,2ms,3ms&limit=1N,2N&slew="));
+  EXPECT_THAT(options.numbers("mass", {"kg", 0.0, 0.0, 9.0}, 3), testing::ElementsAre(1.0, 1.0, 1.0));
+  EXPECT_THAT(options.numbers("delay", {"s", 0.0, 0.0, 9.0}, 3), testing::ElementsAre(1e-3, 2e-3, 3e-3));
+  EXPECT_THAT(options.numbers("other", {"s", 0.0, 0.0, 9.0}, 3), testing::IsEmpty());
+  EXPECT_THROW((void)options.numbers("limit", {"N", 0.0, 0.0, 9.0}, 3), DeviceError);
+  EXPECT_THROW((void)options.numbers("slew", {"N/s", 0.0, 0.0, 9.0}, 3), DeviceError);
+}
+
 TEST(Uri, RefusesWhatIsNoDevice) {
   EXPECT_THAT(refusal("sim:saw"), AllOf(HasSubstr("sim:saw"), HasSubstr("kerf devices")));
   EXPECT_THAT(refusal(""), HasSubstr("kerf devices"));

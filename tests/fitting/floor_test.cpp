@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <kerf/fitting/floor.h>
+#include <kerf/fitting/checked_recordings.h>
 
 #include "strokes.h"
 
@@ -41,10 +41,13 @@ struct Cycles {
     }
   }
 
-  [[nodiscard]] Floor floor() const {
-    const Series series{
+  [[nodiscard]] Series series() const {
+    return {
         .time_s = time_s, .penetration = penetration, .velocity = velocity, .force = force, .cycle = cycle};
-    return floor_of(std::span(&series, 1), {});
+  }
+  [[nodiscard]] Floor floor() const {
+    const Series all = series();
+    return floor_of(std::span(&all, 1), {});
   }
 };
 
@@ -62,6 +65,26 @@ TEST(Floor, OfAFunctionOfPositionAndDirectionIsTheNoise) {
     EXPECT_EQ(floor.quantum_n, 0.0);
     EXPECT_TRUE(floor.by_cycle);
   }
+}
+
+// Checked once, and fitted one law after the other, one of them in sizes that it keeps.
+TEST(CheckedRecordings, GiveTheFitsAndTheFloorOfTheirSeries) {
+  const Cycles cycles(4, 0.3, 0.1, 0.05, damper);
+  const Series series = cycles.series();
+  const FitOptions options{.folds = 3};
+  const CheckedRecordings checked(std::span(&series, 1), options);
+  for (const char* const model : {"maxwell", "kelvin", "maxwell"}) {
+    const FitResult alone = fit(model, series, options);
+    const FitResult shared = fit(model, checked, options);
+    EXPECT_EQ(shared.rmse, alone.rmse) << model;
+    EXPECT_EQ(shared.cv_folds, alone.cv_folds) << model;
+    ASSERT_EQ(shared.parameters.size(), alone.parameters.size()) << model;
+    for (std::size_t i = 0; i < alone.parameters.size(); ++i) {
+      EXPECT_EQ(shared.parameters[i].value, alone.parameters[i].value) << model;
+      EXPECT_EQ(shared.parameters[i].lower, alone.parameters[i].lower) << model;
+    }
+  }
+  EXPECT_EQ(floor_of(checked).velocity_n, floor_of(std::span(&series, 1), options).velocity_n);
 }
 
 TEST(Floor, OfADamperMovedAtManySpeedsNeedsTheVelocity) {

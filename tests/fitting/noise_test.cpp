@@ -8,6 +8,8 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "fitting/coverage.h"
+#include "uncertainty/lattice.h"
 #include "uncertainty/uncertainty.h"
 
 namespace kerf::fitting {
@@ -101,6 +103,115 @@ TEST(Uncertainty, IsThatOfTheWholeCovarianceMatrix) {
     const Eigen::MatrixXd sigma = covariance_of(found.stages[0].model, count);
     const double truth = column.dot(sigma * column) / std::pow(column.squaredNorm(), 2);
     EXPECT_NEAR(uncertainty_of(wave, 0.95).covariance(0, 0), truth, 1e-6 * truth) << seed;
+  }
+}
+
+/// Whether the intervals of a level, known to be zero, hold it, and how wide they are.
+struct LevelsHeld {
+  int of = 0;
+  int held = 0;
+  double width = 0.0;  ///< the mean
+};
+
+LevelsHeld held_by(const test::Noise& noise, Eigen::Index most_blocks) {
+  constexpr Eigen::Index count = 16384;
+  LevelsHeld all{.of = 200};
+  for (int seed = 0; seed < all.of; ++seed) {
+    const Eigen::VectorXd values = noise.draw(count, 1.0, static_cast<std::uint64_t>(seed));
+    Linearisation level{.jacobian = Eigen::MatrixXd::Ones(count, 2), .residuals = values};
+    for (Eigen::Index i = 0; i < count; ++i) level.jacobian(i, 1) = std::sin(1.1 * static_cast<double>(i));
+    const Eigen::VectorXd fitted = gram(level.jacobian).ldlt().solve(level.jacobian.transpose() * values);
+    level.residuals -= level.jacobian * fitted;
+    const Uncertainty known = uncertainty_of(level, 0.95, most_blocks);
+    const double half = known.quantile[0] * std::sqrt(known.covariance(0, 0));
+    all.held += std::abs(fitted[0]) <= half ? 1 : 0;
+    all.width += 2.0 * half / all.of;
+  }
+  return all;
+}
+
+// One sixteenth of the blocks: the intervals of a level in noise with a memory of up to 39 rows, which the
+// wave beside it keeps from being taken together, hold it as often. They are no narrower than by all blocks,
+// and little wider: what so few do not say of the noise, Student's t knows.
+TEST(Noise, OfAPartOfTheBlocksGivesIntervalsThatHold) {
+  for (const test::Noise& noise :
+       {test::Noise::white(), test::Noise::first_order("memory of 39 rows", 0.95), test::Noise::resonant()}) {
+    const LevelsHeld by_part = held_by(noise, 1024);
+    const LevelsHeld by_all = held_by(noise, 1 << 20);
+    // 99.9 % of binomial draws of 200 at 95 %, by SciPy: binom.ppf([0.0005, 0.9995], 200, 0.95).
+    EXPECT_GE(by_part.held, 179) << noise.name;
+    EXPECT_LE(by_part.held, 198) << noise.name;
+    EXPECT_GE(by_part.width, 0.95 * by_all.width) << noise.name;
+    EXPECT_LE(by_part.width, 1.25 * by_all.width) << noise.name;
+  }
+}
+
+// What is found of the blocks where nothing of a derivative is, is found without it.
+TEST(Noise, OfAPartThatAParameterDoesNotMoveIsFound) {
+  constexpr Eigen::Index count = 20000;
+  Linearisation late{.jacobian = Eigen::MatrixXd::Zero(count, 2),
+                     .residuals = test::Noise::white().draw(count, 0.5, 3)};
+  late.jacobian.col(0).setOnes();
+  for (const Eigen::Index moved : {5, 3001, 10000}) {  // by turns in a stretch that is looked at and in none
+    late.jacobian.col(1).setZero();
+    late.jacobian(moved, 1) = 1.0;
+    const Uncertainty known = uncertainty_of(late, 0.95, 512);
+    EXPECT_NEAR(std::sqrt(known.covariance(0, 0)), 0.5 / std::sqrt(20000.0), 0.1 * 0.5 / std::sqrt(20000.0));
+    EXPECT_NEAR(std::sqrt(known.covariance(1, 1)), 0.5, 0.1);
+  }
+}
+
+/// Numbers that never come again.
+Eigen::MatrixXd golden(Eigen::Index rows, Eigen::Index columns) {
+  Eigen::MatrixXd all(rows, columns);
+  for (Eigen::Index i = 0; i < all.size(); ++i)
+    all.data()[i] = std::fmod(0.6180339887498949 * static_cast<double>(i + 1), 1.0) - 0.45;
+  return all;
+}
+
+// Burg's reflections of several series, order by order: k = -2 sum f b / sum (f f + b b), the backward errors
+// a row behind. Runs are shorter than the orders and longer than a stretch that is summed at once.
+TEST(Lattice, ReflectsAsBurgsSumsDoOverRunsOfAnyLength) {
+  for (const Eigen::Index rows : {1, 2, 3, 5}) {
+    const std::vector<Rows> runs{{0, 3}, {3, 44}, {44, 44}, {44, 1500}};
+    const Eigen::MatrixXd series = golden(rows, 1500);
+    Lattice lattice(series, runs);
+    Eigen::MatrixXd forward = series;
+    Eigen::MatrixXd backward = series;  // of each row, where it stands
+    for (Eigen::Index order = 0; order < 7; ++order) {
+      double product = 0.0;
+      double energy = 0.0;
+      for (const Rows& run : runs) {
+        for (Eigen::Index i = run.begin + order + 1; i < run.end; ++i) {
+          product += forward.col(i).dot(backward.col(i - 1));
+          energy += forward.col(i).squaredNorm() + backward.col(i - 1).squaredNorm();
+        }
+      }
+      const double k = -2.0 * product / energy;
+      ASSERT_NEAR(lattice.reflection(), k, 1e-13) << rows << " rows, order " << order;
+      lattice.apply(lattice.reflection());
+      for (const Rows& run : runs) {
+        for (Eigen::Index i = run.end - 1; i > run.begin + order; --i) {
+          const Eigen::VectorXd before = backward.col(i - 1);
+          backward.col(i) = before + k * forward.col(i);
+          forward.col(i) += k * before;
+        }
+      }
+    }
+  }
+}
+
+TEST(Lattice, FiltersByTheRowsBefore) {
+  const std::vector<double> a{0.5, -0.25, 0.125};
+  for (const Eigen::Index rows : {1, 3, 4}) {
+    for (const Eigen::Index count : {1, 2, 9, 40}) {
+      const Eigen::MatrixXd series = golden(rows, 3 + count);
+      Eigen::MatrixXd filtered(rows, count);
+      filter_by_sum(filtered.data(), series.col(3).data(), filtered.size(), rows, a.data(), 3);
+      const Eigen::MatrixXd expected = series.rightCols(count) + 0.5 * series.middleCols(2, count) -
+                                       0.25 * series.middleCols(1, count) + 0.125 * series.leftCols(count);
+      EXPECT_LT((filtered - expected).norm(), 1e-14 * expected.norm()) << rows << " rows, " << count;
+    }
   }
 }
 

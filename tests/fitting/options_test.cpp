@@ -185,6 +185,50 @@ TEST(Intervals, OfWhiteNoiseAreNearlyThoseOfNoiseThatProvesWhite) {
   }
 }
 
+// A law that misfits, whose interval is a profile where it is asked for.
+TEST(Intervals, OfWhiteNoiseAskForNoProfile) {
+  const Strokes strokes(2000, 0.5, Law::make("maxwell", std::vector{100.0, 60.0, 30.0, 0.02, 0.4}));
+  const FitOptions with{.law_options = {{"arms", 3.0}}, .folds = 0};
+  FitOptions without(with);
+  without.intervals = Intervals::white;
+  const auto is_profile = [](const Estimate& estimate) { return estimate.by == IntervalBy::profile; };
+  EXPECT_TRUE(std::ranges::any_of(fit("maxwell", strokes.series(), with).parameters, is_profile));
+  EXPECT_TRUE(std::ranges::none_of(fit("maxwell", strokes.series(), without).parameters, is_profile));
+}
+
+TEST(Brief, EndsAtTheSameErrorAndNearlyTheSameLaw) {
+  const Strokes strokes(4000, 0.05, kelvin);
+  for (const char* law : {"kelvin", "maxwell", "exponential", "springpot", "piecewise"}) {
+    const auto whole = fit(law, strokes.series(), {.folds = 0});
+    const auto brief = fit(law, strokes.series(), {.folds = 0, .brief = true});
+    EXPECT_TRUE(brief.converged) << law;
+    EXPECT_NEAR(brief.rmse, whole.rmse, 2e-3 * whole.rmse) << law;
+    EXPECT_GE(brief.rmse, (1.0 - 1e-9) * whole.rmse) << law;
+  }
+}
+
+TEST(Rows, ThatDoNotCountAtTheEndChangeNothing) {
+  Strokes strokes(3000, 0.05, kelvin);
+  const auto before = fit("kelvin", strokes.series(), {.folds = 0});
+  std::vector<std::uint8_t> counts(strokes.force.size(), 1);
+  for (int i = 0; i < 5000; ++i) {
+    strokes.time_s.push_back(strokes.time_s.back() + 1e-3);
+    strokes.penetration.push_back(0.01);
+    strokes.velocity.push_back(0.0);
+    strokes.force.push_back(1.0);
+    counts.push_back(0);
+  }
+  Series series = strokes.series();
+  series.counts = counts;
+  const auto after = fit("kelvin", series, {.folds = 0});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(after.parameters[i].value, before.parameters[i].value, 1e-9 * before.parameters[i].value);
+    EXPECT_NEAR(after.parameters[i].std_error, before.parameters[i].std_error,
+                1e-6 * before.parameters[i].std_error);
+  }
+  EXPECT_EQ(after.samples, before.samples);
+}
+
 TEST(CrossValidation, DoesNotDependOnTheNumberOfThreads) {
   const Strokes strokes(6000, 0.02, kelvin);
   const double one = fit("kelvin", strokes.series(), {.threads = 1}).cv_rmse;

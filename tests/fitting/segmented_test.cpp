@@ -45,7 +45,8 @@ TEST(Segmented, IsTheBestOfAllChoicesOfKnotsOnAGrid) {
                           : which % 3 == 1 ? sampled(75, 0.1, seed, false, step)
                                            : sampled(60, 1.0, seed, false, [](double) { return 0.0; });
       ++which;
-      const auto curves = fit_segments(points.curve(), {.max_segments = 5, .cells = cells, .polish = false});
+      const auto curves =
+          fit_segments(points.curve(), {.max_segments = 5, .cells = cells, .polish = Polish::none});
       ASSERT_EQ(curves.size(), 5U);
       for (const auto& curve : curves) {
         const double truth = test::exhaustive_error(points, cells, curve.segments(), 4);
@@ -61,13 +62,33 @@ TEST(Segmented, IsTheBestOfAllChoicesForALoopToo) {
   for (unsigned seed = 0; seed < 8; ++seed) {
     const auto points =
         seed % 2 == 0 ? sampled(60, 0.3, seed, true, wave) : sampled(60, 0.2, seed, true, step);
-    const auto curves = fit_segments(points.curve(), {.max_segments = 5, .cells = 12, .polish = false});
+    const auto curves =
+        fit_segments(points.curve(), {.max_segments = 5, .cells = 12, .polish = Polish::none});
     ASSERT_EQ(curves.size(), 5U);
     for (const auto& curve : curves) {
       const double truth = test::exhaustive_error(points, 12, curve.segments(), 4);
       EXPECT_NEAR(curve.sum_of_squares, truth, 1e-10 * truth)
           << curve.segments() << " segments, seed " << seed;
       EXPECT_TRUE(curve.optimal_on_grid);
+    }
+  }
+}
+
+TEST(Segmented, PolishedBrieflyIsNoWorseThanOnTheGridAndLittleWorseThanThoroughly) {
+  for (const bool loop : {false, true}) {
+    const auto points = sampled(3000, 0.1, 7, loop, wave);
+    const auto by = [&](Polish polish) {
+      return fit_segments(points.curve(), {.max_segments = 8, .cells = 64, .polish = polish});
+    };
+    const auto none = by(Polish::none);
+    const auto brief = by(Polish::brief);
+    const auto thorough = by(Polish::thorough);
+    ASSERT_EQ(brief.size(), thorough.size());
+    for (std::size_t i = 0; i < brief.size(); ++i) {
+      EXPECT_LE(brief[i].sum_of_squares, none[i].sum_of_squares * (1.0 + 1e-12)) << i;
+      EXPECT_GE(brief[i].sum_of_squares, thorough[i].sum_of_squares * (1.0 - 1e-12)) << i;
+      EXPECT_LE(brief[i].sum_of_squares, thorough[i].sum_of_squares * 1.01) << i;
+      EXPECT_LE(brief[i].sum_of_squares, brief[i > 0 ? i - 1 : 0].sum_of_squares * (1.0 + 1e-12)) << i;
     }
   }
 }
@@ -79,7 +100,7 @@ TEST(Segmented, HoldsOnAGridWithWeightsGapsAndRepeatedPositions) {
     points.x[i] = std::round(40.0 * points.x[i]) / 40.0;
     if (points.x[i] > 0.42 && points.x[i] < 0.68) points.x[i] = 0.7;
   }
-  const auto curves = fit_segments(points.curve(), {.max_segments = 4, .cells = 12, .polish = false});
+  const auto curves = fit_segments(points.curve(), {.max_segments = 4, .cells = 12, .polish = Polish::none});
   ASSERT_EQ(curves.size(), 4U);
   for (const auto& curve : curves) {
     const double truth = test::exhaustive_error(points, 12, curve.segments(), 4);

@@ -16,7 +16,7 @@ sys.path.insert(0, str(ROOT / "scripts" / "test.d"))
 
 import headers_alone  # noqa: E402
 import tidy  # noqa: E402
-from changed_files import changed_files  # noqa: E402
+from changed_files import changed_files, has_changed  # noqa: E402
 from compile_commands import read_units  # noqa: E402
 
 
@@ -67,6 +67,20 @@ class WhatChanged(unittest.TestCase):
         self.repository.commit("b.cpp")
         self.branch_off()
         self.assertEqual(self.repository.changed(), ["b.cpp"])
+
+    def test_counts_a_place_of_which_something_changed_or_was_deleted(self):
+        self.branch_off()
+        (self.folder / "within").mkdir()
+        self.repository.commit("within/c.cpp")
+        self.assertTrue(has_changed(self.folder, ["a.cpp", "within"]))
+        self.assertFalse(has_changed(self.folder, ["a.cpp", "with"]))
+        self.repository.git("rm", "--quiet", "b.cpp")
+        self.repository.git("commit", "--quiet", "--message", "so")
+        self.assertTrue(has_changed(self.folder, ["b.cpp"], 1))
+        self.assertFalse(has_changed(self.folder, ["within"], 1))
+
+    def test_has_changed_everywhere_where_nobody_knows(self):
+        self.assertTrue(has_changed(self.folder, ["a.cpp"], 7))
 
     def test_is_what_was_done_since_the_branch_began(self):
         self.branch_off()

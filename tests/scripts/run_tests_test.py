@@ -34,6 +34,19 @@ the second line of the message
 [  SKIPPED ] Grasper.IsRead
 """
 
+SUITE = SKIPPED_CASE.split("[  PASSED")[0] + """[ RUN      ] Grasper.Turns
+[       OK ] Grasper.Turns (3 ms)
+[ RUN      ] Grasper.Holds
+/house/a.cpp:7: Failure
+Expected: 1
+[  FAILED  ] Grasper.Holds (0 ms)
+[ RUN      ] Grasper.Opens/0
+/house/a.cpp:9: Failure
+[  FAILED  ] Grasper.Opens/0, where GetParam() = 4 (0 ms)
+[  FAILED  ] 2 tests, listed below:
+[  FAILED  ] Grasper.Holds
+"""
+
 
 class Outcomes(unittest.TestCase):
     def test_counts_what_passed_failed_and_was_skipped(self):
@@ -54,12 +67,29 @@ class Outcomes(unittest.TestCase):
     def test_finds_the_skip_inside_a_suite_that_passed_or_failed(self):
         for status in ("run", "fail"):
             outcome = run_tests.outcome_of(junit(case("usb.Grasper", status, SKIPPED_CASE)))
-            self.assertEqual(outcome.passed + len(outcome.failures), 1)
+            self.assertEqual(outcome.passed, 0)
+            self.assertEqual(len(outcome.failures), status == "fail")
             self.assertEqual(outcome.skips, [Skip("usb.Grasper: Grasper.IsRead", "no measured data at /house/data")])
 
+    def test_counts_and_names_each_case_of_a_suite(self):
+        outcome = run_tests.outcome_of(junit(case("Grasper", "fail", SUITE)))
+        self.assertEqual(outcome, Outcome(1, [Failure("Grasper.Holds", ("/house/a.cpp:7: Failure", "Expected: 1")),
+                                              Failure("Grasper.Opens/0", ("/house/a.cpp:9: Failure",))],
+                                          [Skip("Grasper.IsRead", "no measured data at /house/data")]))
+
+    def test_names_the_case_in_which_a_program_ended(self):
+        output = "[ RUN      ] Grasper.Holds\n[       OK ] Grasper.Holds (1 ms)\n[ RUN      ] Grasper.Opens\nheap-use-after-free\n"
+        self.assertEqual(run_tests.outcome_of(junit(case("Grasper", "fail", output))),
+                         Outcome(1, [Failure("Grasper.Opens", ("heap-use-after-free",))], []))
+
+    def test_a_suite_that_fails_after_its_cases_has_failed(self):
+        output = "[ RUN      ] Grasper.Holds\n[       OK ] Grasper.Holds (1 ms)\ndetected memory leaks\n"
+        self.assertEqual(run_tests.outcome_of(junit(case("Grasper", "fail", output))).failures[0].name, "Grasper")
+
     def test_a_skip_without_a_message_borrows_none(self):
-        output = SKIPPED_CASE + "\n/house/b.cpp:3: Skipped\n\n[  SKIPPED ] Other.SaysNothing (0 ms)\n"
-        self.assertEqual(run_tests.skipped_cases(output)[1], Skip("Other.SaysNothing", "it says nothing"))
+        output = SKIPPED_CASE + "\n[ RUN      ] Other.SaysNothing\n/house/b.cpp:3: Skipped\n\n[  SKIPPED ] Other.SaysNothing (0 ms)\n"
+        self.assertEqual(run_tests.outcome_of(junit(case("usb.Grasper", "run", output))).skips[1],
+                         Skip("usb.Grasper: Other.SaysNothing", "it says nothing"))
 
     def test_a_program_that_is_missing_has_failed(self):
         outcome = run_tests.outcome_of(junit(case("A", "notrun", "", "Unable to find executable")))

@@ -58,6 +58,17 @@ FitRecordingOptions options_of(const FitPlan& plan, const ChartOptions& options)
   return fit;
 }
 
+std::size_t most_segments(const std::vector<FitPlan>& plans) {
+  double most = 1.0;
+  for (const FitPlan& plan : plans) {
+    const models::LawFacts& facts = models::law_facts(plan.model);
+    if (facts.search != models::Search::segments) continue;
+    const auto told = plan.options.find(facts.size.option);
+    if (told != plan.options.end()) most = std::max(most, std::get<double>(told->second));
+  }
+  return static_cast<std::size_t>(most);
+}
+
 /// Root mean square and largest difference of two series of forces [N].
 struct Difference {
   double rms_n = 0.0;
@@ -110,6 +121,7 @@ class RecordingChart {
                            ? "held-out cycles, or blocks of time where there are none, as rendered"
                            : "the recording itself, with nothing held out, as rendered";
     const auto plans = fit_plans(options_.models);
+    memory_ = fitting::remember_segments(most_segments(plans));
     for (const FitPlan& plan : plans) {
       if (options_.stopped()) break;
       add(plan);
@@ -129,7 +141,9 @@ class RecordingChart {
 
  private:
   void add(const FitPlan& plan) {
-    const RecordingFit fit = fit_recordings(std::span(&source_, 1), options_of(plan, options_));
+    FitRecordingOptions options = options_of(plan, options_);
+    options.fit.segmented_memory = memory_;
+    const RecordingFit fit = fit_recordings(std::span(&source_, 1), options);
     for (const Refusal& refusal : fit.refusals) {
       chart_.notes.push_back(
           fmt::format("{} ({}) was not fitted: {}", refusal.model, plan.label, refusal.why));
@@ -225,6 +239,7 @@ class RecordingChart {
   RenderedSeries in_the_loop_;
   double period_s_ = 0.0;
   double peak_n_ = 0.0;
+  std::shared_ptr<fitting::SegmentedMemory> memory_;
   SpeedAccuracy chart_;
 };
 

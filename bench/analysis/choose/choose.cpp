@@ -75,7 +75,7 @@ class LawSelection {
       for (const Candidate& one : all) choice_.floor->lower_to(one.fitted_n);
       const Candidate& taken = all[*choice_.taken];
       choice_.blame = fitting::blame(taken.error_n, taken.fitted_n, *choice_.floor, choice_.jnd_n);
-      fit_with_intervals(all[*choice_.taken]);
+      fit_thoroughly(all[*choice_.taken]);
     }
     return std::move(choice_);
   }
@@ -159,7 +159,8 @@ class LawSelection {
   void fit_one(Candidate& candidate, std::size_t threads) const {
     fitting::FitOptions settings = options_.fit;
     settings.threads = threads;
-    settings.intervals = fitting::Intervals::white;  // those of the law that is taken follow
+    settings.intervals = fitting::Intervals::white;  // the law that is taken is found anew
+    settings.brief = true;
     settings.profile = false;
     settings.segmented_memory = memory_;
     RecordingFit fit = fit_of(candidate.law, std::move(settings));
@@ -216,8 +217,7 @@ class LawSelection {
     search_.end_if_stopped();
   }
 
-  void fit_with_intervals(Candidate& taken) const {
-    if (options_.fit.intervals == fitting::Intervals::white) return;
+  void fit_thoroughly(Candidate& taken) const {
     fitting::FitOptions settings = options_.fit;
     settings.folds = 0;
     settings.threads = options_.threads;

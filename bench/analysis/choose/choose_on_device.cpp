@@ -12,6 +12,9 @@ using json = nlohmann::ordered_json;
 
 void add_warnings(const std::optional<LoopChecks>& checks, TriedBy tried_by, LawChoice& choice) {
   if (!checks) return;
+  if (checks->model()) {
+    for (const std::string& doubt : checks->model()->doubts) choice.warnings.push_back(doubt);
+  }
   if (!checks->placed_in_words().empty()) choice.warnings.push_back(checks->placed_in_words());
   if (tried_by == TriedBy::virtual_time) {
     choice.warnings.emplace_back(
@@ -54,7 +57,8 @@ DeviceChoice choose_on_device(const schema::Recording& recording, const std::fil
              {"recording", file.string()},
              {"uuid", recording.header.uuid},
              {"axis", recording.axes[how.axis].name},
-             {"device", checks ? json(checks->device_uri()) : json(nullptr)}};
+             {"device", checks ? json(checks->device_uri()) : json(nullptr)},
+             {"device_model", checks ? as_json(checks->model()) : json(nullptr)}};
   about.update(choice_as_json(choice));
   return {.choice = std::move(choice), .json = std::move(about)};
 }

@@ -92,7 +92,9 @@ std::string device_for(const schema::Recording& recording, std::size_t axis) {
 LoopChecks::LoopChecks(LoopCheckOptions options, const std::atomic<bool>& stop)
     : options_(std::move(options)),
       stop_(stop),
-      device_(drivers::open_device(options_.device_uri, {.stop = &stop})->info()) {}
+      device_(drivers::open_device(options_.device_uri, {.stop = &stop})->info()),
+      model_(take_model(
+          device_, {.file = options_.device_model, .rate_hz = options_.rate_hz, .now = {}, .warn = {}})) {}
 
 void LoopChecks::place(const schema::Recording& recording, std::size_t axis, const models::Contact& contact) {
   const schema::Axis& about = recording.axes.at(axis);

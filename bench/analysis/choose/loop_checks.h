@@ -9,6 +9,7 @@
 #include <kerf/schema/recording.h>
 
 #include "choose/candidate_search.h"
+#include "device_model/model_in_use.h"
 #include "laws/law_file.h"
 #include "stability/stability_verdict.h"
 
@@ -16,6 +17,8 @@ namespace kerf::bench {
 
 struct LoopCheckOptions {
   std::string device_uri;
+  std::string
+      device_model;      ///< its file; empty: the one that is kept of the device, if its driver knows less
   double seconds = 2.0;  ///< of a run by the wall clock
   double rate_hz = 1000.0;
   double margin = 0.5;        ///< share of the period that 99.9 % of the ticks may compute for, at most 0.5
@@ -48,6 +51,8 @@ class LoopChecks {
   [[nodiscard]] StabilityVerdict stability(const LawFile& law) const;
 
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
+  /// Whose numbers the stability rests on, where the driver's were not enough.
+  [[nodiscard]] const std::optional<ModelInUse>& model() const noexcept { return model_; }
   [[nodiscard]] bool simulated() const noexcept { return device_.simulated; }
   /// Where a law was moved to, in words; empty if it stands where it was recorded.
   [[nodiscard]] const std::string& placed_in_words() const noexcept { return placed_in_words_; }
@@ -60,6 +65,7 @@ class LoopChecks {
   LoopCheckOptions options_;
   const std::atomic<bool>& stop_;
   drivers::DeviceInfo device_;
+  std::optional<ModelInUse> model_;
   double deepest_ = 0.0;  ///< penetration that was recorded
   std::optional<models::Contact> placed_at_;
   std::string placed_in_words_;

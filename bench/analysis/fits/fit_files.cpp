@@ -51,20 +51,25 @@ void refuse_to_replace_fits(const FitRecordingOptions& options, const std::files
   for (const auto* table : {csv_name, json_name}) require_output(folder / table, false);
 }
 
-void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
+std::future<std::vector<FitProvenance>> name_meanwhile(std::vector<std::filesystem::path> recordings) {
+  return std::async(std::launch::async, [recordings = std::move(recordings)] {
+    std::vector<FitProvenance> named(recordings.size());
+    for (std::size_t i = 0; i < named.size(); ++i) name_recording(named[i], recordings[i]);
+    return named;
+  });
+}
+
+void write_fits(RecordingFit& fit, std::span<const FitProvenance> named,
                 const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  std::vector<FitProvenance> named(files.size());
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    name_recording(named[i], files[i]);
+  for (std::size_t i = 0; i < named.size(); ++i)
     fit.recordings.at(i).content_sha256 = named[i].recording_content;
-  }
   for (FittedLaw& law : fit.laws) {
     const auto names = law_file_names(fit, law);
     for (std::size_t i = 0; i < names.size(); ++i) {
       LawFile& file = i == 0 ? law.file : law.others[i - 1];
-      file.fit.recording_sha256 = named.at(i).recording_sha256;
-      file.fit.recording_content = named.at(i).recording_content;
+      file.fit.recording_sha256 = named[i].recording_sha256;
+      file.fit.recording_content = named[i].recording_content;
       write_law_file(folder / names[i], file);
     }
   }
@@ -73,7 +78,9 @@ void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
 }
 
 void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std::filesystem::path& folder) {
-  write_fits(fit, std::span(&file, 1), folder);
+  FitProvenance named;
+  name_recording(named, file);
+  write_fits(fit, std::span(&named, 1), folder);
 }
 
 }  // namespace kerf::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,12 +16,16 @@ namespace kerf::bench {
 /// @throws std::invalid_argument if any file that write_fits() may write stands in the folder.
 void refuse_to_replace_fits(const FitRecordingOptions& options, const std::filesystem::path& folder);
 
+/// The checksums of recordings, found on another thread meanwhile: it hashes what the files are, not what was
+/// read of them. @throws by get(), as name_recording().
+[[nodiscard]] std::future<std::vector<FitProvenance>> name_meanwhile(
+    std::vector<std::filesystem::path> recordings);
+
 /// Adds the recordings' checksums to the law files and writes NAME.law.toml (NAME.RECORDING.law.toml for a
-/// further recording with parameters or a contact of its own), fit.json and fit.csv into a folder. `files`
+/// further recording with parameters or a contact of its own), fit.json and fit.csv into a folder. `named`
 /// are the recordings', in order.
 /// @throws std::system_error
-void write_fits(RecordingFit& fit, std::span<const std::filesystem::path> files,
-                const std::filesystem::path& folder);
+void write_fits(RecordingFit& fit, std::span<const FitProvenance> named, const std::filesystem::path& folder);
 void write_fits(RecordingFit& fit, const std::filesystem::path& file, const std::filesystem::path& folder);
 
 /// The JSON of `kerf fit`.

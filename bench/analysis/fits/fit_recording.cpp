@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/core.h>
+
+#include <kerf/fitting/checked_recordings.h>
 
 #include "fits/fit_series.h"
 #include "fits/law_options.h"
@@ -27,9 +31,10 @@ constexpr double reversal_share = 0.05;  // of the range of the penetration, unt
 struct Sources {
   std::span<const FitSource> all;
   std::vector<AxisSeries> series;
-  std::vector<RenderedSeries> rendered;
-  AxisSeries pool;
+  std::vector<std::shared_future<RenderedSeries>> rendered;  ///< made beside what does not need it yet
+  AxisSeries together;                                       ///< of several
 
+  [[nodiscard]] const AxisSeries& pool() const { return series.size() == 1 ? series.front() : together; }
   [[nodiscard]] std::vector<fitting::Series> views() const {
     std::vector<fitting::Series> views;
     for (std::size_t i = 0; i < all.size(); ++i) views.push_back(fitted_view(series[i], all[i].noise_n));
@@ -49,7 +54,7 @@ LawFile file_of(const fitting::FitResult& result, const Sources& sources, std::s
   }
   const models::Law law = result.law(at);
   return {.law = models::Law::make(result.model, law.values(),
-                                   with_rendering_aids(result.law_options, sources.pool)),
+                                   with_rendering_aids(result.law_options, sources.pool())),
           .contact = source.contact,
           .axis = axis.name,
           .position_unit = axis.position_unit,
@@ -121,8 +126,9 @@ fitting::FitOptions options_for(const std::string& model, const FitRecordingOpti
                                 const fitting::FitOptions& settings, const Sources& sources) {
   fitting::FitOptions fit = settings;
   fit.render = [&sources](const models::Law& law, std::size_t recording) {
-    return sources.rendered[recording].force(
-        models::Law::make(law.model(), law.values(), with_rendering_aids(law.options(), sources.pool)));
+    const std::shared_future<RenderedSeries> rendered = sources.rendered[recording];  // threads ask at once
+    return rendered.get().force(
+        models::Law::make(law.model(), law.values(), with_rendering_aids(law.options(), sources.pool())));
   };
   for (const auto& [name, value] : options_of_law(model, options.law_options)) fit.law_options[name] = value;
   const models::LawFacts& facts = models::law_facts(model);
@@ -152,18 +158,25 @@ CountedRows rows_that_count(AxisSeries& series, const FitSource& source, const s
 }
 
 Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
-  Sources sources{.all = all, .series = {}, .rendered = {}, .pool = {}};
+  Sources sources{.all = all, .series = {}, .rendered = {}, .together = {}};
+  sources.series.reserve(all.size());
+  const auto when = fit.settings.threads > 1 ? std::launch::async : std::launch::deferred;
   for (const FitSource& source : all) {
     sources.series.push_back(fit_series(*source.recording, source.axis, source.contact));
     const std::size_t left_out = sources.series.back().left_out;
     const std::string whose = all.size() > 1 ? source.name + ": " : "";
     CountedRows counted = rows_that_count(sources.series.back(), source, whose, fit);
-    sources.rendered.emplace_back(sources.series.back(), fit.loop_rate_hz);
+    const std::size_t rows = source.recording->rows();
+    if (source.taken) source.taken();
+    sources.rendered.push_back(
+        std::async(when, [&series = sources.series.back(), rate_hz = fit.loop_rate_hz] {
+          return RenderedSeries(series, rate_hz);
+        }));
     fit.recordings.push_back({.name = source.name,
                               .uuid = source.recording->header.uuid,
                               .axis = source.recording->axes[source.axis].name,
                               .contact = source.contact,
-                              .samples = source.recording->rows(),
+                              .samples = rows,
                               .left_out = left_out,
                               .counted = counted.rows,
                               .cycles_left_out = std::move(counted.left_out),
@@ -172,7 +185,7 @@ Sources sources_of(std::span<const FitSource> all, RecordingFit& fit) {
     for (const std::string& doubt : doubts_of(sources.series.back(), fit.settings))
       fit.warnings.push_back(whose + doubt);
   }
-  sources.pool = pooled(sources.series);
+  if (all.size() > 1) sources.together = pooled(sources.series);
   return sources;
 }
 
@@ -260,6 +273,8 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     return options.models.empty() ||
            std::find(options.models.begin(), options.models.end(), model) != options.models.end();
   };
+  std::optional<fitting::CheckedRecordings> checked;
+  std::future<fitting::Floor> floor;
   for (const std::string& model : models) {
     if (options.stop != nullptr && *options.stop)
       throw std::system_error(std::make_error_code(std::errc::interrupted), "not all laws were fitted");
@@ -267,8 +282,14 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     if (!named(model) && !fits_axis(model, axis)) continue;
     try {
       check_units(model, axis);
+      if (!checked) {
+        checked.emplace(sources.views(), fit.settings);
+        const bool beside = options.floor && options.fit.threads > 1;
+        floor = std::async(beside ? std::launch::async : std::launch::deferred,
+                           [&checked] { return fitting::floor_of(*checked); });
+      }
       fitting::FitResult result =
-          fitting::fit(model, sources.views(), options_for(model, options, fit.settings, sources));
+          fitting::fit(model, *checked, options_for(model, options, fit.settings, sources));
       if (result.parameters.empty()) throw std::invalid_argument(result.message);
       fit.laws.push_back(finished(std::move(result), sources));
     } catch (const std::invalid_argument& error) {
@@ -276,11 +297,11 @@ RecordingFit fit_recordings(std::span<const FitSource> all, const FitRecordingOp
     }
   }
   if (fit.laws.empty()) return fit;
-  const fitting::Series pool = fitted_view(sources.pool);
+  const fitting::Series pool = fitted_view(sources.pool());
   fit.line_rmse_n = fitting::line_rmse(pool);
   fit.jnd_n = options.fit.jnd.at(fitting::rms_of(pool));
   if (options.floor) {
-    fit.floor = fitting::floor_of(sources.views(), fit.settings);
+    fit.floor = floor.get();
     for (const FittedLaw& law : fit.laws) fit.floor->lower_to(law.result.cv_rmse);
   }
   fit.choice = fitting::choose_simplest(weighed_alike(fit.laws), pool, fit.settings);

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,6 +43,7 @@ struct FitSource {
   /// Rows whose force is not the tissue's alone: laws run through them, and are neither fitted to nor judged
   /// by them.
   std::vector<RowSpan> not_the_tissue{};
+  std::function<void()> taken{};  ///< called when no row of the recording is asked for any more
 };
 
 /// One law fitted to one recording or several: the result, and the law as it will be rendered.

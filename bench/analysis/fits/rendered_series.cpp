@@ -25,6 +25,12 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
   const double longest_s = std::max(missing_s, missing_rows * row_s);
   drivers::VelocityFilter filter;
   std::vector<double> time_s;
+  const double most = ticks_a_row * static_cast<double>(rows) + 1.0;  // of rows that are not far apart
+  const double usual = rows > 1 ? (series.time_s.back() - series.time_s.front()) / period_s + 2.0 : 1.0;
+  const auto ticks = static_cast<std::size_t>(std::min(most, usual));
+  motion_.reserve(ticks);
+  period_s_.reserve(ticks);
+  time_s.reserve(ticks);
   const auto tick = [&](double now_s, double position) {
     motion_.push_back({.penetration = position, .velocity = filter.update(0, position, now_s)});
     filter.advance(now_s);
@@ -42,9 +48,11 @@ RenderedSeries::RenderedSeries(const AxisSeries& series, double loop_rate_hz) {
     for (double next_s = time_s.back() + period_s; next_s <= now_s + 1e-9; next_s = time_s.back() + period_s)
       tick(next_s, series.penetration[row - 1] + slope * (next_s - before_s));
   }
+  tick_.reserve(rows);
+  std::size_t after = 0;  // the first tick that comes too late
   for (const double now_s : series.time_s) {
-    const auto after = std::ranges::upper_bound(time_s, now_s - latency_s + 1e-9);
-    tick_.push_back(after == time_s.begin() ? 0 : static_cast<std::size_t>(after - time_s.begin()) - 1);
+    while (after < time_s.size() && time_s[after] <= now_s - latency_s + 1e-9) ++after;
+    tick_.push_back(static_cast<std::uint32_t>(after == 0 ? 0 : after - 1));
   }
   // Laws keep what they derive from the period: equal but for rounding is equal.
   for (double& one : period_s_) {
@@ -56,7 +64,7 @@ std::vector<double> RenderedSeries::force(const models::Law& law) const {
   const std::vector<double> of_ticks = law.along(motion_, period_s_);
   std::vector<double> of_rows;
   of_rows.reserve(tick_.size());
-  for (const std::size_t tick : tick_) of_rows.push_back(of_ticks[tick]);
+  for (const std::uint32_t tick : tick_) of_rows.push_back(of_ticks[tick]);
   return of_rows;
 }
 

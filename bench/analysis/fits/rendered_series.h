@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <kerf/models/law.h>
@@ -24,7 +24,7 @@ class RenderedSeries {
  private:
   std::vector<models::Motion> motion_;
   std::vector<double> period_s_;
-  std::vector<std::size_t> tick_;  ///< whose force acts at each row
+  std::vector<std::uint32_t> tick_;  ///< whose force acts at each row
 };
 
 }  // namespace kerf::bench

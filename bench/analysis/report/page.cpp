@@ -133,6 +133,8 @@ std::string section_of(const FoundResult& result, const std::filesystem::path& r
         return chart_section(result);
       case ResultKind::stability:
         return stability_section(result);
+      case ResultKind::device:
+        return device_section(result);
       case ResultKind::replay:
         return replay_section(result);
       case ResultKind::check:

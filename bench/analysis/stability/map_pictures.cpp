@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "files/json_number.h"
+#include "stability/controllers/controllers_findings.h"
+#include "stability/plane/plane_findings.h"
+#include "stability/several/several_findings.h"
+#include "stability/zwidth/z_width_findings.h"
 
 namespace kerf::bench {
 namespace {
@@ -145,8 +150,13 @@ Chart picture_of(const std::string& model, const LawMap& map) {
 }
 
 std::optional<Chart> map_picture(const json& study) {
+  const std::string of = study.value("study", "");
+  if (of == "several") return direction_picture(study);
+  if (of == "z_width") return z_width_picture(study);
+  if (of == "controllers") return controllers_picture(study);
   if (!study.contains("cells") || study.at("cells").empty()) return std::nullopt;
-  if (study.at("study") == "wall") {
+  if (of == "plane") return plane_picture(study);
+  if (of == "wall") {
     Chart chart = picture_of(wall_map_of(study));
     const auto own = study.at("on").at("damping_n_s_per_m").get<double>();
     chart.vertical.push_back({.at = own,

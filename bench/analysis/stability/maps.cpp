@@ -34,9 +34,9 @@ double share_of_agreement(const std::vector<Cell>& cells) {
 
 /// How far the damping of a simulated boundary is from where the eigenvalues have it at the same stiffness,
 /// as a share: where the boundary runs along the stiffness, that is what can be compared.
-double damping_error(const SampledDevice& device, const WallBoundary& at) {
+double damping_error(const SampledSystem& system, const WallBoundary& at) {
   const auto is_stable = [&](double damping) {
-    return spectral_radius(device, {at.simulated_linear, damping}) < 1.0;
+    return system.spectral_radius({at.simulated_linear, damping}) < 1.0;
   };
   double share = 1e-3;
   while (share < 1.0) {
@@ -64,13 +64,14 @@ std::vector<double> linear(double lower, double upper, std::size_t count) {
 }
 
 double WallMap::boundary_error() const {
+  const SampledSystem system(device);
   double most = 0.0;
   for (const WallBoundary& at : boundaries) {
     if (at.eigenvalues <= grid.first.front() || at.eigenvalues >= grid.first.back()) continue;
     const double along_stiffness = std::abs(at.simulated_linear / at.eigenvalues - 1.0);
     const double damping = at.damping_n_s_per_m;
     most = std::max(most,
-                    damping > 0.0 ? std::min(along_stiffness, damping_error(device, at)) : along_stiffness);
+                    damping > 0.0 ? std::min(along_stiffness, damping_error(system, at)) : along_stiffness);
   }
   return most;
 }
@@ -78,14 +79,15 @@ double WallMap::boundary_error() const {
 Grid2 wall_grid(const SampledDevice& device, std::size_t columns, std::size_t rows) {
   constexpr double softest = 1.0;
   constexpr double stiffest = 1e7;
+  const SampledSystem system(device);
   const double max_damping =
       first_change({.lower = 1e-3, .upper = 1e5, .share = 1e-2, .scan = 48}, [&](double damping) {
-        return spectral_radius(device, {.stiffness_n_per_m = softest, .damping_n_s_per_m = damping}) < 1.0;
+        return system.spectral_radius({.stiffness_n_per_m = softest, .damping_n_s_per_m = damping}) < 1.0;
       });
   const std::vector<double> dampings = linear(0.0, 1.1 * max_damping, rows);
   double max_stiffness = softest;
   for (const double damping : dampings) {
-    max_stiffness = std::max(max_stiffness, eigenvalue_boundary(device, damping, softest, stiffest));
+    max_stiffness = std::max(max_stiffness, eigenvalue_boundary(system, damping, softest, stiffest));
   }
   const double passive = passive_stiffness(device, 0.0);
   const double least_stiffness = std::clamp(1e-2 * passive, softest, 0.1 * max_stiffness);
@@ -106,25 +108,29 @@ WallMap wall_map(const SampledDevice& device, const WallTrial& trial, const Grid
   two_sided.push_n = 0.0;
   const WallSimulation tried(device);
   const WallSimulation linear_walls(linear_device);
+  const SampledSystem system(device);
+  const bool is_linear = device.is_linear() && trial.push_n == 0.0;
   map.boundaries.resize(grid.second.size());
   if (options.with_cells) map.cells.resize(columns * grid.second.size());
   for_each_row(grid.second.size(), options, [&](std::size_t row) {
     const double damping = grid.second[row];
     const double softest = grid.first.front();
     const double stiffest = grid.first.back();
-    map.boundaries[row] = {.damping_n_s_per_m = damping,
-                           .simulated = tried.boundary(damping, softest, stiffest, trial),
-                           .simulated_linear = linear_walls.boundary(damping, softest, stiffest, two_sided),
-                           .eigenvalues = eigenvalue_boundary(device, damping, softest, stiffest),
-                           .colgate_schenkel = colgate_schenkel(device, damping),
-                           .passive = passive_stiffness(device, damping)};
+    const double simulated_linear = linear_walls.boundary(damping, softest, stiffest, two_sided);
+    map.boundaries[row] = {
+        .damping_n_s_per_m = damping,
+        .simulated = is_linear ? simulated_linear : tried.boundary(damping, softest, stiffest, trial),
+        .simulated_linear = simulated_linear,
+        .eigenvalues = eigenvalue_boundary(system, damping, softest, stiffest),
+        .colgate_schenkel = colgate_schenkel(device, damping),
+        .passive = passive_stiffness(device, damping)};
     if (!options.with_cells) return;
     std::vector<Wall> walls;
     for (const double stiffness : grid.first) walls.push_back({stiffness, damping});
     const std::vector<bool> rest = tried.come_to_rest(walls, trial);
     for (std::size_t column = 0; column < columns; ++column) {
       map.cells[row * columns + column] = {.stable = rest[column],
-                                           .theory = spectral_radius(device, walls[column]) < 1.0};
+                                           .theory = system.spectral_radius(walls[column]) < 1.0};
     }
   });
   return map;

@@ -1,39 +1,25 @@
 #include "stability/tool_way.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "laws/placement.h"
 
 namespace kerf::bench {
 namespace {
 
-/// Numbers given as AXIS=NUMBER, on the law's axes.
 models::AxisValues values_on(const std::vector<models::LawAxis>& axes, const std::vector<std::string>& given,
                              const char* option) {
+  std::vector<std::string> names;
+  for (const models::LawAxis& axis : axes) names.push_back(axis.name);
   models::AxisValues values{};
-  for (const std::string& text : given) {
-    const std::size_t equals = text.find('=');
-    const std::string_view digits =
-        std::string_view(text).substr(equals == std::string::npos ? 0 : equals + 1);
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-    if (equals == std::string::npos || error != std::errc{} || end != digits.data() + digits.size() ||
-        !std::isfinite(number)) {
-      throw std::invalid_argument(fmt::format("{} '{}': expected AXIS=NUMBER, such as z=-1", option, text));
-    }
-    std::size_t axis = 0;
-    while (axis < axes.size() && axes[axis].name != text.substr(0, equals)) ++axis;
-    if (axis == axes.size()) {
-      throw std::invalid_argument(
-          fmt::format("{} '{}': the law has no such axis; it has {}", option, text, names_in(axes)));
-    }
-    values[axis] = number;
-  }
+  std::ranges::copy(axis_values(names, given, {.option = option, .whose = "the law"}), values.begin());
   return values;
 }
 
@@ -48,6 +34,30 @@ void check_units(const models::AxisValues& share, const std::vector<models::LawA
 }
 
 }  // namespace
+
+std::vector<double> axis_values(const std::vector<std::string>& names, const std::vector<std::string>& given,
+                                const AxisValuesIn& in) {
+  std::vector<double> values(names.size(), 0.0);
+  for (const std::string& text : given) {
+    const std::size_t equals = text.find('=');
+    const std::string_view digits =
+        std::string_view(text).substr(equals == std::string::npos ? 0 : equals + 1);
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (equals == std::string::npos || error != std::errc{} || end != digits.data() + digits.size() ||
+        !std::isfinite(number)) {
+      throw std::invalid_argument(
+          fmt::format("{} '{}': expected AXIS=NUMBER, such as z=-1", in.option, text));
+    }
+    const auto named = std::ranges::find(names, text.substr(0, equals));
+    if (named == names.end()) {
+      throw std::invalid_argument(fmt::format("{} '{}': {} has no such axis; it has {}", in.option, text,
+                                              in.whose, fmt::join(names, ", ")));
+    }
+    values[static_cast<std::size_t>(named - names.begin())] = number;
+  }
+  return values;
+}
 
 PlacedWay place_way(const WayRequest& request, const LawFile& law, const drivers::DeviceInfo& device) {
   const std::vector<models::LawAxis> axes = law.law.axes();

@@ -29,6 +29,16 @@ struct WayRequest {
   std::vector<std::string> from;   ///< AXIS=POSITION; zero where nothing is said
 };
 
+/// Of whom axis_values() speaks where it refuses.
+struct AxisValuesIn {
+  const char* option;
+  const char* whose;
+};
+/// Numbers given as AXIS=NUMBER, one for each name; zero where nothing is said.
+/// @throws std::invalid_argument for a text that is not AXIS=NUMBER, or another axis.
+[[nodiscard]] std::vector<double> axis_values(const std::vector<std::string>& names,
+                                              const std::vector<std::string>& given, const AxisValuesIn& in);
+
 /// A way, and the axis of the device that has most of it: its mass, friction and encoder are taken for those
 /// along the way.
 struct PlacedWay {

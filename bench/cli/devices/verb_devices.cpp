@@ -6,7 +6,9 @@
 #include <fmt/core.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/schema/recording.h>
 
+#include "device_model/model_in_use.h"
 #include "probe/kept_probes.h"
 #include "probe/probe.h"
 #include "program/confirm_on_enter.h"
@@ -54,6 +56,26 @@ void list_attached(Context& context) {
   }
   if (attached.empty())
     context.say("On the USB: none that Kerf knows. kerf-emulate plays one; docs/devices.md says how.");
+}
+
+/// The models that are kept, of whatever device.
+void list_models(Context& context) {
+  context.result["device_models"] = nlohmann::ordered_json::array();
+  const std::string now = schema::new_header("").created;
+  for (const ModelFile& one : KeptModels(KeptModels::usual_folder()).all(warn)) {
+    const std::string conditions = conditions_in_words(one.model, days_between(one.model.date, now));
+    if (context.result["device_models"].empty()) context.say("Measured:");
+    context.say(fmt::format("  {}  {}; {}", one.model.model, one.file.string(), conditions));
+    context.result["device_models"].push_back(
+        {{"file", one.file.string()},
+         {"uri", one.model.uri},
+         {"model", one.model.model},
+         {"serial", one.model.serial ? nlohmann::ordered_json(*one.model.serial) : nullptr},
+         {"port", one.model.port},
+         {"date", one.model.date},
+         {"fits", one.model.fits() ? nlohmann::ordered_json(*one.model.fits()) : nullptr},
+         {"about", conditions}});
+  }
 }
 
 /// "6 axes, one after the other: at most 48 pushes of 0.85 N along x, ..."
@@ -115,6 +137,7 @@ void run_devices(Context& context) {
     }
   }
   list_attached(context);
+  list_models(context);
 }
 
 }  // namespace
@@ -128,7 +151,7 @@ void add_devices(CLI::App& app, Context& context) {
       "seen of yours: a wrong sign makes a wall pull. It ends with 1 unless every axis is right. The result\n"
       "is kept, and nothing is rendered on a device with an axis that is wrong.\n"
       "URIs take options behind a question mark: sim:scissors?seed=3&noise=off.\n"
-      "  sim:scissors, sim:pose6, sim:premium   simulated; their options: drivers/README.md\n"
+      "  sim:scissors, sim:pose6, sim:premium, sim:axis   simulated; their options: drivers/README.md\n"
       "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
       "                    came with the device: falcon:0?firmware=FILE. Kerf ships none.\n"
       "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"

@@ -1,8 +1,6 @@
 #include "experiment/analyze_experiment.h"
 
-#include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -12,18 +10,12 @@
 #include "answers/look_decision.h"
 #include "experiment/session_log.h"
 #include "files/named_file.h"
-#include "session/receipt.h"
+#include "registered/participant_sessions.h"
 
 namespace kerf::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The sessions of one participant who is through, open.
-struct OpenParticipant {
-  std::string code;
-  std::vector<std::unique_ptr<SessionStore>> stores;
-};
 
 /// The registered plan, with what the command line has otherwise.
 AnalysisPlan plan_as_made(const AnalysisPlan& registered, const ExperimentAnalysisArguments& arguments) {
@@ -50,13 +42,19 @@ class ExperimentAnalysis {
     for (const std::string& found : opened_.state.problems) warn(found);
     require_may_look();
     open_sessions();
-    exclude_by_measure();
+    const Study whole = open_.empty() ? Study() : study_of(sessions_of(open_));
+    leave_out_excluded();
     const Look look = look_of(codes());
     if (look.is_new) opened_.log.append("look", facts_of(look));
     if (look.is_new) note_in_sessions(look);
-    Study study = study_of_all();
+    Study study = study_of(sessions_of(open_));
     Analysis analysis = analyse(study, options_at(plan_, look, arguments_.options));
     analysis.experiment = report_of(study, analysis, look);
+    if (whole.judgements.size() > study.judgements.size()) {
+      AnalysisOptions test_alone = options_at(plan_, look, arguments_.options);
+      test_alone.curves = false;
+      analysis.experiment->p_with_excluded = main_result(whole, test_alone).p_value;
+    }
     if (!opened_.state.problems.empty()) context_.exit = Exit::check_failed;
     return {.study = std::move(study), .analysis = std::move(analysis)};
   }
@@ -86,75 +84,24 @@ class ExperimentAnalysis {
   }
 
   void open_sessions() {
+    std::vector<std::string> warnings;
     for (const Participant& each : opened_.state.participants) {
       if (!each.completed() || each.is_out()) continue;
-      open_.push_back({.code = each.code, .stores = {}});
-      for (const AssignedSession& session : each.sessions) {
-        open_.back().stores.push_back(std::make_unique<SessionStore>(
-            session.file, key_for(key_, derivation_of(session.file)), SessionStore::Purpose::read));
-        check_store(session.file.string(), *open_.back().stores.back());
-      }
+      open_.push_back(open_participant(
+          each, [&](const fs::path& file) { return key_for(key_, derivation_of(file)); }, opened_.state,
+          warnings));
     }
+    for (const std::string& warning : warnings) warn(warning);
     if (open_.empty()) return;
     const Protocol& protocol = open_.front().stores.front()->protocol();
     require_fits(experiment_as_made(), protocol, opened_.file.string());
     two_sided_ = is_two_sided(protocol, plan_.test);
   }
 
-  /// What its seals and the receipts of the log say of a session.
-  void check_store(const std::string& file, const SessionStore& store) {
-    const auto member = membership_of(store.session());
-    if (!member || member->experiment != digest_of(opened_.state.experiment.toml))
-      throw std::invalid_argument(fmt::format(
-          "{}: is sealed for another plan than {} registers: one of the two was put in another's place", file,
-          log_of(opened_.file).string()));
-    for (const std::string& warning : store.warnings()) warn(warning);
-    for (const std::string& opening : store.early_openings())
-      opened_.state.openings.push_back(fmt::format("{} was opened before its end: {}", file, opening));
-    std::vector<Receipt> own;
-    for (const std::string& text : opened_.state.receipts) {
-      Receipt receipt = parse_receipt(text);
-      if (receipt.session == store.session().uuid) own.push_back(std::move(receipt));
-    }
-    if (own.empty()) return;
-    for (const ReceiptFinding& finding : held_against(own, {{.file = file, .session = &store}})) {
-      if (finding.holds) continue;
-      warn(finding.text);
-      opened_.state.problems.push_back(finding.text);
-    }
-  }
-
-  /// Participants with more trials of a kind than the plan allows for.
-  void exclude_by_measure() {
-    const ExclusionPlan& rules = plan_.exclude;
-    if (!rules.faulty && !rules.unfelt) return;
-    for (const OpenParticipant& each : open_) {
-      std::vector<const SessionStore*> stores;
-      for (const auto& store : each.stores) stores.push_back(store.get());
-      double trials = 0.0;
-      double faulty = 0.0;
-      double unfelt = 0.0;
-      for (const Judgement& judgement : study_of(stores).judgements) {
-        if (judgement.practice) continue;
-        trials += 1.0;
-        faulty += judgement.is_sound == false ? 1.0 : 0.0;
-        unfelt += judgement.is_felt == false ? 1.0 : 0.0;
-      }
-      if (rules.faulty && faulty > *rules.faulty * trials)
-        exclude(each.code, "faulty", faulty / trials, *rules.faulty);
-      if (rules.unfelt && unfelt > *rules.unfelt * trials)
-        exclude(each.code, "unfelt", unfelt / trials, *rules.unfelt);
-    }
+  void leave_out_excluded() {
+    exclude_by_measure(open_, plan_.exclude, opened_.state);
     std::erase_if(open_,
                   [&](const OpenParticipant& each) { return opened_.state.find(each.code)->is_out(); });
-  }
-
-  void exclude(const std::string& code, const std::string& rule, double share, double most) {
-    const auto who = std::ranges::find(opened_.state.participants, code, &Participant::code);
-    who->excluded = true;
-    who->rule = rule;
-    who->reason =
-        fmt::format("{:.1f} % of the trials, at most {:.1f} % were registered", 100.0 * share, 100.0 * most);
   }
 
   [[nodiscard]] std::vector<std::string> codes() const {
@@ -179,14 +126,6 @@ class ExperimentAnalysis {
         }
       }
     }
-  }
-
-  [[nodiscard]] Study study_of_all() const {
-    std::vector<const SessionStore*> stores;
-    for (const OpenParticipant& each : open_) {
-      for (const auto& store : each.stores) stores.push_back(store.get());
-    }
-    return study_of(stores);
   }
 
   [[nodiscard]] std::string experiment_now() const {

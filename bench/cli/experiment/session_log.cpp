@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "program/app.h"
+#include "sealed/opening.h"
 
 namespace kerf::bench {
 namespace {
@@ -19,9 +20,9 @@ fs::path named_experiment(const fs::path& file_or_folder) {
   return fs::exists(log_of(file_or_folder), ignored) ? file_or_folder : experiment_file(file_or_folder);
 }
 
-bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
-
 }  // namespace
+
+bool is_blank(const std::string& text) { return text.find_first_not_of(" \t\r\n") == std::string::npos; }
 
 OpenedExperiment open_experiment(const fs::path& file_or_folder, KeyArguments& key) {
   const fs::path file = named_experiment(file_or_folder);
@@ -64,6 +65,15 @@ void log_opening(const fs::path& session_file, const SessionStore& store, KeyArg
   log->append(
       "opened",
       {{"participant", store.session().subject}, {"session", store.session().uuid}, {"reason", reason}});
+}
+
+std::unique_ptr<SessionStore> opened_session(const std::string& file, KeyArguments& key,
+                                             const std::string& reason) {
+  const SealKey seal = key_for(key, derivation_of(file));
+  record_opening(file, seal, reason);
+  auto store = std::make_unique<SessionStore>(file, seal, SessionStore::Purpose::read);
+  log_opening(file, *store, key, reason);
+  return store;
 }
 
 }  // namespace kerf::bench

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,6 +11,9 @@
 #include "sealed/session_store.h"
 
 namespace kerf::bench {
+
+/// Whether a reason that was given is none.
+[[nodiscard]] bool is_blank(const std::string& text);
 
 /// An experiment that a verb was given, with its log.
 struct OpenedExperiment {
@@ -30,5 +34,10 @@ struct OpenedExperiment {
 /// under way, and no reason was given.
 void log_opening(const std::filesystem::path& session_file, const SessionStore& store, KeyArguments& key,
                  const std::string& reason);
+
+/// Lifts the blinding of a session to read it: its file keeps that, and the log of its experiment.
+/// @throws as key_for(), record_opening(), SessionStore and log_opening() do.
+[[nodiscard]] std::unique_ptr<SessionStore> opened_session(const std::string& file, KeyArguments& key,
+                                                           const std::string& reason);
 
 }  // namespace kerf::bench

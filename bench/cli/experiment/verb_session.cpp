@@ -20,10 +20,12 @@ void add_session(CLI::App& app, Context& context) {
   add_session_plan(session, context);
   add_session_new(session, context);
   add_session_run(session, context);
+  add_session_note(session, context);
   add_session_drop(session, context);
   add_session_status(session, context);
   add_session_analyze(session, context);
   add_session_open(session, context);
+  add_session_share(session, context);
   add_session_simulate(session, context);
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -91,11 +92,8 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
   for (const std::string& file : arguments.files) {
     if (is_table(file))
       throw std::invalid_argument(fmt::format("{}: sessions and tables are not analysed together", file));
-    const SealKey key = key_for(arguments.key, derivation_of(file));
-    record_opening(file, key, arguments.reason);
-    stores.push_back(std::make_unique<SessionStore>(file, key, SessionStore::Purpose::read));
+    stores.push_back(opened_session(file, arguments.key, arguments.reason));
     const SessionStore& store = *stores.back();
-    log_opening(file, store, arguments.key, arguments.reason);
     if (membership_of(store.session()))
       mind(fmt::format("{}: a session of an experiment, analysed outside of it", file));
     sessions.push_back(&store);
@@ -118,7 +116,9 @@ Study read_sessions(SessionAnalyzeVerbArguments& arguments, Context& context) {
                        one->file, one->session->session().subject));
   }
   Study study = study_of(sessions);
-  study.remarks = std::move(remarks);
+  // Those of the sessions themselves, such as notes, stay.
+  study.remarks.insert(study.remarks.begin(), std::make_move_iterator(remarks.begin()),
+                       std::make_move_iterator(remarks.end()));
   return study;
 }
 

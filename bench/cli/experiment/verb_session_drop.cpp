@@ -10,6 +10,7 @@
 #include "answer_pages/experiment_words.h"
 #include "experiment/session_log.h"
 #include "experiment/verb_session.h"
+#include "sealed/trials/session_quality.h"
 
 namespace kerf::bench {
 namespace {
@@ -20,6 +21,7 @@ struct SessionDropVerbArguments {
   std::string reason;
   std::string rule;
   std::vector<std::string> receipts;  ///< of the log
+  bool quality = false;
   KeyArguments key;
 };
 
@@ -57,7 +59,38 @@ void drop_participant(SessionDropVerbArguments& arguments, Context& context) {
                     who->code));
 }
 
+/// Sums over the trials of a session, while it is run too; nothing that tells samples or answers.
+nlohmann::ordered_json told_quality(const std::string& file, SessionDropVerbArguments& arguments,
+                                    Context& context) {
+  const SessionStore store(file, key_for(arguments.key, derivation_of(file)), SessionStore::Purpose::read);
+  const SessionQuality quality = session_quality(store);
+  context.say(fmt::format("  {}: {}", store.session().subject, in_words(quality)));
+  nlohmann::ordered_json facts = to_json(quality);
+  facts["participant"] = store.session().subject;
+  facts["file"] = file;
+  return facts;
+}
+
+void tell_quality(const ExperimentState& state, SessionDropVerbArguments& arguments, Context& context) {
+  context.result["quality"] = nlohmann::ordered_json::array();
+  for (const Participant& each : state.participants) {
+    for (const AssignedSession& session : each.sessions) {
+      if (session.is_there && session.begun)
+        context.result["quality"].push_back(told_quality(session.file.string(), arguments, context));
+    }
+  }
+}
+
 void tell_status(SessionDropVerbArguments& arguments, Context& context) {
+  if (!is_experiment(arguments.experiment)) {
+    if (!arguments.quality)
+      throw std::invalid_argument(
+          fmt::format("{}: is no experiment; of a session by itself --quality tells how its trials went",
+                      arguments.experiment));
+    context.result["quality"] =
+        nlohmann::ordered_json::array({told_quality(arguments.experiment, arguments, context)});
+    return;
+  }
   const OpenedExperiment opened = open_experiment(arguments.experiment, arguments.key);
   const ExperimentState& state = opened.state;
   const auto flow = flow_of(state);
@@ -85,6 +118,7 @@ void tell_status(SessionDropVerbArguments& arguments, Context& context) {
                     {"looks", state.looks.size()},
                     {"files", problems},
                     {"log_receipt", opened.log.receipt()}};
+  if (arguments.quality) tell_quality(state, arguments, context);
 }
 
 }  // namespace
@@ -110,13 +144,18 @@ void add_session_status(CLI::App& session, Context& context) {
   auto arguments = std::make_shared<SessionDropVerbArguments>();
   Verb verb = add_verb(session, context, "status",
                        "Where an experiment stands: its participants and files; no answer is looked at",
-                       "kerf session status study --key-file keeper.key\n\n"
+                       "kerf session status study --key-file keeper.key\n"
+                       "  kerf session status study --quality --key-file keeper.key\n\n"
                        "Exits with 1 where a session is missing, foreign, there twice, or older than it was, "
                        "or where a receipt\n"
                        "of the log is not borne out.",
                        [arguments, &context] { tell_status(*arguments, context); });
   verb.add_option("EXPERIMENT", arguments->experiment, "The study's folder, or its experiment.toml")
       .required();
+  verb.add_flag(
+      "--quality", arguments->quality,
+      "Also how the trials went, of each session: void, unfelt, faults, late ticks, response times; "
+      "also of a session by itself");
   verb.add_option("--receipt", arguments->receipts,
                   "Receipt of the log, as this verb prints it (may be repeated)")
       .one_value_each();

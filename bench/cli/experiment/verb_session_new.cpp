@@ -10,8 +10,9 @@
 #include "experiment/key_arguments.h"
 #include "experiment/new_experiment.h"
 #include "experiment/verb_session.h"
+#include "felt/felt_gains.h"
+#include "felt/felt_remarks.h"
 #include "files/whole_file.h"
-#include "protocol/samples.h"
 #include "registered/assignment.h"
 #include "run/run.h"
 #include "sealed/session_store.h"
@@ -30,6 +31,7 @@ struct SessionNewVerbArguments {
   std::size_t subjects = 0;  ///< 0: one session, for `subject`
   std::string output;
   std::string device;
+  std::string device_model;
   KeyArguments key;
   bool no_check = false;
   bool replace = false;
@@ -62,10 +64,13 @@ void check_on_device(const SessionNewVerbArguments& arguments, const Protocol& p
   if (!uri.starts_with("sim:")) {
     warn(uri.empty() ? "no device is named, so that nothing was checked on it; 'kerf session run' does"
                      : fmt::format("{} is not moved now; 'kerf session run' checks the laws on it", uri));
+    for (const std::string& remark : felt_remarks(protocol, uri, SamplesTold::by_name)) warn(remark);
     return;
   }
   const StopOnSignal signals;
-  for (const std::string& remark : check_samples(protocol, uri, signals.requested())) warn(remark);
+  for (const std::string& remark :
+       check_samples(protocol, uri, signals.requested(), SamplesTold::by_name, arguments.device_model))
+    warn(remark);
 }
 
 /// Of the subjects; one that is named alone keeps the code.
@@ -107,7 +112,7 @@ std::vector<fs::path> in_folder(const fs::path& folder, const std::vector<std::s
 
 /// Makes the samples of a tissue as strong if they are to be, and tries all of them on the device.
 void prepare(const SessionNewVerbArguments& arguments, Protocol& protocol, Context& context) {
-  match_loudness(protocol);
+  for (const std::string& remark : find_gains(protocol, arguments.device)) warn(remark);
   for (const SessionSample& sample : protocol.samples) {
     if (sample.gain != 1.0)
       context.say(fmt::format("  {:24} forces times {:.4g}, to be as strong", sample.name, sample.gain));
@@ -186,10 +191,10 @@ void add_session_new(CLI::App& session, Context& context) {
       "kerf session new abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5\n"
       "  kerf session new abx.protocol.toml --subjects 12 --key-file keeper.key -o study\n"
       "  kerf session new study/experiment.toml --key-file keeper.key\n\n"
-      "Sessions of one study made together are counterbalanced over its subjects. Protocol and laws\n"
-      "are copied into the session; docs/sessions.md has the protocol's format. Of an experiment ('kerf "
-      "session\n"
-      "plan') it registers the plan and makes the sessions of all participants beside it.",
+      "Sessions of one study made together are counterbalanced over its subjects. Protocol, laws and the\n"
+      "subjects' texts are copied into the session; docs/sessions-protocol.md has the protocol's format. Of\n"
+      "an experiment ('kerf session plan') it registers the plan and makes the sessions of all participants\n"
+      "beside it.",
       [arguments, &context] { make_sessions(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("PROTOCOL", arguments->protocol, "The protocol, NAME.protocol.toml, or an experiment")
@@ -202,6 +207,8 @@ void add_session_new(CLI::App& session, Context& context) {
                   "The session file, or with --subjects a folder; an experiment has its own");
   verb.add_option("--replaces", arguments->replaces,
                   "Of an experiment: a session in the order of this participant, who was dropped");
+  verb.add_option("--device-model", arguments->device_model,
+                  "NAME.device.toml: the device as measured, for its checks (default: what is kept of it)");
   verb.add_option("--device", arguments->device,
                   "Check the laws on this simulated device (default: the protocol's)");
   add_key_options(verb, arguments->key);

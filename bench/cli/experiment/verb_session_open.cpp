@@ -7,7 +7,6 @@
 #include "experiment/key_arguments.h"
 #include "experiment/session_log.h"
 #include "experiment/verb_session.h"
-#include "sealed/opening.h"
 #include "sealed/session_export.h"
 
 namespace kerf::bench {
@@ -22,11 +21,9 @@ struct SessionOpenVerbArguments {
 };
 
 void open(SessionOpenVerbArguments& arguments, Context& context) {
-  const SealKey key = key_for(arguments.key, derivation_of(arguments.file));
-  record_opening(arguments.file, key, arguments.reason);
-  const SessionStore store(arguments.file, key, SessionStore::Purpose::read);
+  const auto opened = opened_session(arguments.file, arguments.key, arguments.reason);
+  const SessionStore& store = *opened;
   for (const std::string& warning : store.warnings()) warn(warning);
-  log_opening(arguments.file, store, arguments.key, arguments.reason);
   export_session(store, arguments.output, arguments.replace);
   context.result = {{"file", arguments.file},
                     {"output", arguments.output},
@@ -34,8 +31,9 @@ void open(SessionOpenVerbArguments& arguments, Context& context) {
                     {"finished", store.finished()},
                     {"early_openings", store.early_openings()}};
   for (const std::string& opening : store.early_openings()) warn("opened before its end: " + opening);
-  context.say(fmt::format("{}: trials.csv, slots.csv and a recording of each of {} trials", arguments.output,
-                          store.trials().size()));
+  context.say(fmt::format(
+      "{}: trials.csv, slots.csv{} and a recording of each of {} trials", arguments.output,
+      store.protocol().questionnaire.is_asked() ? ", questionnaire.csv" : "", store.trials().size()));
 }
 
 }  // namespace
@@ -50,7 +48,9 @@ void add_session_open(CLI::App& session, Context& context) {
       [arguments, &context] { open(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("FILE", arguments->file, "The session").required();
-  verb.add_option("-o,--output", arguments->output, "Folder for trials.csv, slots.csv and the recordings")
+  verb.add_option(
+          "-o,--output", arguments->output,
+          "Folder for trials.csv, slots.csv, questionnaire.csv (where one is asked) and the recordings")
       .required();
   verb.add_option("--reason", arguments->reason, "Why it is opened before its end; kept in the file");
   add_key_options(verb, arguments->key);

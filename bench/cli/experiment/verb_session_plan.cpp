@@ -155,6 +155,9 @@ void add_session_plan(CLI::App& session, Context& context) {
   verb.add_option("--exclude-unfelt", analysis.exclude.unfelt,
                   "Likewise of trials with a slot whose force cannot be felt")
       .within(0.0, 1.0);
+  verb.add_option("--exclude-catch-right", analysis.exclude.catch_right,
+                  "Least share of right catch trials of a participant who is analysed (default: not asked)")
+      .within(0.0, 1.0);
   verb.add_option("--exclude", analysis.exclude.rules,
                   "Why else a participant is excluded, in words (may be repeated)")
       .one_value_each();

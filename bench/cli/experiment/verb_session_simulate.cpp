@@ -8,6 +8,8 @@
 #include <fmt/core.h>
 
 #include "experiment/verb_session.h"
+#include "felt/felt_gains.h"
+#include "felt/felt_remarks.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
@@ -66,20 +68,30 @@ Protocol protocol_to_simulate(const SessionSimulateVerbArguments& arguments, Sim
   options.analysis.margin = experiment.analysis.margin;
   options.analysis.d_prime_bound = experiment.analysis.d_prime;
   options.analysis.jnd_margins = experiment.analysis.jnd_margins;
+  options.catch_right = experiment.analysis.exclude.catch_right;
   options.experiment = experiment;
   return protocol_of(experiment, file);
 }
 
 void warn_of_what_has_no_bearing(const Protocol& protocol, const SimulationOptions& options) {
   const Judging judging = judging_of(protocol);
-  const bool by_distances = judging != Judging::strongest && judging != Judging::preference;
-  if (options.observer.bias != 0.0 && by_distances)
-    warn(fmt::format("--bias has no bearing on '{}': its observers judge by distances",
+  const bool by_distances = judging == Judging::abx_independent || judging == Judging::abx_differencing ||
+                            judging == Judging::odd_one_out;
+  const bool of_numbers = asks_numbers(protocol.design);
+  if (options.observer.bias != 0.0 && (by_distances || of_numbers))
+    warn(
+        fmt::format("--bias has no bearing on '{}': its observers favour no slot", name_of(protocol.design)));
+  if (options.sensation.d_prime && (has_levels(protocol.design) || protocol.design == Design::magnitude))
+    warn(fmt::format("--d-prime has no bearing on '{}', whose answers follow what is rendered",
                      name_of(protocol.design)));
-  if (options.sensation.d_prime && has_levels(protocol.design))
-    warn(fmt::format("--d-prime has no bearing on '{}', whose samples differ by their level",
-                     name_of(protocol.design)));
-  if (options.observer.preference != 0.0 && judging != Judging::preference)
+  if (options.catch_right && protocol.catches.every == 0)
+    throw std::invalid_argument("--catch-right is of catch trials, and the protocol has no [catch]");
+  if (options.observer.share_feeling < 1.0 && protocol.design == Design::magnitude)
+    warn("--share-feeling has no bearing on 'magnitude': give some an exponent by --exponent-spread");
+  if (options.observer.preference != 0.0 && of_numbers)
+    warn(
+        fmt::format("--preference has no bearing on '{}', which asks for numbers", name_of(protocol.design)));
+  if (options.observer.preference != 0.0 && !of_numbers && judging != Judging::preference)
     warn(fmt::format("--preference has no bearing on '{}', where an answer is right",
                      name_of(protocol.design)));
 }
@@ -102,7 +114,9 @@ void run(const SessionSimulateVerbArguments& arguments, Context& context) {
   SimulationOptions options = options_of(arguments, context);
   Protocol protocol = protocol_to_simulate(arguments, options);
   if (arguments.trials > 0) protocol = with_trials(std::move(protocol), arguments.trials);
-  match_loudness(protocol);
+  const std::string& device = options.sensation.felt.device_uri;
+  for (const std::string& remark : find_gains(protocol, device)) warn(remark);
+  for (const std::string& remark : felt_remarks(protocol, device, SamplesTold::by_name)) warn(remark);
   warn_of_what_has_no_bearing(protocol, options);
   if (!arguments.output.empty()) {
     for (const char* file : {"simulate.html", "simulate.json", "simulate.csv"})
@@ -145,18 +159,54 @@ void add_session_simulate(CLI::App& session, Context& context) {
   verb.add_option("--lapse", observer.lapse, "Lapse rate: share of answers by chance")
       .within(0.0, 1.0)
       .with_default();
+  verb.add_option(
+          "--slips", observer.slip,
+          "Share of the trials that are taken back before the answer ('slip' of the protocol's [trial])")
+      .within(0.0, 0.99)
+      .with_default();
+  verb.add_option("--unexplored", observer.unexplored,
+                  "Share of the other trials that are not felt as the protocol's 'explore' asks")
+      .within(0.0, 0.99)
+      .with_default();
   verb.add_option("--bias", observer.bias, "Response bias to the first slot [d']").with_default();
   verb.add_option("--spread", observer.spread, "Between subjects: standard deviation of ln(JND)")
       .not_negative()
       .with_default();
   verb.add_option("--preference-spread", observer.preference_spread,
-                  "Between subjects: standard deviation of --preference [d']")
+                  "Between subjects: standard deviation of --preference [d']; of numbers of a taste for each "
+                  "sample")
+      .not_negative()
+      .with_default();
+  verb.add_option("--exponent", observer.exponent, "Of magnitudes: mean exponent of what is felt")
+      .with_default();
+  verb.add_option("--exponent-spread", observer.exponent_spread,
+                  "Between subjects: standard deviation of the exponent")
+      .not_negative()
+      .with_default();
+  verb.add_option("--number-noise", observer.number_noise, "Standard deviation of ln of a magnitude")
+      .not_negative()
+      .with_default();
+  verb.add_option(
+          "--modulus-spread", observer.modulus_spread,
+          "Between subjects: standard deviation of ln of the size of magnitudes; of ratings where all of "
+          "them lie [d']")
       .not_negative()
       .with_default();
   verb.add_option("--share-feeling", observer.share_feeling,
                   "Share of the subjects who feel any difference; the others guess")
       .within(0.0, 1.0)
       .with_default();
+  verb.add_option("--inattentive", observer.share_inattentive, "Share of the subjects who do not attend")
+      .within(0.0, 1.0)
+      .with_default();
+  verb.add_option("--inattention", observer.inattention,
+                  "Share of the answers of those who do not attend that come by chance")
+      .within(0.0, 1.0)
+      .with_default();
+  verb.add_option("--catch-right", arguments->simulation.catch_right,
+                  "Leave out who has less than this share of the catch trials right (an experiment has its "
+                  "own)")
+      .within(0.0, 1.0);
   AnalysisOptions& analysis = arguments->simulation.analysis;
   verb.add_option("--margin", analysis.margin,
                   "How often a preference is shown to lie within 50 % +- this (default: not asked)")

@@ -40,9 +40,12 @@ void run_together(const FitArguments& arguments, Context& context) {
   const auto names = names_of(arguments.recordings);
   std::vector<schema::Recording> recordings;
   std::vector<FitSource> sources;
-  for (const std::string& file : arguments.recordings) recordings.push_back(read_whole_recording(file));
-  for (std::size_t i = 0; i < recordings.size(); ++i)
+  for (const std::string& file : arguments.recordings) recordings.push_back(read_fitted_columns(file));
+  auto named = name_meanwhile({arguments.recordings.begin(), arguments.recordings.end()});
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
     sources.push_back(source_of(arguments, recordings[i], names[i], i));
+    sources.back().taken = [&recording = recordings[i]] { drop_rows(recording); };
+  }
   RecordingFit fit = fit_recordings(sources, options_of(arguments, sources.front()));
   if (const std::string reason = fit.refusal(); !reason.empty()) {
     throw std::invalid_argument(fmt::format("{}: {}", arguments.recordings.front(), reason));
@@ -54,9 +57,8 @@ void run_together(const FitArguments& arguments, Context& context) {
     context.exit = Exit::check_failed;
     if (fit.laws.empty()) return;
   }
-  const std::vector<fs::path> files(arguments.recordings.begin(), arguments.recordings.end());
   WholeFolder whole(folder, schema::existing_if(arguments.force));
-  write_fits(fit, files, whole.path());
+  write_fits(fit, named.get(), whole.path());
   whole.commit();
   say_fit(fit, context);
   context.say(fmt::format("law files, fit.json and fit.csv are in {}", folder.string()));

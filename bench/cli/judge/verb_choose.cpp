@@ -79,6 +79,8 @@ void finish(const ChooseVerbArguments& arguments, Context& context, LawChoice& c
   context.result = json;
   for (const std::string& warning : choice.warnings) warn(warning);
   say_choice(choice, context);
+  if (const auto& model = json.at("device_model"); !model.is_null())
+    context.say(model.at("about").get<std::string>());
   context.say(choice.why);
   if (!choice.blame.empty()) context.say("what is to blame: " + choice.blame);
   if (output) {
@@ -144,7 +146,8 @@ void choose_for_blade(const ChooseVerbArguments& arguments, Context& context, co
   LawChoice choice = choose_fidelity(scene, options, stop);
   nlohmann::ordered_json json{{"name", scene.name},
                               {"scene", arguments.scene},
-                              {"device", checks ? nlohmann::ordered_json(uri) : nullptr}};
+                              {"device", checks ? nlohmann::ordered_json(uri) : nullptr},
+                              {"device_model", checks ? as_json(checks->model()) : nullptr}};
   json.update(choice_as_json(choice));
   finish(arguments, context, choice, json, {}, output);
 }
@@ -212,6 +215,9 @@ void add_choose(CLI::App& app, Context& context) {
   verb.add_option("--device", arguments->loop.device_uri,
                   "Device for the closed loop (default: that of the recording if it was simulated, else the "
                   "first simulated one with such an axis)");
+  verb.add_option(
+      "--device-model", arguments->loop.device_model,
+      "NAME.device.toml: the device as measured, for its stability (default: what is kept of it)");
   verb.add_option("--seconds", arguments->loop.seconds, "Duration of a closed loop by the wall clock [s]")
       .within(0.1, 3600.0)
       .with_default();

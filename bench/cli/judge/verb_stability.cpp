@@ -11,7 +11,10 @@
 #include "cases/case_findings.h"
 #include "files/whole_folder.h"
 #include "laws/law_file.h"
+#include "program/progress.h"
 #include "program/verbs.h"
+#include "program/wall_search_arguments.h"
+#include "run/run.h"
 #include "stability/findings.h"
 #include "stability/study.h"
 
@@ -23,6 +26,9 @@ struct StabilityVerbArguments {
   bool all_cases = false;
   std::vector<std::string> cases;
   StudyOptions study;
+  bool plane = false;
+  bool z_width = false;
+  bool controllers = false;
   bool no_cells = false;
   std::size_t threads = 0;
   std::string output;
@@ -44,6 +50,30 @@ Findings study(const StabilityVerbArguments& given, Context& context) {
   StudyOptions options = given.study;
   options.map.with_cells = !given.no_cells;
   options.map.threads = given.threads > 0 ? given.threads : std::max(1U, std::thread::hardware_concurrency());
+  const bool several = !options.several.of.empty();
+  const int of_walls = int{given.plane} + int{several} + int{given.z_width} + int{given.controllers};
+  if (of_walls > 1) {
+    throw std::invalid_argument(
+        "--plane, --several, --z-width and --controllers are studies of their own; give one");
+  }
+  if (of_walls > 0 && !given.law.empty()) {
+    throw std::invalid_argument(
+        "--plane, --several, --z-width and --controllers speak of walls; leave out the law");
+  }
+  if (options.sensor_at_hand && !given.controllers)
+    throw std::invalid_argument("--hand-sensor is for --controllers; leave it out, or give both");
+  if (given.plane) return study_plane(options);
+  if (several) return study_several(options);
+  if (given.z_width) {
+    const StopOnSignal stop;
+    options.z_width.progress = show_bar;
+    return study_z_width(options, stop.requested());
+  }
+  if (given.controllers) {
+    const StopOnSignal stop;
+    options.z_width.progress = show_bar;
+    return study_controllers(options, stop.requested());
+  }
   if (given.law.empty()) return study_walls(options);
   const LawFile law = read_law_file(given.law);
   LawFindings of_law = study_law(law, given.law, options);
@@ -87,11 +117,50 @@ void add_stability(CLI::App& app, Context& context) {
   verb.takes_laws(context);
   AxisRequest& on = arguments->study.on;
   verb.add_option("LAW", arguments->law, "Law file; without one, a virtual wall is mapped");
+  verb.add_flag("--plane", arguments->plane,
+                "Draw friction, encoder, delay and period in one plane of Diolaiti's, with --wall in it");
+  verb.add_option("--wall", arguments->study.wall_n_per_m,
+                  "Stiffness of a wall in the plane; may be repeated, the map is that of the first. Of "
+                  "--controllers: the wall of their transparency [N/m]")
+      .one_value_each();
+  SeveralRequest& several = arguments->study.several;
+  verb.add_option("--several", several.of,
+                  "FILE.toml with a mass matrix, or a device: boundaries over the directions of a "
+                  "wall, all axes at once");
+  verb.add_option("--across", several.across,
+                  "Stiffness across the direction of a wall on several axes, as a share of that along it")
+      .within(0.0, 1.0)
+      .with_default();
+  verb.add_option("--wall-damping", several.wall_damping, "Damping of that wall in all directions [N·s/m]")
+      .not_negative()
+      .with_default();
+  verb.add_option("--rotation", several.rotation_rad_s, "Rate at which that wall turns with the tool [rad/s]")
+      .with_default();
+  verb.add_flag("--drags", several.drags, "Its damping acts on the speed against the turning tool");
+  verb.add_flag(
+      "--z-width", arguments->z_width,
+      "Find the stiffest wall without a limit cycle at each --damping through the device's own loop, "
+      "beside the model's");
+  verb.add_flag("--controllers", arguments->controllers,
+                "Compare ways to render a wall: none, damping, virtual coupling, passivity, exact; each with "
+                "its Z-width, transparency and cost of a tick");
+  verb.add_flag("--hand-sensor", arguments->study.sensor_at_hand,
+                "The device's force sensor reads what the hand exerts: what is felt is taken from it");
+  add_wall_search_options(verb, arguments->study);
+  verb.add_option(
+          "--model-error", arguments->study.z_width.model_error,
+          "Half of the interval of 95 % of mass, friction and hand, as a share: makes the model's band")
+      .within(0.0, 1.0)
+      .with_default();
   verb.add_flag("--cases", arguments->all_cases,
                 "Run every failure that the papers met, without and with its remedy");
   verb.add_option("--case", arguments->cases, "Run one of them by name; may be repeated").one_value_each();
   verb.add_option("--device", on.device_uri, "Device whose axis it is, as far as its driver knows it")
       .with_default();
+  verb.add_option(
+      "--device-model", on.device_model,
+      "NAME.device.toml: mass, friction, delay and resolution as measured (default: what is kept of "
+      "the device)");
   verb.add_option("--axis", on.axis, "Axis (default: the law's, else the first)");
   verb.add_option("--along", on.way.along,
                   "AXIS=SHARE: direction of the tool through a law on several axes; may be repeated")
@@ -109,7 +178,8 @@ void add_stability(CLI::App& app, Context& context) {
   verb.add_option("--filter", on.velocity_corner_rad_s,
                   "Corner of the velocity filter; 0: none (default: the driver's) [rad/s]")
       .not_negative();
-  verb.add_option("--delay", on.delay_s, "Delay from reading to force [s]").not_negative().with_default();
+  verb.add_option("--delay", on.delay_s, "Delay from reading to force instead of the device's [s]")
+      .not_negative();
   verb.add_option("--grip", on.grip, "Hand on the device: none, light, firm (a stylus) or arm")
       .one_of({"none", "light", "firm", "arm"})
       .with_default();
@@ -118,12 +188,6 @@ void add_stability(CLI::App& app, Context& context) {
       .not_negative();
   verb.add_option("--hand-stiffness", on.hand_stiffness_n_per_m, "Instead of the grip's [N/m]")
       .not_negative();
-  verb.add_option("--stiffness", arguments->study.stiffness_n_per_m,
-                  "Smallest and largest stiffness of the walls [N/m]")
-      .taking(2);
-  verb.add_option("--damping", arguments->study.damping_n_s_per_m,
-                  "Smallest and largest damping of the walls [N·s/m]")
-      .taking(2);
   verb.add_option("--cells", arguments->study.cells, "Cells along each side of a map")
       .within(2, 1000)
       .with_default();

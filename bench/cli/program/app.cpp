@@ -16,9 +16,11 @@
 #include <fmt/ranges.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/device_notes.h>
 #include <kerf/schema/recording.h>
 #include <kerf/version.h>
 
+#include "devices/verb_calibrate.h"
 #include "files/for_terminal.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
@@ -38,7 +40,7 @@ struct Group {
 
 std::vector<Group> groups() {
   return {{"start", {add_demo}},
-          {"devices", {add_devices}},
+          {"devices", {add_devices, add_doctor, add_identify, add_calibrate}},
           {"record", {add_record, add_import, add_repair, add_prepare, add_segment}},
           {"look",
            {add_info, add_inspect, add_validate,
@@ -269,6 +271,7 @@ int run_program(int argc, char** argv) {
   keep_standard_streams();
   const int status = run_caught({argv + 1, argv + argc});
   say_plugin_notes();
+  for (const std::string& line : drivers::take_device_notes()) warn(line);
   for (const auto& left : take_removed_leftovers())
     note(fmt::format("{}: removed; a run that was killed had left it unfinished", left.string()));
   finish_standard_streams();

@@ -65,6 +65,10 @@ void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& s
       .with_default();
   verb.add_flag("--passivity-control", options.passivity_control,
                 "Add damping wherever the rendering has given energy");
+  verb.add_option(
+      "--device-model", options.device_model,
+      "NAME.device.toml: mass and friction as measured, for --passivity-control (default: what is kept "
+      "of the device)");
   verb.add_flag("--force", options.replace, "Replace existing files");
 }
 

@@ -19,8 +19,8 @@ struct LoopArguments {
   std::vector<std::string> changes;  ///< LAW@SECONDS
 };
 
-/// Adds --device, --scene, --sensor, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control and
-/// --force; `scene_is` says what the verb does with a scene.
+/// Adds --device, --scene, --sensor, --seconds, --rate, --virtual, --switch, --ramp, --passivity-control,
+/// --device-model and --force; `scene_is` says what the verb does with a scene.
 void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& scene_is);
 
 /// What was asked for, with scene and the laws of --switch read. A scene also gives the device, with its hand

@@ -64,8 +64,9 @@ void add_report(CLI::App& app, Context& context) {
       "kerf report punch.h5 fits choice check.json inspect.json -o punch.html\n"
       "  kerf report punch.h5 --fits fits --check check.json -o punch.html\n\n"
       "RESULTS are what other verbs have found, files or folders, in any number: the JSON of fit,\n"
-      "choose, chart, stability, replay, check and inspect. Which it is, is told by what is in it; of a\n"
-      "folder only what is of this recording is taken. docs/reports.md says what is on the page.",
+      "choose, chart, stability, identify, replay, check and inspect. Which it is, is told by what is in "
+      "it;\n"
+      "of a folder only what is of this recording is taken. docs/reports.md says what is on the page.",
       [arguments, &context] { run_report(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("RECORDING", arguments->recording, "Recording").required();

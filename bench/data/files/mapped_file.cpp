@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include "files/named_file.h"
 
@@ -22,6 +23,14 @@ MappedFile::MappedFile(const std::filesystem::path& file, std::uintmax_t at_most
   if (mapped == MAP_FAILED)
     throw std::system_error(errno, std::generic_category(), "cannot read " + file.string());
   begin_ = mapped;
+}
+
+void MappedFile::let_go_of(std::string_view part) const noexcept {
+  if (begin_ == nullptr) return;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto first = static_cast<std::size_t>(part.data() - text().data()) / page * page;
+  const auto end = static_cast<std::size_t>(part.data() + part.size() - text().data()) / page * page;
+  if (end > first) (void)madvise(static_cast<char*>(begin_) + first, end - first, MADV_DONTNEED);
 }
 
 MappedFile::~MappedFile() {

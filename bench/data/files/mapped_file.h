@@ -24,6 +24,9 @@ class MappedFile {
     return begin_ == nullptr ? std::string_view(piped_)
                              : std::string_view(static_cast<const char*>(begin_), size_);
   }
+  /// Lets go of the memory of a part that has been looked at, of text(); it is read again where it is asked
+  /// for.
+  void let_go_of(std::string_view part) const noexcept;
 
  private:
   void* begin_ = nullptr;

@@ -57,6 +57,8 @@ AxisSeries axis_series(const schema::Recording& recording, std::size_t axis, con
 
   AxisSeries series;
   series.time_s = recording.time;
+  for (auto* column : {&series.penetration, &series.velocity, &series.force})
+    column->reserve(recording.rows());
   for (std::size_t row = 0; row < recording.rows(); ++row) {
     const std::size_t at = row * dimensions + axis;
     const models::Motion motion = contact.motion(recording.position[at], recording.velocity[at]);

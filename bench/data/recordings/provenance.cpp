@@ -4,13 +4,16 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <memory>
+#include <new>
 #include <numeric>
 #include <span>
 #include <type_traits>
 #include <vector>
 
 #include <fmt/format.h>
-#include <sodium.h>
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
 
 #include <kerf/schema/recording_file.h>
 
@@ -23,9 +26,14 @@ static_assert(std::endian::native == std::endian::little, "values are hashed as 
 
 constexpr std::uint64_t rows_at_once = 65536;
 
+/// By OpenSSL, which takes the instructions that most processors have for it: five times as fast as without.
 class Digest {
  public:
-  Digest() { crypto_hash_sha256_init(&state_); }
+  Digest() : state_(EVP_MD_CTX_new()) {
+    // Whatever a configuration of OpenSSL says, a hash is the same.
+    require(OPENSSL_init_crypto(OPENSSL_INIT_NO_LOAD_CONFIG, nullptr) == 1);
+    require(state_ != nullptr && EVP_DigestInit_ex(state_.get(), EVP_sha256(), nullptr) == 1);
+  }
 
   void add(std::string_view text) {
     bytes(text.data(), text.size());
@@ -37,18 +45,24 @@ class Digest {
   void add(std::span<const T> values) { bytes(values.data(), values.size_bytes()); }
   void add(double value) { add(std::span<const double>(&value, 1)); }
 
+  void bytes(const void* data, std::size_t size) { require(EVP_DigestUpdate(state_.get(), data, size) == 1); }
+
   [[nodiscard]] std::string hexadecimal() {
-    std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-    crypto_hash_sha256_final(&state_, digest.data());
+    std::array<unsigned char, 32> digest{};
+    require(EVP_DigestFinal_ex(state_.get(), digest.data(), nullptr) == 1);
     return fmt::format("{:02x}", fmt::join(digest, ""));
   }
 
  private:
-  void bytes(const void* data, std::size_t size) {
-    crypto_hash_sha256_update(&state_, static_cast<const unsigned char*>(data), size);
+  /// SHA-256 fails where there is no memory, and nowhere else.
+  static void require(bool done) {
+    if (!done) throw std::bad_alloc();
   }
+  struct Free {
+    void operator()(EVP_MD_CTX* state) const { EVP_MD_CTX_free(state); }
+  };
 
-  crypto_hash_sha256_state state_{};
+  std::unique_ptr<EVP_MD_CTX, Free> state_;
 };
 
 /// Adds `width` values a row of some rows at a time; `read(first, rows, values)`.
@@ -114,9 +128,9 @@ void add_history(schema::Header& header, std::string_view step) {
 }
 
 std::string sha256_of(std::string_view content) {
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest{};
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(content.data()), content.size());
-  return fmt::format("{:02x}", fmt::join(digest, ""));
+  Digest digest;
+  digest.bytes(content.data(), content.size());
+  return digest.hexadecimal();
 }
 
 std::string content_sha256_of(const schema::RecordedRows& rows) {
@@ -151,6 +165,17 @@ std::string content_sha256_of(const std::filesystem::path& file) {
   return content_sha256_of(schema::RecordingFile(file));
 }
 
-std::string sha256_of(const std::filesystem::path& file) { return sha256_of(MappedFile(file).text()); }
+std::string sha256_of(const std::filesystem::path& file) {
+  constexpr std::size_t at_once = std::size_t{16} << 20U;
+  const MappedFile mapped(file);
+  Digest digest;
+  for (std::string_view rest = mapped.text(); !rest.empty();
+       rest.remove_prefix(std::min(at_once, rest.size()))) {
+    const std::string_view part = rest.substr(0, at_once);
+    digest.bytes(part.data(), part.size());
+    mapped.let_go_of(part);
+  }
+  return digest.hexadecimal();
+}
 
 }  // namespace kerf::bench

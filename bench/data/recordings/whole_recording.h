@@ -11,4 +11,11 @@ namespace kerf::bench {
 /// for so many rows.
 [[nodiscard]] schema::Recording read_whole_recording(const std::filesystem::path& file);
 
+/// The same of what fits of laws take: time, ticks, positions, velocities and the force that counts, measured
+/// where there is a sensor, else commanded. Every other column is left empty, and channels have no values.
+[[nodiscard]] schema::Recording read_fitted_columns(const std::filesystem::path& file);
+
+/// Lets go of the rows; what is said of them stays.
+void drop_rows(schema::Recording& recording);
+
 }  // namespace kerf::bench

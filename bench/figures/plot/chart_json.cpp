@@ -1,6 +1,12 @@
 #include "plot/chart_json.h"
 
+#include <algorithm>
 #include <array>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "files/json_number.h"
 
@@ -61,6 +67,100 @@ json list_of(const std::vector<Part>& parts) {
   return list;
 }
 
+template <typename Names>
+std::size_t number_of(const Names& names, const std::string& name, const char* what) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw std::invalid_argument(fmt::format("a chart has no {} '{}'", what, name));
+  return static_cast<std::size_t>(found - names.begin());
+}
+Colour colour_from(const json& part) {
+  return static_cast<Colour>(number_of(colour_names, part.value("colour", std::string("black")), "colour"));
+}
+
+double number_in(const json& part, const char* name) {
+  const auto found = part.find(name);
+  return found == part.end() ? std::numeric_limits<double>::quiet_NaN() : number_from(*found);
+}
+std::vector<double> numbers_in(const json& part, const char* name) {
+  std::vector<double> numbers;
+  if (part.contains(name)) {
+    for (const json& one : part.at(name)) numbers.push_back(number_from(one));
+  }
+  return numbers;
+}
+Range range_in(const json& part, const char* name) {
+  const auto found = part.find(name);
+  if (found == part.end() || found->is_null()) return {};
+  return {.begin = found->at(0).get<double>(), .end = found->at(1).get<double>()};
+}
+/// Each part of a list by its reader.
+template <typename Part>
+std::vector<Part> parts_in(const json& of, const char* name, Part (*read)(const json&)) {
+  std::vector<Part> parts;
+  if (of.contains(name)) {
+    for (const json& one : of.at(name)) parts.push_back(read(one));
+  }
+  return parts;
+}
+
+Curve curve_from(const json& part) {
+  Curve curve{
+      .label = part.value("label", std::string()),
+      .x = numbers_in(part, "x"),
+      .y = numbers_in(part, "y"),
+      .colour = colour_from(part),
+      .mark = static_cast<Mark>(number_of(mark_names, part.value("mark", std::string("line")), "mark")),
+      .width = part.value("width", 1.5),
+      .dashed = part.value("dashed", false),
+      .of = part.value("of", std::vector<std::size_t>())};
+  if (curve.x.size() != curve.y.size()) {
+    throw std::invalid_argument(fmt::format("the curve '{}' of a chart has {} x and {} y", curve.label,
+                                            curve.x.size(), curve.y.size()));
+  }
+  return curve;
+}
+Band band_from(const json& part) {
+  return {.begin = number_in(part, "begin"), .end = number_in(part, "end"), .colour = colour_from(part)};
+}
+CellKind kind_from(const json& part) {
+  return {.colour = colour_from(part),
+          .label = part.value("label", std::string()),
+          .dotted = part.value("dotted", false)};
+}
+Marker marker_from(const json& part) {
+  return {.at = number_in(part, "at"),
+          .label = part.value("label", std::string()),
+          .label_after = part.value("label_after", false)};
+}
+NamedTick tick_from(const json& part) {
+  return {.at = number_in(part, "at"), .name = part.value("name", std::string())};
+}
+PointLabel label_from(const json& part) {
+  return {.x = number_in(part, "x"),
+          .y = number_in(part, "y"),
+          .text = part.value("text", std::string()),
+          .left = part.value("left", false),
+          .text_x = number_in(part, "text_x"),
+          .text_y = number_in(part, "text_y")};
+}
+
+Cells cells_in(const json& of) {
+  const auto part = of.find("cells");
+  if (part == of.end()) return {};
+  Cells cells{.x_edges = numbers_in(*part, "x_edges"),
+              .y_edges = numbers_in(*part, "y_edges"),
+              .upwards = part->value("upwards", false),
+              .kinds = parts_in(*part, "kinds", kind_from),
+              .kind = part->value("kind", std::vector<std::size_t>())};
+  const std::size_t columns = std::max<std::size_t>(cells.x_edges.size(), 1) - 1;
+  const std::size_t rows = std::max<std::size_t>(cells.y_edges.size(), 1) - 1;
+  const bool is_grid = cells.kind.empty() || cells.kind.size() == columns * rows;
+  const bool is_named =
+      std::ranges::all_of(cells.kind, [&](std::size_t kind) { return kind < cells.kinds.size(); });
+  if (!is_grid || !is_named) throw std::invalid_argument("the cells of a chart are no grid of its kinds");
+  return cells;
+}
+
 }  // namespace
 
 json chart_to_json(const Chart& chart) {
@@ -84,6 +184,24 @@ json chart_to_json(const Chart& chart) {
           {"y_range", as_json(chart.y_range)},
           {"log_x", chart.log_x},
           {"log_y", chart.log_y}};
+}
+
+Chart chart_from_json(const json& from) {
+  return {.title = from.value("title", std::string()),
+          .x_label = from.value("x_label", std::string()),
+          .y_label = from.value("y_label", std::string()),
+          .curves = parts_in(from, "curves", curve_from),
+          .bands = parts_in(from, "bands", band_from),
+          .cells = cells_in(from),
+          .vertical = parts_in(from, "vertical", marker_from),
+          .horizontal = parts_in(from, "horizontal", marker_from),
+          .labels = parts_in(from, "labels", label_from),
+          .x_ticks = parts_in(from, "x_ticks", tick_from),
+          .y_ticks = parts_in(from, "y_ticks", tick_from),
+          .x_range = range_in(from, "x_range"),
+          .y_range = range_in(from, "y_range"),
+          .log_x = from.value("log_x", false),
+          .log_y = from.value("log_y", false)};
 }
 
 }  // namespace kerf::bench

@@ -7,6 +7,8 @@
 #include <deque>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <limits>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -111,26 +113,52 @@ std::vector<Curve> curves_of(const Chart& chart) {
   return curves;
 }
 
-/// One number a decade is hardly any on a logarithmic axis of less than two: 1, 2 and 5 of each. None for a
-/// longer axis, or one whose range is not given.
+/// One number a decade is hardly any on a logarithmic axis of less than two: 1, 2 and 5 of each, or all
+/// digits where those are fewer than three. None for a longer axis.
 std::vector<NamedTick> ticks_of_few_decades(const Range& range) {
   if (!(range.begin > 0.0 && range.begin < range.end && range.end < 100.0 * range.begin)) return {};
-  std::vector<NamedTick> ticks;
-  for (double decade = std::pow(10.0, std::floor(std::log10(range.begin))); decade <= range.end;
-       decade *= 10.0) {
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      const double at = factor * decade;
-      if (at >= range.begin && at <= range.end) ticks.push_back({.at = at, .name = fmt::format("{:g}", at)});
+  const auto ticks_at = [&](std::initializer_list<double> factors) {
+    std::vector<NamedTick> ticks;
+    for (double decade = std::pow(10.0, std::floor(std::log10(range.begin))); decade <= range.end;
+         decade *= 10.0) {
+      for (const double factor : factors) {
+        const double at = factor * decade;
+        if (at >= range.begin && at <= range.end)
+          ticks.push_back({.at = at, .name = fmt::format("{:g}", at)});
+      }
+    }
+    return ticks;
+  };
+  std::vector<NamedTick> ticks = ticks_at({1.0, 2.0, 5.0});
+  return ticks.size() < 3 ? ticks_at({1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0}) : ticks;
+}
+
+/// Of the numbers above zero that a logarithmic axis without a range has to hold.
+Range needed_range(const std::vector<Curve>& curves, std::vector<double> Curve::*numbers) {
+  Range range{.begin = std::numeric_limits<double>::infinity(), .end = 0.0};
+  for (const Curve& curve : curves) {
+    for (const double value : curve.*numbers) {
+      if (!std::isfinite(value) || value <= 0.0) continue;
+      range.begin = std::min(range.begin, value);
+      range.end = std::max(range.end, value);
     }
   }
-  return ticks;
+  return range;
+}
+
+/// Names of ticks are formats of numbers to gnuplot.
+std::string without_formats(const std::string& name) {
+  std::string plain;
+  for (const char c : name) plain += c == '%' ? std::string("%%") : std::string(1, c);
+  return plain;
 }
 
 std::string ticks_of(char axis, const std::vector<NamedTick>& ticks) {
   if (ticks.empty()) return {};
   std::string script = fmt::format("set {}tics (", axis);
   for (const NamedTick& tick : ticks) {
-    script += fmt::format("{}{} {}", &tick == &ticks.front() ? "" : ", ", gnuplot_text(tick.name), tick.at);
+    script += fmt::format("{}{} {}", &tick == &ticks.front() ? "" : ", ",
+                          gnuplot_text(without_formats(tick.name)), tick.at);
   }
   return script + ")\n";
 }
@@ -165,11 +193,13 @@ std::string script_of(const Chart& chart, const std::string& output) {
     script += "unset key\nset rmargin 3\n";
   if (chart.left_margin > 0) fmt::format_to(out, "set lmargin {}\n", chart.left_margin);
   if (chart.right_margin > 0) fmt::format_to(out, "set rmargin {}\n", chart.right_margin);
-  const auto ticks = [](const std::vector<NamedTick>& given, bool logarithmic, const Range& range) {
-    return given.empty() && logarithmic ? ticks_of_few_decades(range) : given;
+  const auto ticks = [&](const std::vector<NamedTick>& given, bool logarithmic, const Range& range,
+                         std::vector<double> Curve::*numbers) {
+    if (!given.empty() || !logarithmic) return given;
+    return ticks_of_few_decades(range.begin < range.end ? range : needed_range(chart.curves, numbers));
   };
-  script += ticks_of('x', ticks(chart.x_ticks, chart.log_x, chart.x_range)) +
-            ticks_of('y', ticks(chart.y_ticks, chart.log_y, chart.y_range));
+  script += ticks_of('x', ticks(chart.x_ticks, chart.log_x, chart.x_range, &Curve::x)) +
+            ticks_of('y', ticks(chart.y_ticks, chart.log_y, chart.y_range, &Curve::y));
   for (const Band& band : chart.bands) {
     fmt::format_to(
         out,

@@ -13,6 +13,7 @@
 #include <kerf/schema/recording.h>
 
 #include "files/whole_file.h"
+#include "host/no_device.h"
 #include "host/realtime.h"
 #include "loop/clock.h"
 #include "loop/loop.h"
@@ -22,20 +23,6 @@ namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
-
-/// A device without axes: the loop around it is empty.
-class NoDevice final : public drivers::Device {
- public:
-  [[nodiscard]] const drivers::DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] drivers::Status read(double, drivers::Sample&) noexcept override {
-    return drivers::Status::ok;
-  }
-  [[nodiscard]] drivers::Status write(const drivers::Axes&) noexcept override { return drivers::Status::ok; }
-  void release(double) noexcept override {}
-
- private:
-  drivers::DeviceInfo info_;
-};
 
 /// How late a thread is that only sleeps, half a millisecond each time.
 Histogram sleep_lateness(int sleeps) {

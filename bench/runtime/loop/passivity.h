@@ -85,6 +85,12 @@ class PassivityController {
     }
   }
 
+  /// What was measured of an axis takes the place of what the driver knows.
+  void know(std::size_t axis, const drivers::Mechanics& measured) noexcept {
+    viscous_[axis] = measured.viscous_n_s_per_m;
+    most_damping_[axis] = measured.mass_kg / period_s_;
+  }
+
   /// Forgets everything. What comes until the next reading is no work of a force.
   void restart() noexcept {
     energy_j_ = 0.0;

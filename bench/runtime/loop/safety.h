@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -25,6 +26,8 @@ struct SafetyOptions {
   double period_s = 1e-3;
   double soft_start_s = 0.25;      ///< ramp of the force at the start and after every zero force
   bool passivity_control = false;  ///< add damping where the rendering has given energy
+  /// Mass and friction of axes as they were measured, in place of what the driver knows.
+  std::array<std::optional<drivers::Mechanics>, drivers::max_axes> measured{};
 };
 
 /// Zero force that is held after the position has jumped for good, until somebody says that the tool is where
@@ -77,6 +80,7 @@ class Safety {
     for (std::size_t axis = 0; axis < count_; ++axis) {
       limit_[axis] = device.axes[axis].force_limit;
       step_limit_[axis] = device.axes[axis].slew_limit * options.period_s;
+      if (options.measured[axis]) controller_.know(axis, *options.measured[axis]);
     }
   }
 

@@ -9,7 +9,6 @@
 namespace kerf::bench {
 namespace {
 
-constexpr double missed_share = 0.01;      ///< of the deadlines that may be missed
 constexpr double passive_within_j = 1e-3;  ///< energy that quantised positions may feign
 
 double to_us(double nanoseconds) { return 1e-3 * nanoseconds; }
@@ -145,7 +144,7 @@ Verdict judge(const RunResult& result) {
                     to_us(wall_ns), to_us(cpu_ns)));
   }
   if (report.missed() > 0) {
-    if (static_cast<double>(report.missed()) > missed_share * static_cast<double>(report.ticks())) {
+    if (static_cast<double>(report.missed()) > most_missed_share * static_cast<double>(report.ticks())) {
       fail(blame_for(report), in_words(report));
     } else {
       tell(in_words(report));
@@ -186,11 +185,9 @@ nlohmann::ordered_json figures_as_json(const std::vector<drivers::Figure>& figur
 
 nlohmann::ordered_json check_as_json(const RunResult& result, const Verdict& verdict) {
   const LoopReport& report = result.report;
-  nlohmann::ordered_json json{{"device", result.device.uri},
-                              {"ticks", report.ticks()},
-                              {"executed", report.executed},
-                              {"period_s", result.period_s},
-                              {"missed", report.missed()}};
+  nlohmann::ordered_json json{{"device", result.device.uri}, {"device_model", as_json(result.device_model)},
+                              {"ticks", report.ticks()},     {"executed", report.executed},
+                              {"period_s", result.period_s}, {"missed", report.missed()}};
   for (std::size_t stage = 0; stage < stage_names.size(); ++stage) {
     json["missed_by"][stage_names[stage]] = report.missed_by[stage];
   }

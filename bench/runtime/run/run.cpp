@@ -102,6 +102,7 @@ class Run {
              .safety = {.period_s = result_.period_s,
                         .soft_start_s = options.ramp_s,
                         .passivity_control = options.passivity_control}};
+    take_measured();
     const std::vector<SwitchedLaw> laws_to_render = laws();  // before anything is written or moves
     if (!options.is_probe && (options.rendering || !laws_to_render.empty())) {
       require_probed(result_.device, options.warn);
@@ -132,6 +133,21 @@ class Run {
   }
 
  private:
+  /// Of the device's model, for the controller that counts on friction and bounds its damping by the mass.
+  void take_measured() {
+    if (!options_.passivity_control && options_.device_model.empty()) return;
+    result_.device_model = take_model(result_.device, {.file = options_.device_model,
+                                                       .rate_hz = options_.rate_hz,
+                                                       .lower_ends = true,
+                                                       .now = {},
+                                                       .warn = options_.warn});
+    if (!result_.device_model) return;
+    for (std::size_t axis = 0; axis < result_.device.axes.size(); ++axis)
+      loop_.safety.measured[axis] = result_.device.axes[axis].mechanics;
+    if (!options_.warn) return;
+    for (const std::string& doubt : result_.device_model->doubts) options_.warn(doubt);
+  }
+
   void run_counted(const LoopControl& control, Recorder* recorder) {
     NoRecorder none;
     if (options_.each_row) {

@@ -11,6 +11,7 @@
 
 #include <kerf/drivers/device.h>
 
+#include "device_model/model_in_use.h"
 #include "files/progress.h"
 #include "host/host_floor.h"
 #include "host/realtime.h"
@@ -50,6 +51,9 @@ struct RunOptions {
   std::function<void(const schema::Row&)> each_row;
   double ramp_s = 0.25;  ///< of the soft start, and from law to law
   bool passivity_control = false;
+  /// File of the device's model, of which the passivity controller takes mass and friction; empty: the one
+  /// that is kept of the device, if its driver knows less.
+  std::string device_model;
   bool is_probe = false;  ///< finds out itself which way the device pushes: no kept probe is asked for
   ZeroHold* zero_hold = nullptr;  ///< where somebody confirms after a jump of the position; none: nobody can
   std::optional<Scene> scene;     ///< what a simulated device meets
@@ -68,6 +72,7 @@ struct RunOptions {
 
 struct RunResult {
   drivers::DeviceInfo device;
+  std::optional<ModelInUse> device_model;  ///< that a controller took numbers from, or that was named
   double period_s = 0.0;
   LoopReport report;
   std::vector<RealtimeMeasure> realtime;  ///< empty in virtual time

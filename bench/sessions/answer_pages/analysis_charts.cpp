@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/roc_chart.h"
 #include "signal/quantiles.h"
 
 namespace kerf::bench {
@@ -135,11 +136,27 @@ void add_points(Chart& chart, const LevelFit& fit) {
 std::vector<double> times_of(const Study& study, const std::string* subject, std::optional<bool> right) {
   std::vector<double> times;
   for (const Judgement& each : study.judgements) {
-    if (each.practice || !std::isfinite(each.response_s)) continue;
+    if (!each.counts() || !std::isfinite(each.response_s)) continue;
     if ((subject != nullptr && each.subject != *subject) || (right && each.is_right() != *right)) continue;
     times.push_back(each.response_s);
   }
   return times;
+}
+
+/// Every sample with its interval over subjects.
+Chart estimate_chart(const Analysis& analysis) {
+  const EstimateAnalysis& estimates = *analysis.estimates;
+  Forest forest(estimates.of_magnitudes ? "Magnitudes over subjects" : "Ratings over subjects",
+                !estimates.of_magnitudes ? "mean rating"
+                : estimates.has_modulus  ? "times the number of the standard"
+                                         : "times the mean of all samples");
+  for (const EstimatedTissue& tissue : estimates.tissues) {
+    const std::string where = tissue.tissue.empty() ? std::string() : tissue.tissue + ": ";
+    for (const EstimatedSample& sample : tissue.samples)
+      forest.add(where + sample.name, sample.value, sample.interval, Colour::blue);
+    forest.leave_space();
+  }
+  return forest.finished();
 }
 
 }  // namespace
@@ -213,10 +230,17 @@ Chart psychometric_chart(const Analysis& analysis) {
   return chart;
 }
 
+/// "staircase", or which of several.
+std::string staircase_name(const AdaptiveTrack& track, const Analysis& analysis) {
+  const bool is_one_of_several = std::any_of(analysis.tracks.begin(), analysis.tracks.end(),
+                                             [](const AdaptiveTrack& other) { return other.number > 0; });
+  return is_one_of_several ? fmt::format("staircase {}", track.number + 1) : "staircase";
+}
+
 Chart track_chart(const AdaptiveTrack& track, const Analysis& analysis) {
   const bool staircase = analysis.design == Design::staircase;
   Chart chart{.title = fmt::format("{}, session {}: {}", track.subject, track.session,
-                                   staircase ? "staircase" : "QUEST+"),
+                                   staircase ? staircase_name(track, analysis) : "QUEST+"),
               .x_label = "trial",
               .y_label = "level [1, fraction of the standard]",
               .log_y = true,
@@ -317,6 +341,8 @@ std::vector<Figure> analysis_figures(const Study& study, const Analysis& analysi
   if (analysis.trials == 0) return figures;
   if (analysis.levels && analysis.levels->pooled.points.size() > 1)
     figures.push_back({"psychometric", psychometric_chart(analysis)});
+  if (analysis.ratings && analysis.ratings->all.area)
+    figures.push_back({"roc", roc_chart(*analysis.ratings, analysis.options.confidence)});
   for (std::size_t i = 0; i < std::min(analysis.tracks.size(), max_tracks); ++i)
     figures.push_back({fmt::format("track-{}", i + 1), track_chart(analysis.tracks[i], analysis)});
   for (std::size_t i = 0; i < analysis.rankings.size(); ++i) {
@@ -325,6 +351,7 @@ std::vector<Figure> analysis_figures(const Study& study, const Analysis& analysi
   }
   if ((analysis.all || !analysis.by_pair.empty()) && !analysis.levels)
     figures.push_back({"proportions", proportion_chart(analysis)});
+  if (analysis.estimates) figures.push_back({"estimates", estimate_chart(analysis)});
   if (analysis.times.trials > 0) figures.push_back({"response-times", time_chart(study, analysis)});
   return figures;
 }

@@ -7,8 +7,8 @@
 
 namespace kerf::bench {
 
-/// What of an analysis is drawn, by name: "proportions", "psychometric", "track-1" ..., "ranking-1" ...,
-/// "response-times"; those that the study has something for.
+/// What of an analysis is drawn, by name: "proportions", "psychometric", "roc", "track-1" ..., "ranking-1"
+/// ..., "response-times"; those that the study has something for.
 [[nodiscard]] std::vector<Figure> analysis_figures(const Study& study, const Analysis& analysis);
 
 /// Shares with their intervals, one line a group, against chance.

@@ -5,8 +5,12 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/estimates_text.h"
 #include "answer_pages/experiment_words.h"
+#include "answer_pages/explored_words.h"
+#include "answer_pages/felt_words.h"
 #include "answer_pages/levels_json.h"
+#include "answer_pages/ratings_text.h"
 #include "files/json_number.h"
 
 namespace kerf::bench {
@@ -130,7 +134,7 @@ json bias_as_json(const SlotBias& bias, Design design) {
   json result{{"slots", json::array()},
               {"p_value", bias.note.empty() ? json_number(bias.test.p) : json(nullptr)}};
   for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
-    result["slots"].push_back({{"slot", label_of(design, slot)},
+    result["slots"].push_back({{"slot", answer_label_of(design, slot)},
                                {"answers", bias.answers[slot]},
                                {"right", count_as_json(bias.right_in[slot])}});
   }
@@ -204,6 +208,7 @@ json tracks_as_json(const std::vector<AdaptiveTrack>& tracks) {
   for (const AdaptiveTrack& track : tracks) {
     json& one = result.emplace_back(json{{"subject", track.subject},
                                          {"session", track.session},
+                                         {"staircase", track.number + 1},
                                          {"trials", track.levels.size()},
                                          {"reversals", track.reversals},
                                          {"mean_of_reversals", nullptr},
@@ -219,6 +224,7 @@ json tracks_as_json(const std::vector<AdaptiveTrack>& tracks) {
       one["quest_plus"] = {{"threshold", json_number(track.quest->threshold)},
                            {"credible95", pair_of(track.quest->interval)},
                            {"slope", json_number(track.quest->slope)},
+                           {"guess", json_number(track.quest->guess)},
                            {"lapse", json_number(track.quest->lapse)}};
     }
   }
@@ -237,10 +243,24 @@ json times_as_json(const ResponseTimes& times) {
 }
 
 json quality_as_json(const AnswerQuality& quality) {
+  json reasons = json::object();
+  for (std::size_t reason = 0; reason < void_reasons; ++reason)
+    reasons[std::string(name_of(static_cast<VoidReason>(reason)))] = quality.by_reason[reason];
   return {{"known", quality.known},
           {"unfelt", quality.known > 0 ? json(quality.unfelt) : json(nullptr)},
           {"faulty", quality.known > 0 ? json(quality.faulty) : json(nullptr)},
-          {"without", {{"trials", quality.without}, {"p_value", json_number(quality.p_value)}}}};
+          {"without", {{"trials", quality.without}, {"p_value", json_number(quality.p_value)}}},
+          {"void",
+           {{"trials", quality.voided},
+            {"reasons", std::move(reasons)},
+            {"p_value_with", json_number(quality.p_with_void)}}}};
+}
+
+json catches_as_json(const std::vector<SubjectCatches>& catches) {
+  json all = json::array();
+  for (const SubjectCatches& each : catches)
+    all.push_back({{"subject", each.subject}, {"right", each.tally.right}, {"trials", each.tally.trials}});
+  return all;
 }
 
 json corrections_as_json(const Analysis& analysis) {
@@ -252,6 +272,11 @@ json corrections_as_json(const Analysis& analysis) {
   add("by_tissue", analysis.by_tissue.size());
   add("by_pair", analysis.by_pair.size());
   for (const TissueRanking& ranking : analysis.rankings) add("ranking", ranking.pairs.size());
+  std::size_t estimated_pairs = 0;
+  if (analysis.estimates) {
+    for (const EstimatedTissue& tissue : analysis.estimates->tissues) estimated_pairs += tissue.pairs.size();
+  }
+  add("estimates", estimated_pairs);
   return {{"method", analysis.options.correction == FamilyCorrection::holm ? "holm" : "benjamini-hochberg"},
           {"families", std::move(families)}};
 }
@@ -293,8 +318,14 @@ json analysis_as_json(const Analysis& analysis) {
   result["psychometric"] =
       analysis.levels ? levels_as_json(*analysis.levels, options.confidence) : json(nullptr);
   result["tracks"] = tracks_as_json(analysis.tracks);
+  result["ratings"] = analysis.ratings ? ratings_as_json(*analysis.ratings) : json(nullptr);
+  result["estimates"] = analysis.estimates ? estimates_as_json(*analysis.estimates) : json(nullptr);
+  result["questionnaire"] = questionnaire_as_json(analysis);
   result["response_times"] = times_as_json(analysis.times);
   result["quality"] = quality_as_json(analysis.quality);
+  result["catch"] = catches_as_json(analysis.catches);
+  result["felt"] = felt_json(analysis.felt, analysis.samples);
+  result["explored"] = explored_json(analysis.explored, analysis.samples);
   result["corrections"] = corrections_as_json(analysis);
   result["experiment"] = analysis.experiment ? experiment_json(*analysis.experiment) : json(nullptr);
   result["shown"] = analysis.shows;

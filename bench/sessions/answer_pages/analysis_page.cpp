@@ -8,12 +8,17 @@
 #include "answer_pages/analysis_charts.h"
 #include "answer_pages/analysis_json.h"
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/estimates_text.h"
 #include "answer_pages/experiment_words.h"
+#include "answer_pages/explored_words.h"
+#include "answer_pages/felt_words.h"
+#include "answer_pages/ratings_text.h"
 #include "answers/answers_table.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
 #include "html/html.h"
+#include "protocol/questionnaire/questionnaire_table.h"
 
 namespace kerf::bench {
 namespace {
@@ -163,20 +168,21 @@ std::string ranking_table(const TissueRanking& ranking, const Analysis& analysis
 
 std::string bias_table(const SlotBias& bias, Design design) {
   if (!bias.note.empty()) return {};
-  Rows rows{{"slot", "answered",
+  Rows rows{{has_two_rates(design) ? "answer" : "slot", "answered",
              design == Design::preference ? "the other preferred when there" : "right when it was right"}};
   for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
     const auto [k, n] = bias.right_in[slot];
-    rows.push_back({std::string(label_of(design, slot)), fmt::format("{} times", bias.answers[slot]),
+    rows.push_back({std::string(answer_label_of(design, slot)), fmt::format("{} times", bias.answers[slot]),
                     fmt::format("{} of {}", k, n)});
   }
   std::string text = fmt::format("Without a response bias the shares are equal: {}.", p_text(bias.test.p));
   if (bias.detection) {
-    text += fmt::format(
-        " With the response bias taken out d' is {} ({}), criterion {:+.2f} +- {:.2f} (below 0: to the "
-        "first).",
-        d_prime_text(bias.detection->d_prime), d_prime_text(bias.detection->interval),
-        bias.detection->criterion, bias.detection->criterion_standard_error);
+    text += fmt::format(" With the response bias taken out d' is {} ({}), criterion {:+.2f} +- {:.2f} ({}).",
+                        d_prime_text(bias.detection->d_prime), d_prime_text(bias.detection->interval),
+                        bias.detection->criterion, bias.detection->criterion_standard_error,
+                        has_two_rates(design)
+                            ? fmt::format("the larger, the more often \"{}\"", answer_label_of(design, 0))
+                            : std::string("below 0: to the first"));
   }
   return "<h2>Response bias</h2>\n" + html_table(rows) +
          fmt::format("<p class=\"soft\">{}</p>\n", escaped(text));
@@ -196,17 +202,25 @@ std::string analysis_page(const Analysis& analysis, std::span<const std::string>
   if (!drawings.empty()) body += "<h2>Drawings</h2>\n";
   for (const std::string& drawing : drawings) body += html_figure(drawing);
   if (analysis.levels) body += "<h2>Psychometric functions</h2>\n" + level_section(analysis);
+  if (analysis.estimates) body += estimates_section(analysis);
+  if (analysis.ratings) body += rating_section(*analysis.ratings);
   if (!analysis.rankings.empty()) {
     body += "<h2>Ranking</h2>\n";
     for (const TissueRanking& ranking : analysis.rankings) body += ranking_table(ranking, analysis);
   }
-  if ((analysis.all || !analysis.by_pair.empty()) && analysis.design != Design::staircase) {
+  if ((analysis.all || !analysis.by_pair.empty()) && !(analysis.all && std::isnan(analysis.p_value))) {
     body +=
         fmt::format("<h2>Counts</h2>\n<p class=\"soft\">Main test: {}.</p>\n", escaped(analysis.main_test)) +
         count_table(analysis);
   }
   if (analysis.all) body += power_table(*analysis.all);
   if (analysis.trials > 0) body += bias_table(analysis.bias, analysis.design);
+  body += questionnaire_section(analysis);
+  body += felt_section(analysis.felt, analysis.samples, analysis.options.confidence);
+  if (!analysis.catches.empty())
+    body +=
+        fmt::format("<h2>Attention</h2>\n<p>{}</p>\n", escaped(as_sentence(catches_text(analysis.catches))));
+  body += explored_section(analysis.explored, analysis.samples, analysis.options.confidence);
   if (analysis.times.trials > 0)
     body += fmt::format("<h2>Times</h2>\n<p>{}</p>\n", escaped(as_sentence(times_text(analysis.times))));
   return html_page(analysis.name, body);
@@ -226,6 +240,10 @@ std::vector<std::string> write_analysis(const Study& study, const Analysis& anal
     write_whole_file(whole.path() / names.back(), drawings[i] + "\n");
   }
   write_whole_file(whole.path() / "answers.csv", answers_csv(study));
+  if (!study.questionnaires.empty()) {
+    names.emplace_back("questionnaire.csv");
+    write_whole_file(whole.path() / "questionnaire.csv", questionnaire_csv(study));
+  }
   write_json_file(whole.path() / "analysis.json", analysis_as_json(analysis));
   write_whole_file(whole.path() / "analysis.html", analysis_page(analysis, drawings));
   whole.commit();

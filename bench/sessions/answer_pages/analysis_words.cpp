@@ -2,11 +2,15 @@
 
 #include <cctype>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "answer_pages/estimates_text.h"
 #include "answer_pages/experiment_words.h"
+#include "answer_pages/explored_words.h"
+#include "answer_pages/felt_words.h"
 
 namespace kerf::bench {
 namespace {
@@ -203,7 +207,9 @@ std::string plural(std::size_t count, const char* of) {
 }
 
 std::string as_sentence(std::string text) {
-  if (!text.empty()) text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+  const std::string_view first_word = std::string_view(text).substr(0, text.find(' '));
+  if (!text.empty() && first_word.find_first_of("/.") == std::string_view::npos)
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (!text.ends_with('.') && !text.ends_with('?')) text += '.';
   return text;
 }
@@ -218,6 +224,14 @@ std::string times_text(const ResponseTimes& times) {
         p_text(times.p_value));
   }
   return text;
+}
+
+std::string catches_text(const std::vector<SubjectCatches>& catches) {
+  std::string text;
+  for (const SubjectCatches& each : catches)
+    text += fmt::format("{}{} {} of {}{}", text.empty() ? "" : ", ", each.subject, each.tally.right,
+                        each.tally.trials, text.empty() ? " right" : "");
+  return "catch trials, which are in no test: " + text;
 }
 
 std::vector<std::string> summary_lines(const Analysis& analysis) {
@@ -243,8 +257,17 @@ std::vector<std::string> summary_lines(const Analysis& analysis) {
       lines.push_back(fmt::format("  subject {}", group_line(group, analysis, true)));
   }
   add_ranking_lines(analysis, lines);
+  if (analysis.estimates) {
+    for (std::string& line : estimate_lines(analysis)) lines.push_back(std::move(line));
+  }
   if (analysis.levels) add_level_lines(analysis, lines);
+  if (!analysis.catches.empty()) lines.push_back(catches_text(analysis.catches));
+  for (std::string& line : questionnaire_lines(analysis)) lines.push_back(std::move(line));
   if (analysis.times.trials > 0) lines.push_back(times_text(analysis.times));
+  for (std::string& line : felt_lines(analysis.felt, analysis.samples, analysis.options.confidence))
+    lines.push_back(std::move(line));
+  for (std::string& line : explored_lines(analysis.explored, analysis.samples, analysis.options.confidence))
+    lines.push_back(std::move(line));
   if (analysis.experiment) {
     for (std::string& line : experiment_lines(*analysis.experiment)) lines.push_back(std::move(line));
   }

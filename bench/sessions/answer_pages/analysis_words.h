@@ -29,11 +29,13 @@ namespace kerf::bench {
 [[nodiscard]] std::string criterion_text(const LevelAnalysis& levels,
                                          const psychophysics::Threshold& threshold);
 [[nodiscard]] const char* name_of(psychophysics::Shape shape) noexcept;
+/// "catch trials: S01 4 of 4 right, S02 1 of 4"
+[[nodiscard]] std::string catches_text(const std::vector<SubjectCatches>& catches);
 /// "answered in 2.31 s (median; ...)". Of times that there are.
 [[nodiscard]] std::string times_text(const ResponseTimes& times);
 /// "12 trials", "1 trial"
 [[nodiscard]] std::string plural(std::size_t count, const char* of);
-/// The sentence with a capital and a full stop.
+/// The sentence with a full stop, and a capital where it does not begin with the name of a file.
 [[nodiscard]] std::string as_sentence(std::string text);
 
 }  // namespace kerf::bench

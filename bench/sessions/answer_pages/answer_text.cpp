@@ -23,7 +23,8 @@ void take_remark(std::string_view line, std::size_t number, AnswerText& text) {
     return csv_unquoted(part.substr(begin, part.find_last_not_of(" \t\"") - begin + 1));
   };
   const std::string key = trimmed(line.substr(0, equals));
-  if (key == "design" || key == "task" || key == "name")
+  if (key == "design" || key == "task" || key == "name" || key == "until" || key == "modulus" ||
+      key == "points")
     text.remarks[key] = {trimmed(line.substr(equals + 1)), number};
 }
 
@@ -118,8 +119,8 @@ std::size_t AnswerReader::slot(const char* column, Design design) const {
   const std::string value = needed(column);
   std::string labels;
   for (std::size_t slot = 0; slot < answers_of(design); ++slot) {
-    if (value == label_of(design, slot)) return slot;
-    labels += fmt::format("{}{}", slot == 0 ? "" : " or ", label_of(design, slot));
+    if (value == answer_label_of(design, slot)) return slot;
+    labels += fmt::format("{}{}", slot == 0 ? "" : " or ", answer_label_of(design, slot));
   }
   refuse("column '{}' is '{}', expected {}", column, value, labels);
 }

@@ -40,6 +40,13 @@ std::string look_line(const ExperimentReport& report) {
                      name_of(report.state.experiment.analysis.stopping.kind));
 }
 
+/// "with those excluded by measured criteria, p = 0.03"
+std::string excluded_line(const ExperimentReport& report) {
+  if (std::isnan(report.p_with_excluded)) return {};
+  return fmt::format("had those been analysed whom a measured criterion excludes: {}",
+                     p_text(report.p_with_excluded));
+}
+
 Json counts_json(const FlowCounts& counts) {
   Json facts = Json::object();
   if (!counts.group.empty()) facts["group"] = counts.group;
@@ -55,13 +62,6 @@ Json counts_json(const FlowCounts& counts) {
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
-const char* stage_of(const Participant& who) {
-  if (who.dropped) return "dropped";
-  if (who.excluded) return "excluded";
-  if (who.completed()) return "completed";
-  return who.begun() ? "begun" : "assigned";
-}
-
 Json plan_json(const Experiment& experiment) {
   const AnalysisPlan& plan = experiment.analysis;
   return {{"target", experiment.participants.target},
@@ -72,6 +72,7 @@ Json plan_json(const Experiment& experiment) {
           {"margin", plan.margin ? Json(*plan.margin) : Json(nullptr)},
           {"d_prime", plan.d_prime ? Json(*plan.d_prime) : Json(nullptr)},
           {"jnd_margins", plan.jnd_margins ? pair_of(*plan.jnd_margins) : Json(nullptr)},
+          {"catch_right", plan.exclude.catch_right ? Json(*plan.exclude.catch_right) : Json(nullptr)},
           {"stopping", name_of(plan.stopping.kind)},
           {"looks", experiment.planned_looks()}};
 }
@@ -131,6 +132,7 @@ std::vector<std::string> experiment_lines(const ExperimentReport& report) {
   std::vector<std::string> lines = flow_lines(report.state, report.flow);
   lines.push_back(look_line(report));
   lines.push_back("decision: " + as_sentence(report.decision.text));
+  if (const std::string line = excluded_line(report); !line.empty()) lines.push_back(line);
   for (const std::string& deviation : report.deviations)
     lines.push_back("deviation: " + as_sentence(deviation));
   for (const std::string& problem : report.state.problems) lines.push_back("file: " + problem);
@@ -165,6 +167,7 @@ Json experiment_json(const ExperimentReport& report) {
             {"shown", decision.is_shown},
             {"ends", decision.ends},
             {"text", as_sentence(decision.text)}}},
+          {"p_value_with_excluded", json_number(report.p_with_excluded)},
           {"deviations", report.deviations},
           {"files", report.state.problems},
           {"log_receipt", report.log_receipt}};
@@ -183,6 +186,9 @@ std::string experiment_section(const ExperimentReport& report) {
                      escaped(as_sentence(report.decision.text)), escaped(as_sentence(look_line(report))),
                      report.log_receipt) +
          "<h3>Participants</h3>\n" + html_table(rows) + list_section("Who left", leavings(report.state)) +
+         (std::isnan(report.p_with_excluded)
+              ? std::string()
+              : fmt::format("<p>{}</p>\n", escaped(as_sentence(excluded_line(report))))) +
          list_section("Deviations from what was registered", report.deviations) +
          list_section("Files of the study", report.state.problems);
 }

@@ -51,7 +51,7 @@ void require_samples(const Study& study) {
 Answers counted(const Study& study) {
   Answers judgements;
   for (const Judgement& judgement : study.judgements) {
-    if (!judgement.practice) judgements.push_back(&judgement);
+    if (judgement.counts()) judgements.push_back(&judgement);
   }
   return judgements;
 }
@@ -156,6 +156,11 @@ std::string ranking_test_text(const std::vector<TissueRanking>& rankings) {
 }
 
 void name_main_test(Analysis& analysis) {
+  if (analysis.estimates) {
+    analysis.p_value = analysis.estimates->p_value;
+    analysis.main_test = analysis.estimates->main_test;
+    return;
+  }
   if (analysis.all) {
     analysis.p_value = analysis.all->p_value;
     analysis.main_test = std::isnan(analysis.p_value) ? analysis.all->note : main_test_text(*analysis.all);
@@ -173,7 +178,12 @@ AnswerQuality quality_of_answers(const Study& study, const AnalysisOptions& opti
   Study rest = study;
   rest.judgements.clear();
   for (const Judgement& each : study.judgements) {
-    if (each.practice) continue;
+    if (each.practice || each.is_catch) continue;
+    if (!each.counts()) {
+      ++quality.voided;
+      for (const VoidReason reason : each.void_reasons) ++quality.by_reason[static_cast<std::size_t>(reason)];
+      continue;
+    }
     const bool is_unfelt = each.is_felt == false;
     const bool is_faulty = each.is_sound == false;
     quality.known += each.is_felt ? 1 : 0;
@@ -182,10 +192,15 @@ AnswerQuality quality_of_answers(const Study& study, const AnalysisOptions& opti
     if (!is_unfelt && !is_faulty) rest.judgements.push_back(each);
   }
   quality.without = rest.judgements.size();
-  if (quality.unfelt == 0 && quality.faulty == 0) return quality;
   AnalysisOptions test_alone = options;
   test_alone.curves = false;
-  quality.p_value = main_result(rest, test_alone).p_value;
+  if (quality.unfelt > 0 || quality.faulty > 0) quality.p_value = main_result(rest, test_alone).p_value;
+  if (quality.voided == 0) return quality;
+  rest.judgements = study.judgements;
+  for (Judgement& each : rest.judgements) {
+    if (each.answer != no_answer) each.void_reasons.clear();
+  }
+  quality.p_with_void = main_result(rest, test_alone).p_value;
   return quality;
 }
 
@@ -197,7 +212,7 @@ Analysis analyse(const Study& study, const AnalysisOptions& options) {
   Analysis analysis{.options = options, .name = study.name, .design = study.design, .samples = study.samples};
   const Answers judgements = counted(study);
   analysis.trials = judgements.size();
-  analysis.practice = study.judgements.size() - judgements.size();
+  analysis.practice = static_cast<std::size_t>(std::ranges::count_if(study.judgements, &Judgement::practice));
   for (const auto& [name, answers] : grouped(judgements, [](const Judgement& each) { return each.subject; }))
     analysis.subjects.push_back(name);
   if (study.design == Design::preference) {
@@ -205,15 +220,25 @@ Analysis analyse(const Study& study, const AnalysisOptions& options) {
     for (const Judgement* judgement : judgements)
       ++analysis.preferred[judgement->pair[judgement->is_right() ? 1 : 0]];
   }
-  add_groups(study, judgements, analysis);
-  analysis.bias = slot_bias(study, judgements, options);
+  analysis.estimates = analyse_estimates(study, judgements, options);
+  if (asks_numbers(study.design)) {
+    analysis.bias.note = "numbers were answered";
+  } else {
+    add_groups(study, judgements, analysis);
+    analysis.bias = slot_bias(study, judgements, options);
+  }
   analysis.rankings = rank_tissues(study, judgements, options);
   if (has_levels(study.design) && !judgements.empty()) {
     analysis.levels = analyse_levels(study, judgements, options);
     analysis.tracks = adaptive_tracks(study, judgements, options);
   }
+  analysis.ratings = analyse_ratings(study, judgements, options);
+  analysis.questionnaire = questionnaire_scores(study, options.confidence);
   analysis.times = response_times(study, judgements);
+  analysis.catches = catches_by_subject(study);
   analysis.quality = quality_of_answers(study, options);
+  analysis.felt = felt_check(study, options.confidence);
+  analysis.explored = explored_alike(study, options.confidence);
   analysis.remarks = study.remarks;
   name_main_test(analysis);
   add_findings(analysis);
@@ -225,6 +250,15 @@ MainResult main_result(const Study& study, const AnalysisOptions& options) {
   MainResult result{.trials = judgements.size()};
   if (judgements.empty()) {
     result.note = "there are no answers";
+    return result;
+  }
+  if (const auto estimates = analyse_estimates(study, judgements, options)) {
+    result.p_value = estimates->p_value;
+    if (std::isnan(result.p_value)) result.note = estimates->main_test;
+    if (estimates->law && estimates->law->mean) {
+      result.exponent = estimates->law->mean->mean;
+      result.exponent_interval = estimates->law->mean->interval;
+    }
     return result;
   }
   AnalysisOptions quick = options;

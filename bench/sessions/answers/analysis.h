@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -8,8 +9,13 @@
 #include <vector>
 
 #include "answers/answer_groups.h"
+#include "answers/estimates/estimates.h"
+#include "answers/estimates/questionnaires.h"
+#include "answers/explored/explored_alike.h"
+#include "answers/felt_check.h"
 #include "answers/level_analysis.h"
 #include "answers/rankings.h"
+#include "answers/ratings.h"
 #include "answers/response_times.h"
 #include "answers/tracks.h"
 #include "registered/experiment_report.h"
@@ -50,7 +56,10 @@ struct AnswerQuality {
   std::size_t unfelt = 0;   ///< a slot had no force that can be felt
   std::size_t faulty = 0;   ///< a fault of law, device or loop while a slot played
   std::size_t without = 0;  ///< trials that are left
-  double p_value = std::numeric_limits<double>::quiet_NaN();  ///< of the main test over those
+  double p_value = std::numeric_limits<double>::quiet_NaN();      ///< of the main test over those
+  std::size_t voided = 0;                                         ///< not analysed, by the protocol's rules
+  std::array<std::size_t, void_reasons> by_reason{};              ///< of those; one may have several
+  double p_with_void = std::numeric_limits<double>::quiet_NaN();  ///< of the main test, had they counted
 };
 
 /// Everything about a study.
@@ -61,6 +70,7 @@ struct Analysis {
   std::vector<std::string> samples;
   std::size_t trials = 0;
   std::size_t practice = 0;                                   ///< trials left out
+  std::vector<SubjectCatches> catches;                        ///< in no test; empty: there are none
   std::vector<std::string> subjects;                          ///< in order of appearance
   std::vector<std::size_t> preferred;                         ///< of a preference: wins by sample
   double p_value = std::numeric_limits<double>::quiet_NaN();  ///< of the main test; NaN: there is none
@@ -74,9 +84,14 @@ struct Analysis {
   std::vector<TissueRanking> rankings;
   std::optional<LevelAnalysis> levels;
   std::vector<AdaptiveTrack> tracks;
+  std::optional<RatingAnalysis> ratings;      ///< where confidence was asked
+  std::optional<EstimateAnalysis> estimates;  ///< where numbers were
+  std::vector<QuestionnaireScore> questionnaire;
   ResponseTimes times;
   AnswerQuality quality;
-  std::vector<std::string> remarks;            ///< of the study; among the warnings, too
+  std::vector<ExploredPair> explored;  ///< what the hand did with the samples; none where nothing is known
+  FeltCheck felt;                      ///< whether anything but the law told samples apart
+  std::vector<std::string> remarks;    ///< of the study; among the warnings, too
   std::optional<ExperimentReport> experiment;  ///< that it is of; add_experiment()
   std::vector<std::string> shows;              ///< sentences
   std::vector<std::string> shows_not;          ///< what one might read into it
@@ -100,6 +115,9 @@ struct MainResult {
                                        .upper = std::numeric_limits<double>::quiet_NaN()};
   double equality = std::numeric_limits<double>::quiet_NaN();  ///< PSE, likewise
   psychophysics::Interval equality_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
+                                            .upper = std::numeric_limits<double>::quiet_NaN()};
+  double exponent = std::numeric_limits<double>::quiet_NaN();  ///< of magnitudes, mean of the subjects
+  psychophysics::Interval exponent_interval{.lower = std::numeric_limits<double>::quiet_NaN(),
                                             .upper = std::numeric_limits<double>::quiet_NaN()};
   /// Shown: d' below its bound, a preference in its margin, the JND in its; none where no margin was set.
   std::optional<bool> equivalent;

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "answer_pages/analysis_words.h"
+#include "answer_pages/estimates_text.h"
 #include "answers/analysis.h"
 
 namespace kerf::bench {
@@ -21,6 +22,12 @@ class Findings {
       warn(analysis_.practice > 0 ? "there are no answers besides practice" : "there are no answers");
       return;
     }
+    if (analysis_.estimates) {
+      add_estimate_findings(analysis_);
+      write_quality();
+      write_times();
+      return;
+    }
     if (analysis_.levels) write_levels(*analysis_.levels);
     if (analysis_.all) {
       if (is_preference()) {
@@ -31,9 +38,14 @@ class Findings {
     }
     write_family(analysis_.by_tissue.size() > 1 ? analysis_.by_tissue : analysis_.by_pair);
     for (const TissueRanking& ranking : analysis_.rankings) write_ranking(ranking);
+    write_ratings();
     write_subjects();
     write_bias();
     write_quality();
+    for (std::string& finding : felt_findings(analysis_.felt, analysis_.samples, options_.confidence))
+      warn(std::move(finding));
+    for (std::string& finding : explored_findings(analysis_.explored, analysis_.samples, options_.confidence))
+      warn(std::move(finding));
     write_times();
   }
 
@@ -112,6 +124,13 @@ class Findings {
                            chances(all), if_alike(all)));
     }
     if (!all.d_prime) return;
+    if (has_two_rates(analysis_.design)) {
+      show(fmt::format("d' is {} ({:.3g} % {}), freed of the tendency to one answer{}",
+                       d_prime_text(all.d_prime->value), 100.0 * options_.confidence,
+                       d_prime_text(all.d_prime->interval),
+                       all.subjects > 1 ? "; of all answers, as if of one subject" : ""));
+      if (options_.d_prime_bound) show_not("that d' is below a bound: this design has no test of it");
+    }
     if (all.equivalence) write_equivalence(all, fmt::format("d' is below {:.3g}", *options_.d_prime_bound));
     if (std::isfinite(all.excluded_d_prime))
       show(fmt::format("{}a d' above {} is unlikely (excluded at {:.3g} %)", average_of(all),
@@ -258,6 +277,26 @@ class Findings {
     show_not("that the JND is the same for other motions, tissues or forces than those that were felt");
   }
 
+  void write_ratings() {
+    if (!analysis_.ratings) return;
+    const RatingGroup& all = analysis_.ratings->all;
+    if (all.area)
+      show(fmt::format("the area below the ROC curve is {:.3f} ({:.3g} % {:.3f} to {:.3f})", all.area->value,
+                       100.0 * options_.confidence, all.area->interval.lower, all.area->interval.upper));
+    if (all.fit) {
+      show(fmt::format(
+          "d_a is {} ({:.3g} % {}), with a signal that varies {:.2f} times as much as what is not one "
+          "(equal variances: {})",
+          d_prime_text(all.fit->d_a), 100.0 * options_.confidence, d_prime_text(all.fit->d_a_interval),
+          all.fit->deviation, p_text(*all.equal_variances_p)));
+    } else if (!all.note.empty()) {
+      warn(fmt::format("no curve of normal distributions: {}", all.note));
+    }
+    if (const auto& people = analysis_.ratings->over_subjects)
+      show(fmt::format("the mean of the subjects' areas is {:.3f}, {} by flipped signs", 0.5 + people->mean,
+                       p_text(people->p_greater)));
+  }
+
   void write_subjects() {
     const SubjectSpread& spread = analysis_.spread;
     if (analysis_.subjects.size() < 2) {
@@ -307,8 +346,15 @@ class Findings {
     if (!is_alarm(bias.test.p)) return;
     std::string counts;
     for (std::size_t slot = 0; slot < bias.answers.size(); ++slot) {
-      counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ", label_of(analysis_.design, slot),
-                            bias.answers[slot]);
+      counts += fmt::format("{}{} {} times", counts.empty() ? "" : ", ",
+                            answer_label_of(analysis_.design, slot), bias.answers[slot]);
+    }
+    if (has_two_rates(analysis_.design)) {
+      warn(fmt::format(
+          "one answer was given more readily than the other ({}; {}): d' is freed of it, the count of "
+          "right answers is not",
+          counts, p_text(bias.test.p)));
+      return;
     }
     warn(fmt::format("the answers have a response bias to one slot ({}; {}){}", counts, p_text(bias.test.p),
                      is_preference() ? ": a preference is seen less clearly for it"
@@ -317,6 +363,7 @@ class Findings {
 
   void write_quality() {
     const AnswerQuality& quality = analysis_.quality;
+    write_void();
     if (quality.unfelt == 0 && quality.faulty == 0) return;
     std::string what;
     if (quality.unfelt > 0)
@@ -325,6 +372,20 @@ class Findings {
       what += fmt::format("{}{} a fault while a slot played", what.empty() ? "" : ", ", quality.faulty);
     warn(fmt::format("of {} trials {}: they are counted; without them {} are left, with {}", quality.known,
                      what, quality.without, p_text(quality.p_value)));
+  }
+
+  void write_void() {
+    const AnswerQuality& quality = analysis_.quality;
+    if (quality.voided == 0) return;
+    std::string why;
+    for (std::size_t reason = 0; reason < void_reasons; ++reason) {
+      if (quality.by_reason[reason] == 0) continue;
+      why += fmt::format("{}{} {}", why.empty() ? "" : ", ", name_of(static_cast<VoidReason>(reason)),
+                         quality.by_reason[reason]);
+    }
+    warn(fmt::format("{} void by the protocol's rules ({}), not counted here; had they counted, {}",
+                     quality.voided == 1 ? "a trial was" : fmt::format("{} trials were", quality.voided), why,
+                     p_text(quality.p_with_void)));
   }
 
   void write_times() {

@@ -12,6 +12,7 @@
 
 #include "answers/analysis.h"
 #include "answers/over_subjects.h"
+#include "answers/two_rates.h"
 
 namespace kerf::bench {
 namespace {
@@ -50,6 +51,15 @@ void add_sensitivity(const Study& study, const std::vector<const Judgement*>& ju
     group.note = "no d' over several levels: the psychometric function has the sensitivity";
   } else if (!study.task) {
     group.note = "no d': the study does not say what its task is";
+  } else if (has_two_rates(study.design)) {
+    // A share of right answers would make a tendency to one of the words look like a smaller d'.
+    group.excluded_d_prime = std::numeric_limits<double>::infinity();
+    if (const auto found = detection_of(study, judgements, options)) {
+      group.d_prime = psychophysics::DPrime{
+          .value = found->d_prime, .standard_error = found->standard_error, .interval = found->interval};
+    } else {
+      group.note = "no d': it takes trials of both kinds";
+    }
   } else {
     group.d_prime = psychophysics::estimate_d_prime(*study.task, group.count, options.confidence);
     add_equivalence(study, group, subjects, options);
@@ -62,6 +72,28 @@ psychophysics::BinomialDesign design_of(const AnswerGroup& group, double truth,
           .truth = truth,
           .alternative = group.one_sided ? Alternative::greater : Alternative::two_sided,
           .level = options.level};
+}
+
+/// Of yes and no the d' of each subject, freed of its leaning, may be negative: their mean has no floor.
+void add_mean_d_prime(const std::vector<AnswerGroup>& subjects, const AnalysisOptions& options,
+                      SubjectSpread::Population& population) {
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const AnswerGroup& subject : subjects) {
+    if (!subject.d_prime) return;
+    sum += subject.d_prime->value;
+    squares += subject.d_prime->value * subject.d_prime->value;
+  }
+  const auto n = static_cast<double>(subjects.size());
+  const double mean = sum / n;
+  const double variance = std::max(0.0, squares - n * mean * mean) / (n - 1.0);
+  if (variance <= 1e-12) return;
+  population.d_prime_of_mean = mean;
+  population.d_prime =
+      psychophysics::equivalent_estimate(
+          {.value = mean, .standard_error = std::sqrt(variance / n), .degrees_of_freedom = n - 1.0},
+          {.lower = -1.0, .upper = 1.0}, 0.5 * (1.0 - options.confidence))
+          .interval;
 }
 
 /// Mean of proportions, which unlike a d' has no floor at chance that would lift it.
@@ -81,11 +113,12 @@ SubjectSpread::Population population_of(const Study& study, const std::vector<An
   const double above = tested(chance, infinite, options.level).p;
   const double below = tested(-infinite, chance, options.level).p;
   result.p_value = subjects.front().one_sided ? above : std::min(1.0, 2.0 * std::min(above, below));
-  if (study.task && subjects.front().d_prime) {
+  if (study.task && subjects.front().d_prime && !has_two_rates(study.design)) {
     result.d_prime_of_mean = psychophysics::d_prime(*study.task, mean);
     result.d_prime = {.lower = psychophysics::d_prime(*study.task, result.interval.lower),
                       .upper = psychophysics::d_prime(*study.task, result.interval.upper)};
   }
+  if (study.design == Design::yes_no) add_mean_d_prime(subjects, options, result);
   return result;
 }
 
@@ -125,11 +158,11 @@ AnswerGroup answer_group(const Study& study, const std::vector<const Judgement*>
   } else {
     add_sensitivity(study, judgements, group, subjects, options);
   }
-  if (study.design == Design::staircase) {
+  if (ends_by_answers(study.design, study.scale)) {
     group.p_value = group.p_greater = group.p_two_sided = not_a_number;
-    group.note =
-        "no test of the count: how many trials a staircase takes, and how hard they are, follows "
-        "the answers";
+    group.note = fmt::format(
+        "no test of the count: how many trials {} takes, and how hard they are, follows the answers",
+        study.design == Design::staircase ? "a staircase" : "QUEST+ that ends by an interval");
   }
   group.p_adjusted = group.p_value;
   return group;
@@ -167,10 +200,12 @@ SlotBias slot_bias(const Study& study, const std::vector<const Judgement*>& judg
   const bool has_all = std::all_of(bias.right_in.begin(), bias.right_in.end(),
                                    [](const Count& count) { return count.trials > 0; });
   if (!has_all) {
-    bias.note = "one slot was never the right one";
+    bias.note = has_two_rates(study.design) ? "one of the answers was never right"
+                                            : "one slot was never the right one";
     return bias;
   }
   bias.test = psychophysics::equal_proportions(bias.right_in, {.seed = options.seed});
+  if (has_two_rates(study.design)) bias.detection = detection_of(study, judgements, options);
   if (study.design == Design::two_interval) {
     const Count in_second = bias.right_in[1];
     bias.detection = psychophysics::two_interval(

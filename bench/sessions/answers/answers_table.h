@@ -17,8 +17,10 @@ namespace kerf::bench {
 ///     preferred               the sample that was named; of two over the whole table, or of `first`,
 ///     `second` right, answer           slots as they are labelled: A, B or 1, 2, 3 correct                 1
 ///     or 0, yes or no, right or wrong; the slots are then not known comparison              likewise, of
-///     levels on both sides: was the comparison named? tissue, first, second, level, number (of the session),
-///     practice, response_s, switches    where there are
+///     levels on both sides: was the comparison named? estimate                of
+///     magnitudes and ratings: the number for the sample `second`; with `intensity` where it is known
+///     tissue, first, second, level, number (of the session),
+///     practice, response_s, switches, void (why it does not count)    where there are
 ///
 /// `design` goes before what the table says. Without either, `preferred` means preferences and `level`
 /// constant levels. Kerf's own tables of trials are read as they are.

@@ -20,7 +20,7 @@ constexpr double next_to_nothing = 1e-9;
 double factor_of(const Study& study) {
   std::vector<const Judgement*> counted;
   for (const Judgement& each : study.judgements) {
-    if (!each.practice) counted.push_back(&each);
+    if (each.counts()) counted.push_back(&each);
   }
   const double chance = study.task ? psychophysics::chance_of(*study.task) : 0.5;
   std::vector<double> beyond;

@@ -76,7 +76,7 @@ ResponseTimes response_times(const Study& study, const std::vector<const Judgeme
     result.note = "no response times were recorded";
     return result;
   }
-  if (study.design == Design::preference || study.scale.two_sided()) {
+  if (study.design == Design::preference || asks_numbers(study.design) || study.scale.two_sided()) {
     result.note = "no answer is right or wrong";
     return result;
   }

@@ -12,14 +12,17 @@
 namespace kerf::bench {
 namespace {
 
-std::vector<AdaptiveTrack> sessions_of(const Study& study, const std::vector<const Judgement*>& judgements) {
+std::vector<AdaptiveTrack> tracks_of(const Study& study, const std::vector<const Judgement*>& judgements) {
   std::vector<AdaptiveTrack> tracks;
   for (const Judgement* judgement : judgements) {
     auto track = std::find_if(tracks.begin(), tracks.end(), [&](const AdaptiveTrack& known) {
-      return known.subject == judgement->subject && known.session == judgement->session;
+      return known.subject == judgement->subject && known.session == judgement->session &&
+             known.number == judgement->track;
     });
     if (track == tracks.end()) {
-      track = tracks.insert(tracks.end(), {.subject = judgement->subject, .session = judgement->session});
+      track = tracks.insert(
+          tracks.end(),
+          {.subject = judgement->subject, .session = judgement->session, .number = judgement->track});
     }
     track->levels.push_back(intensity_of(study, *judgement));
     track->right.push_back(judgement->is_right());
@@ -64,6 +67,7 @@ void follow_quest(const Study& study, const AnalysisOptions& options, AdaptiveTr
   grid.intensities.erase(std::unique(grid.intensities.begin(), grid.intensities.end()),
                          grid.intensities.end());
   grid.trials = static_cast<int>(track.levels.size());
+  grid.narrow = 0.0;  // it has ended
   try {
     psychophysics::QuestPlus quest(grid);
     for (std::size_t trial = 0; trial < track.levels.size(); ++trial)
@@ -80,10 +84,14 @@ std::vector<AdaptiveTrack> adaptive_tracks(const Study& study,
                                            const std::vector<const Judgement*>& judgements,
                                            const AnalysisOptions& options) {
   if (!is_adaptive(study.design)) return {};
-  std::vector<AdaptiveTrack> tracks = sessions_of(study, judgements);
+  std::vector<AdaptiveTrack> tracks = tracks_of(study, judgements);
+  const std::vector<psychophysics::StaircaseOptions> rules = study.scale.staircases();
   for (AdaptiveTrack& track : tracks) {
-    if (study.design == Design::staircase) {
-      follow_staircase(study.scale.staircase, track);
+    if (study.design == Design::staircase && track.number >= rules.size()) {
+      track.note =
+          fmt::format("no mean of reversals: the rule of staircase {} is not known", track.number + 1);
+    } else if (study.design == Design::staircase) {
+      follow_staircase(rules[track.number], track);
     } else {
       follow_quest(study, options, track);
     }

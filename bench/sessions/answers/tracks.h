@@ -14,10 +14,11 @@ namespace kerf::bench {
 
 struct AnalysisOptions;
 
-/// The levels of one session in their order, and what its rule makes of them.
+/// The levels of one session, or of one of its staircases, in their order, and what its rule makes of them.
 struct AdaptiveTrack {
   std::string subject;
   std::size_t session = 1;
+  std::size_t number = 0;  ///< which of its staircases
   std::vector<double> levels;
   std::vector<bool> right;
   std::vector<std::size_t> reversals;  ///< trials at which a staircase turned
@@ -26,7 +27,7 @@ struct AdaptiveTrack {
   std::string note;  ///< why there is no estimate
 };
 
-/// Of staircase and QUEST+, one a session.
+/// Of QUEST+ one a session, of staircases one each.
 [[nodiscard]] std::vector<AdaptiveTrack> adaptive_tracks(const Study& study,
                                                          const std::vector<const Judgement*>& judgements,
                                                          const AnalysisOptions& options);

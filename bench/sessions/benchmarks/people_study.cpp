@@ -1,11 +1,12 @@
-// Simulated studies of people with a known truth: kerf_people_study alarms|equivalence|coverage|power STUDIES
-// prints a line of JSON a cell; kerf_people_study oracle STUDIES the answers of studies with what was found
-// of them.
+// Simulated studies of people with a known truth: kerf_people_study
+// alarms|equivalence|coverage|power|words|words-power STUDIES prints a line of JSON a cell; kerf_people_study
+// oracle STUDIES the answers of studies with what was found of them.
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +22,7 @@
 
 #include "answers/analysis.h"
 #include "answers/rankings.h"
+#include "observers/observer.h"
 #include "threads/for_each_index.h"
 
 namespace {
@@ -313,6 +315,68 @@ void power(int studies) {
   }
 }
 
+/// People who say same or different, by the likelihood ratio.
+struct WordsTruth {
+  double d_prime = 0.0;
+  double bias = 0.0;  ///< to "same", Observer::bias
+  double sd = 0.0;    ///< between people: of the logit of being right
+  int subjects = 8;
+  int trials = 48;  ///< of each, half of them different
+};
+
+/// Of each person e of N(0, sd) makes "different" likelier where it is right and less likely where it is not:
+///     logit H = logit H(d', bias) + e,   logit F = logit F(d', bias) - e,
+/// so that without d' the share of right answers has a mean of 1/2, whatever the leaning.
+Study drawn_words(const WordsTruth& truth, double logit_hit, double logit_alarm, Random& random) {
+  // Without its task: the test is the same, and no d' is told, which takes a hundred times as long.
+  Study study = study_of_design(Design::same_different);
+  for (int subject = 0; subject < truth.subjects; ++subject) {
+    const double own = truth.sd * random.normal();
+    const double hit = logistic(logit_hit + own);
+    const double alarm = logistic(logit_alarm - own);
+    for (int trial = 0; trial < truth.trials; ++trial) {
+      const auto right = static_cast<std::size_t>(trial % 2);
+      study.judgements.push_back({.subject = fmt::format("S{}", subject),
+                                  .pair = {0, 1},
+                                  .right = right,
+                                  .answer = random.chance(right == 1 ? hit : alarm) ? 1U : 0U});
+    }
+  }
+  return study;
+}
+
+void print_words(const WordsTruth& truth, int studies) {
+  const auto logit_different = [&](std::uint8_t second) {
+    const Observer observer{.bias = truth.bias};
+    const FeltTrial trial{
+        .judging = Judging::same_by_likelihood, .plays = {0, second, 0}, .d_prime = truth.d_prime};
+    const double p = answer_probability(observer, trial, 1);
+    return std::log(p / (1.0 - p));
+  };
+  const double hit = logit_different(1);
+  const double alarm = logit_different(0);
+  const int found = counted(studies, 16, [&](Random& random) {
+    return main_result(drawn_words(truth, hit, alarm, random), quick()).p_value <= 0.05;
+  });
+  std::printf(
+      "{\"d_prime\": %g, \"bias\": %g, \"sd\": %g, \"subjects\": %d, \"trials\": %d, \"hit\": %.6g, "
+      "\"false_alarm\": %.6g, \"studies\": %d, \"people\": %d}\n",
+      truth.d_prime, truth.bias, truth.sd, truth.subjects, truth.trials, logistic(hit), logistic(alarm),
+      studies, found);
+  std::fflush(stdout);
+}
+
+void same_different(std::initializer_list<double> d_primes, int studies) {
+  for (const double d_prime : d_primes) {
+    for (const double bias : {0.0, 0.5}) {
+      for (const double sd : {0.0, 1.0, 2.0}) {
+        for (const int subjects : {8, 12, 24})
+          print_words({.d_prime = d_prime, .bias = bias, .sd = sd, .subjects = subjects}, studies);
+      }
+    }
+  }
+}
+
 void print_array(const char* name, const std::vector<double>& values) {
   std::printf("\"%s\": [", name);
   for (std::size_t i = 0; i < values.size(); ++i) std::printf("%s%.17g", i == 0 ? "" : ", ", values[i]);
@@ -401,13 +465,17 @@ int main(int count, char** words) {
   const std::string what = count > 1 ? words[1] : "";
   const int studies = count > 2 ? std::atoi(words[2]) : 0;
   if (studies < 1) {
-    std::fprintf(stderr, "usage: kerf_people_study alarms|equivalence|coverage|power|oracle STUDIES\n");
+    std::fprintf(
+        stderr,
+        "usage: kerf_people_study alarms|equivalence|coverage|power|words|words-power|oracle STUDIES\n");
     return 2;
   }
   if (what == "alarms") alarms(studies);
   if (what == "equivalence") equivalence(studies);
   if (what == "coverage") coverage(studies);
   if (what == "power") power(studies);
+  if (what == "words") same_different({0.0}, studies);
+  if (what == "words-power") same_different({0.5, 1.0, 1.5}, studies);
   if (what == "oracle") oracle(studies);
   return 0;
 }

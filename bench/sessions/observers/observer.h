@@ -27,12 +27,24 @@ struct Observer {
   double least_jnd_n = 0.05;  ///< f0 [N], above 0: the JND of weak forces
   /// Share of right answers in two intervals that lie one JND apart, in (0.5, 1): the JND belongs to it.
   double criterion = 0.75;
-  double lapse = 0.02;      ///< share of the answers that come by chance, in [0, 1)
-  double bias = 0.0;        ///< to the first slot, in d': of choices of the strongest, and of preferences
-  double preference = 0.0;  ///< of the second sample of a pair over the first, in d'
-  double spread = 0.0;      ///< between subjects: standard deviation of ln(JND), at least 0
+  double lapse = 0.02;  ///< share of the answers that come by chance, in [0, 1)
+  /// To the first slot, in d': of choices of the strongest, and of preferences. To "same" and "no": by how
+  /// much the criterion lies higher.
+  double bias = 0.0;
+  double preference = 0.0;         ///< of the second sample of a pair over the first, in d'
+  double spread = 0.0;             ///< between subjects: standard deviation of ln(JND), at least 0
   double preference_spread = 0.0;  ///< between subjects: standard deviation of `preference`, at least 0
-  double share_feeling = 1.0;      ///< of the subjects, who feel any difference at all; in [0, 1]
+  double exponent = 0.8;           ///< of magnitudes [Stevens1957], from -10 to 10
+  double exponent_spread = 0.15;   ///< between subjects: its standard deviation, at least 0
+  double number_noise = 0.2;       ///< standard deviation of ln of a magnitude, at least 0
+  /// Between subjects: standard deviation of ln of the modulus, and of the place of all ratings in d'.
+  double modulus_spread = 1.0;
+  double share_inattentive = 0.0;  ///< of the subjects, who do not attend; in [0, 1]
+  double inattention =
+      1.0;  ///< of those: share of the answers that come by chance besides `lapse`, in [0, 1]
+  double share_feeling = 1.0;  ///< of the subjects, who feel any difference at all; in [0, 1]
+  double slip = 0.0;           ///< share of the trials that are taken back before the answer, in [0, 1)
+  double unexplored = 0.0;     ///< of the others, those in which a slot is not felt as asked, in [0, 1)
 };
 
 /// @throws std::invalid_argument naming what is out of its range.
@@ -54,6 +66,11 @@ enum class Judging : std::uint8_t {
   /// A difference that is felt, in a share 2 P(d' / sqrt2) - 1 of the trials (what is not guessed of two
   /// intervals), makes the second sample better liked by `preference`; otherwise by chance.
   preference,
+  same_by_likelihood,    ///< same or different, by the likelihood ratio
+                         ///< (psychophysics/detection/same_different.h)
+  same_by_differencing,  ///< likewise, by the distance of the two
+  /// Whether the signal is there: above half of d'. The further from there, half a d' a word, the surer.
+  yes_no,
 };
 [[nodiscard]] Judging judging_of(const Protocol& protocol) noexcept;
 
@@ -62,10 +79,11 @@ struct FeltTrial {
   Judging judging = Judging::strongest;
   std::size_t slots = 2;
   std::array<std::uint8_t, max_slots> plays{};  ///< which of the pair a slot plays
-  double d_prime = 0.0;  ///< from the first of the pair to the second; below 0 only of the strongest
+  double d_prime = 0.0;        ///< from the first of the pair to the second; below 0 only of the strongest
+  std::size_t confidence = 0;  ///< of yes_no: how many words there are for it
 };
 
-/// The slot that is answered.
+/// The slot that is answered, or the choice (choices_of()).
 [[nodiscard]] std::size_t drawn_answer(const Observer& observer, const FeltTrial& trial,
                                        psychophysics::Random& random);
 

@@ -14,6 +14,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr std::size_t fine_levels = 33;
+constexpr double no_force_n = 1e-9;
 
 double strength_of(const Observer& observer, const FeltForces& felt, Loudest loudest) {
   return strength_in_jnds(observer, loudest == Loudest::peak ? felt.peak_n() : felt.rms_n());
@@ -24,8 +25,11 @@ std::vector<double> rendered_levels(const Protocol& protocol) {
   const IntensityScale& scale = protocol.scale;
   std::vector<double> levels = scale.levels;
   if (protocol.design == Design::staircase) {
-    levels = psychophysics::geometric_grid(scale.staircase.least, scale.staircase.most, fine_levels);
-    levels.push_back(scale.staircase.start);
+    const std::vector<psychophysics::StaircaseOptions> all = scale.staircases();
+    const auto least = std::ranges::min_element(all, {}, &psychophysics::StaircaseOptions::least);
+    const auto most = std::ranges::max_element(all, {}, &psychophysics::StaircaseOptions::most);
+    levels = psychophysics::geometric_grid(least->least, most->most, fine_levels);
+    for (const psychophysics::StaircaseOptions& each : all) levels.push_back(each.start);
   } else if (levels.size() < fine_levels) {
     const auto [least, most] = std::ranges::minmax(levels);
     const double first = std::min(0.0, least);
@@ -42,6 +46,24 @@ std::vector<double> rendered_levels(const Protocol& protocol) {
 
 }  // namespace
 
+double difference_in_jnds(const Observer& observer, const FeltForces& first, const FeltForces& second) {
+  if (first.axes != second.axes || first.force_n.size() != second.force_n.size())
+    throw std::invalid_argument("forces that are compared have to be as long as each other");
+  double sum = 0.0;
+  std::size_t in_contact = 0;
+  for (std::size_t tick = 0; tick < first.ticks(); ++tick) {
+    const double middle = 0.5 * (first.magnitude_n(tick) + second.magnitude_n(tick));
+    if (middle <= no_force_n) continue;
+    double squared = 0.0;
+    for (std::size_t axis = 0; axis < first.axes; ++axis)
+      squared +=
+          std::pow(first.force_n[tick * first.axes + axis] - second.force_n[tick * first.axes + axis], 2);
+    sum += squared / std::pow(jnd_at(observer, middle), 2);
+    ++in_contact;
+  }
+  return in_contact == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(in_contact));
+}
+
 Sensation::Sensation(const Protocol& protocol, const Observer& observer, const SensationOptions& options) {
   const FeltRenderer renderer(protocol, options.felt);
   device_uri_ = renderer.device_uri();
@@ -57,6 +79,11 @@ Sensation::Sensation(const Protocol& protocol, const Observer& observer, const S
                         .limited_share = static_cast<double>(forces.limited_ticks) /
                                          static_cast<double>(std::max<std::size_t>(1, forces.ticks()))});
   }
+  for (std::size_t sample = 0; sample < felt.size(); ++sample) {
+    strengths_.push_back(options.d_prime
+                             ? static_cast<double>(sample) * *options.d_prime / d_prime_per_jnd(observer)
+                             : strength_of(observer, felt[sample], options.strength));
+  }
   const auto apart = [&](const FeltForces& first, const FeltForces& second) {
     if (!by_strength_) return difference_in_jnds(observer, first, second);
     return strength_of(observer, second, options.strength) - strength_of(observer, first, options.strength);
@@ -66,6 +93,16 @@ Sensation::Sensation(const Protocol& protocol, const Observer& observer, const S
         fmt::format("samples are to be d' = {:g} apart, expected 0 or more, such as 1", *options.d_prime));
   // Only who is asked for the stronger one can be misled by the weaker one.
   const bool has_direction = judging_of(protocol) == Judging::strongest;
+  if (protocol.catches.every > 0) {
+    for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue) {
+      for (const auto& pair : catch_pairs_of(protocol, tissue)) {
+        const bool of_levels = has_levels(protocol.design);
+        catches_[pair] = std::abs(apart(
+            felt[pair[0]], of_levels ? renderer.rendered(played(protocol, pair[1], protocol.catches.level))
+                                     : felt[pair[1]]));
+      }
+    }
+  }
   if (!has_levels(protocol.design)) {
     for (std::size_t tissue = 0; tissue < protocol.tissues.size(); ++tissue) {
       for (const auto& pair : pairs_of(protocol, tissue)) {

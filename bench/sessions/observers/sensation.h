@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "observers/felt_forces.h"
+#include "felt/felt_forces.h"
+#include "observers/observer.h"
 
 namespace kerf::bench {
 
@@ -35,6 +36,15 @@ struct FeltSample {
   double limited_share = 0.0;  ///< of the ticks
 };
 
+/// How far two renderings lie apart in kind, in JNDs:
+///
+///     D = rms over the ticks that have a force of |F1 - F2| / j((|F1| + |F2|) / 2)
+///
+/// What is stronger by one JND throughout is one JND apart.
+/// @throws std::invalid_argument: of unlike length.
+[[nodiscard]] double difference_in_jnds(const Observer& observer, const FeltForces& first,
+                                        const FeltForces& second);
+
 /// How far the two of a trial lie apart for an observer, from the forces that their laws really render.
 ///
 /// Without levels that is the difference in kind, with the first of the pair at 0: an observer who is asked
@@ -53,6 +63,12 @@ class Sensation {
   /// In JNDs; below 0 only by strength.
   [[nodiscard]] double jnds(const std::array<std::size_t, 2>& pair, double level) const;
 
+  /// Of a catch trial, of its pair; 0 or more. Always what the laws render.
+  [[nodiscard]] double catch_jnds(const std::array<std::size_t, 2>& pair) const { return catches_.at(pair); }
+  /// How strong a sample is in JNDs, from no force on; where pairs are to be so many d' apart, as many times
+  /// that as its number from 0.
+  [[nodiscard]] double strength(std::size_t sample) const { return strengths_.at(sample); }
+
   [[nodiscard]] const std::vector<FeltSample>& samples() const noexcept { return samples_; }
   /// The levels that were rendered, ascending; none without levels.
   [[nodiscard]] const std::vector<double>& levels() const noexcept { return levels_; }
@@ -63,7 +79,9 @@ class Sensation {
 
  private:
   std::vector<FeltSample> samples_;
+  std::vector<double> strengths_;
   std::map<std::array<std::size_t, 2>, double> pairs_;
+  std::map<std::array<std::size_t, 2>, double> catches_;
   std::vector<double> levels_;
   void fit(const std::vector<double>& rendered);
 

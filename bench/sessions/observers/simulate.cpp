@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "observers/experiment.h"
 #include "observers/simulated_design.h"
 #include "observers/simulated_findings.h"
 #include "observers/simulated_looks.h"
@@ -21,6 +22,8 @@ enum SeedKind : std::uint64_t {
   of_confirmation = 3,
   of_looks = 4,
   of_null_looks = 5,
+  of_attentive = 6,
+  of_inattentive = 7,
   of_curve = 100
 };
 
@@ -31,6 +34,11 @@ std::size_t curve_experiments_of(const Protocol& protocol, const SimulationOptio
   if (options.curve_experiments > 0) return options.curve_experiments;
   return has_levels(protocol.design) ? std::max<std::size_t>(2, options.experiments / 5)
                                      : options.experiments;
+}
+
+/// Of the trials, that are void.
+double void_share(const Observer& observer) {
+  return observer.slip + (1.0 - observer.slip) * observer.unexplored;
 }
 
 bool has_looks(const SimulationOptions& options) {
@@ -49,6 +57,15 @@ LookedAt looked_at(const std::vector<StudyCourse>& courses, const std::vector<Lo
   return result;
 }
 
+/// What everybody does on the average: of those who do not attend, and are not left out, the answers that
+/// come by chance are lapses.
+Observer answering_observer(const SimulationOptions& options) {
+  Observer observer = options.observer;
+  if (!options.catch_right)
+    observer.lapse += observer.share_inattentive * observer.inattention * (1.0 - observer.lapse);
+  return observer;
+}
+
 class Simulator {
  public:
   Simulator(const Protocol& protocol, const SimulationOptions& options, std::atomic<std::size_t>& done)
@@ -56,7 +73,7 @@ class Simulator {
         options_(options),
         done_(done),
         sensation_(protocol, options.observer, options.sensation),
-        model_(protocol, sensation_, options.observer),
+        model_(protocol, sensation_, answering_observer(options)),
         truth_(model_.truth(options.analysis.criterion)) {}
 
   Simulation run() {
@@ -72,10 +89,14 @@ class Simulator {
     result.found = findings_of(results_of(protocol_, of_experiments, options_.experiments), truth_,
                                options_.analysis.level);
     result.theory = power_by_theory(protocol_);
-    result.mean_session_s = session_seconds(
-        protocol_, result.found.trials / static_cast<double>(options_.subjects * options_.visits),
-        options_.answer_s);
+    result.voided = voided();
+    result.mean_session_s =
+        session_seconds(protocol_,
+                        result.found.trials / static_cast<double>(options_.subjects * options_.visits) +
+                            (result.voided ? result.voided->slipped + result.voided->unexplored : 0.0),
+                        options_.answer_s);
     add_false_alarms(result);
+    add_catches(result);
     add_looks(result);
     add_needed(result);
     add_curve(result);
@@ -88,7 +109,47 @@ class Simulator {
     return {.observer = options_.observer,
             .subjects = options_.subjects,
             .visits = options_.visits,
-            .nothing_to_find = nothing_to_find};
+            .nothing_to_find = nothing_to_find,
+            .catch_right = options_.catch_right};
+  }
+
+  /// People who all attend, or none of whom does.
+  void add_people(SimulatedCatches& catches, bool attentive, std::size_t studies) {
+    Participants participants = participants_of(false);
+    participants.catch_right.reset();
+    participants.observer.share_inattentive = attentive ? 0.0 : 1.0;
+    std::vector<std::vector<SubjectCatches>> found(studies);
+    for_each_index(studies, options_.jobs, [&](std::size_t i) {
+      found[i] = catches_by_subject(
+          simulated_study(protocol_, sensation_, participants,
+                          experiment_seed(options_.seed, attentive ? of_attentive : of_inattentive, i)));
+    });
+    CatchTally all;
+    std::size_t people = 0;
+    for (const auto& study : found) {
+      for (const SubjectCatches& each : study) {
+        ++people;
+        all.right += each.tally.right;
+        all.trials += each.tally.trials;
+        count(attentive ? catches.attentive_out : catches.inattentive_out,
+              each.tally.is_below(catches.least_share));
+      }
+    }
+    if (people == 0) return;
+    catches.trials = static_cast<double>(all.trials) / static_cast<double>(people);
+    (attentive ? catches.attentive_right : catches.inattentive_right) =
+        static_cast<double>(all.right) / static_cast<double>(all.trials);
+  }
+
+  void add_catches(Simulation& result) {
+    if (protocol_.catches.every == 0) return;
+    constexpr std::size_t people_wanted = 1000;
+    const std::size_t studies =
+        std::min(options_.experiments, (people_wanted + options_.subjects - 1) / options_.subjects);
+    result.catches.emplace();
+    if (options_.catch_right) result.catches->least_share = *options_.catch_right;
+    add_people(*result.catches, true, studies);
+    add_people(*result.catches, false, studies);
   }
 
   LookedAt looked_at_studies(const std::vector<Look>& looks, std::uint64_t kind) {
@@ -112,17 +173,34 @@ class Simulator {
     result.looks->nothing = looked_at_studies(result.looks->looks, of_null_looks);
   }
 
+  /// Means over the sessions of the experiments proper.
+  [[nodiscard]] std::optional<SimulatedVoid> voided() const {
+    if (void_share(options_.observer) == 0.0) return std::nullopt;
+    SimulatedVoid mean;
+    const double sessions = static_cast<double>(courses_.size() * options_.subjects * options_.visits);
+    for (const TrialsGiven& course : courses_) {
+      mean.given += static_cast<double>(course.given) / sessions;
+      mean.slipped += static_cast<double>(course.slipped) / sessions;
+      mean.unexplored += static_cast<double>(course.unexplored) / sessions;
+      mean.again += static_cast<double>(course.again) / sessions;
+      mean.lost += static_cast<double>(course.lost) / sessions;
+    }
+    return mean;
+  }
+
   std::vector<MainResult> results_of(const Protocol& protocol, std::uint64_t kind, std::size_t experiments) {
     const Participants participants = participants_of(kind == of_nulls);
     AnalysisOptions analysis = options_.analysis;
     analysis.curves = kind != of_nulls && kind != of_confirmation;
     std::vector<MainResult> results(experiments);
+    std::vector<TrialsGiven> courses(experiments);
     for_each_index(experiments, options_.jobs, [&](std::size_t i) {
-      const Study study =
-          simulated_study(protocol, sensation_, participants, experiment_seed(options_.seed, kind, i));
+      const Study study = simulated_study(protocol, sensation_, participants,
+                                          experiment_seed(options_.seed, kind, i), &courses[i]);
       results[i] = main_result(study, analysis);
       ++done_;
     });
+    if (kind == of_experiments) courses_ = std::move(courses);
     return results;
   }
 
@@ -137,12 +215,16 @@ class Simulator {
   double power_by_theory(const Protocol& protocol) const {
     if (std::isnan(truth_.share)) return truth_.share;
     const auto answers = protocol.trials * cells_of(protocol) * options_.subjects * options_.visits;
-    return psychophysics::binomial_power(binomial(), static_cast<int>(answers));
+    // A trial is lost when it was void as often as it may come.
+    const double lost =
+        std::pow(void_share(options_.observer), 1.0 + static_cast<double>(protocol.rules.repeats));
+    return psychophysics::binomial_power(
+        binomial(), static_cast<int>(std::lround((1.0 - lost) * static_cast<double>(answers))));
   }
 
-  /// A staircase has no main test, and what has none needs no observers who feel nothing.
+  /// What ends by its answers has no main test, and what has none needs no observers who feel nothing.
   void add_false_alarms(Simulation& result) {
-    if (protocol_.design == Design::staircase) return;
+    if (ends_by_answers(protocol_.design, protocol_.scale)) return;
     SimulatedTruth nothing{.chance = truth_.chance};
     result.false_alarms =
         findings_of(results_of(protocol_, of_nulls, options_.experiments), nothing, options_.analysis.level)
@@ -197,7 +279,7 @@ class Simulator {
     if (!has_levels(protocol_.design)) return;
     std::vector<const Judgement*> counted;
     for (const Judgement& judgement : result.example->judgements) {
-      if (!judgement.practice) counted.push_back(&judgement);
+      if (judgement.counts()) counted.push_back(&judgement);
     }
     AnalysisOptions quick = options_.analysis;
     quick.bootstrap = 0;
@@ -218,6 +300,7 @@ class Simulator {
   Sensation sensation_;
   AnswerModel model_;
   SimulatedTruth truth_;
+  std::vector<TrialsGiven> courses_;  ///< of the experiments proper
 };
 
 void require_options(const SimulationOptions& options) {
@@ -233,6 +316,20 @@ void require_options(const SimulationOptions& options) {
   require(options.answer_s >= 0.0, "the time to answer is negative");
 }
 
+/// Observers do nothing that the protocol does not provide for.
+void require_rules(const Protocol& protocol, const Observer& observer) {
+  if (observer.slip > 0.0 && !protocol.rules.slip)
+    throw std::invalid_argument(fmt::format(
+        "observers are to take {:g} of the trials back, and the [trial] of protocol '{}' does not "
+        "permit it: say slip = true there",
+        observer.slip, protocol.name));
+  if (observer.unexplored > 0.0 && !protocol.rules.explore.is_asked())
+    throw std::invalid_argument(
+        fmt::format("observers are not to explore {:g} of the trials, and the [trial] of protocol '{}' asks "
+                    "for no exploration: say there what, in 'explore'",
+                    observer.unexplored, protocol.name));
+}
+
 }  // namespace
 
 std::size_t simulated_experiments(const Protocol& protocol, const SimulationOptions& options) noexcept {
@@ -243,6 +340,7 @@ std::size_t simulated_experiments(const Protocol& protocol, const SimulationOpti
 Simulation simulate(const Protocol& protocol, const SimulationOptions& options,
                     std::atomic<std::size_t>& done) {
   require_options(options);
+  require_rules(protocol, options.observer);
   return Simulator(protocol, options, done).run();
 }
 

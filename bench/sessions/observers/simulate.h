@@ -26,8 +26,10 @@ struct SimulationOptions {
   std::size_t subjects = 1;
   std::size_t visits = 1;                ///< sessions of each
   std::optional<Experiment> experiment;  ///< whose stopping rule is tried too
-  double power = 0.8;                    ///< wanted
-  std::size_t curve_points = 8;          ///< numbers of trials of the power curve; 0: none
+  /// Who has a smaller share of right catch trials is not analysed; none: everybody is.
+  std::optional<double> catch_right;
+  double power = 0.8;            ///< wanted
+  std::size_t curve_points = 8;  ///< numbers of trials of the power curve; 0: none
   /// At each of them; 0: as many as `experiments`, of designs with levels, which take longer, a fifth of it.
   std::size_t curve_experiments = 0;
   double answer_s = 2.0;  ///< that a subject takes to answer
@@ -50,6 +52,8 @@ struct SimulatedFindings {
   SimulatedShare jnd_bounded;  ///< and its interval is closed at both ends
   SimulatedShare jnd_covered;  ///< of the JNDs told, the interval holds the true one
   SimulatedShare d_prime_covered;
+  SimulatedShare exponent_covered;  ///< of those told, the interval holds the mean of people
+  double exponent_mean = std::numeric_limits<double>::quiet_NaN();  ///< of the estimates
   double jnd_bias =
       std::numeric_limits<double>::quiet_NaN();  ///< geometric mean of estimate over truth, less 1
   double jnd_spread = std::numeric_limits<double>::quiet_NaN();  ///< standard deviation of ln(estimate)
@@ -68,6 +72,16 @@ struct PowerPoint {
   SimulatedFindings found;
 };
 
+/// How a rule of exclusion by catch trials tells who attends from who does not.
+struct SimulatedCatches {
+  double least_share = 0.8;  ///< of right catch trials
+  double trials = 0.0;       ///< mean number of catch trials of a subject
+  double attentive_right = std::numeric_limits<double>::quiet_NaN();  ///< share of their catch trials
+  double inattentive_right = std::numeric_limits<double>::quiet_NaN();
+  SimulatedShare attentive_out;  ///< of those who attend, who would be excluded
+  SimulatedShare inattentive_out;
+};
+
 /// What studies came to that were looked at as their experiment plans.
 struct LookedAt {
   SimulatedShare shown;               ///< the registered hypothesis, at one of the looks
@@ -82,6 +96,15 @@ struct SimulatedLooks {
   LookedAt nothing;  ///< with observers who feel no difference
 };
 
+/// What became of the trials of one session on the average, practice included, where some are void.
+struct SimulatedVoid {
+  double given = 0.0;
+  double slipped = 0.0;
+  double unexplored = 0.0;
+  double again = 0.0;
+  double lost = 0.0;
+};
+
 struct Simulation {
   SimulationOptions options;
   std::string name;
@@ -94,8 +117,10 @@ struct Simulation {
   SimulatedFindings found;
   double theory = std::numeric_limits<double>::quiet_NaN();  ///< power by the exact probability
   double mean_session_s = 0.0;          ///< of one subject: presentations, answers, breaks; practice included
+  std::optional<SimulatedVoid> voided;  ///< with observers who slip or explore too little
   SimulatedShare false_alarms;          ///< of observers who feel no difference
-  std::optional<SimulatedLooks> looks;  ///< of an experiment that is looked at before its end
+  std::optional<SimulatedCatches> catches;  ///< where the protocol has catch trials
+  std::optional<SimulatedLooks> looks;      ///< of an experiment that is looked at before its end
   std::vector<PowerPoint> curve;
   std::size_t curve_experiments = 0;    ///< at each point of the curve
   std::string curve_of;                 ///< what is counted: "trials of each pair"

@@ -12,6 +12,7 @@ Protocol with_trials(Protocol protocol, std::size_t trials) {
   protocol.trials = trials;
   protocol.scale.quest_trials = trials;
   protocol.scale.staircase.max_trials = static_cast<int>(trials);
+  for (auto& other : protocol.scale.interleaved) other.max_trials = static_cast<int>(trials);
   return protocol;
 }
 
@@ -27,9 +28,10 @@ std::size_t cells_of(const Protocol& protocol) {
 }
 
 std::string counted_on_curve(Design design) {
-  if (design == Design::staircase) return "reversals of each subject";
+  if (design == Design::staircase) return "reversals of each subject (of the first staircase)";
   if (design == Design::constant) return "trials of each level and subject";
   if (design == Design::quest_plus) return "trials of each subject";
+  if (asks_numbers(design)) return "trials of each sample or level and subject";
   return "trials of each pair and subject";
 }
 
@@ -39,6 +41,10 @@ Protocol resized(const Protocol& protocol, std::size_t size) {
   Protocol larger =
       with_trials(protocol, std::max(protocol.trials, (protocol.trials * size + reversals - 1) / reversals));
   larger.scale.staircase.reversals = static_cast<int>(size);
+  for (auto& other : larger.scale.interleaved) {
+    const auto own = static_cast<std::size_t>(other.reversals) * size / reversals;
+    other.reversals = std::max(other.dropped + 2, static_cast<int>(own));
+  }
   return larger;
 }
 
@@ -48,13 +54,15 @@ std::size_t size_of(const Protocol& protocol) {
 }
 
 double session_seconds(const Protocol& protocol, double trials, double answer_s) {
-  const auto slots = static_cast<double>(slots_of(protocol.design));
+  const auto slots = static_cast<double>(slots_of(protocol));
   const double trial_s = slots * protocol.interval_s + (slots - 1.0) * protocol.gap_s + answer_s;
   const auto practice = static_cast<double>(protocol.practice);
   double breaks = 0.0;
   if (protocol.break_every > 0)
     breaks = std::max(0.0, std::ceil(trials / static_cast<double>(protocol.break_every)) - 1.0);
-  return (trials + practice) * trial_s + breaks * protocol.break_s;
+  const double catches =
+      protocol.catches.every > 0 ? std::floor(trials / static_cast<double>(protocol.catches.every)) : 0.0;
+  return (trials + catches + practice) * trial_s + breaks * protocol.break_s;
 }
 
 }  // namespace kerf::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <fmt/core.h>
@@ -86,15 +87,23 @@ SimulatedFindings findings_of(const std::vector<MainResult>& results, const Simu
                               double level) {
   SimulatedFindings found;
   std::vector<double> d_primes;
+  std::vector<double> exponents;
   for (const MainResult& result : results) {
     found.trials += static_cast<double>(result.trials) / static_cast<double>(results.size());
     if (std::isfinite(result.p_value)) count(found.significant, result.p_value < level);
     if (result.equivalent) count(found.equivalent, *result.equivalent);
+    if (std::isfinite(result.exponent) && std::isfinite(truth.exponent)) {
+      exponents.push_back(result.exponent);
+      count(found.exponent_covered, holds(result.exponent_interval, truth.exponent));
+    }
     if (!std::isnan(result.d_prime) && std::isfinite(truth.d_prime)) {
       d_primes.push_back(result.d_prime);
       count(found.d_prime_covered, holds(result.d_prime_interval, truth.d_prime));
     }
   }
+  if (!exponents.empty())
+    found.exponent_mean =
+        std::accumulate(exponents.begin(), exponents.end(), 0.0) / static_cast<double>(exponents.size());
   found.d_prime_median = middle_of(std::move(d_primes));
   if (truth.is_of_levels) add_jnds(results, truth.jnd, found);
   found.notes = counted_notes(results);

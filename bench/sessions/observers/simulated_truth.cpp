@@ -11,6 +11,8 @@
 
 #include <kerf/psychophysics/dprime.h>
 
+#include "answers/two_rates.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -47,10 +49,31 @@ std::vector<std::array<std::uint8_t, max_slots>> unlike_arrangements(Judging jud
       return {{0, 1, 0}};
     case Judging::odd_one_out:
       return {{1, 0, 0}};
+    case Judging::same_by_likelihood:
+    case Judging::same_by_differencing:
+      return {{0, 0, 0}, {0, 1, 0}};
+    case Judging::yes_no:
+      return {{0, 0, 0}, {1, 0, 0}};
     default:
       if (slots == 3) return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
       return {{1, 0, 0}, {0, 1, 0}};
   }
+}
+
+/// What is right where the slots play so: several choices where they say how sure an answer is.
+std::vector<std::size_t> right_choices(const Protocol& protocol,
+                                       const std::array<std::uint8_t, max_slots>& plays) {
+  if (has_two_rates(protocol.design)) {
+    const std::size_t right = TrialPlan{.slots = plays}.right(protocol);
+    std::vector<std::size_t> choices;
+    for (std::size_t choice = 0; choice < choices_of(protocol); ++choice) {
+      if (answer_of_choice(protocol, choice) == right) choices.push_back(choice);
+    }
+    return choices;
+  }
+  // X is A, the odd one is the first; otherwise right is what plays the second of the pair.
+  if (protocol.design == Design::abx) return {0};
+  return {static_cast<std::size_t>(std::find(plays.begin(), plays.end(), 1) - plays.begin())};
 }
 
 }  // namespace
@@ -64,23 +87,28 @@ AnswerModel::AnswerModel(const Protocol& protocol, const Sensation& sensation, c
       preferences_(preferences_of(observer.preference, observer.preference_spread)) {}
 
 double AnswerModel::share(const std::array<std::size_t, 2>& pair, double level, bool lapses) const {
+  return share_of(unlike_arrangements(judging_of(*protocol_), slots_of(*protocol_)), pair, level, lapses);
+}
+
+double AnswerModel::share_of(const Arrangements& arrangements, const std::array<std::size_t, 2>& pair,
+                             double level, bool lapses) const {
   Observer observer = observer_;
   if (!lapses) observer.lapse = 0.0;
   const Judging judging = judging_of(*protocol_);
-  const std::size_t slots = slots_of(protocol_->design);
-  const auto arrangements = unlike_arrangements(judging, slots);
+  const std::size_t slots = slots_of(*protocol_);
   const double d_prime = per_jnd_ * sensation_->jnds(pair, level);
   double sum = 0.0;
   for (const auto& plays : arrangements) {
-    // X is A, the odd one is the first; otherwise right is what plays the second of the pair.
-    const bool first_is_right = judging == Judging::abx_independent || judging == Judging::abx_differencing;
-    const auto right =
-        first_is_right ? std::size_t{0}
-                       : static_cast<std::size_t>(std::find(plays.begin(), plays.end(), 1) - plays.begin());
+    const std::vector<std::size_t> right = right_choices(*protocol_, plays);
     const auto probability = [&](double sensitivity) {
-      return answer_probability(
-          observer, {.judging = judging, .slots = slots, .plays = plays, .d_prime = sensitivity * d_prime},
-          right);
+      const FeltTrial trial{.judging = judging,
+                            .slots = slots,
+                            .plays = plays,
+                            .d_prime = sensitivity * d_prime,
+                            .confidence = protocol_->confidence.size()};
+      double of_right = 0.0;
+      for (const std::size_t choice : right) of_right += answer_probability(observer, trial, choice);
+      return of_right;
     };
     double feeling = 0.0;
     for (const double preference : preferences_) {
@@ -163,7 +191,27 @@ void AnswerModel::find_jnd(std::optional<double> criterion, SimulatedTruth& trut
                              100.0 * truth.criterion);
 }
 
+/// Of the rates over all pairs, as the analysis takes them.
+double AnswerModel::d_prime_of_two_rates(const std::vector<CellTruth>& cells,
+                                         const psychophysics::Task& task) const {
+  const auto arrangements = unlike_arrangements(judging_of(*protocol_), slots_of(*protocol_));
+  double hit = 0.0;
+  double false_alarm = 0.0;
+  for (const CellTruth& cell : cells) {
+    false_alarm += 1.0 - share_of({arrangements.front()}, cell.pair, cell.level);
+    hit += share_of({arrangements.back()}, cell.pair, cell.level);
+  }
+  const auto n = static_cast<double>(cells.size());
+  const auto inside = [](double rate) { return std::clamp(rate, 1e-12, 1.0 - 1e-12); };
+  return d_prime_of_rates(task, inside(hit / n), inside(false_alarm / n));
+}
+
 SimulatedTruth AnswerModel::truth(std::optional<double> criterion) const {
+  if (asks_numbers(protocol_->design)) {
+    SimulatedTruth truth{.one_sided = false};
+    if (protocol_->design == Design::magnitude) truth.exponent = observer_.exponent;
+    return truth;
+  }
   SimulatedTruth truth{.cells = cells(),
                        .one_sided = protocol_->design != Design::preference,
                        .is_of_levels = has_levels(protocol_->design)};
@@ -180,8 +228,11 @@ SimulatedTruth AnswerModel::truth(std::optional<double> criterion) const {
     return protocol_->design != Design::preference || tissue.samples.size() == 2;
   });
   if (counted > 0 && one_question) truth.share = sum / static_cast<double>(counted);
-  if (study.task && !has_levels(protocol_->design))
+  if (has_two_rates(protocol_->design)) {
+    truth.d_prime = d_prime_of_two_rates(truth.cells, *study.task);
+  } else if (study.task && !has_levels(protocol_->design)) {
     truth.d_prime = psychophysics::d_prime(*study.task, truth.share);
+  }
   if (has_levels(protocol_->design)) find_jnd(criterion, truth);
   return truth;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -36,7 +37,8 @@ struct SimulatedTruth {
   /// What the analysis estimates where it does not know of lapses and bias: that of `share`. NaN: none.
   double d_prime = std::numeric_limits<double>::quiet_NaN();
   double criterion = 0.75;  ///< of the JND: share at which it is read off, or 25 to 75 % of both sides
-  double jnd = std::numeric_limits<double>::quiet_NaN();  ///< a level; NaN: none, or `note` says why
+  double jnd = std::numeric_limits<double>::quiet_NaN();       ///< a level; NaN: none, or `note` says why
+  double exponent = std::numeric_limits<double>::quiet_NaN();  ///< of magnitudes, mean of people
   std::string note;
 };
 
@@ -47,10 +49,16 @@ class AnswerModel {
 
   /// As in CellTruth; `lapses` left out on demand.
   [[nodiscard]] double share(const std::array<std::size_t, 2>& pair, double level, bool lapses = true) const;
+  /// Of trials whose slots are filled in one of these ways.
+  using Arrangements = std::vector<std::array<std::uint8_t, max_slots>>;
+  [[nodiscard]] double share_of(const Arrangements& arrangements, const std::array<std::size_t, 2>& pair,
+                                double level, bool lapses = true) const;
   [[nodiscard]] SimulatedTruth truth(std::optional<double> criterion) const;
 
  private:
   [[nodiscard]] double level_at(double share, double from, double to, bool lapses) const;
+  [[nodiscard]] double d_prime_of_two_rates(const std::vector<CellTruth>& cells,
+                                            const psychophysics::Task& task) const;
   void find_jnd(std::optional<double> criterion, SimulatedTruth& truth) const;
   [[nodiscard]] std::vector<CellTruth> cells() const;
 

@@ -69,7 +69,7 @@ Chart pairs_chart(const Simulation& simulation) {
     truth.y.push_back(y + 0.15);
     psychophysics::Count count;
     for (const Judgement& judgement : simulation.example->judgements) {
-      if (judgement.practice || judgement.pair != cell.pair || judgement.tissue != cell.tissue) continue;
+      if (!judgement.counts() || judgement.pair != cell.pair || judgement.tissue != cell.tissue) continue;
       ++count.trials;
       count.successes += judgement.is_right() != preference ? 1 : 0;
     }

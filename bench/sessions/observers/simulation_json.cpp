@@ -30,6 +30,8 @@ ordered_json json_of(const SimulatedFindings& found) {
           {"jnd_interval_ratio", json_number(found.jnd_ratio)},
           {"d_prime_coverage", json_of(found.d_prime_covered)},
           {"d_prime_median", json_number(found.d_prime_median)},
+          {"exponent_coverage", json_of(found.exponent_covered)},
+          {"exponent_mean", json_number(found.exponent_mean)},
           {"notes", found.notes}};
 }
 
@@ -48,7 +50,23 @@ ordered_json json_of(const Observer& observer) {
           {"preference", observer.preference},
           {"spread", observer.spread},
           {"preference_spread", observer.preference_spread},
-          {"share_feeling", observer.share_feeling}};
+          {"share_inattentive", observer.share_inattentive},
+          {"inattention", observer.inattention},
+          {"exponent", observer.exponent},
+          {"exponent_spread", observer.exponent_spread},
+          {"number_noise", observer.number_noise},
+          {"modulus_spread", observer.modulus_spread},
+          {"share_feeling", observer.share_feeling},
+          {"slip", observer.slip},
+          {"unexplored", observer.unexplored}};
+}
+
+ordered_json json_of(const SimulatedVoid& voided) {
+  return {{"given", voided.given},
+          {"slipped", voided.slipped},
+          {"unexplored", voided.unexplored},
+          {"again", voided.again},
+          {"lost", voided.lost}};
 }
 
 ordered_json json_of(const SimulatedTruth& truth) {
@@ -64,6 +82,7 @@ ordered_json json_of(const SimulatedTruth& truth) {
           {"d_prime", json_number(truth.d_prime)},
           {"criterion", truth.criterion},
           {"jnd", json_number(truth.jnd)},
+          {"exponent", json_number(truth.exponent)},
           {"note", truth.note},
           {"cells", std::move(cells)}};
 }
@@ -83,6 +102,15 @@ ordered_json json_of(const SimulatedLooks& looks) {
     at.push_back(
         {{"participants", look.participants.size()}, {"alpha_spent", look.spent}, {"nominal", look.nominal}});
   return {{"looks", std::move(at)}, {"found", json_of(looks.found)}, {"nothing", json_of(looks.nothing)}};
+}
+
+ordered_json json_of(const SimulatedCatches& catches) {
+  return {{"catch_right", catches.least_share},
+          {"trials", json_number(catches.trials)},
+          {"attentive_right", json_number(catches.attentive_right)},
+          {"inattentive_right", json_number(catches.inattentive_right)},
+          {"attentive_excluded", json_of(catches.attentive_out)},
+          {"inattentive_excluded", json_of(catches.inattentive_out)}};
 }
 
 }  // namespace
@@ -117,7 +145,9 @@ ordered_json simulation_json(const Simulation& simulation) {
       {"found", json_of(simulation.found)},
       {"power_by_theory", json_number(simulation.theory)},
       {"false_alarms", json_of(simulation.false_alarms)},
+      {"catch", simulation.catches ? json_of(*simulation.catches) : ordered_json(nullptr)},
       {"looks", simulation.looks ? json_of(*simulation.looks) : ordered_json(nullptr)},
+      {"void_per_session", simulation.voided ? json_of(*simulation.voided) : ordered_json(nullptr)},
       {"session_s", simulation.mean_session_s},
       {"power_wanted", options.power},
       {"answers_needed",

@@ -51,9 +51,51 @@ std::string observer_line(const SimulationOptions& options) {
     line += fmt::format(", and differ by {} from each other", percent(observer.spread));
   if (observer.preference_spread > 0.0)
     line += fmt::format(", whose tastes differ by d' = {:g}", observer.preference_spread);
+  if (observer.share_inattentive > 0.0)
+    line += fmt::format(", and of whom {} do not attend: {} of their answers come by chance",
+                        percent(observer.share_inattentive), percent(observer.inattention));
+  if (observer.slip > 0.0) line += fmt::format(", who take {} of the trials back", percent(observer.slip));
+  if (observer.unexplored > 0.0)
+    line += fmt::format(", who explore {} of the trials too little", percent(observer.unexplored));
   if (observer.share_feeling < 1.0)
     line += fmt::format(", and of whom {} feel any difference", percent(observer.share_feeling));
   return line + ".";
+}
+
+std::string number_observer_line(const Simulation& simulation) {
+  const Observer& observer = simulation.options.observer;
+  if (simulation.design == Design::rating)
+    return fmt::format(
+        "Observers with a JND of {}, who rate what they feel with a noise of one d' on a scale of 3 d' "
+        "either way, "
+        "lapse in {}, and differ by {:g} d' in where they rate and {:g} d' in what they like.",
+        percent(observer.jnd), percent(observer.lapse), observer.modulus_spread, observer.preference_spread);
+  return fmt::format(
+      "Observers whose numbers grow with the exponent {:g} (+- {:g} between them) of what they feel, with a "
+      "noise "
+      "of {}, lapse in {}, and choose the size of their numbers within a factor of {:.3g}.",
+      observer.exponent, observer.exponent_spread, percent(observer.number_noise), percent(observer.lapse),
+      std::exp(observer.modulus_spread));
+}
+
+void add_exponent(const Simulation& simulation, std::vector<std::string>& lines) {
+  const SimulatedShare& covered = simulation.found.exponent_covered;
+  if (covered.count.trials == 0) return;
+  lines.push_back(
+      fmt::format("Intervals of {} covered the exponent of {:g} in {}; mean of the estimates {:.3f}.",
+                  percent(simulation.options.analysis.confidence), simulation.truth.exponent,
+                  with_interval(covered), simulation.found.exponent_mean));
+}
+
+/// Who finds nothing.
+const char* who_feel_nothing(const Simulation& simulation) {
+  if (simulation.design == Design::magnitude && simulation.example &&
+      !simulation.example->judgements.empty() && !std::isnan(simulation.example->judgements.front().level))
+    return "whose exponent is 1";
+  if (asks_numbers(simulation.design)) return "who tell no sample from another";
+  return simulation.design == Design::preference && simulation.options.observer.preference_spread > 0.0
+             ? "who on the average prefer none"
+             : "who feel no difference";
 }
 
 void add_cells(const Simulation& simulation, std::vector<std::string>& lines) {
@@ -82,14 +124,23 @@ void add_power(const Simulation& simulation, std::vector<std::string>& lines) {
     lines.push_back(line + ".");
   }
   if (simulation.false_alarms.count.trials > 0)
-    lines.push_back(fmt::format(
-        "False alarms {} with observers who {}, at a level of {}.", with_interval(simulation.false_alarms),
-        simulation.design == Design::preference && simulation.options.observer.preference_spread > 0.0
-            ? "on the average prefer none"
-            : "feel no difference",
-        percent(simulation.options.analysis.level)));
+    lines.push_back(fmt::format("False alarms {} with observers {}, at a level of {}.",
+                                with_interval(simulation.false_alarms), who_feel_nothing(simulation),
+                                percent(simulation.options.analysis.level)));
   if (found.equivalent.count.trials > 0)
     lines.push_back(fmt::format("Called equivalent in {}.", with_interval(found.equivalent)));
+}
+
+void add_catches(const Simulation& simulation, std::vector<std::string>& lines) {
+  if (!simulation.catches) return;
+  const SimulatedCatches& catches = *simulation.catches;
+  lines.push_back(fmt::format(
+      "Of {:.1f} catch trials a subject {} are right where people attend, {} where {} of the answers come by "
+      "chance; less than {} right are {} of those who attend and {} of the others{}.",
+      catches.trials, percent(catches.attentive_right), percent(catches.inattentive_right),
+      percent(simulation.options.observer.inattention), percent(catches.least_share),
+      with_interval(catches.attentive_out), with_interval(catches.inattentive_out),
+      simulation.options.catch_right ? ", who are not analysed" : ""));
 }
 
 void add_looks(const Simulation& simulation, std::vector<std::string>& lines) {
@@ -175,13 +226,23 @@ std::vector<std::string> simulation_lines(const Simulation& simulation) {
       fmt::format("{}: {}, {} experiments of {} subject{}", simulation.name, name_of(simulation.design),
                   simulation.options.experiments, simulation.options.subjects,
                   simulation.options.subjects == 1 ? "" : "s"),
-      observer_line(simulation.options), felt_line(simulation)};
+      asks_numbers(simulation.design) ? number_observer_line(simulation) : observer_line(simulation.options),
+      felt_line(simulation)};
   add_cells(simulation, lines);
   add_power(simulation, lines);
+  add_catches(simulation, lines);
   add_looks(simulation, lines);
   add_jnd(simulation, lines);
   add_d_prime(simulation, lines);
+  add_exponent(simulation, lines);
   add_needed(simulation, lines);
+  if (const auto& voided = simulation.voided)
+    lines.push_back(
+        fmt::format("A session has {:.2f} trials on the average, practice included, and {:.2f} of them are "
+                    "void (taken back {:.2f}, "
+                    "not explored {:.2f}): {:.2f} come again, {:.3f} are lost.",
+                    voided->given, voided->slipped + voided->unexplored, voided->slipped, voided->unexplored,
+                    voided->again, voided->lost));
   lines.push_back(
       fmt::format("A subject is busy for {:.0f} min, if each slot is felt once and an answer takes "
                   "{:g} s.",

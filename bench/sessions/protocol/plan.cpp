@@ -8,6 +8,8 @@
 #include <kerf/psychophysics/balance.h>
 #include <kerf/psychophysics/random.h>
 
+#include "protocol/attention/catch_plan.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -21,24 +23,11 @@ struct PlanCell {
   double level = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The ways in which the slots can play a pair, in an order that is dealt from like cards: whatever is
-/// balanced over all of them differs from one to the next, so that a part of them is balanced too.
-std::vector<Slots> arrangements_of(const Protocol& protocol) {
-  switch (protocol.design) {
-    case Design::abx:  // A, B, X: by turns which is A, and whether X is A
-      return {{0, 1, 0}, {1, 0, 0}, {0, 1, 1}, {1, 0, 1}};
-    case Design::three_interval:
-      if (protocol.odd_one_out) return {{1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}};
-      return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    default:
-      return {{0, 1, 0}, {1, 0, 0}};
-  }
-}
-
 std::vector<PlanCell> cells_of(const Protocol& protocol, std::size_t tissue) {
   std::vector<PlanCell> cells;
   for (const auto& pair : pairs_of(protocol, tissue)) {
-    if (protocol.design != Design::constant) {
+    const bool is_varied = protocol.design == Design::magnitude && !protocol.scale.levels.empty();
+    if (protocol.design != Design::constant && !is_varied) {
       cells.push_back({.tissue = tissue, .pair = pair});
       continue;
     }
@@ -74,10 +63,9 @@ std::vector<Slots> dealt(const std::vector<Slots>& all, std::size_t trials, std:
 
 /// An adaptive design may end anywhere, so its arrangements are even in every ten trials.
 std::vector<Slots> even_throughout(const std::vector<Slots>& all, std::size_t trials, Random& random) {
-  constexpr std::size_t block = 10;
   std::vector<Slots> hand;
   for (const std::size_t kind :
-       psychophysics::balanced_sequence(trials, all.size(), random.below(SIZE_MAX), block))
+       psychophysics::balanced_sequence(trials, all.size(), random.below(SIZE_MAX), block_of_slots))
     hand.push_back(all[kind]);
   return hand;
 }
@@ -102,6 +90,14 @@ Deal deal_of(const std::vector<std::vector<PlanCell>>& cells, std::size_t subjec
   return deal;
 }
 
+/// Whose turn it is among interleaved staircases; one alone takes nothing from the seed.
+std::vector<std::size_t> turns_of(const Protocol& protocol, Random& random) {
+  const std::size_t tracks = protocol.scale.interleaved.size() + 1;
+  if (tracks == 1) return std::vector<std::size_t>(protocol.trials, 0);
+  constexpr std::size_t rounds = 4;
+  return psychophysics::balanced_sequence(protocol.trials, tracks, random.below(SIZE_MAX), rounds * tracks);
+}
+
 /// All trials of a tissue, in rounds in which every cell comes once.
 void append_block(Plan& plan, const Protocol& protocol, const std::vector<PlanCell>& cells,
                   const std::vector<std::size_t>& deals, std::size_t subject_deal, Random& random) {
@@ -111,9 +107,12 @@ void append_block(Plan& plan, const Protocol& protocol, const std::vector<PlanCe
     hands.push_back(is_adaptive(protocol.design) ? even_throughout(all, protocol.trials, random)
                                                  : dealt(all, protocol.trials, deal + subject_deal, random));
   }
+  const std::vector<std::size_t> turns = turns_of(protocol, random);
   for (std::size_t round = 0; round < protocol.trials; ++round) {
-    for (const std::size_t cell : shuffled(cells.size(), random))
+    for (const std::size_t cell : shuffled(cells.size(), random)) {
       plan.push_back(trial_of(cells[cell], hands[cell][round], false));
+      plan.back().track = turns[round];
+    }
   }
 }
 
@@ -137,8 +136,31 @@ std::size_t slot_that_plays(const TrialPlan& trial, std::uint8_t which, std::siz
 
 }  // namespace
 
+std::vector<std::array<std::uint8_t, max_slots>> arrangements_of(const Protocol& protocol) {
+  switch (protocol.design) {
+    case Design::abx:  // A, B, X: by turns which is A, and whether X is A
+      return {{0, 1, 0}, {1, 0, 0}, {0, 1, 1}, {1, 0, 1}};
+    case Design::three_interval:
+      if (protocol.odd_one_out) return {{1, 0, 0}, {1, 0, 1}, {0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}};
+      return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    case Design::same_different:  // by turns the same and different
+      return {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
+    case Design::yes_no:
+      return {{0, 0, 0}, {1, 0, 0}};
+    case Design::rating:
+      return {{1, 0, 0}};
+    case Design::magnitude:
+      if (!protocol.numbers.standard) return {{1, 0, 0}};
+      return {{0, 1, 0}};
+    default:
+      return {{0, 1, 0}, {1, 0, 0}};
+  }
+}
+
 std::size_t TrialPlan::right(const Protocol& protocol) const noexcept {
-  const std::size_t of = slots_of(protocol.design);
+  const std::size_t of = slots_of(protocol);
+  if (protocol.design == Design::same_different) return slots[0] == slots[1] ? 0 : 1;
+  if (protocol.design == Design::yes_no) return slots[0];
   if (protocol.design == Design::abx) return slot_that_plays(*this, slots[2], 2);
   if (protocol.signal) return slot_that_plays(*this, pair[0] == *protocol.signal ? 0 : 1, of);
   if (protocol.design == Design::three_interval)
@@ -166,6 +188,7 @@ std::vector<Plan> make_plans(const Protocol& protocol, std::size_t subjects, std
     for (const std::size_t tissue : orders[subject])
       append_block(plan, protocol, cells[tissue], deal.cells[tissue], deal.subjects[subject], random);
   }
+  if (protocol.catches.every > 0) add_catch_trials(protocol, random.below(SIZE_MAX), plans);
   return plans;
 }
 

@@ -8,17 +8,13 @@
 
 #include "laws/law_toml.h"
 #include "protocol/protocol.h"
+#include "texts/plain_text.h"
 
 // The parts of a protocol's file. All throw std::invalid_argument with file, line, found and expected.
 
 namespace kerf::bench {
 
 inline constexpr double max_trials = 10000.0;  ///< of a subject
-
-/// A text without control characters: what a file says must not drive the terminal that shows it. With
-/// `lines` it may have several.
-[[nodiscard]] std::string read_plain_text(const Place& place, const toml::table& table, std::string_view key,
-                                          bool lines = false);
 
 /// A name of 1 to 60 printable characters, without spaces around it; `what` has it, for messages.
 [[nodiscard]] std::string read_name(const Place& place, const toml::table& table, std::string_view what);
@@ -58,8 +54,22 @@ void read_samples(const Place& place, const toml::table& root,
 void read_tissues(const Place& place, const toml::table& root, Protocol& protocol);
 void read_signal(const Place& place, const toml::table& root, Protocol& protocol);
 
+/// standard, modulus; points, ends.
+void read_numbers(const Place& place, const toml::table& root, Protocol& protocol);
+
 /// The sample of that name.
 [[nodiscard]] std::size_t sample_of(const Place& place, const toml::node& node, const Protocol& protocol);
+
+/// [trial]
+void read_trial_rules(const Place& place, const toml::table& root, Protocol& protocol);
+
+/// [catch]: its sample, which is in no tissue, before these are read; and the rest, once all is known.
+void read_catch_sample(const Place& place, const toml::table& root, Protocol& protocol);
+void read_catch_trials(const Place& place, const toml::table& root, Protocol& protocol);
+/// [guide], after the samples and the practice.
+void read_guide(const Place& place, const toml::table& root, Protocol& protocol);
+/// The target's way as a motion that no force disturbs, in whole cycles of at least 4 s.
+[[nodiscard]] MotionSource motion_of(const GuidedMotion& guide);
 
 /// [scale]
 void read_scale(const Place& place, const toml::table& root, Protocol& protocol);

@@ -29,7 +29,9 @@ std::string axes_in_words(const LawFile& law) {
 void require_same_axes(const Place& place, const toml::node& node, const Protocol& protocol,
                        const SessionTissue& tissue) {
   const SessionSample& first = protocol.samples[tissue.samples.front()];
-  for (const std::size_t index : tissue.samples) {
+  std::vector<std::size_t> all = tissue.samples;
+  if (protocol.catches.sample) all.push_back(*protocol.catches.sample);
+  for (const std::size_t index : all) {
     const SessionSample& other = protocol.samples[index];
     if (axes_in_words(other.law) == axes_in_words(first.law)) continue;
     place.refuse(node,
@@ -40,13 +42,13 @@ void require_same_axes(const Place& place, const toml::node& node, const Protoco
 }
 
 /// As many samples as the design compares.
-void require_enough(const Place& place, const toml::node& node, Design design, std::size_t samples,
+void require_enough(const Place& place, const toml::node& node, bool of_levels, std::size_t samples,
                     std::string_view where) {
-  if (has_levels(design) && samples != 1) {
+  if (of_levels && samples != 1) {
     place.refuse(node, "{} has {} samples; a design of levels has one, which it compares with itself", where,
                  samples);
   }
-  if (!has_levels(design) && samples < 2)
+  if (!of_levels && samples < 2)
     place.refuse(node, "{} has one sample; expected two or more, to be compared", where);
 }
 
@@ -72,7 +74,8 @@ SessionSample read_sample(const Place& place, const toml::table& table,
   }
 }
 
-SessionTissue read_tissue(const Place& place, const toml::table& table, const Protocol& protocol) {
+SessionTissue read_tissue(const Place& place, const toml::table& table, const Protocol& protocol,
+                          bool of_levels) {
   place.allow_only(table, {"name", "samples"}, "a [[tissue]]");
   SessionTissue tissue{.name = read_name(place, table, "a [[tissue]]"), .samples = {}};
   for (const SessionTissue& other : protocol.tissues) {
@@ -88,10 +91,12 @@ SessionTissue read_tissue(const Place& place, const toml::table& table, const Pr
     const std::size_t sample = sample_of(place, node, protocol);
     if (std::ranges::count(tissue.samples, sample) != 0)
       place.refuse(node, "tissue '{}' has sample '{}' twice", tissue.name, protocol.samples[sample].name);
+    if (sample == protocol.catches.sample)
+      place.refuse(node, "sample '{}' is that of [catch], so it can be in no tissue",
+                   protocol.samples[sample].name);
     tissue.samples.push_back(sample);
   }
-  require_enough(place, *names, protocol.design, tissue.samples.size(),
-                 fmt::format("tissue '{}'", tissue.name));
+  require_enough(place, *names, of_levels, tissue.samples.size(), fmt::format("tissue '{}'", tissue.name));
   require_same_axes(place, *names, protocol, tissue);
   return tissue;
 }
@@ -126,20 +131,25 @@ void read_samples(const Place& place, const toml::table& root,
 }
 
 void read_tissues(const Place& place, const toml::table& root, Protocol& protocol) {
+  const bool of_levels =
+      has_levels(protocol.design) || (protocol.design == Design::magnitude && root.contains("scale"));
   if (const toml::node* tissues = root.get("tissue")) {
     const toml::array& all = array_of_tables(place, *tissues, "tissue");
-    if (has_levels(protocol.design) && all.size() > 1)
+    if (of_levels && all.size() > 1)
       place.refuse(all[1], "there are {} tissues; a design of levels has one", all.size());
     for (const toml::node& node : all)
-      protocol.tissues.push_back(read_tissue(place, *node.as_table(), protocol));
+      protocol.tissues.push_back(read_tissue(place, *node.as_table(), protocol, of_levels));
   } else {
     SessionTissue all{.name = "", .samples = {}};
-    for (std::size_t i = 0; i < protocol.samples.size(); ++i) all.samples.push_back(i);
-    require_enough(place, *root.get("sample"), protocol.design, all.samples.size(), "the protocol");
+    for (std::size_t i = 0; i < protocol.samples.size(); ++i) {
+      if (i != protocol.catches.sample) all.samples.push_back(i);
+    }
+    require_enough(place, *root.get("sample"), of_levels, all.samples.size(), "the protocol");
     require_same_axes(place, *root.get("sample"), protocol, all);
     protocol.tissues.push_back(std::move(all));
   }
   for (std::size_t i = 0; i < protocol.samples.size(); ++i) {
+    if (i == protocol.catches.sample) continue;
     const bool is_used = std::ranges::any_of(protocol.tissues, [&](const SessionTissue& tissue) {
       return std::ranges::count(tissue.samples, i) != 0;
     });
@@ -157,9 +167,10 @@ void read_signal(const Place& place, const toml::table& root, Protocol& protocol
     place.refuse(*root.get("odd_one_out"), "'odd_one_out' is for the design \"3ifc\", and this is \"{}\"",
                  name_of(design));
   const toml::node* signal = root.get("signal");
-  if (design != Design::two_interval && design != Design::three_interval) {
+  if (design != Design::two_interval && design != Design::three_interval && design != Design::yes_no) {
     if (signal != nullptr) {
-      place.refuse(*signal, "'signal' is for the designs \"2ifc\" and \"3ifc\", and this is \"{}\"",
+      place.refuse(*signal,
+                   "'signal' is for the designs \"2ifc\", \"3ifc\" and \"yes-no\", and this is \"{}\"",
                    name_of(design));
     }
     return;

@@ -1,18 +1,13 @@
+#include "protocol/read_scale.h"
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
-#include <kerf/psychophysics/quest_plus.h>
-
-#include "protocol/protocol_parts.h"
 #include "protocol/samples.h"
 
 namespace kerf::bench {
 namespace {
-
-constexpr std::size_t max_levels = 200;
-constexpr double largest_level = 100.0;
 
 void read_varied(const Place& place, const toml::table& table, Protocol& protocol) {
   const toml::node* vary = table.get("vary");
@@ -39,43 +34,6 @@ void read_varied(const Place& place, const toml::table& table, Protocol& protoco
     place.refuse(*vary, "what is to vary is 0 in law '{}', and stays 0 at every level", law.model());
 }
 
-/// The law at that level has to exist before a subject sits there.
-void require_playable(const Place& place, const toml::node& node, const Protocol& protocol, double level) {
-  try {
-    (void)played(protocol, protocol.scale.standard, level);
-  } catch (const std::invalid_argument& error) {
-    place.refuse(node, "{}", error.what());
-  }
-}
-
-void read_levels(const Place& place, const toml::node& node, Protocol& protocol) {
-  const toml::array* all = node.as_array();
-  if (all == nullptr || all->empty() || all->size() > max_levels)
-    place.refuse(node, "'levels' must be an array of 1 to {} numbers, such as [0.1, 0.2]", max_levels);
-  std::vector<double>& levels = protocol.scale.levels;
-  for (const toml::node& each : *all) {
-    const double level = place.number(each, "a level");
-    if (!(std::isfinite(level) && level > -1.0 && level <= largest_level)) {
-      place.refuse(each,
-                   "level {:g} is not above -1 and at most {:g}; the comparison is 1 + level of the standard",
-                   level, largest_level);
-    }
-    if (std::ranges::count(levels, level) != 0) place.refuse(each, "level {:g} is there twice", level);
-    levels.push_back(level);
-  }
-  const bool may_be_on_both_sides = protocol.design == Design::constant && protocol.scale.two_sided();
-  for (const toml::node& each : *all) {
-    const double level = place.number(each, "a level");
-    if (level <= 0.0 && !may_be_on_both_sides) {
-      place.refuse(each, "level {:g} is not above 0; {}", level,
-                   protocol.design == Design::constant ? "levels are all above 0, or lie on both sides of it"
-                                                       : "an adaptive design has levels above 0 only");
-    }
-    require_playable(place, each, protocol, level);
-  }
-  std::ranges::sort(levels);
-}
-
 std::vector<double> read_steps(const Place& place, const toml::table& table) {
   psychophysics::StaircaseOptions standard;
   const toml::node* node = table.get("steps");
@@ -92,12 +50,12 @@ std::vector<double> read_steps(const Place& place, const toml::table& table) {
   return steps;
 }
 
-void read_staircase(const Place& place, const toml::table& scale, Protocol& protocol) {
-  const toml::table& table = place.table(scale, "staircase");
+psychophysics::StaircaseOptions read_staircase(const Place& place, const toml::table& table,
+                                               const Protocol& protocol) {
   place.allow_only(
       table, {"up", "down", "start", "steps", "step_ratio", "axis", "least", "most", "reversals", "dropped"},
       "[scale.staircase]");
-  psychophysics::StaircaseOptions& options = protocol.scale.staircase;
+  psychophysics::StaircaseOptions options;
   const auto count = [&](std::string_view key, int standard, double lower, double upper) {
     return static_cast<int>(
         read_count(place, table,
@@ -131,40 +89,24 @@ void read_staircase(const Place& place, const toml::table& scale, Protocol& prot
   for (const auto& [key, value] :
        {std::pair{"start", options.start}, {"least", options.least}, {"most", options.most}})
     require_playable(place, node_or_table(table, key), protocol, value);
+  return options;
 }
 
-/// A tenth to ten times the expected JND, 16 a decade, to four digits so that every machine has the same.
-std::vector<double> standard_levels(double expected_jnd) {
-  std::vector<double> levels = psychophysics::geometric_grid(0.1 * expected_jnd, 10.0 * expected_jnd, 33);
-  for (double& level : levels) {
-    const std::string digits = fmt::format("{:.4g}", level);
-    std::from_chars(digits.data(), digits.data() + digits.size(), level);
-  }
-  return levels;
-}
-
-void read_quest(const Place& place, const toml::table& root, const toml::table& scale, Protocol& protocol) {
-  if (scale.contains("quest")) {
-    const toml::table& table = place.table(scale, "quest");
-    place.allow_only(table, {"trials", "expected_jnd"}, "[scale.quest]");
-    if (table.contains("trials")) {
-      if (root.contains("trials"))
-        place.refuse(*table.get("trials"),
-                     "'trials' stands here and at the top of the file; leave out either");
-      protocol.trials = read_count(place, table, {.key = "trials", .lower = 1, .upper = max_trials});
-    }
-    protocol.scale.expected_jnd = read_plain_number(
-        place, table,
-        {.key = "expected_jnd", .standard = protocol.scale.expected_jnd, .lower = 1e-4, .upper = 10.0});
-  }
-  protocol.scale.quest_trials = protocol.trials;
-  if (scale.contains("levels")) {
-    read_levels(place, *scale.get("levels"), protocol);
+/// One, or several that are interleaved.
+void read_staircases(const Place& place, const toml::table& scale, Protocol& protocol) {
+  constexpr std::size_t most = 8;
+  const toml::node* node = scale.get("staircase");
+  const toml::array* several = node != nullptr ? node->as_array() : nullptr;
+  if (several == nullptr) {
+    protocol.scale.staircase = read_staircase(place, place.table(scale, "staircase"), protocol);
     return;
   }
-  protocol.scale.levels = standard_levels(protocol.scale.expected_jnd);
-  for (const double level : {protocol.scale.levels.front(), protocol.scale.levels.back()})
-    require_playable(place, scale, protocol, level);
+  if (several->size() < 2 || several->size() > most || !several->is_homogeneous<toml::table>())
+    place.refuse(*node, "'staircase' is a table, or an array of 2 to {} of them, which are interleaved",
+                 most);
+  protocol.scale.staircase = read_staircase(place, *several->front().as_table(), protocol);
+  for (std::size_t i = 1; i < several->size(); ++i)
+    protocol.scale.interleaved.push_back(read_staircase(place, *several->get(i)->as_table(), protocol));
 }
 
 void read_shape(const Place& place, const toml::table& table, IntensityScale& scale) {
@@ -182,10 +124,49 @@ void read_shape(const Place& place, const toml::table& table, IntensityScale& sc
 
 }  // namespace
 
+void require_playable(const Place& place, const toml::node& node, const Protocol& protocol, double level) {
+  try {
+    (void)played(protocol, protocol.scale.standard, level);
+  } catch (const std::invalid_argument& error) {
+    place.refuse(node, "{}", error.what());
+  }
+}
+
+void read_levels(const Place& place, const toml::node& node, Protocol& protocol) {
+  const toml::array* all = node.as_array();
+  if (all == nullptr || all->empty() || all->size() > max_levels)
+    place.refuse(node, "'levels' must be an array of 1 to {} numbers, such as [0.1, 0.2]", max_levels);
+  std::vector<double>& levels = protocol.scale.levels;
+  for (const toml::node& each : *all) {
+    const double level = place.number(each, "a level");
+    if (!(std::isfinite(level) && level > -1.0 && level <= largest_level)) {
+      place.refuse(each,
+                   "level {:g} is not above -1 and at most {:g}; the comparison is 1 + level of the standard",
+                   level, largest_level);
+    }
+    if (std::ranges::count(levels, level) != 0) place.refuse(each, "level {:g} is there twice", level);
+    levels.push_back(level);
+  }
+  const bool may_be_on_both_sides = protocol.design == Design::magnitude ||
+                                    (protocol.design == Design::constant && protocol.scale.two_sided());
+  for (const toml::node& each : *all) {
+    const double level = place.number(each, "a level");
+    if (level <= 0.0 && !may_be_on_both_sides) {
+      place.refuse(each, "level {:g} is not above 0; {}", level,
+                   protocol.design == Design::constant ? "levels are all above 0, or lie on both sides of it"
+                                                       : "an adaptive design has levels above 0 only");
+    }
+    require_playable(place, each, protocol, level);
+  }
+  std::ranges::sort(levels);
+}
+
 void read_scale(const Place& place, const toml::table& root, Protocol& protocol) {
-  if (!has_levels(protocol.design)) {
+  const bool may_have = protocol.design == Design::magnitude;
+  if (may_have && !root.contains("scale")) return;
+  if (!has_levels(protocol.design) && !may_have) {
     if (const toml::node* node = root.get("scale"))
-      place.refuse(*node, "[scale] is for the designs of levels, and this is \"{}\"",
+      place.refuse(*node, "[scale] is for the designs of levels and for magnitudes, and this is \"{}\"",
                    name_of(protocol.design));
     return;
   }
@@ -198,6 +179,15 @@ void read_scale(const Place& place, const toml::table& root, Protocol& protocol)
   IntensityScale& scale = protocol.scale;
   scale.standard = table.contains("standard") ? sample_of(place, *table.get("standard"), protocol) : 0;
   read_varied(place, table, protocol);
+  if (may_have) {
+    place.allow_only(table, {"standard", "vary", "levels"}, "the [scale] of magnitudes");
+    if (!table.contains("levels"))
+      place.refuse(table, "[scale] needs 'levels', such as levels = [-0.5, 0, 1, 3]");
+    read_levels(place, *table.get("levels"), protocol);
+    if (scale.levels.size() < 2)
+      place.refuse(*table.get("levels"), "one level has no exponent; expected two levels or more");
+    return;
+  }
   if (protocol.design == Design::constant) {
     place.allow_only(table, {"standard", "vary", "levels", "shape"}, "the [scale] of constant levels");
     if (!table.contains("levels"))
@@ -205,7 +195,7 @@ void read_scale(const Place& place, const toml::table& root, Protocol& protocol)
     read_levels(place, *table.get("levels"), protocol);
   } else if (protocol.design == Design::staircase) {
     place.allow_only(table, {"standard", "vary", "staircase", "shape"}, "the [scale] of a staircase");
-    read_staircase(place, table, protocol);
+    read_staircases(place, table, protocol);
   } else {
     place.allow_only(table, {"standard", "vary", "levels", "quest", "shape"}, "the [scale] of QUEST+");
     read_quest(place, root, table, protocol);

@@ -31,7 +31,8 @@ double strength_of(const Protocol& protocol, std::size_t sample) {
     peak = std::max(peak, squared);
   }
   const std::size_t ticks = forces.size() / axes.size();
-  return std::sqrt(protocol.loudness == Loudness::peak ? peak : sum / static_cast<double>(ticks));
+  const bool by_peak = protocol.loudness == Loudness::peak || protocol.loudness == Loudness::felt_peak;
+  return std::sqrt(by_peak ? peak : sum / static_cast<double>(ticks));
 }
 
 /// What a sample has to be multiplied with to be as strong as the first of its tissue.
@@ -135,7 +136,7 @@ void match_loudness(Protocol& protocol) {
   std::vector<double> strengths;
   for (std::size_t sample = 0; sample < protocol.samples.size(); ++sample) {
     strengths.push_back(strength_of(protocol, sample));
-    if (strengths.back() > 0.0) continue;
+    if (strengths.back() > 0.0 || sample == protocol.catches.sample) continue;
     throw std::invalid_argument(
         fmt::format("sample '{}' has no force along the [motion] of protocol '{}', so it cannot be made as "
                     "strong as the others; does the motion reach its contact?",
@@ -157,6 +158,7 @@ void match_loudness(Protocol& protocol) {
   }
   for (std::size_t sample = 0; sample < gains.size(); ++sample)
     protocol.samples[sample].gain = gains[sample].value_or(1.0);
+  protocol.gain_origin = GainOrigin{};
 }
 
 }  // namespace kerf::bench

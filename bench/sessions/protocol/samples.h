@@ -38,8 +38,9 @@ struct PlayedLaw {
 
 /// Sets the gains of the samples so that peak or root mean square of the force along the protocol's motion
 /// (over the axes, torques at a lever of 10 mm) is that of the first sample of each tissue. Nothing where the
-/// protocol leaves them as they are. @throws std::invalid_argument: no motion, a sample without force, a gain
-/// that is not from 1/20 to 20, or one sample that would need two gains.
+/// protocol leaves them as they are. Also where it asks for what is felt: find_gains() calls it then. @throws
+/// std::invalid_argument: no motion, a sample without force, a gain that is not from 1/20 to 20, or one
+/// sample that would need two gains.
 void match_loudness(Protocol& protocol);
 
 }  // namespace kerf::bench

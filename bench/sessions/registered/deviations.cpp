@@ -27,8 +27,10 @@ std::string stopping_text(const StoppingRule& rule) {
 }
 
 std::string exclusions_text(const ExclusionPlan& plan) {
-  return fmt::format("faulty {}, unfelt {}, rules [{}]", number_text(plan.faulty), number_text(plan.unfelt),
-                     fmt::join(plan.rules, "; "));
+  const std::string catches =
+      plan.catch_right ? fmt::format("catch_right {}, ", number_text(plan.catch_right)) : std::string();
+  return fmt::format("faulty {}, unfelt {}, {}rules [{}]", number_text(plan.faulty), number_text(plan.unfelt),
+                     catches, fmt::join(plan.rules, "; "));
 }
 
 class Deviations {
@@ -102,7 +104,7 @@ class Deviations {
     const ExclusionPlan& plan = state.experiment.analysis.exclude;
     const auto is_registered = [&](const std::string& rule) {
       return (rule == "faulty" && plan.faulty) || (rule == "unfelt" && plan.unfelt) ||
-             std::ranges::count(plan.rules, rule) > 0;
+             (rule == "catch_right" && plan.catch_right) || std::ranges::count(plan.rules, rule) > 0;
     };
     for (const Participant& each : state.participants) {
       if (each.excluded && !is_registered(each.rule))

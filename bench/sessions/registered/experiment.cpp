@@ -147,9 +147,11 @@ AnalysisPlan read_analysis(const Place& place, const toml::table& root, std::siz
   read_margins(place, table, plan);
   if (table.contains("exclude")) {
     const toml::table& exclude = place.table(table, "exclude");
-    place.allow_only(exclude, {"faulty", "unfelt", "rules"}, "[analysis.exclude]");
+    place.allow_only(exclude, {"faulty", "unfelt", "catch_right", "rules"}, "[analysis.exclude]");
     plan.exclude.faulty = read_optional(place, exclude, {.key = "faulty", .lower = 0.0, .upper = 1.0});
     plan.exclude.unfelt = read_optional(place, exclude, {.key = "unfelt", .lower = 0.0, .upper = 1.0});
+    plan.exclude.catch_right =
+        read_optional(place, exclude, {.key = "catch_right", .lower = 0.0, .upper = 1.0});
     plan.exclude.rules = read_texts(place, exclude, "rules");
   }
   plan.stopping = read_stopping(place, table, target);
@@ -207,7 +209,8 @@ Protocol protocol_of(const Experiment& experiment, const fs::path& file) {
 }
 
 bool is_two_sided(const Protocol& protocol, PrimaryTest test) noexcept {
-  return test == PrimaryTest::difference && protocol.design == Design::preference;
+  return test == PrimaryTest::difference &&
+         (protocol.design == Design::preference || asks_numbers(protocol.design));
 }
 
 std::string_view name_of(PrimaryTest test) noexcept {

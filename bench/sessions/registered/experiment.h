@@ -38,9 +38,10 @@ struct StoppingRule {
 
 /// Which participants are not analysed. What is not written here is a deviation.
 struct ExclusionPlan {
-  std::optional<double> faulty;    ///< a larger share of their trials had a fault
-  std::optional<double> unfelt;    ///< or a slot without a force that can be felt
-  std::vector<std::string> rules;  ///< what an experimenter has to see, in words
+  std::optional<double> faulty;       ///< a larger share of their trials had a fault
+  std::optional<double> unfelt;       ///< or a slot without a force that can be felt
+  std::optional<double> catch_right;  ///< less than this share of their catch trials were right
+  std::vector<std::string> rules;     ///< what an experimenter has to see, in words
 };
 
 enum class PrimaryTest : std::uint8_t { difference, equivalence };

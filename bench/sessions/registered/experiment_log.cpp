@@ -26,7 +26,7 @@ constexpr std::string_view chain_mark = R"(,"chain":")";
 constexpr std::size_t digits = 64;
 constexpr std::size_t receipt_digits = 16;
 
-std::span<const std::uint8_t> as_bytes(std::string_view text) {
+std::span<const std::uint8_t> log_bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
@@ -36,7 +36,7 @@ std::string hexadecimal_of(std::span<const std::uint8_t> bytes) {
 
 std::string chain_after(const SealKey& key, std::string_view before, std::string_view body) {
   return hexadecimal_of(
-      blake2b({as_bytes("kerf experiment log"), key.bytes(), as_bytes(before), as_bytes(body)}));
+      blake2b({log_bytes("kerf experiment log"), key.bytes(), log_bytes(before), log_bytes(body)}));
 }
 
 /// A whole line, with its end.
@@ -211,6 +211,6 @@ std::filesystem::path log_of(const std::filesystem::path& experiment_file) {
   return experiment_file.parent_path() / "experiment.log";
 }
 
-std::string digest_of(std::string_view text) { return hexadecimal_of(blake2b({as_bytes(text)})); }
+std::string digest_of(std::string_view text) { return hexadecimal_of(blake2b({log_bytes(text)})); }
 
 }  // namespace kerf::bench

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct ExperimentReport {
   LookDecision decision;
   std::vector<std::string> deviations;  ///< from what was registered, in sentences
   std::string log_receipt;
+  /// Of the main test, had those who are excluded by measured criteria been analysed; NaN: nobody is.
+  double p_with_excluded = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What may differ from what was registered and is not in the log.

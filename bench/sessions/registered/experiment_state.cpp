@@ -189,6 +189,13 @@ class FileMatcher {
 
 }  // namespace
 
+std::string_view stage_of(const Participant& who) noexcept {
+  if (who.dropped) return "dropped";
+  if (who.excluded) return "excluded";
+  if (who.completed()) return "completed";
+  return who.begun() ? "begun" : "assigned";
+}
+
 bool Participant::begun() const {
   return std::ranges::any_of(sessions, [](const auto& each) { return each.begun; });
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "registered/experiment.h"
@@ -40,6 +41,9 @@ struct Participant {
   [[nodiscard]] bool completed() const;  ///< every visit is finished
   [[nodiscard]] bool is_out() const noexcept { return dropped || excluded; }
 };
+
+/// How far they came: "assigned", "begun", "completed", "dropped" or "excluded".
+[[nodiscard]] std::string_view stage_of(const Participant& who) noexcept;
 
 /// A look at the answers before this one, as the log has it.
 struct PastLook {

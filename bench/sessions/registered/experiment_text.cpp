@@ -35,6 +35,8 @@ std::string exclusion_lines(const ExclusionPlan& plan) {
       "\n[analysis.exclude]   # participants with a larger share of such trials, or of whom a rule holds\n";
   if (plan.faulty) text += fmt::format("faulty = {}\n", *plan.faulty);
   if (plan.unfelt) text += fmt::format("unfelt = {}\n", *plan.unfelt);
+  if (plan.catch_right)
+    text += fmt::format("catch_right = {}   # or a smaller one of right catch trials\n", *plan.catch_right);
   return text + fmt::format("rules = {}   # in words: 'kerf session drop --rule'\n", quoted(plan.rules));
 }
 
@@ -78,21 +80,30 @@ void require_fits(const Experiment& experiment, const Protocol& protocol, const 
   const bool of_levels = has_levels(protocol.design);
   const bool prefers = protocol.design == Design::preference;
   if (plan.margin && !prefers) refuse("'margin' is of a preference; leave it out");
-  if (plan.d_prime && (prefers || of_levels)) refuse("'d_prime' is of abx, 2ifc and 3ifc; leave it out");
+  const bool of_numbers = asks_numbers(protocol.design);
+  if (plan.d_prime && (prefers || of_levels || of_numbers || has_two_rates(protocol.design)))
+    refuse("'d_prime' is of abx, 2ifc and 3ifc; leave it out");
   if (plan.jnd_margins && !of_levels) refuse("'jnd_margins' are of levels; leave them out");
+  if (plan.exclude.catch_right && protocol.catches.every == 0)
+    refuse("'catch_right' needs catch trials, and the protocol has no [catch]; leave it out, or add them");
+  if (plan.test == PrimaryTest::equivalence && (of_numbers || has_two_rates(protocol.design)))
+    refuse(fmt::format("\"{}\" has no test of equivalence; expected test = \"difference\"",
+                       name_of(protocol.design)));
   if (plan.test == PrimaryTest::equivalence && !plan.margin && !plan.d_prime && !plan.jnd_margins)
     refuse(fmt::format("the test \"equivalence\" needs {}", prefers     ? "'margin'"
                                                             : of_levels ? "'jnd_margins'"
                                                                         : "'d_prime'"));
   if (plan.test == PrimaryTest::equivalence && ranks(protocol))
     refuse("more than two samples of a tissue have no test of equivalence");
-  if (plan.test == PrimaryTest::difference && protocol.design == Design::staircase)
-    refuse("a staircase has no test of a difference; expected test = \"equivalence\" with 'jnd_margins'");
+  if (plan.test == PrimaryTest::difference && ends_by_answers(protocol.design, protocol.scale))
+    refuse(fmt::format(
+        "{} has no test of a difference; expected test = \"equivalence\" with 'jnd_margins'",
+        protocol.design == Design::staircase ? "a staircase" : "QUEST+ that ends by an interval"));
   if (plan.stopping.kind == StoppingKind::fixed) return;
   if (is_adaptive(protocol.design) || plan.jnd_margins)
     refuse("levels that follow the answers and margins of a JND take the rule \"fixed\"");
   if (plan.stopping.kind == StoppingKind::bayes_factor &&
-      (plan.test == PrimaryTest::equivalence || ranks(protocol)))
+      (plan.test == PrimaryTest::equivalence || ranks(protocol) || of_numbers))
     refuse("a Bayes factor is of a difference of the subjects' shares; take another rule");
 }
 

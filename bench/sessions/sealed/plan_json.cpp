@@ -11,11 +11,14 @@ namespace kerf::bench {
 using Json = nlohmann::ordered_json;
 
 Json to_json(const TrialPlan& trial) {
-  return {{"tissue", trial.tissue},
-          {"pair", trial.pair},
-          {"slots", trial.slots},
-          {"level", json_number(trial.level)},
-          {"practice", trial.practice}};
+  Json json{{"tissue", trial.tissue},
+            {"pair", trial.pair},
+            {"slots", trial.slots},
+            {"level", json_number(trial.level)},
+            {"practice", trial.practice}};
+  if (trial.is_catch) json["catch"] = true;
+  if (trial.track > 0) json["track"] = trial.track;
+  return json;
 }
 
 TrialPlan trial_plan_from(const Json& json) {
@@ -26,6 +29,8 @@ TrialPlan trial_plan_from(const Json& json) {
     trial.slots = json.at("slots").get<decltype(trial.slots)>();
     if (const Json& level = json.at("level"); !level.is_null()) trial.level = level.get<double>();
     trial.practice = json.at("practice").get<bool>();
+    if (json.contains("catch")) trial.is_catch = json.at("catch").get<bool>();
+    if (json.contains("track")) trial.track = json.at("track").get<std::size_t>();
     return trial;
   } catch (const Json::exception& error) {
     throw std::invalid_argument(fmt::format("a trial of a plan is none: {}", error.what()));

@@ -6,6 +6,7 @@
 
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
+#include "protocol/questionnaire/questionnaire_table.h"
 #include "recordings/provenance.h"
 #include "sealed/trials/trial_quality.h"
 #include "tables/csv.h"
@@ -18,31 +19,51 @@ namespace fs = std::filesystem;
 /// "second/first": which of the pair each slot played.
 std::string slots_in_words(const Protocol& protocol, const TrialPlan& trial) {
   std::string words;
-  for (std::size_t slot = 0; slot < slots_of(protocol.design); ++slot) {
+  for (std::size_t slot = 0; slot < slots_of(protocol); ++slot) {
     words += fmt::format("{}{}", slot > 0 ? "/" : "", trial.slots[slot] == 0 ? "first" : "second");
   }
   return words;
+}
+
+/// Columns that only some designs have.
+std::string further_columns(const Protocol& protocol) {
+  if (!protocol.confidence.empty()) return ",confidence";
+  if (asks_numbers(protocol.design)) return ",estimate";
+  return protocol.scale.interleaved.empty() ? "" : ",track";
+}
+
+std::string further_cells(const Protocol& protocol, const RecordedTrial& trial) {
+  if (asks_numbers(protocol.design))
+    return fmt::format(",{}", csv_number(number_of_answer(protocol, trial.answer, trial.number)));
+  if (!protocol.confidence.empty()) return fmt::format(",{}", confidence_of_choice(protocol, trial.answer));
+  return protocol.scale.interleaved.empty() ? "" : fmt::format(",{}", trial.what.track + 1);
 }
 
 std::string row_of(const SessionStore& store, std::size_t index, bool some_answer_is_right) {
   const Protocol& protocol = store.protocol();
   const RecordedTrial& trial = store.trials()[index];
   const std::size_t right = trial.what.right(protocol);
-  const auto label = [&](std::size_t slot) { return label_of(protocol.design, slot); };
-  return fmt::format(
-      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject, store.session().number,
-      index + 1, trial.what.practice ? 1 : 0, csv_text(protocol.tissues[trial.what.tissue].name),
-      csv_text(protocol.samples[trial.what.pair[0]].name),
-      csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
-      slots_in_words(protocol, trial.what), label(right), label(trial.answer),
-      some_answer_is_right ? (trial.answer == right ? "1" : "0") : "", csv_number(trial.decision_s()),
-      trial.switches, trial.at, csv_number(trial.answerable_s));
+  const std::size_t answer = answer_of_choice(protocol, trial.answer);
+  const auto label = [&](std::size_t at) { return answer_label_of(protocol.design, at); };
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}{}\n", store.session().subject,
+                     store.session().number, index + 1, trial.what.practice ? 1 : 0,
+                     csv_text(protocol.tissues[trial.what.tissue].name),
+                     csv_text(protocol.samples[trial.what.pair[0]].name),
+                     csv_text(protocol.samples[trial.what.pair[1]].name), csv_number(trial.what.level),
+                     slots_in_words(protocol, trial.what), label(right), label(answer),
+                     some_answer_is_right && trial.answer != no_answer ? (answer == right ? "1" : "0") : "",
+                     csv_number(trial.decision_s()), trial.switches, trial.at, csv_number(trial.answerable_s),
+                     joined(trial.void_reasons), trial.what.is_catch ? 1 : 0, further_cells(protocol, trial));
 }
 
-/// What the design alone does not say of how d' is reckoned.
+/// What the design alone does not say of how d' is reckoned, or of when it ends.
 std::string task_line(const Protocol& protocol) {
+  if (protocol.design == Design::quest_plus && protocol.scale.quest.narrow > 0.0)
+    return fmt::format("# until = {}\n", csv_number(protocol.scale.quest.narrow));
+  if (protocol.numbers.standard) return fmt::format("# modulus = {}\n", csv_number(protocol.numbers.modulus));
+  if (protocol.numbers.points > 0) return fmt::format("# points = {}\n", protocol.numbers.points);
   if (protocol.design == Design::three_interval && protocol.odd_one_out) return "# task = \"oddity\"\n";
-  return protocol.design == Design::abx && protocol.differencing ? "# task = \"differencing\"\n" : "";
+  return protocol.differencing ? "# task = \"differencing\"\n" : "";
 }
 
 std::string table_of(const SessionStore& store) {
@@ -52,11 +73,13 @@ std::string table_of(const SessionStore& store) {
       "# level: the second is the first times 1 + level; slots: which of the two each slot played, in the "
       "order "
       "of their labels; right: of a preference the slot that played the second; response_s [s]: from "
-      "when it could be answered to the answer; answerable_s [s]: from the first force until then; at: UTC\n"
+      "when it could be answered to the answer; answerable_s [s]: from the first force until then; at: UTC; "
+      "void: why it does not count; catch: of attention alone, in no test\n"
       "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
       "switches,"
-      "at,answerable_s\n",
-      csv_quoted(store.protocol().name), name_of(store.protocol().design), task_line(store.protocol()));
+      "at,answerable_s,void,catch{}\n",
+      csv_quoted(store.protocol().name), name_of(store.protocol().design), task_line(store.protocol()),
+      further_columns(store.protocol()));
   for (std::size_t i = 0; i < store.trials().size(); ++i) table += row_of(store, i, some_answer_is_right);
   return table;
 }
@@ -66,23 +89,33 @@ std::string slots_table_of(const SessionStore& store) {
   const Protocol& protocol = store.protocol();
   std::string table =
       "subject,number,trial,practice,slot,plays,playing_s,contact_s,rms_N,peak_N,travel_m,speed_m_s,work_J,"
-      "limited_ticks,trial_faulty_ticks,trial_missed_deadlines\n";
+      "limited_ticks,trial_faulty_ticks,trial_missed_deadlines,strokes,strokes_per_s,peak_speed_m_s,"
+      "off_target,lag_s,guide_rms_N,guide_peak_N\n";
   for (std::size_t i = 0; i < store.trials().size(); ++i) {
     const RecordedTrial trial = store.trial(i);
-    const std::optional<TrialQuality> quality = quality_of(trial, slots_of(protocol.design));
+    const std::optional<TrialQuality> quality = quality_of(trial, protocol);
     if (!quality) continue;
     for (std::size_t slot = 0; slot < quality->slots.size(); ++slot) {
       const SlotFelt& felt = quality->slots[slot];
       table += fmt::format(
-          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", store.session().subject,
           store.session().number, i + 1, trial.what.practice ? 1 : 0, label_of(protocol.design, slot),
           csv_text(protocol.samples[trial.what.pair[trial.what.slots[slot]]].name),
           csv_number(felt.playing_s), csv_number(felt.contact_s), csv_number(felt.rms_n),
           csv_number(felt.peak_n), csv_number(felt.travel_m), csv_number(felt.speed_m_s),
-          csv_number(felt.work_j), felt.limited_ticks, quality->faulty_ticks, quality->missed_deadlines);
+          csv_number(felt.work_j), felt.limited_ticks, quality->faulty_ticks, quality->missed_deadlines,
+          felt.strokes, csv_number(felt.strokes_per_s()), csv_number(felt.peak_speed_m_s),
+          csv_number(felt.off_target), csv_number(felt.lag_s), csv_number(felt.guide_rms_n),
+          csv_number(felt.guide_peak_n));
     }
   }
   return table;
+}
+
+std::string questionnaire_table_of(const SessionStore& store) {
+  Study study = study_of(store.protocol());
+  study.questionnaires = questionnaires_of(store, store.session().number);
+  return questionnaire_csv(study);
 }
 
 /// "A: 'soft' (soft.law.toml, force x 1.2)"
@@ -101,7 +134,7 @@ void add_events(schema::Recording& recording, const Protocol& protocol, const Re
   for (const TraceRow& tick : trial.trace) {
     if (tick.slot == playing) continue;
     playing = tick.slot;
-    const bool plays = playing < slots_of(protocol.design);
+    const bool plays = playing < slots_of(protocol);
     recording.events.push_back({.time_s = tick.row.time_s,
                                 .kind = "slot",
                                 .text = plays ? slot_in_words(protocol, trial.what, playing) : "none"});
@@ -146,10 +179,17 @@ schema::Recording recording_of(const SessionStore& store, std::size_t index) {
   recording.header.device_uri = protocol.device_uri;
   std::string step = fmt::format("trial {} of session {}, subject {}", index + 1, store.session().uuid,
                                  store.session().subject);
-  for (std::size_t slot = 0; slot < slots_of(protocol.design); ++slot) {
+  for (std::size_t slot = 0; slot < slots_of(protocol); ++slot) {
     step += fmt::format("{} {}", slot == 0 ? ";" : ",", slot_in_words(protocol, trial.what, slot));
   }
-  step += fmt::format("; answered {}", label_of(protocol.design, trial.answer));
+  step += trial.answer == no_answer ? std::string("; taken back")
+          : asks_numbers(protocol.design)
+              ? fmt::format("; answered {:g}", number_of_answer(protocol, trial.answer, trial.number))
+              : fmt::format("; answered {}",
+                            answer_label_of(protocol.design, answer_of_choice(protocol, trial.answer)));
+  if (trial.is_void()) step += fmt::format("; void ({})", joined(trial.void_reasons));
+  if (trial.what.is_catch) step += "; a catch trial";
+  if (protocol.rules.states != StatesBetween::run_on) step += "; laws begin anew at every switch";
   add_history(recording.header, step);
   recording.axes = trial.axes;
   recording.channels = trial.channels;
@@ -163,9 +203,12 @@ schema::Recording recording_of(const SessionStore& store, std::size_t index) {
 void export_session(const SessionStore& store, const fs::path& folder, bool replace) {
   constexpr auto table = "trials.csv";
   constexpr auto slots = "slots.csv";
+  constexpr auto questionnaire = "questionnaire.csv";
+  const bool is_asked = store.protocol().questionnaire.is_asked();
   const auto name_of = [](std::size_t trial) { return fmt::format("trial-{:03}.h5", trial + 1); };
   require_output(folder / table, replace);
   require_output(folder / slots, replace);
+  if (is_asked) require_output(folder / questionnaire, replace);
   for (std::size_t i = 0; i < store.trials().size(); ++i) require_output(folder / name_of(i), replace);
   WholeFolder whole(folder, schema::existing_if(replace));
   for (std::size_t i = 0; i < store.trials().size(); ++i) {
@@ -174,6 +217,7 @@ void export_session(const SessionStore& store, const fs::path& folder, bool repl
   }
   write_whole_file(whole.path() / table, table_of(store));
   write_whole_file(whole.path() / slots, slots_table_of(store));
+  if (is_asked) write_whole_file(whole.path() / questionnaire, questionnaire_table_of(store));
   whole.commit();
 }
 

@@ -1,6 +1,9 @@
 #include "sealed/session_store.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -40,7 +43,42 @@ std::vector<schema::SessionLaw> laws_of(const Protocol& protocol) {
   return laws;
 }
 
-/// Plan and gains, filled up with blanks so that the length depends on how many trials and samples there are.
+Json to_json(const GainOrigin& origin) {
+  return {{"hand", origin.hand},
+          {"stands_for", origin.stands_for},
+          {"fallback", origin.fallback},
+          {"tolerance", origin.tolerance},
+          {"felt_N", origin.felt_n}};
+}
+
+/// None of a session of an earlier version. @throws std::invalid_argument: it is none.
+std::optional<GainOrigin> gain_origin_from(const Json& plan) {
+  if (!plan.contains("gain_origin")) return std::nullopt;
+  try {
+    const Json& json = plan["gain_origin"];
+    return GainOrigin{.hand = json.at("hand").get<std::string>(),
+                      .stands_for = json.at("stands_for").get<std::string>(),
+                      .fallback = json.at("fallback").get<std::string>(),
+                      .tolerance = json.at("tolerance").get<double>(),
+                      .felt_n = json.at("felt_N").get<std::vector<double>>()};
+  } catch (const Json::exception& error) {
+    throw std::invalid_argument(fmt::format("how the gains were found is not said: {}", error.what()));
+  }
+}
+
+/// Those that were in force when the session was made; of a session of an earlier version English.
+/// @throws std::invalid_argument: they are none.
+std::shared_ptr<const SubjectTexts> texts_from(const Json& plan) {
+  if (!plan.contains("texts")) return english_texts();
+  try {
+    return kept_texts(plan["texts"].get<std::map<std::string, std::string>>());
+  } catch (const Json::exception& error) {
+    throw std::invalid_argument(fmt::format("the subject's texts are none: {}", error.what()));
+  }
+}
+
+/// Plan, gains and texts, filled up with blanks so that the length depends on how many trials and samples
+/// there are, and on what the subject reads.
 std::vector<std::uint8_t> plan_bytes(const SessionSetUp& set_up) {
   constexpr std::size_t bytes_of_a_trial = 256;
   constexpr std::size_t bytes_of_a_sample = 64;
@@ -48,9 +86,16 @@ std::vector<std::uint8_t> plan_bytes(const SessionSetUp& set_up) {
   Json json = Json::parse(to_json_text(set_up.plan));
   json["gains"] = Json::array();
   for (const SessionSample& sample : set_up.protocol.samples) json["gains"].push_back(sample.gain);
-  std::string text = json.dump();
-  const std::size_t room =
-      page + bytes_of_a_trial * set_up.plan.size() + bytes_of_a_sample * set_up.protocol.samples.size();
+  if (set_up.protocol.gain_origin) json["gain_origin"] = to_json(*set_up.protocol.gain_origin);
+  const auto& texts = set_up.protocol.texts->all();
+  std::size_t bytes_of_texts = 0;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    json["texts"][std::string(text_names[i])] = texts[i];
+    bytes_of_texts += text_names[i].size() + 2 * texts[i].size();
+  }
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::size_t room = page + bytes_of_a_trial * set_up.plan.size() +
+                           bytes_of_a_sample * set_up.protocol.samples.size() + bytes_of_texts;
   text.resize(std::max(room, (text.size() + page - 1) / page * page), ' ');
   return {text.begin(), text.end()};
 }
@@ -66,6 +111,31 @@ bool fits(const TrialPlan& trial, const Protocol& protocol) {
          std::ranges::all_of(trial.slots, [](std::uint8_t one) { return one < 2; });
 }
 
+/// As many bytes whatever was answered.
+std::vector<std::uint8_t> questionnaire_bytes(const FilledQuestionnaire& filled) {
+  constexpr std::size_t bytes = 1024;
+  std::string text = Json{{"tissue", filled.tissue}, {"scores", filled.scores}, {"at", filled.at}}.dump();
+  text.resize(std::max(bytes, text.size()), ' ');
+  return {text.begin(), text.end()};
+}
+
+FilledQuestionnaire questionnaire_from(std::span<const std::uint8_t> content) {
+  const Json json = Json::parse(content.begin(), content.end(), nullptr, false);
+  try {
+    return {.tissue = json.at("tissue").get<std::size_t>(),
+            .scores = json.at("scores").get<std::vector<double>>(),
+            .at = json.at("at").get<std::string>()};
+  } catch (const Json::exception& error) {
+    throw std::invalid_argument(fmt::format("a sealed questionnaire is none: {}", error.what()));
+  }
+}
+
+/// A number where one is asked for, and none where none is.
+bool is_number_answered(const RecordedTrial& trial, const Protocol& protocol) {
+  const std::optional<NumberRange> range = written_numbers_of(protocol);
+  return range ? range->holds(trial.number) : !std::isfinite(trial.number);
+}
+
 }  // namespace
 
 struct SessionStore::State {
@@ -74,17 +144,27 @@ struct SessionStore::State {
         entries(file, key, purpose == Purpose::run ? SealedEntries::For::run : SealedEntries::For::read,
                 [this](std::size_t number, const schema::SessionEntry& entry,
                        std::span<const std::uint8_t> content) { process(number, entry, content); }) {
-    protocol = parse_protocol(entries.session().protocol, fmt::format("{} (its protocol)", file.string()),
-                              [this](const std::string& name) { return law_called(name); });
+    protocol = parse_protocol(
+        entries.session().protocol, fmt::format("{} (its protocol)", file.string()),
+        [this](const std::string& name) { return law_called(name); }, texts);
     if (gains.size() != protocol.samples.size()) {
       refuse(file, 0, fmt::format("found {} gains, expected one a sample", gains.size()));
     }
     for (std::size_t i = 0; i < gains.size(); ++i) protocol.samples[i].gain = gains[i];
+    protocol.gain_origin = gain_origin;
     for (const TrialPlan& trial : plan) {
       if (!fits(trial, protocol)) refuse(file, 0, "found a trial that the protocol does not know");
     }
+    for (const FilledQuestionnaire& filled : questionnaires) {
+      if (filled.tissue >= protocol.tissues.size() ||
+          filled.scores.size() != protocol.questionnaire.items.size())
+        refuse(file, 0, "found a questionnaire that the protocol does not know");
+    }
     for (std::size_t i = 0; i < trials.size(); ++i) {
-      if (fits(trials[i].what, protocol) && trials[i].answer < answers_of(protocol.design)) continue;
+      const bool is_taken_back = trials[i].is_void() && trials[i].answer == no_answer;
+      const bool is_answered =
+          trials[i].answer < choices_of(protocol) && is_number_answered(trials[i], protocol);
+      if (fits(trials[i].what, protocol) && (is_taken_back || is_answered)) continue;
       refuse(file, entry_of_trial[i], "found a trial that the protocol does not know");
     }
   }
@@ -92,6 +172,7 @@ struct SessionStore::State {
   void process(std::size_t number, const schema::SessionEntry& entry, std::span<const std::uint8_t> content) {
     try {
       if (entry.kind == "plan") read_plan(content);
+      if (entry.kind == "questionnaire") questionnaires.push_back(questionnaire_from(content));
       if (entry.kind == "trial") take(trial_from(content, TraceToo::no), number);
     } catch (const std::invalid_argument& error) {
       refuse(file, number, error.what());
@@ -108,6 +189,8 @@ struct SessionStore::State {
       if (!gain.is_number()) throw std::invalid_argument("found a gain that is no number");
       gains.push_back(gain.get<double>());
     }
+    gain_origin = gain_origin_from(json);
+    texts = texts_from(json);
   }
 
   void take(RecordedTrial trial, std::size_t entry) {
@@ -127,7 +210,10 @@ struct SessionStore::State {
   std::filesystem::path file;
   Plan plan;
   std::vector<double> gains;
+  std::optional<GainOrigin> gain_origin;
+  std::shared_ptr<const SubjectTexts> texts;
   std::vector<RecordedTrial> trials;
+  std::vector<FilledQuestionnaire> questionnaires;
   std::vector<std::size_t> entry_of_trial;
   SealedEntries entries;  // after those that its constructor fills
   Protocol protocol;
@@ -191,9 +277,11 @@ void SessionStore::append(const RecordedTrial& trial) {
   state.entries.append("trial", fmt::format("trial {}", state.trials.size() + 1), trial_bytes(trial));
   RecordedTrial answered{.what = trial.what,
                          .answer = trial.answer,
+                         .number = trial.number,
                          .response_s = trial.response_s,
                          .answerable_s = trial.answerable_s,
                          .switches = trial.switches,
+                         .void_reasons = trial.void_reasons,
                          .at = trial.at,
                          .axes = trial.axes,
                          .trace = {},
@@ -201,8 +289,19 @@ void SessionStore::append(const RecordedTrial& trial) {
   state.take(std::move(answered), entry);
 }
 
+const std::vector<FilledQuestionnaire>& SessionStore::questionnaires() const noexcept {
+  return state_->questionnaires;
+}
+
+void SessionStore::append(const FilledQuestionnaire& filled) {
+  State& state = *state_;
+  state.entries.append("questionnaire", fmt::format("questionnaire {}", state.questionnaires.size() + 1),
+                       questionnaire_bytes(filled));
+  state.questionnaires.push_back(filled);
+}
+
 void SessionStore::note(const std::string& kind, const std::string& text) {
-  if (kind == "plan" || kind == "trial") {
+  if (kind == "plan" || kind == "trial" || kind == "questionnaire") {
     throw std::invalid_argument(fmt::format("'{}' is no note of a session", kind));
   }
   state_->entries.append(kind, text, {});

@@ -14,6 +14,7 @@
 
 #include "protocol/judgement.h"
 #include "protocol/plan.h"
+#include "protocol/trial_rules.h"
 #include "sealed/blake2b.h"
 #include "sealed/seal.h"
 
@@ -25,11 +26,12 @@ struct TraceRow {
   std::uint8_t slot = 255;  ///< that plays, or to which the force goes; 255: none
 };
 
-/// A trial that was answered.
+/// A trial that was answered, or taken back.
 struct RecordedTrial {
-  TrialPlan what;           ///< with its level
-  std::size_t answer = 0;   ///< a slot
-  double response_s = 0.0;  ///< from the first force to the answer
+  TrialPlan what;                                            ///< with its level
+  std::size_t answer = 0;                                    ///< a slot, or no_answer
+  double number = std::numeric_limits<double>::quiet_NaN();  ///< that was written, where one is asked for
+  double response_s = 0.0;                                   ///< from the first force to the answer
   /// From the first force until it could be answered; NaN in files of earlier versions.
   double answerable_s = std::numeric_limits<double>::quiet_NaN();
 
@@ -38,11 +40,21 @@ struct RecordedTrial {
     return std::isfinite(answerable_s) ? response_s - answerable_s : response_s;
   }
 
+  [[nodiscard]] bool is_void() const noexcept { return !void_reasons.empty(); }
+
   std::size_t switches = 0;
-  std::string at;  ///< when it was answered, ISO 8601, UTC
+  std::vector<VoidReason> void_reasons;  ///< why it does not count and, as long as it may, comes again
+  std::string at;                        ///< when it was answered, ISO 8601, UTC
   std::vector<schema::Axis> axes;
   std::vector<TraceRow> trace;
   std::vector<schema::Channel> channels;  ///< names and units of Row::channels; the values are in the trace
+};
+
+/// A questionnaire that was filled in, under the seal as trials are: it tells which tissue came when.
+struct FilledQuestionnaire {
+  std::size_t tissue = 0;      ///< after whose trials
+  std::vector<double> scores;  ///< item by item
+  std::string at;              ///< ISO 8601, UTC
 };
 
 /// What a session is made of.
@@ -82,6 +94,7 @@ class SessionStore {
   [[nodiscard]] const std::vector<RecordedTrial>& trials() const noexcept;
   /// With its trace. @throws std::out_of_range.
   [[nodiscard]] RecordedTrial trial(std::size_t index) const;
+  [[nodiscard]] const std::vector<FilledQuestionnaire>& questionnaires() const noexcept;
   [[nodiscard]] bool finished() const;  ///< there is an entry "finished"
   /// Each time that the order was looked at before the session was finished, in words.
   [[nodiscard]] std::vector<std::string> early_openings() const;
@@ -92,6 +105,7 @@ class SessionStore {
 
   /// Purpose::run. Both are on the disk when they return. @throws std::system_error.
   void append(const RecordedTrial& trial);
+  void append(const FilledQuestionnaire& filled);
   void note(const std::string& kind, const std::string& text);  ///< "run", "quit", "opened", "finished"
 
   /// Puts the journal into the file. @throws std::system_error; the journal then stays.
@@ -105,7 +119,15 @@ class SessionStore {
 /// By what the key of a session is made, to know what to ask for.
 [[nodiscard]] schema::KeyDerivation derivation_of(const std::filesystem::path& file);
 
-/// The judgements of sessions of one protocol. @throws std::invalid_argument where two protocols differ.
+/// @throws std::invalid_argument: no session; two protocols, or laws, that differ; a session that is there
+/// twice.
+void require_one_study(const std::vector<const SessionStore*>& sessions);
+
+/// What the subject of a session answered to its questionnaires, in order; `number` goes with each.
+[[nodiscard]] std::vector<QuestionnaireAnswers> questionnaires_of(const SessionStore& store,
+                                                                  std::size_t number);
+
+/// The judgements of sessions of one study. @throws as require_one_study() does.
 [[nodiscard]] Study study_of(const std::vector<const SessionStore*>& sessions);
 
 }  // namespace kerf::bench

@@ -11,6 +11,7 @@
 #include <kerf/drivers/device.h>
 
 #include "chart/cost/tick_cost.h"
+#include "device_model/model_in_use.h"
 #include "laws/placement.h"
 #include "protocol/samples.h"
 #include "run/run.h"
@@ -20,8 +21,7 @@ namespace kerf::bench {
 namespace {
 
 constexpr double watched_s = 3.0;
-constexpr double limited_share = 0.05;  ///< of the ticks that may hit a limit
-constexpr double sweep_s = 1.0;         ///< of the path on which laws are timed
+constexpr double sweep_s = 1.0;  ///< of the path on which laws are timed
 constexpr std::string_view grip = "firm";
 
 struct NamedSample {
@@ -35,9 +35,13 @@ std::vector<NamedSample> all_samples(const Protocol& protocol) {
   std::vector<NamedSample> all;
   for (std::size_t sample = 0; sample < protocol.samples.size(); ++sample)
     all.push_back({protocol.samples[sample].name, played(protocol, sample, as_it_is)});
-  if (!has_levels(protocol.design)) return all;
+  if (!has_levels(protocol.design) && protocol.scale.levels.empty()) return all;
   std::vector<double> ends = protocol.scale.levels;
-  if (protocol.design == Design::staircase) ends = {protocol.scale.staircase.start};
+  if (protocol.design == Design::staircase) {
+    ends.clear();
+    for (const auto& staircase : protocol.scale.staircases()) ends.push_back(staircase.start);
+  }
+  if (protocol.catches.every > 0) ends.push_back(protocol.catches.level);
   const auto [least, most] = std::ranges::minmax_element(ends);
   for (const double level : {*least, *most}) {
     const std::size_t standard = protocol.scale.standard;
@@ -86,6 +90,55 @@ void require_in_time(const Protocol& protocol, const std::vector<NamedSample>& s
                   1e-3 * both_ns, 1e6 * compute_share * period_s));
 }
 
+/// The guide's coupling, by what is known of the device alone: nobody may hold it.
+///
+///     b > K T / 2 + B   [ColgateSchenkel1997]
+///
+/// with its friction b. Its force leaves the law half of what the device gives.
+void require_led_softly(const Protocol& protocol, const drivers::DeviceInfo& device,
+                        std::vector<std::string>& remarks) {
+  if (!protocol.guide || !protocol.guide->felt) return;
+  const FeltGuide& felt = *protocol.guide->felt;
+  const drivers::AxisInfo& axis = device.axes[axes_for(protocol.samples.front().law, device).front()];
+  if (felt.limit > 0.5 * axis.force_limit)
+    throw std::invalid_argument(
+        fmt::format("the [guide] is felt with up to {:g} {}, and {} gives {:g} {} on '{}'; expected at most "
+                    "half of that, so that the law has the other: lower 'limit'",
+                    felt.limit, axis.force_unit, device.model, axis.force_limit, axis.force_unit, axis.name));
+  if (!axis.mechanics) {
+    remarks.push_back(
+        fmt::format("nobody knows the friction of '{}', so that the [guide]'s stiffness was not checked: try "
+                    "it with a light hand",
+                    axis.name));
+    return;
+  }
+  // Of the travel at the lever, as friction is given; where there is none, of the joint.
+  const double stiffest =
+      (axis.mechanics->viscous_n_s_per_m - felt.damping / axis.lever) * 2.0 * protocol.rate_hz * axis.lever;
+  if (felt.stiffness <= stiffest) return;
+  throw std::invalid_argument(fmt::format(
+      "the [guide] is felt with {:.4g} {}/{} and a damping of {:.4g} {}·s/{}, and {} renders such a coupling "
+      "passively on '{}' up to {:.4g} {}/{} at {:g} Hz; lower 'stiffness'{}",
+      felt.stiffness, axis.force_unit, axis.position_unit, felt.damping, axis.force_unit, axis.position_unit,
+      device.model, axis.name, std::max(0.0, stiffest), axis.force_unit, axis.position_unit, protocol.rate_hz,
+      felt.damping > 0.0 ? " or 'damping'" : ""));
+}
+
+/// In a sequence each sample has its place in the target's cycle; where that is not the same for all of them
+/// they are felt along other ways.
+void tell_uneven_ways(const Protocol& protocol, std::vector<std::string>& remarks) {
+  if (!protocol.guide || !protocol.guide->leads(false) || !protocol.guide->has_target() ||
+      protocol.presentation != Presentation::sequence || slots_of(protocol) < 2)
+    return;
+  const double each_s = protocol.interval_s + protocol.gap_s;
+  const double cycles = each_s / protocol.guide->cycle_s();
+  if (std::abs(cycles - std::round(cycles)) < 0.01) return;
+  remarks.push_back(
+      fmt::format("the samples of a trial are felt along other parts of the [guide]'s way: 'interval' and "
+                  "'gap' are {:.4g} s together, and a cycle is {:.4g} s; expected a multiple of it",
+                  each_s, protocol.guide->cycle_s()));
+}
+
 void require_rendered(const NamedSample& sample, const Protocol& protocol, const std::string& uri,
                       const std::atomic<bool>& stop) {
   const RunOptions options{
@@ -105,12 +158,12 @@ void require_rendered(const NamedSample& sample, const Protocol& protocol, const
   for (const auto& [flag, what] :
        {std::pair{schema::flag_force_limited, "force"}, {schema::flag_slew_limited, "slew"}}) {
     const auto ticks = report.ticks_with(flag);
-    if (static_cast<double>(ticks) <= limited_share * static_cast<double>(report.ticks())) continue;
+    if (static_cast<double>(ticks) <= protocol.limited_share * static_cast<double>(report.ticks())) continue;
     throw std::invalid_argument(
         fmt::format("sample '{}' fails its check on {}: its {} is cut to the limit of the device in {} of {} "
-                    "ticks; take a "
-                    "weaker law, or loudness = \"peak\" with a weaker first sample",
-                    sample.name, uri, what, ticks, report.ticks()));
+                    "ticks, at most {:g} % are allowed (limited_share); take a weaker law, or loudness = "
+                    "\"felt-rms\" with a weaker first sample",
+                    sample.name, uri, what, ticks, report.ticks(), 100.0 * protocol.limited_share));
   }
 }
 
@@ -123,8 +176,17 @@ double depth_in(const Protocol& protocol, const LawFile& law) {
 }  // namespace
 
 std::vector<std::string> check_samples(const Protocol& protocol, const std::string& device_uri,
-                                       const std::atomic<bool>& stop) {
-  const drivers::DeviceInfo device = drivers::open_device(device_uri, {.stop = &stop})->info();
+                                       const std::atomic<bool>& stop, SamplesTold told,
+                                       const std::string& device_model) {
+  drivers::DeviceInfo device = drivers::open_device(device_uri, {.stop = &stop})->info();
+  std::vector<std::string> remarks;
+  const auto model = take_model(device, {.file = device_model,
+                                         .rate_hz = protocol.rate_hz,
+                                         .now = {},
+                                         .warn = [&](std::string_view line) { remarks.emplace_back(line); }});
+  if (model) {
+    for (std::string& line : lines_of(*model)) remarks.push_back(std::move(line));
+  }
   const std::vector<NamedSample> samples = all_samples(protocol);
   for (const NamedSample& sample : samples) {
     try {
@@ -135,7 +197,8 @@ std::vector<std::string> check_samples(const Protocol& protocol, const std::stri
     }
   }
   require_in_time(protocol, samples, device);
-  std::vector<std::string> remarks;
+  require_led_softly(protocol, device, remarks);
+  tell_uneven_ways(protocol, remarks);
   for (const NamedSample& sample : samples) {
     if (device.simulated) require_rendered(sample, protocol, device_uri, stop);
     const StabilityVerdict verdict = stability_in_hand(
@@ -143,6 +206,7 @@ std::vector<std::string> check_samples(const Protocol& protocol, const std::stri
     if (verdict.stable == Stable::no)
       remarks.push_back(fmt::format("sample '{}': {}", sample.name, verdict.why));
   }
+  for (std::string& remark : felt_remarks(protocol, device_uri, told)) remarks.push_back(std::move(remark));
   return remarks;
 }
 

@@ -1,38 +1,61 @@
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/core.h>
+#include <string>
 
 #include "session/director.h"
 
 namespace kerf::bench {
 
+bool Director::shows_guide() const {
+  if (phase_ == Phase::ready) return is_led(sequence_.next()->practice);
+  return phase_ == Phase::trial && is_led(planned_.practice) && !time_is_over() &&
+         (store_.protocol().presentation == Presentation::free || intervals_begun_ <= slots_);
+}
+
 void Director::view_of_trial(SubjectView& view) const {
   const Protocol& protocol = store_.protocol();
   view.stage = SessionStage::trial;
   view.text = protocol.question;
+  if (protocol.numbers.standard)
+    view.text += " " + (*protocol.texts)("question_of_second",
+                                         {{"modulus", fmt::format("{:g}", protocol.numbers.modulus)}});
   view.practice = planned_.practice;
   for (std::size_t slot = 0; slot < slots_; ++slot) view.labels.emplace_back(label_of(protocol.design, slot));
-  view.answers = answers_of(protocol.design);
+  view.answers = choices_of(protocol);
+  view.answer_labels = choice_labels_of(protocol);
+  view.in_steps = protocol.numbers.points > 0;
+  if (const std::optional<NumberRange> range = written_numbers_of(protocol)) {
+    view.number = {.lower = range->lower, .upper = range->upper, .step = 0.0, .ends = {}};
+    if (protocol.design == Design::rating)
+      view.number->ends.assign(protocol.numbers.ends.begin(), protocol.numbers.ends.end());
+  }
   view.playing = playing_;
-  if (phase_ == Phase::unstored) view.may_answer = true;
+  view.guided = shows_guide();
+  if (phase_ == Phase::unstored) (answer_ == no_answer ? view.may_slip : view.may_answer) = true;
   if (phase_ != Phase::trial) return;
   view.may_switch = protocol.presentation == Presentation::free && !time_is_over();
   view.may_answer = may_answer();
+  view.may_slip = may_slip();
 }
 
 SubjectView Director::view() const {
   const Protocol& protocol = store_.protocol();
+  const std::size_t trial = std::min(sequence_.answered() + 1, sequence_.at_most());
+  const SubjectTexts& texts = *protocol.texts;
   SubjectView view{.study = protocol.title,
-                   .trial = std::min(sequence_.answered() + 1, sequence_.at_most()),
-                   .at_most = sequence_.at_most(),
+                   .trial = trial,
+                   // How many come again may hang on what was played, so it is not told ahead.
+                   .at_most = std::max(sequence_.planned(), trial),
                    .may_be_fewer = is_adaptive(protocol.design),
-                   .notice = notice_};
+                   .may_be_more = protocol.rules.may_void(),
+                   .notice = notice_,
+                   .texts = protocol.texts};
   switch (phase_) {
     case Phase::welcome:
       view.stage = SessionStage::welcome;
-      if (sequence_.answered() > 0)
-        view.text = fmt::format("The session goes on: {} trials are done.", sequence_.answered());
+      if (const std::size_t done = sequence_.answered(); done > 0)
+        view.text = texts(done == 1 ? TextName("goes_on_one") : TextName("goes_on_other"),
+                          {{"trials", std::to_string(done)}});
       view.may_go_on = true;
       break;
     case Phase::consent:
@@ -45,6 +68,17 @@ SubjectView Director::view() const {
       view.text = protocol.instructions;
       view.may_go_on = true;
       break;
+    case Phase::ready: {
+      const TrialRules& rules = protocol.rules;
+      const bool waits = now_s_ - since_s_ < rules.pause_s;
+      view.stage = SessionStage::ready;
+      view.may_go_on = !waits && rules.start == TrialStart::key;
+      view.tool_is_waited_for = !waits && rules.start == TrialStart::out_of_contact;
+      view.practice = sequence_.next()->practice;
+      view.guided = shows_guide();
+      if (cycle_waited_in_) view.may_go_on = view.tool_is_waited_for = false;
+      break;
+    }
     case Phase::trial:
     case Phase::fading:
     case Phase::unstored:
@@ -53,11 +87,25 @@ SubjectView Director::view() const {
     case Phase::feedback: {
       const std::size_t right = planned_.right(protocol);
       view.stage = SessionStage::feedback;
-      view.text = fmt::format("{} It was {}.", answer_ == right ? "Right." : "Not right.",
-                              label_of(protocol.design, right));
+      const bool is_right = answer_of_choice(protocol, answer_) == right;
+      view.text = texts(is_right ? TextName("feedback_right") : TextName("feedback_wrong"),
+                        {{"answer", told_answer(protocol, right)}});
       view.trial = sequence_.answered();
       view.practice = true;
       view.may_go_on = true;
+      break;
+    }
+    case Phase::questionnaire: {
+      const QuestionnaireItem& item = protocol.questionnaire.items[scores_.size()];
+      view.stage = SessionStage::questionnaire;
+      view.text = item.question;
+      view.number = {.lower = 0.0,
+                     .upper = questionnaire_most,
+                     .step = questionnaire_step,
+                     .ends = {item.ends[0], item.ends[1]}};
+      view.trial = scores_.size() + 1;
+      view.at_most = protocol.questionnaire.items.size();
+      view.may_answer = true;
       break;
     }
     case Phase::pause:
@@ -68,8 +116,7 @@ SubjectView Director::view() const {
     case Phase::leaving:
     case Phase::over:
       view.stage = SessionStage::finished;
-      view.text = end_ == SessionEnd::finished ? "That was the last trial. Thank you."
-                                               : "The session stops here for now. Thank you.";
+      view.text = end_ == SessionEnd::finished ? texts("finished_last") : texts("finished_for_now");
       break;
   }
   return view;

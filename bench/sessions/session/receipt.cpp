@@ -108,11 +108,11 @@ std::filesystem::path receipts_of(const std::filesystem::path& session) {
   return file;
 }
 
-void keep_receipt(const std::filesystem::path& session, const Receipt& receipt) {
+void keep_receipt(const std::filesystem::path& session, const Receipt& receipt, const std::string& remark) {
   const std::filesystem::path file = receipts_of(session);
   const std::string earlier = std::filesystem::exists(file) ? read_named_file(file) : std::string();
-  write_whole_file(file,
-                   fmt::format("{}{} {}\n", earlier, schema::new_header("").created, receipt.in_full()));
+  write_whole_file(file, fmt::format("{}{} {}{}{}\n", earlier, schema::new_header("").created, remark,
+                                     remark.empty() ? "" : "; ", receipt.in_full()));
 }
 
 std::vector<ReceiptFinding> held_against(const std::vector<Receipt>& receipts,

@@ -38,8 +38,10 @@ struct Receipt {
 /// FILE.receipts
 [[nodiscard]] std::filesystem::path receipts_of(const std::filesystem::path& session);
 
-/// Adds a line to FILE.receipts: the time and the receipt in full. @throws std::system_error.
-void keep_receipt(const std::filesystem::path& session, const Receipt& receipt);
+/// Adds a line to FILE.receipts: the time, what else is to be kept, and the receipt in full.
+/// @throws std::system_error.
+void keep_receipt(const std::filesystem::path& session, const Receipt& receipt,
+                  const std::string& remark = {});
 
 /// What a receipt says of the sessions at hand.
 struct ReceiptFinding {

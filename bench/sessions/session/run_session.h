@@ -3,10 +3,13 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "run/run.h"
 #include "sealed/session_store.h"
 #include "session/director.h"
+#include "session/live_guide.h"
 #include "subject/subject.h"
 
 namespace kerf::bench {
@@ -15,7 +18,14 @@ struct SessionRunOptions {
   /// Device, sensor, rate and ramp; law, scene, recording and duration are the session's own affair.
   RunOptions loop;
   std::function<void(const drivers::Sample&)> each_sample;  ///< in the tick: for the buttons of a device
+  /// Where guide and tool are, for who shows them; has to outlive the run.
+  LiveGuide* live_guide = nullptr;
   std::function<void(std::size_t answered, std::size_t at_most)> progress;
+  /// What the experimenter wrote since it was asked last, a line at a time; kept with its time.
+  std::function<std::optional<std::string>()> notes;
+  std::function<void()> noted;  ///< told of every note that was kept
+  /// Director::Options::recorded; by the wall clock not in the tick.
+  std::function<void(const RecordedTrial& trial, bool is_left_out)> recorded;
 };
 
 struct SessionRunResult {

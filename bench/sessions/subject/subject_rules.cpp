@@ -12,9 +12,12 @@ bool permits(const SubjectView& view, const SubjectAction& action) noexcept {
     case Action::play:
       return view.may_switch && action.slot < view.labels.size();
     case Action::answer:
+      if (view.number) return view.may_answer && view.number->takes(action.number);
       return view.may_answer && action.slot < view.answers;
     case Action::quit:
       return true;
+    case Action::slip:
+      return view.may_slip;
   }
   return false;
 }

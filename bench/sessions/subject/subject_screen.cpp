@@ -63,19 +63,26 @@ std::string slots_line(const SubjectView& view) {
 
 std::string wait_line(const SubjectView& view) {
   if (view.stage != SessionStage::pause || view.may_go_on || view.wait_s <= 0.0) return {};
-  return fmt::format("You can go on after {:.0f} s.", std::ceil(view.wait_s));
+  return (*view.texts)("pause_length", {{"seconds", fmt::format("{:.0f}", std::ceil(view.wait_s))}});
 }
 
 std::string what_may_be_done(const SubjectView& view) {
-  std::string commands;
-  if (view.may_switch) commands += fmt::format("play {}; ", label_list(view, view.labels.size()));
-  if (view.may_answer) commands += fmt::format("answer {}; ", label_list(view, view.answers));
+  const SubjectTexts& texts = *view.texts;
+  std::vector<std::string> commands;
+  if (view.may_switch) commands.push_back(texts("command_play") + ' ' + label_list(view, view.labels.size()));
+  if (view.may_answer) commands.push_back(texts("command_answer") + ' ' + answer_list(view));
+  if (view.may_slip) commands.push_back(texts("command_slip"));
   if (view.stage == SessionStage::consent) {
-    commands += "agree; decline; ";
+    commands.push_back(texts("command_agree"));
+    commands.push_back(texts("command_decline"));
   } else if (view.may_go_on) {
-    commands += "go on; ";
+    commands.push_back(texts("command_go_on"));
   }
-  return fmt::format("Commands: {}quit.", commands);
+  commands.push_back(texts("command_quit"));
+  std::string all = commands.front();
+  for (std::size_t i = 1; i < commands.size(); ++i)
+    all = texts("commands_more", {{"first", all}, {"next", commands[i]}});
+  return texts("commands", {{"commands", all}});
 }
 
 }  // namespace
@@ -94,7 +101,7 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t columns) {
 
 SubjectScreen screen_of(const SubjectView& view, const std::string& keys, const std::string& hint,
                         std::size_t columns) {
-  SubjectScreen screen;
+  SubjectScreen screen{.texts = view.texts};
   const auto part = [&](std::vector<std::string>& lines, const std::string& text) {
     const std::vector<std::string> more = wrapped(text, columns);
     lines.insert(lines.end(), more.begin(), more.end());
@@ -115,6 +122,7 @@ SubjectScreen screen_of(const SubjectView& view, const std::string& keys, const 
 }
 
 SubjectScreenPage page_of(const SubjectScreen& screen, std::size_t page, std::size_t rows) {
+  const SubjectTexts& texts = *screen.texts;
   constexpr std::size_t turning = 1;  // line that tells how to turn pages
   const std::size_t whole = screen.body.size() + screen.foot.size();
   if (whole <= rows) {
@@ -129,8 +137,11 @@ SubjectScreenPage page_of(const SubjectScreen& screen, std::size_t page, std::si
   for (std::size_t line = page * room; line < (page + 1) * room; ++line) {
     part.lines.push_back(line < screen.body.size() ? screen.body[line] : std::string());
   }
-  part.lines.push_back(fmt::format("Page {} of {}. {}", page + 1, part.pages,
-                                   page + 1 < part.pages ? "Space: read on." : "P: back."));
+  const std::string number = std::to_string(page + 1);
+  const std::string of = std::to_string(part.pages);
+  part.lines.push_back(page + 1 < part.pages
+                           ? texts("page_more", {{"page", number}, {"pages", of}})
+                           : texts("page_last", {{"page", number}, {"pages", of}, {"key", "P"}}));
   if (page + 1 == part.pages) part.lines.insert(part.lines.end(), screen.foot.begin(), screen.foot.end());
   return part;
 }
@@ -149,7 +160,7 @@ std::vector<std::string> said_of(const SubjectView& before, const SubjectView& n
   if (fresh || before.playing != now.playing) say(what_plays(now));
   if (fresh) say(wait_line(now));
   if (fresh || before.may_switch != now.may_switch || before.may_answer != now.may_answer ||
-      before.may_go_on != now.may_go_on) {
+      before.may_go_on != now.may_go_on || before.may_slip != now.may_slip) {
     if (now.stage != SessionStage::finished) say(what_may_be_done(now));
   }
   if (fresh || before.notice != now.notice) say(now.notice);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,7 @@ namespace kerf::bench {
 struct SubjectScreen {
   std::vector<std::string> body;
   std::vector<std::string> foot;  ///< always to be seen: what the keys do, and a notice
+  std::shared_ptr<const SubjectTexts> texts = english_texts();
 };
 
 /// In lines no wider than so many characters.

@@ -144,14 +144,14 @@ std::optional<SubjectAction> TerminalSubject::next_line() {
   const std::string line(typed_.begin(), end);
   const std::optional<SubjectAction> action = command_of(view_, line);
   const bool leaves = action && action->kind == SubjectAction::Kind::quit;
-  const bool anything = view_.may_switch || view_.may_answer || view_.may_go_on;
+  const bool anything = view_.may_switch || view_.may_answer || view_.may_go_on || view_.may_slip;
   if (!anything && !leaves) return std::nullopt;
   typed_.erase(typed_.begin(), end == typed_.end() ? end : end + 1);
   if (action && permits(view_, *action)) return action;
   if (action) {
-    write_out("Not now.\n");
+    write_out((*view_.texts)("refused_now") + '\n');
   } else if (line.find_first_not_of(" \t\r") != std::string::npos) {
-    write_out(fmt::format("No such command: {}\n", first_line(line)));
+    write_out((*view_.texts)("command_unknown", {{"command", first_line(line)}}) + '\n');
   }
   return std::nullopt;
 }

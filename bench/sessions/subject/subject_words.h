@@ -8,8 +8,8 @@
 
 namespace kerf::bench {
 
-// What every screen of a subject says, so that terminal and page say the same. No sentence differs in form
-// from slot to slot.
+// What every screen of a subject says, in the words of its texts, so that terminal and page say the same. No
+// sentence differs in form from slot to slot.
 
 [[nodiscard]] std::string_view name_of(SessionStage stage) noexcept;  ///< "consent", "trial"
 /// The one heading of a screen: the question of a trial, or what the stage is.
@@ -22,5 +22,8 @@ namespace kerf::bench {
 [[nodiscard]] std::string what_plays(const SubjectView& view);
 /// "A, B or X": the first so many labels.
 [[nodiscard]] std::string label_list(const SubjectView& view, std::size_t count);
+
+/// The answers: "A or B", "1 (same) or 2 (different)".
+[[nodiscard]] std::string answer_list(const SubjectView& view);
 
 }  // namespace kerf::bench

@@ -1,8 +1,6 @@
 #include "results/study_tables.h"
 
 #include <array>
-#include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,37 +8,10 @@
 #include <fmt/ranges.h>
 
 #include "files/whole_file.h"
-#include "tables/csv.h"
+#include "tables/described_table.h"
 
 namespace kerf::bench {
 namespace {
-
-struct TableColumn {
-  std::string_view name;
-  std::string_view unit;  ///< "" of what is no quantity; "column X" where another column says it
-  std::string_view meaning;
-};
-
-/// A table of which the dictionary says each column.
-struct StudyTable {
-  std::string_view name;
-  std::vector<TableColumn> columns;
-  std::string rows{};
-
-  void add(const std::vector<std::string>& cells) { rows += fmt::format("{}\n", fmt::join(cells, ",")); }
-  [[nodiscard]] std::string text() const {
-    std::vector<std::string_view> names;
-    for (const TableColumn& column : columns) names.push_back(column.name);
-    return fmt::format("{}\n", fmt::join(names, ",")) + rows;
-  }
-};
-
-std::string cell(const std::optional<double>& value) {
-  return csv_number(value.value_or(std::numeric_limits<double>::quiet_NaN()));
-}
-std::string cell(std::size_t value) { return fmt::format("{}", value); }
-std::string cell(const std::string& text) { return csv_text(text); }
-std::string cell(bool value) { return value ? "true" : "false"; }
 
 std::string lower_cell(const std::optional<population::Interval>& interval) {
   return interval ? cell(std::optional(interval->lower)) : "";
@@ -49,38 +20,38 @@ std::string upper_cell(const std::optional<population::Interval>& interval) {
   return interval ? cell(std::optional(interval->upper)) : "";
 }
 
-StudyTable recordings_table(const StudyResults& results) {
-  StudyTable table{"recordings",
-                   {{"recording", "", "name in the study"},
-                    {"file", "", "path below the drawer"},
-                    {"sha256", "", "of the file"},
-                    {"content_sha256", "", "of what was sampled, whatever is said of it"},
-                    {"tissue", "", "as study.toml has it"},
-                    {"speed", "", "as study.toml has it"},
-                    {"specimen", "", "empty: not known"},
-                    {"blank", "", "the tool without a tissue"},
-                    {"blank_taken_off", "", "name of the blank; empty: none"},
-                    {"blank_rows", "1", "samples that it covers"},
-                    {"blank_rms", "column force_unit", "what was taken off, root mean square"},
-                    {"blank_spread", "column force_unit", "of it from cycle to cycle of the blank"},
-                    {"negative_after", "1", "share of these samples below zero then"},
-                    {"counts", "", "in what is said of its tissue and speed"},
-                    {"why_not", "", "failure, doubts or why no law was fitted"},
-                    {"rows", "1", "samples"},
-                    {"duration", "s", "from the first row to the last"},
-                    {"period", "s", "usual step of time"},
-                    {"position_unit", "", "of travel"},
-                    {"travel", "column position_unit", "range of the positions"},
-                    {"force_unit", "", "of the four next"},
-                    {"peak", "column force_unit", "largest force of the rows that count"},
-                    {"rms", "column force_unit", "root mean square force of the rows that count"},
-                    {"jnd", "column force_unit", "just noticeable difference at that force"},
-                    {"floor", "column force_unit",
-                     "error on held-out data of the best map of position, direction and velocity"},
-                    {"cycles", "1", "closings"},
-                    {"good_cycles", "1", "without a flag, or accepted"},
-                    {"law", "", "the simplest that serves, or the best"},
-                    {"warnings", "", "what is to be known of it, with ' | ' between"}}};
+DescribedTable recordings_table(const StudyResults& results) {
+  DescribedTable table{"recordings",
+                       {{"recording", "", "name in the study"},
+                        {"file", "", "path below the drawer"},
+                        {"sha256", "", "of the file"},
+                        {"content_sha256", "", "of what was sampled, whatever is said of it"},
+                        {"tissue", "", "as study.toml has it"},
+                        {"speed", "", "as study.toml has it"},
+                        {"specimen", "", "empty: not known"},
+                        {"blank", "", "the tool without a tissue"},
+                        {"blank_taken_off", "", "name of the blank; empty: none"},
+                        {"blank_rows", "1", "samples that it covers"},
+                        {"blank_rms", "column force_unit", "what was taken off, root mean square"},
+                        {"blank_spread", "column force_unit", "of it from cycle to cycle of the blank"},
+                        {"negative_after", "1", "share of these samples below zero then"},
+                        {"counts", "", "in what is said of its tissue and speed"},
+                        {"why_not", "", "failure, doubts or why no law was fitted"},
+                        {"rows", "1", "samples"},
+                        {"duration", "s", "from the first row to the last"},
+                        {"period", "s", "usual step of time"},
+                        {"position_unit", "", "of travel"},
+                        {"travel", "column position_unit", "range of the positions"},
+                        {"force_unit", "", "of the four next"},
+                        {"peak", "column force_unit", "largest force of the rows that count"},
+                        {"rms", "column force_unit", "root mean square force of the rows that count"},
+                        {"jnd", "column force_unit", "just noticeable difference at that force"},
+                        {"floor", "column force_unit",
+                         "error on held-out data of the best map of position, direction and velocity"},
+                        {"cycles", "1", "closings"},
+                        {"good_cycles", "1", "without a flag, or accepted"},
+                        {"law", "", "the simplest that serves, or the best"},
+                        {"warnings", "", "what is to be known of it, with ' | ' between"}}};
   for (const DrawerRecording& one : results.recordings) {
     const StudiedRecording& found = one.result;
     const bool is_there = found.failure.empty();
@@ -126,16 +97,16 @@ StudyTable recordings_table(const StudyResults& results) {
   return table;
 }
 
-StudyTable cycles_table(const StudyResults& results) {
-  StudyTable table{"cycles",
-                   {{"recording", "", "name in the study"},
-                    {"cycle", "", "number, from 1"},
-                    {"begin", "s", "time of its first row"},
-                    {"closing", "s", "duration of the closing"},
-                    {"peak", "N (N·m about an axis)", "largest force"},
-                    {"closing_work", "J", "from the begin of the closing to the most closed row"},
-                    {"good", "", "counts"},
-                    {"reason", "", "what is wrong with it; of a good one what was found and accepted"}}};
+DescribedTable cycles_table(const StudyResults& results) {
+  DescribedTable table{"cycles",
+                       {{"recording", "", "name in the study"},
+                        {"cycle", "", "number, from 1"},
+                        {"begin", "s", "time of its first row"},
+                        {"closing", "s", "duration of the closing"},
+                        {"peak", "N (N·m about an axis)", "largest force"},
+                        {"closing_work", "J", "from the begin of the closing to the most closed row"},
+                        {"good", "", "counts"},
+                        {"reason", "", "what is wrong with it; of a good one what was found and accepted"}}};
   for (const DrawerRecording& one : results.recordings) {
     for (const StudiedCycle& cycle : one.result.cycles)
       table.add({cell(one.name), cell(std::size_t{cycle.number}), csv_number(cycle.begin_s),
@@ -145,14 +116,14 @@ StudyTable cycles_table(const StudyResults& results) {
   return table;
 }
 
-StudyTable parameters_table(const StudyResults& results) {
-  StudyTable table{"parameters",
-                   {{"recording", "", "name in the study"},
-                    {"law", "", "name of the law"},
-                    {"parameter", "", "name of the parameter"},
-                    {"value", "column unit", "estimate"},
-                    {"std_error", "column unit", "standard error; empty: the recording sets no limit"},
-                    {"unit", "", "in SI"}}};
+DescribedTable parameters_table(const StudyResults& results) {
+  DescribedTable table{"parameters",
+                       {{"recording", "", "name in the study"},
+                        {"law", "", "name of the law"},
+                        {"parameter", "", "name of the parameter"},
+                        {"value", "column unit", "estimate"},
+                        {"std_error", "column unit", "standard error; empty: the recording sets no limit"},
+                        {"unit", "", "in SI"}}};
   const auto add = [&](const std::string& recording, const std::string& law,
                        const std::vector<StudiedParameter>& parameters) {
     for (const StudiedParameter& parameter : parameters)
@@ -166,8 +137,8 @@ StudyTable parameters_table(const StudyResults& results) {
   return table;
 }
 
-StudyTable groups_table(const StudyResults& results) {
-  StudyTable table{
+DescribedTable groups_table(const StudyResults& results) {
+  DescribedTable table{
       "groups",
       {{"tissue", "", "as study.toml has it"},
        {"speed", "", "as study.toml has it"},
@@ -203,8 +174,8 @@ StudyTable groups_table(const StudyResults& results) {
   return table;
 }
 
-StudyTable held_out_table(const StudyResults& results) {
-  StudyTable table{
+DescribedTable held_out_table(const StudyResults& results) {
+  DescribedTable table{
       "held_out",
       {{"recording", "", "name in the study"},
        {"law", "", "name of the law"},
@@ -227,24 +198,24 @@ StudyTable held_out_table(const StudyResults& results) {
   return table;
 }
 
-StudyTable comparisons_table(const StudyResults& results) {
-  StudyTable table{"comparisons",
-                   {{"quantity", "", "peak, work, or LAW.PARAMETER"},
-                    {"by", "", "tissue or speed"},
-                    {"first", "", "tissue and speed"},
-                    {"second", "", "tissue and speed"},
-                    {"verdict", "", "differ, not told apart, or cannot be told"},
-                    {"logarithm", "", "true: the difference is the logarithm of a ratio"},
-                    {"first_units", "1", "specimens (recordings, where those are not known)"},
-                    {"second_units", "1", "specimens (recordings, where those are not known)"},
-                    {"difference", "column unit", "first less second"},
-                    {"lower", "column unit", "95 % interval of the difference"},
-                    {"upper", "column unit", "95 % interval of the difference"},
-                    {"hedges_g", "1", "difference in standard deviations of specimens"},
-                    {"p", "1", "of the permutation test"},
-                    {"p_holm", "1", "corrected for all comparisons of the study"},
-                    {"p_benjamini_hochberg", "1", "of the share of false alarms"},
-                    {"unit", "", "of the difference, unless it is a logarithm"}}};
+DescribedTable comparisons_table(const StudyResults& results) {
+  DescribedTable table{"comparisons",
+                       {{"quantity", "", "peak, work, or LAW.PARAMETER"},
+                        {"by", "", "tissue or speed"},
+                        {"first", "", "tissue and speed"},
+                        {"second", "", "tissue and speed"},
+                        {"verdict", "", "differ, not told apart, or cannot be told"},
+                        {"logarithm", "", "true: the difference is the logarithm of a ratio"},
+                        {"first_units", "1", "specimens (recordings, where those are not known)"},
+                        {"second_units", "1", "specimens (recordings, where those are not known)"},
+                        {"difference", "column unit", "first less second"},
+                        {"lower", "column unit", "95 % interval of the difference"},
+                        {"upper", "column unit", "95 % interval of the difference"},
+                        {"hedges_g", "1", "difference in standard deviations of specimens"},
+                        {"p", "1", "of the permutation test"},
+                        {"p_holm", "1", "corrected for all comparisons of the study"},
+                        {"p_benjamini_hochberg", "1", "of the share of false alarms"},
+                        {"unit", "", "of the difference, unless it is a logarithm"}}};
   for (const StudiedComparison& one : results.comparisons) {
     const population::Comparison& found = one.found;
     const auto tested = [&](double p) { return found.test ? csv_number(p) : std::string(); };
@@ -263,7 +234,7 @@ void write_study_tables(const StudyResults& results, const std::filesystem::path
   const std::array tables{recordings_table(results), cycles_table(results),   parameters_table(results),
                           groups_table(results),     held_out_table(results), comparisons_table(results)};
   std::string dictionary = "table,column,unit,meaning\n";
-  for (const StudyTable& table : tables) {
+  for (const DescribedTable& table : tables) {
     write_whole_file(folder / (std::string(table.name) + ".csv"), table.text());
     for (const TableColumn& column : table.columns)
       dictionary += fmt::format("{},{},{},{}\n", table.name, column.name, csv_text(column.unit),

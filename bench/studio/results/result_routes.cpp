@@ -110,7 +110,7 @@ HttpResponse order_stability(const HttpRequest& request, Workspace& workspace, J
 
 /// A result, whichever kind it is of. @throws RequestError 404.
 WorkspaceEntry find_result(Workspace& workspace, const std::string& id) {
-  for (const FileKind kind : {FileKind::fit, FileKind::chart, FileKind::choice}) {
+  for (const FileKind kind : {FileKind::fit, FileKind::chart, FileKind::choice, FileKind::device}) {
     try {
       return workspace.find(id, kind);
     } catch (const RequestError& other) {

@@ -14,8 +14,8 @@ namespace kerf::bench {
 ///     POST /api/chart        {recording, axis, models}
 ///     POST /api/choose       {recording, axis, rate_hz?, most_segments?}
 ///     POST /api/stability    {device, axis?, rate_hz, grip?, law?, depth_m?, speed_m_s?, cells}
-///     GET  /api/result?id=   fit.json, chart.json, choose.json or stability.json as it stands; of a chart
-///     and a map
+///     GET  /api/result?id=   fit.json, chart.json, choose.json, stability.json or identify.json as it
+///     stands; of a chart and a map
 ///                            stands "figure" beside it, chart_to_json() of its picture
 ///     GET  /api/law?id=      law_as_json()
 ///     GET  /api/laws/fitted  the laws of the registry that can be fitted, with their equations

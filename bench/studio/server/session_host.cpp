@@ -12,7 +12,9 @@
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
 #include "registered/logged_run.h"
+#include "sealed/apparatus_record.h"
 #include "sealed/session_store.h"
+#include "sealed/trials/quality_tally.h"
 #include "session/device_check.h"
 #include "session/receipt.h"
 #include "session/run_session.h"
@@ -57,6 +59,12 @@ std::optional<ExperimentLog> open_log(const SessionHost::Order& order, const Ses
 
 }  // namespace
 
+nlohmann::ordered_json to_json(const std::vector<SessionNote>& notes) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const SessionNote& note : notes) all.push_back({{"time", note.time}, {"text", note.text}});
+  return all;
+}
+
 /// A session that is open, until its thread has ended.
 class SessionHost::Running {
  public:
@@ -69,11 +77,15 @@ class SessionHost::Running {
       throw RequestError(409, "the session is finished; 'kerf session analyze' opens it");
     if (order_.device_uri.empty()) order_.device_uri = store_.protocol().device_uri;
     if (order_.device_uri.empty()) throw RequestError(400, "the protocol names no device; give one");
+    confirmed_ = confirmations_in(order_.apparatus, store_.protocol().apparatus);
   }
 
   Order order_;
   SessionStore store_;
   std::optional<ExperimentLog> log_;
+  Confirmations confirmed_;
+  /// The page may be asked for it after the session's end.
+  std::shared_ptr<LiveGuide> live_guide_ = std::make_shared<LiveGuide>();
 };
 
 SessionHost::SessionHost(std::vector<std::string> hosts, std::function<void()> wake,
@@ -86,10 +98,7 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
   {
     const std::lock_guard lock(mutex_);
     if (running_) throw RequestError(409, "a session is running");
-    const auto wait = failed_starts_.wait(AttemptLimit::Clock::now());
-    if (wait > AttemptLimit::Clock::duration::zero())
-      throw RequestError(429, fmt::format("too many starts have failed: wait {} s before the next",
-                                          std::chrono::ceil<std::chrono::seconds>(wait).count()));
+    require_patience();
     stop_ = false;  // before anybody can mean this session by stop()
     running_ = true;
   }
@@ -109,7 +118,11 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
   }
   if (thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
-  page_ = std::make_shared<PageSubject>(AccessControl(hosts_), wake_);
+  page_ = std::make_shared<PageSubject>(AccessControl(hosts_), wake_, running->store_.protocol().texts);
+  page_->use_noise(running->store_.protocol().apparatus.noise, noise_level_of(running->store_.session()),
+                   [store = &running->store_](double level_db) { record_noise_level(*store, level_db); });
+  if (const auto& guide = running->store_.protocol().guide)
+    page_->use_guide(*guide, [live = running->live_guide_] { return live->look(); });
   progress_ = {.running = true,
                .name = order.name,
                .subject_url = page_->access().url("/subject/"),
@@ -118,7 +131,10 @@ void SessionHost::start(const Order& order, const std::function<void()>& prepare
                .adaptive = is_adaptive(running->store_.protocol().design),
                .stage = "checking",
                .ended = {},
-               .warnings = running->store_.warnings()};
+               .warnings = running->store_.warnings(),
+               .quality = nullptr,
+               .notes = notes_of(running->store_.session())};
+  written_.clear();
   const WithoutSignals none;
   thread_ = std::jthread([this, running] { run(*running); });
 }
@@ -131,6 +147,7 @@ void SessionHost::run(Running& running) {
       const std::lock_guard lock(mutex_);
       progress_.warnings.insert(progress_.warnings.end(), remarks.begin(), remarks.end());
     }
+    record_apparatus(running.store_, running.confirmed_);
     SessionRunOptions options;
     options.loop.device_uri = running.order_.device_uri;
     options.loop.sensor_uri = running.order_.sensor_uri;
@@ -138,12 +155,28 @@ void SessionHost::run(Running& running) {
       const std::lock_guard lock(mutex_);
       progress_.warnings.emplace_back(line);
     };
+    QualityTally tally(running.store_);
+    const auto tell_quality = [&] {
+      nlohmann::ordered_json quality = to_json(tally.quality(running.store_.finished()));
+      const std::lock_guard lock(mutex_);
+      progress_.quality = std::move(quality);
+      progress_.notes = notes_of(running.store_.session());
+    };
+    tell_quality();
+    options.recorded = [&](const RecordedTrial& trial, bool is_left_out) {
+      tally.add(trial, is_left_out);
+      tell_quality();
+    };
+    options.notes = [this] { return next_note(); };
+    options.noted = tell_quality;
     options.progress = [this](std::size_t answered, std::size_t at_most) {
       const std::lock_guard lock(mutex_);
       progress_.answered = answered;
       progress_.at_most = at_most;
     };
+    options.live_guide = running.live_guide_.get();
     ended = end_in_words(run_session(running.store_, *page(), options, stop_));
+    tell_quality();
     running.store_.close();
     const Receipt receipt = receipt_of(running.store_);
     ended += fmt::format(". Receipt {}: keep it away from the file", receipt.in_short());
@@ -159,6 +192,49 @@ void SessionHost::run(Running& running) {
   progress_.running = false;
   progress_.ended = ended;
   running_ = false;
+}
+
+void SessionHost::require_patience() {
+  const auto wait = failed_starts_.wait(AttemptLimit::Clock::now());
+  if (wait > AttemptLimit::Clock::duration::zero())
+    throw RequestError(429, fmt::format("too many starts have failed: wait {} s before the next",
+                                        std::chrono::ceil<std::chrono::seconds>(wait).count()));
+}
+
+void SessionHost::note(const std::string& text) {
+  std::string written = note_text(text);
+  const std::lock_guard lock(mutex_);
+  if (!running_ || progress_.quality.is_null())
+    throw RequestError(409, "no session is running; 'kerf session note FILE TEXT' keeps a note of any other");
+  written_.push_back(std::move(written));
+}
+
+std::optional<std::string> SessionHost::next_note() {
+  const std::lock_guard lock(mutex_);
+  if (written_.empty()) return std::nullopt;
+  std::string next = std::move(written_.front());
+  written_.pop_front();
+  return next;
+}
+
+nlohmann::ordered_json SessionHost::look(const Order& order) {
+  {
+    const std::lock_guard lock(mutex_);
+    require_patience();
+  }
+  try {
+    const SessionStore store(order.file, key_of(order, derivation_of(order.file)),
+                             SessionStore::Purpose::read);
+    return {{"subject", store.session().subject},
+            {"finished", store.finished()},
+            {"planned", store.plan().size()},
+            {"quality", to_json(session_quality(store))},
+            {"notes", to_json(notes_of(store.session()))}};
+  } catch (const std::invalid_argument&) {  // another key, or a file that was changed
+    const std::lock_guard lock(mutex_);
+    failed_starts_.note_failure(AttemptLimit::Clock::now());
+    throw;
+  }
 }
 
 std::shared_ptr<PageSubject> SessionHost::page() const {

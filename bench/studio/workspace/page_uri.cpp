@@ -22,17 +22,16 @@ std::string as_text(const drivers::Uri& uri) {
 std::string uri_from_page(const Workspace& workspace, const std::string& uri) {
   drivers::Uri parts = drivers::parse_uri(uri);
   bool names_a_file = false;
-  for (const std::string_view option : drivers::file_options) {
-    const auto named = parts.options.find(std::string(option));
-    if (named == parts.options.end()) continue;
-    const auto file = workspace.regular_file(named->second);
+  for (auto& [option, value] : parts.options) {
+    if (!drivers::names_a_file(parts.name, option)) continue;
+    const auto file = workspace.regular_file(value);
     if (!file) {
       throw RequestError(400,
                          fmt::format("{}={}: from a page only a file of the studio's folder can be named, by "
                                      "its path in there; or give the URI to kerf studio with --device",
-                                     option, named->second));
+                                     option, value));
     }
-    named->second = file->string();
+    value = file->string();
     names_a_file = true;
   }
   return names_a_file ? as_text(parts) : uri;

@@ -31,10 +31,10 @@ struct Ending {
 constexpr std::array endings{Ending{".law.toml", FileKind::law}, Ending{".suite.toml", FileKind::suite},
                              Ending{".scene.toml", FileKind::scene},
                              Ending{".protocol.toml", FileKind::protocol}};
-constexpr std::array whole_names{Ending{"fit.json", FileKind::fit}, Ending{"chart.json", FileKind::chart},
-                                 Ending{"choose.json", FileKind::choice},
-                                 Ending{"stability.json", FileKind::stability},
-                                 Ending{"study.toml", FileKind::study}};
+constexpr std::array whole_names{
+    Ending{"fit.json", FileKind::fit},       Ending{"chart.json", FileKind::chart},
+    Ending{"choose.json", FileKind::choice}, Ending{"stability.json", FileKind::stability},
+    Ending{"study.toml", FileKind::study},   Ending{"identify.json", FileKind::device}};
 
 /// By its name; a file of HDF5 is taken for a recording until it was looked into.
 std::optional<FileKind> kind_of(const std::string& name) {
@@ -62,9 +62,9 @@ bool is_name(std::string_view name) {
 }  // namespace
 
 std::string_view name_of(FileKind kind) noexcept {
-  constexpr std::array<std::string_view, 11> names{"recording", "law",      "session",   "fit",
+  constexpr std::array<std::string_view, 12> names{"recording", "law",      "session",   "fit",
                                                    "chart",     "choice",   "stability", "suite",
-                                                   "scene",     "protocol", "study"};
+                                                   "scene",     "protocol", "study",     "device"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -22,7 +22,8 @@ enum class FileKind : std::uint8_t {
   suite,      ///< .suite.toml
   scene,      ///< .scene.toml
   protocol,   ///< .protocol.toml
-  study       ///< study.toml
+  study,      ///< study.toml
+  device      ///< identify.json
 };
 [[nodiscard]] std::string_view name_of(FileKind kind) noexcept;
 

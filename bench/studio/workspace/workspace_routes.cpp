@@ -11,7 +11,9 @@
 #include <kerf/schema/live_recording.h>
 
 #include "laws/law_file.h"
+#include "laws/law_toml.h"
 #include "laws/placement.h"
+#include "protocol/apparatus.h"
 #include "recordings/provenance.h"
 #include "sealed/session_facts.h"
 
@@ -81,15 +83,26 @@ nlohmann::ordered_json law_entry(const WorkspaceEntry& entry) {
   return json;
 }
 
+/// What the protocol asks an experimenter to confirm; of the protocol's text alone, which everybody may read.
+nlohmann::ordered_json apparatus_entry(const std::string& protocol, const std::string& name) {
+  nlohmann::ordered_json items = nlohmann::ordered_json::array();
+  for (const ApparatusItem& item : read_apparatus(Place(name), parse_toml(protocol, name)).items)
+    items.push_back({{"name", item.name}, {"what", item.what}});
+  return items;
+}
+
 nlohmann::ordered_json session_entry(const WorkspaceEntry& entry) {
-  nlohmann::ordered_json json{{"id", entry.id},    {"name", entry.name}, {"subject", ""}, {"key", ""},
-                              {"finished", false}, {"answered", 0},      {"error", ""}};
+  nlohmann::ordered_json json{{"id", entry.id},    {"name", entry.name},
+                              {"subject", ""},     {"key", ""},
+                              {"finished", false}, {"answered", 0},
+                              {"error", ""},       {"apparatus", nlohmann::ordered_json::array()}};
   try {
     const nlohmann::ordered_json facts = session_facts(entry.path);
     json["subject"] = facts.at("subject");
     json["key"] = facts.at("key");
     json["finished"] = facts.at("finished");
     json["answered"] = facts.at("trials");
+    json["apparatus"] = apparatus_entry(facts.at("protocol").get<std::string>(), entry.name);
   } catch (const std::exception& error) {
     json["error"] = error.what();
   }

@@ -7,12 +7,12 @@ foreach(file IN LISTS FILES)
   get_filename_component(name "${file}" NAME)
   file(READ "${file}" bytes HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${bytes}")
-  string(APPEND arrays "constexpr char file_${index}[] = {${bytes}};\n")
-  string(APPEND table "    {\"${name}\", {file_${index}, sizeof file_${index}}},\n")
+  string(APPEND arrays "constexpr char ${FUNCTION}_${index}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${name}\", {${FUNCTION}_${index}, sizeof ${FUNCTION}_${index}}},\n")
   math(EXPR index "${index} + 1")
 endforeach()
 file(
   WRITE "${OUTPUT}"
   "#include \"${HEADER}\"\n\nnamespace kerf::bench {\nnamespace {\n\n${arrays}"
-  "constexpr PageFile files[] = {\n${table}};\n\n}  // namespace\n\n"
-  "std::span<const PageFile> ${FUNCTION}() noexcept { return files; }\n\n}  // namespace kerf::bench\n")
+  "constexpr PageFile ${FUNCTION}_all[] = {\n${table}};\n\n}  // namespace\n\n"
+  "std::span<const PageFile> ${FUNCTION}() noexcept { return ${FUNCTION}_all; }\n\n}  // namespace kerf::bench\n")

@@ -60,6 +60,7 @@ EmulatedFalcon::Options EmulatedFalcon::parse_options(drivers::Uri uri) {
   options.units_per_n_m = given.number("torque_scale", {"1", options.units_per_n_m, 1000.0, 30000.0});
   options.glitch = given.flag("glitch", options.glitch);
   options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, 0.03});
+  options.free = FreeTip::in(given);
   options.trace = given.text("trace").value_or("");
   given.refuse_others();
   return options;
@@ -69,7 +70,10 @@ EmulatedFalcon::EmulatedFalcon(const Options& options)
     : options_(options),
       boot_(options.loaded ? Boot::running : Boot::silent),
       // A cube of 8 cm that the arms reach in every corner.
-      tip_({.centre_m = {0.0, 0.0, 0.12}, .sway_m = options.sway_m, .max_travel_m = 0.04}),
+      tip_({.centre_m = {0.0, 0.0, 0.12},
+            .sway_m = options.sway_m,
+            .max_travel_m = 0.04,
+            .free = options.free}),
       homed_(options.homed),
       trace_(open_trace(options.trace,
                         "t_s,raw_1,raw_2,raw_3,motor_1,motor_2,motor_3,encoder_1,encoder_2,encoder_3,"

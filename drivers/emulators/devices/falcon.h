@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -33,8 +34,9 @@ namespace kerf::emulators {
 ///
 /// Options: firmware=loaded|none (none), homed=on|off (off: it is not yet when plugged in), home_after
 /// (0.3s), home_for (until then its homing is lost again; for good), offset (counts that stand for the
-/// power-on place, 0), torque_scale (of the plant's motors, 10000 per N·m), sway (0.01m), glitch=on|off (off:
-/// a zero byte before the answer to the hello), trace=FILE (CSV, a line for each frame).
+/// power-on place, 0), torque_scale (of the plant's motors, 10000 per N·m), sway (0.01m), hand=on|off (off:
+/// the knob is moved by the motors alone, with mass, viscous, coulomb and delay as FreeTip has them),
+/// glitch=on|off (off: a zero byte before the answer to the hello), trace=FILE (CSV, a line for each frame).
 class EmulatedFalcon final : public EmulatedDevice {
  public:
   struct Options {
@@ -46,6 +48,7 @@ class EmulatedFalcon final : public EmulatedDevice {
     double units_per_n_m = 10000.0;
     bool glitch = false;
     double sway_m = 0.01;
+    std::optional<FreeTip::Options> free;  ///< nobody holds it
     std::string trace;
   };
   static Options parse_options(drivers::Uri uri);

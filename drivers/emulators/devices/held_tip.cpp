@@ -20,9 +20,20 @@ HeldTip::HeldTip(const Options& options)
             .hand_stiffness_n_per_m = options.hand_stiffness_n_per_m,
             .hand_damping_n_s_per_m = options.hand_damping_n_s_per_m,
             .lower_m = -options.max_travel_m,
-            .upper_m = options.max_travel_m} {}
+            .upper_m = options.max_travel_m} {
+  if (options.free) free_.emplace(*options.free);
+}
 
-void HeldTip::run_until(double time_s) noexcept {
+void HeldTip::push(const Eigen::Vector3d& force_n) {
+  force_n_ = force_n;
+  if (free_) free_->push(force_n);
+}
+
+void HeldTip::run_until(double time_s) {
+  if (free_) {
+    free_->run_until(time_s);
+    return;
+  }
   const auto target = static_cast<std::uint64_t>(std::llround(std::max(0.0, time_s) / step_s));
   while (steps_ < target) {
     const double now_s = static_cast<double>(++steps_) * step_s;
@@ -39,6 +50,7 @@ void HeldTip::run_until(double time_s) noexcept {
 }
 
 Eigen::Vector3d HeldTip::position() const noexcept {
+  if (free_) return options_.centre_m + free_->travel();
   return options_.centre_m + Eigen::Vector3d(states_[0].travel_m, states_[1].travel_m, states_[2].travel_m);
 }
 

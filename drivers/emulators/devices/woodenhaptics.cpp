@@ -60,7 +60,10 @@ Endpoints endpoints_of(EmulatedWoodenHaptics::Generation generation) {
 }
 
 HeldTip::Options held(const EmulatedWoodenHaptics::Options& options) {
-  return {.centre_m = options.model->centre_m, .sway_m = options.sway_m, .max_travel_m = max_travel_m};
+  return {.centre_m = options.model->centre_m,
+          .sway_m = options.sway_m,
+          .max_travel_m = max_travel_m,
+          .free = options.free};
 }
 
 }  // namespace
@@ -90,6 +93,7 @@ EmulatedWoodenHaptics::Options EmulatedWoodenHaptics::parse_options(drivers::Uri
   options.button_s = given.number("button", {"s", options.button_s, 0.0, 1e6});
   options.counter_offset = static_cast<int>(given.number("counter_offset", {"1", 0.0, -32768.0, 32767.0}));
   options.sway_m = given.number("sway", {"m", options.sway_m, 0.0, max_travel_m});
+  options.free = FreeTip::in(given);
   options.trace = given.text("trace").value_or("");
   given.refuse_others();
   return options;

@@ -29,9 +29,10 @@ namespace kerf::emulators {
 /// motor for motor.
 ///
 /// Options: generation (v1, v2, v3), model (woody-2019; V3: polhem-v3), button=2.0s (pressed then, once),
-/// counter_offset (what the counters say at home), sway=0.01m (0m: the hand holds still) and trace=FILE, a
-/// CSV with a row for each order that is applied, each report that is built and each time that the motors are
-/// switched off: `t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog`.
+/// counter_offset (what the counters say at home), sway=0.01m (0m: the hand holds still), hand=on|off (off:
+/// it is moved by the motors alone, with mass, viscous, coulomb and delay as FreeTip has them) and
+/// trace=FILE, a CSV with a row for each order that is applied, each report that is built and each time that
+/// the motors are switched off: `t_s,event,mA_a,mA_b,mA_c,enc_a,enc_b,enc_c,x,y,z,watchdog`.
 class EmulatedWoodenHaptics final : public EmulatedDevice {
  public:
   using Generation = drivers::woodenhaptics::Generation;
@@ -42,7 +43,8 @@ class EmulatedWoodenHaptics final : public EmulatedDevice {
     double button_s = -1.0;  ///< negative: never
     int counter_offset = 0;
     double sway_m = 0.01;
-    std::string trace;  ///< empty: none
+    std::optional<FreeTip::Options> free;  ///< nobody holds it
+    std::string trace;                     ///< empty: none
   };
   static Options parse_options(drivers::Uri uri);
   explicit EmulatedWoodenHaptics(const Options& options);

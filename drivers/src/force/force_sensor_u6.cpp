@@ -1,13 +1,18 @@
 #include "kerf/drivers/force_sensor_u6.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <exception>
+#include <string>
+#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <libusb.h>
 
 #include "age_limits.h"
+#include "kerf/drivers/device_notes.h"
 
 namespace kerf::drivers {
 namespace {
@@ -24,6 +29,9 @@ constexpr std::size_t fifo_packets = 984 / channel_count;  // what an earlier pr
 constexpr std::int64_t wait_ns = 20'000'000;
 constexpr std::int64_t silent_ns = 230'000'000;  // below the 256 packets after which their counter wraps
 constexpr int drain_timeout_ms = 5;
+constexpr std::size_t opening_readings = 100;  // by which the bias is looked at
+constexpr std::chrono::milliseconds opening_wait{10};
+constexpr int most_opening_waits = 50;
 constexpr usb::Identity labjack{labjack_u6::vendor, labjack_u6::product, "LabJack U6"};
 
 AxisInfo axis(std::string name, bool turns) {
@@ -48,7 +56,9 @@ std::vector<usb::Attached> find_labjack_u6() {
 ForceSensorU6::Options ForceSensorU6::parse_options(std::string_view text, Uri uri) {
   UriOptions given(std::move(uri));
   const auto file = given.file("calibration");
+  const bool raw = given.flag("raw", false);
   given.refuse_others();
+  if (raw && !file) return {.calibration_file = {}, .raw = true};
   if (!file || file->empty()) {
     throw DeviceError(
         fmt::format("device '{}': which force a voltage is it cannot know; name the transducer's "
@@ -56,12 +66,14 @@ ForceSensorU6::Options ForceSensorU6::parse_options(std::string_view text, Uri u
                     "u6:0?calibration=examples/u6.calibration.toml",
                     text));
   }
-  return {.calibration_file = *file};
+  return {.calibration_file = *file, .raw = raw};
 }
 
 ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Options& options)
     : uri_(uri),
-      calibration_(read_force_calibration(options.calibration_file)),
+      calibration_(options.calibration_file.empty() ? ForceCalibration{}
+                                                    : read_force_calibration(options.calibration_file)),
+      raw_(options.raw),
       usb_(labjack, number),
       assembler_(channel_count, channel_count),
       clock_(scan_period_s),
@@ -94,8 +106,11 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
           "centre = {} }}\n{}",
           identification_.serial, identification_.firmware_major, identification_.firmware_minor,
           identification_.hardware_major, identification_.hardware_minor, volts_.slope, volts_.negative_slope,
-          volts_.centre, to_toml(calibration_)),
+          volts_.centre, options.calibration_file.empty() ? std::string() : to_toml(calibration_)),
       .mounts = calibration_.mounts};
+  if (options.calibration_file.empty()) calibration_.tells.fill(false);
+  for (std::size_t i = 0; raw_ && i < channel_count; ++i)
+    info_.channels.push_back({.name = fmt::format("signal_{}", i + 1), .unit = "V"});
   for (std::size_t i = 0; i < transfer_count; ++i) {
     transfers_.push_back(
         std::make_unique<Transfer>(usb_, labjack_u6::stream_endpoint, labjack_u6::max_packet,
@@ -111,6 +126,22 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
   }
   start_stream();
   thread_.start([this](const std::stop_token& stop) { stream(stop); });
+  if (!options.calibration_file.empty()) note_doubts(options.calibration_file);
+}
+
+void ForceSensorU6::note_doubts(const std::string& file) {
+  const auto today = std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now());
+  for (std::string& line : doubts_of(calibration_, file, today)) note_device(std::move(line));
+  if (!calibration_.noise_v) return;
+  for (int waited = 0; waited < most_opening_waits; ++waited) {
+    if (opening_count_.load(std::memory_order_acquire) >= opening_readings) break;
+    std::this_thread::sleep_for(opening_wait);
+  }
+  if (opening_count_.load(std::memory_order_acquire) < opening_readings) return;
+  Axes mean = opening_sum_;
+  for (double& one : mean) one /= static_cast<double>(opening_readings);
+  if (auto line = moved_bias(calibration_, file, mean, static_cast<double>(opening_readings)))
+    note_device(std::move(*line));
 }
 
 ForceSensorU6::~ForceSensorU6() {
@@ -252,7 +283,14 @@ void ForceSensorU6::take_scan(std::uint64_t number, std::span<const std::uint16_
   clock_.add(number, arrived_ns);
   Axes volts{};
   for (std::size_t i = 0; i < channel_count; ++i) volts[i] = volts_.volts(codes[i]);
-  latest_.put({.wrench = calibration_.wrench(volts), .number = number, .taken_ns = clock_.time_ns(number)});
+  latest_.put({.wrench = calibration_.wrench(volts),
+               .volts = volts,
+               .number = number,
+               .taken_ns = clock_.time_ns(number)});
+  if (const std::size_t count = opening_count_.load(std::memory_order_relaxed); count < opening_readings) {
+    for (std::size_t i = 0; i < channel_count; ++i) opening_sum_[i] += volts[i];
+    opening_count_.store(count + 1, std::memory_order_release);
+  }
   next_number_ = number + 1;
   if (first_ns_.load(std::memory_order_relaxed) == 0) first_ns_.store(arrived_ns, std::memory_order_relaxed);
   last_ns_.store(arrived_ns, std::memory_order_relaxed);
@@ -316,6 +354,8 @@ Status ForceSensorU6::read(double now_s, Sample& sample) noexcept {
   }
   sample.channels[0] = has_scan_ ? 1e-9 * static_cast<double>(age_ns) : nothing;
   sample.channels[1] = has_scan_ ? static_cast<double>(scan_.number) : nothing;
+  for (std::size_t i = 0; raw_ && i < channel_count; ++i)
+    sample.channels[2 + i] = fresh ? scan_.volts[i] : nothing;
   if (fresh) return Status::ok;
   return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > max_silence_ns ? Status::lost : Status::fault;
 }

@@ -17,7 +17,6 @@ using Vector = Premium::Vector;
 using Matrix = Premium::Matrix;
 
 constexpr double dt = SimulatedMechanism::sub_step_s;
-constexpr double viscous_n_m_s = 0.0005;
 constexpr double coulomb_n_m = 0.01;
 constexpr double motor_limit_n_m = 0.129;
 constexpr double counts_per_turn = 4000.0;
@@ -170,7 +169,7 @@ void SimulatedPremium::move(double time_s, SimulatedMechanism::States& states,
     inertia += dt * (damping + dt * stiffness) * now.jacobian.transpose() * now.jacobian;
     impulse += dt * now.jacobian.transpose() * pull;
   }
-  if (options_.with_friction) inertia.diagonal().array() += dt * viscous_n_m_s;
+  if (options_.with_friction) inertia.diagonal().array() += dt * SimulatedPremium::viscous_n_m_s;
   const Matrix mobility = inertia.inverse();
   Vector speed = mobility * impulse;
   if (options_.with_friction) rub(mobility, speed);

@@ -1,6 +1,9 @@
 #include "kerf/drivers/simulated_scissors.h"
 
+#include <cmath>
+#include <numbers>
 #include <sstream>
+#include <string>
 
 #include "kerf/mechanisms/angle.h"
 
@@ -43,6 +46,11 @@ std::vector<AxisInfo> scissors_axes() {
                .mass_kg = carriage_kg, .viscous_n_s_per_m = viscous_n_s_per_m, .coulomb_n = coulomb_n}}};
 }
 
+const char* name_of(SimulatedScissors::Options::Motion motion) {
+  using Motion = SimulatedScissors::Options::Motion;
+  return motion == Motion::drawn ? "drawn" : motion == Motion::strokes ? "strokes" : "sine";
+}
+
 std::string as_toml(const SimulatedScissors::Options& options) {
   std::ostringstream text;
   text << "model = \"sim:scissors\"\nseed = " << options.mechanism.seed
@@ -54,6 +62,10 @@ std::string as_toml(const SimulatedScissors::Options& options) {
        << ", unit = \"rad\" }\nstroke = { value = " << options.hand.stroke_s
        << ", unit = \"s\" }\npause = { value = " << options.hand.pause_s
        << ", unit = \"s\" }\nvariation = " << options.hand.variation
+       << (options.motion == SimulatedScissors::Options::Motion::drawn
+               ? ""
+               : std::string("\ntarget = \"") + name_of(options.motion) + "\"\nbegins = \"" +
+                     (options.begins_open ? "open" : "closed") + "\"")
        << "\nmass = { value = " << options.hand.mass_kg
        << ", unit = \"kg\" }\ndamping = { value = " << options.hand.damping_n_s_per_m
        << ", unit = \"N·s/m\" }\nstiffness = { value = " << options.hand.stiffness_n_per_m
@@ -78,6 +90,20 @@ SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
   hand.mass_kg = given.number("mass", {"kg", hand.mass_kg, 0.0, 5.0});
   hand.damping_n_s_per_m = given.number("damping", {"Ns/m", hand.damping_n_s_per_m, 0.0, 500.0});
   hand.stiffness_n_per_m = given.number("grip", {"N/m", hand.stiffness_n_per_m, 0.0, 5000.0});
+  const std::string target = given.text("target").value_or("drawn");
+  using Motion = Options::Motion;
+  for (const Motion motion : {Motion::drawn, Motion::strokes, Motion::sine}) {
+    if (target == name_of(motion)) options.motion = motion;
+  }
+  if (target != name_of(options.motion)) {
+    throw DeviceError("device 'sim:scissors': option 'target' is '" + target +
+                      "', expected drawn, strokes or sine");
+  }
+  const std::string begins = given.text("begins").value_or("open");
+  if (begins != "open" && begins != "closed") {
+    throw DeviceError("device 'sim:scissors': option 'begins' is '" + begins + "', expected open or closed");
+  }
+  options.begins_open = begins == "open";
   given.allow("fault");
   given.refuse_others();
   if (hand.close_rad >= hand.open_rad) {
@@ -87,7 +113,7 @@ SimulatedScissors::Options SimulatedScissors::parse_options(Uri uri) {
 }
 
 SimulatedScissors::SimulatedScissors(std::string_view uri, const Options& options, Surroundings surroundings)
-    : with_hand_(options.with_hand),
+    : options_(options),
       mechanism_({.uri = std::string(uri),
                   .model = "sim:scissors",
                   .about = "haptic scissors of two degrees of freedom with a hand on them, simulated",
@@ -108,13 +134,31 @@ SimulatedScissors::SimulatedScissors(std::string_view uri, const Options& option
     axis.hand_stiffness_n_per_m = options.hand.stiffness_n_per_m;
     axis.hand_damping_n_s_per_m = options.hand.damping_n_s_per_m;
   }
-  mechanism_.place(0, options.hand.open_rad * lever_m);
+  mechanism_.place(0, handle_at(0.0).angle_rad * lever_m);
+}
+
+Strokes::Equilibrium SimulatedScissors::handle_at(double time_s) noexcept {
+  const HandOptions& hand = options_.hand;
+  if (options_.motion == Options::Motion::drawn) return strokes_.at(time_s);
+  const double from = options_.begins_open ? hand.open_rad : hand.close_rad;
+  const double way = (options_.begins_open ? 1.0 : -1.0) * (hand.close_rad - hand.open_rad);
+  if (options_.motion == Options::Motion::sine) {
+    const double omega = std::numbers::pi / hand.stroke_s;
+    return {.angle_rad = from + 0.5 * way * (1.0 - std::cos(omega * time_s)),
+            .speed_rad_s = 0.5 * way * omega * std::sin(omega * time_s)};
+  }
+  const double number = std::floor(time_s / (hand.pause_s + hand.stroke_s));
+  const bool is_back = std::fmod(number, 2.0) != 0.0;
+  const MinimumJerk progress =
+      MinimumJerk::at((time_s - number * (hand.pause_s + hand.stroke_s) - hand.pause_s) / hand.stroke_s);
+  return {.angle_rad = is_back ? from + way * (1.0 - progress.position) : from + way * progress.position,
+          .speed_rad_s = (is_back ? -way : way) * progress.speed / hand.stroke_s};
 }
 
 Status SimulatedScissors::read(double now_s, Sample& sample) noexcept {
   mechanism_.run_until(now_s, [this](double time_s, SimulatedMechanism::Equilibria& wish) {
-    if (!with_hand_) return;
-    const Strokes::Equilibrium handle = strokes_.at(time_s);
+    if (!options_.with_hand) return;
+    const Strokes::Equilibrium handle = handle_at(time_s);
     wish[0] = {.travel_m = handle.angle_rad * lever_m, .speed_m_s = handle.speed_rad_s * lever_m};
   });
   mechanism_.measure(now_s, sample);

@@ -7,9 +7,11 @@
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
+#include <kerf/psychophysics/detection/same_different.h>
 #include <kerf/psychophysics/dprime.h>
 
 #include "checks.h"
+#include "detection/rates.h"
 #include "normal.h"
 
 namespace kerf::psychophysics {
@@ -17,7 +19,6 @@ namespace {
 
 using std::numbers::sqrt2;
 using std::numbers::sqrt3;
-constexpr double largest_dprime = 14.0;  ///< d' beyond which a proportion is 1 in double precision
 
 /// The trapezium rule converges faster than any power for what falls off as a normal density does.
 template <typename Function>
@@ -50,6 +51,16 @@ double product(double a, double b) {
   return normal_probability(a) * normal_probability(b) + normal_probability(-a) * normal_probability(-b);
 }
 
+double differencing(double d) {
+  const SameDifferentRates rates = same_different_rates(SameRule::differencing, d, best_difference(d));
+  return 0.5 + 0.5 * (rates.hit - rates.false_alarm);
+}
+
+/// Of which d' may be below 0.
+bool is_signed(Decision decision) {
+  return decision == Decision::forced_choice || decision == Decision::yes_no;
+}
+
 void require_task(const Task& task) {
   require(task.decision != Decision::forced_choice || (task.intervals >= 2 && task.intervals <= 32),
           "a forced choice has 2 to 32 intervals, not " + std::to_string(task.intervals));
@@ -57,7 +68,7 @@ void require_task(const Task& task) {
 
 double slope(const Task& task, double d) {
   constexpr double step = 1e-4;
-  const double lower = task.decision == Decision::forced_choice ? d - step : std::max(0.0, d - step);
+  const double lower = is_signed(task.decision) ? d - step : std::max(0.0, d - step);
   return (proportion_correct(task, d + step) - proportion_correct(task, lower)) / (d + step - lower);
 }
 
@@ -69,28 +80,9 @@ double root(const Function& function, double lower, double upper) {
   return 0.5 * (found.first + found.second);
 }
 
-double corrected(Count count, Correction correction) {
-  require_some(count);
-  const bool extreme = count.successes == 0 || count.successes == count.trials;
-  require(!extreme || correction != Correction::none,
-          "a rate of 0 or 1 has no finite z: allow the log-linear correction, or gather more trials");
-  if (correction == Correction::always || (correction == Correction::extremes && extreme))
-    return (count.successes + 0.5) / (count.trials + 1.0);
-  return static_cast<double>(count.successes) / count.trials;
-}
-
 double variance_of_z(double rate, int trials) {
   const double density = normal_density(normal_quantile(rate));
   return rate * (1.0 - rate) / (trials * density * density);
-}
-
-double log_probability(Count count, double rate) {
-  double sum = 0.0;
-  if (count.successes > 0) sum += count.successes * std::log(std::max(rate, 1e-300));
-  if (count.successes < count.trials) {
-    sum += (count.trials - count.successes) * std::log(std::max(1.0 - rate, 1e-300));
-  }
-  return sum;
 }
 
 /// Largest over the criterion of the log-likelihood of two rates whose z lie `separation` apart: concave.
@@ -141,9 +133,9 @@ double chance_of(const Task& task) {
 
 double proportion_correct(const Task& task, double d) {
   require_task(task);
-  require(!std::isnan(d) && (d >= 0.0 || task.decision == Decision::forced_choice),
+  require(!std::isnan(d) && (d >= 0.0 || is_signed(task.decision)),
           "d' is " + std::to_string(d) +
-              "; it must be a number, and only that of a forced choice may be negative");
+              "; it must be a number, and only that of a forced choice or of yes/no may be negative");
   d = std::clamp(d, -2.0 * largest_dprime, 2.0 * largest_dprime);
   switch (task.decision) {
     case Decision::forced_choice:
@@ -156,6 +148,10 @@ double proportion_correct(const Task& task, double d) {
       return product(d / sqrt2, d / (sqrt2 * sqrt3));
     case Decision::same_different:
       return product(0.5 * d, 0.5 * d);
+    case Decision::same_different_differencing:
+      return differencing(d);
+    case Decision::yes_no:
+      return normal_probability(0.5 * d);
   }
   return 0.0;
 }
@@ -163,13 +159,14 @@ double proportion_correct(const Task& task, double d) {
 double d_prime(const Task& task, double proportion) {
   require_task(task);
   require(proportion >= 0.0 && proportion <= 1.0, "a proportion of right answers lies in 0 to 1");
-  const bool is_signed = task.decision == Decision::forced_choice;
-  if (!is_signed && proportion <= chance_of(task)) return 0.0;
-  if (is_signed && task.intervals == 2) return sqrt2 * normal_quantile(proportion);
+  const bool may_be_negative = is_signed(task.decision);
+  if (!may_be_negative && proportion <= chance_of(task)) return 0.0;
+  if (task.decision == Decision::yes_no) return 2.0 * normal_quantile(proportion);
+  if (may_be_negative && task.intervals == 2) return sqrt2 * normal_quantile(proportion);
   const auto excess = [&](double d) { return proportion_correct(task, d) - proportion; };
-  const double least = is_signed ? -largest_dprime : 0.0;
+  const double least = may_be_negative ? -largest_dprime : 0.0;
   if (proportion >= 1.0 || excess(largest_dprime) <= 0.0) return infinite;
-  if (proportion <= 0.0 || excess(least) >= 0.0) return is_signed ? -infinite : 0.0;
+  if (proportion <= 0.0 || excess(least) >= 0.0) return may_be_negative ? -infinite : 0.0;
   return root(excess, least, largest_dprime);
 }
 
@@ -179,7 +176,7 @@ DPrime estimate_d_prime(const Task& task, Count correct, double confidence) {
   const double value = d_prime(task, rate);
   const double steepness = slope(task, value);
   return {.value = value,
-          .standard_error = std::abs(value) < 1e-9 && task.decision != Decision::forced_choice
+          .standard_error = std::abs(value) < 1e-9 && !is_signed(task.decision)
                                 ? infinite
                                 : std::sqrt(rate * (1.0 - rate) / correct.trials) / steepness,
           .interval = {.lower = d_prime(task, of_rate.lower), .upper = d_prime(task, of_rate.upper)}};
@@ -189,39 +186,12 @@ Detection yes_no(Count hits, Count false_alarms, Correction correction, double c
   return from_rates(hits, false_alarms, correction, confidence, 1.0);
 }
 
-Detection two_interval(Count first, Count second, Correction correction, double confidence) {
-  return from_rates(first, second, correction, confidence, sqrt2);
+double yes_no_d_prime(double hit, double false_alarm) {
+  return normal_quantile(hit) - normal_quantile(false_alarm);
 }
 
-Detection same_different(Count hits, Count false_alarms, Correction correction, double confidence) {
-  require_probability(confidence, "the confidence");
-  const double h = corrected(hits, correction);
-  const double f = corrected(false_alarms, correction);
-  const double criterion = -sqrt2 * normal_quantile(0.5 * f);
-  const auto hit_rate = [&](double d, double k) {
-    return normal_probability((d - k) / sqrt2) + normal_probability((-d - k) / sqrt2);
-  };
-  // F = 2 P(-k / sqrt2), so dk/dF = -1 / (sqrt2 phi(k / sqrt2)).
-  const double dk_df = -1.0 / (sqrt2 * normal_density(criterion / sqrt2));
-  const double criterion_error = std::abs(dk_df) * std::sqrt(f * (1.0 - f) / false_alarms.trials);
-  Detection result{.d_prime = 0.0,
-                   .criterion = criterion,
-                   .standard_error = infinite,
-                   .criterion_standard_error = criterion_error,
-                   .interval = {.lower = 0.0, .upper = infinite}};
-  if (h <= f) return result;
-  const double d =
-      root([&](double trial) { return hit_rate(trial, criterion) - h; }, 0.0, 4.0 * largest_dprime);
-  const double near = normal_density((d - criterion) / sqrt2) / sqrt2;
-  const double far = normal_density((-d - criterion) / sqrt2) / sqrt2;
-  const double dd_dh = 1.0 / (near - far);
-  const double dd_df = (near + far) * dd_dh * dk_df;
-  result.d_prime = d;
-  result.standard_error = std::sqrt(dd_dh * dd_dh * h * (1.0 - h) / hits.trials +
-                                    dd_df * dd_df * f * (1.0 - f) / false_alarms.trials);
-  const double half = normal_quantile(0.5 + 0.5 * confidence) * result.standard_error;
-  result.interval = {.lower = std::max(0.0, d - half), .upper = d + half};
-  return result;
+Detection two_interval(Count first, Count second, Correction correction, double confidence) {
+  return from_rates(first, second, correction, confidence, sqrt2);
 }
 
 }  // namespace kerf::psychophysics

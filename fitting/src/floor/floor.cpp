@@ -11,6 +11,7 @@
 #include <boost/math/statistics/univariate_statistics.hpp>
 
 #include "floor/force_map.h"
+#include "kerf/fitting/checked_recordings.h"
 #include "samples.h"
 
 namespace kerf::fitting {
@@ -151,8 +152,11 @@ double squared(double value) { return value * value; }
 }  // namespace
 
 Floor floor_of(std::span<const Series> recordings, const FitOptions& options) {
-  const Samples samples =
-      check_series(recordings, {.folds = options.folds, .test_share = options.test_share});
+  return floor_of(CheckedRecordings(recordings, options));
+}
+
+Floor floor_of(const CheckedRecordings& recordings) {
+  const Samples& samples = recordings.samples();
   Floor floor{.quantum_n = quantum_of(samples.force), .by_cycle = samples.has_cycles};
   floor.noise_n = samples.runs.front().noise_n > 0.0
                       ? samples.runs.front().noise_n

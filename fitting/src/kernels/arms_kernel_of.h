@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +8,7 @@
 #include <kerf/models/contact_energy.h>
 
 #include "kernels/kept_ticks.h"
-#include "kernels/law_kernel_of.h"
+#include "kernels/law_kernel.h"
 #include "kernels/normal_sums.h"
 #include "kernels/short_dual.h"
 
@@ -18,31 +17,24 @@ namespace kerf::fitting {
 /// LawKernel of a law of arms beside a spring, [spring, stiffness of each arm, time of each arm]. What an arm
 /// does depends on its own two parameters alone, and the element's force is the sum: each arm is the law
 /// itself with this one arm, on dual numbers of these two, and the first of them has the spring. So the work
-/// grows with the arms, and not with their square. Where something is held, all goes by LawKernelOf.
-template <template <typename> typename Law, int Most>
+/// grows with the arms, and not with their square. What is held has derivatives that nobody asks for.
+template <template <typename> typename Law>
 class ArmsKernelOf final : public LawKernel {
  public:
   bool sums(const LawPoint& point, const RunView& run, const RobustLoss& loss, Sums& sums) const override {
-    bool done = false;
-    if (all_searched(point))
-      with_arms(point, [&]<std::size_t Arms>() { done = sums_of<Arms>(point, run, loss, sums); });
-    return done || whole_.sums(point, run, loss, sums);
+    with_arms(point, [&]<std::size_t Arms>() { sums_of<Arms>(point, run, loss, sums); });
+    return true;
   }
 
   bool rows(const LawPoint& point, const RunView& run, Eigen::Ref<Eigen::VectorXd> force,
             Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
-    bool done = false;
-    if (all_searched(point))
-      with_arms(point, [&]<std::size_t Arms>() { done = rows_of<Arms>(point, run, force, jacobian); });
-    return done || whole_.rows(point, run, force, jacobian);
+    with_arms(point, [&]<std::size_t Arms>() { rows_of<Arms>(point, run, force, jacobian); });
+    return true;
   }
 
  private:
   static constexpr std::size_t most_arms = Law<double>::max_arms;
 
-  static bool all_searched(const LawPoint& point) {
-    return std::ranges::none_of(point.slope, [](double slope) { return slope == 0.0; });
-  }
   template <typename Work>
   static void with_arms(const LawPoint& point, const Work& work) {
     const std::size_t arms = (point.values.size() - 1) / 2;
@@ -87,15 +79,20 @@ class ArmsKernelOf final : public LawKernel {
     }
   };
 
-  /// Columns as the arms have them: those of the first, the spring, a place that is free, and the others.
+  /// Columns of what is searched as the arms have them: those of the first, the spring, a place that is free,
+  /// and the others.
   template <std::size_t Arms>
-  static std::array<Eigen::Index, 2 * Arms + 1> columns() {
+  static std::vector<Eigen::Index> columns(const LawPoint& point) {
     std::array<Eigen::Index, 2 * Arms + 1> at{2};
     for (std::size_t arm = 0; arm < Arms; ++arm) {
       at[1 + arm] = static_cast<Eigen::Index>(2 * arm + (arm > 0 ? 2 : 0));
       at[1 + Arms + arm] = at[1 + arm] + 1;
     }
-    return at;
+    std::vector<Eigen::Index> searched;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (point.slope[i] != 0.0) searched.push_back(at[i]);
+    }
+    return searched;
   }
 
   /// Calls `add(i, force, row)` for each sample that counts.
@@ -132,7 +129,7 @@ class ArmsKernelOf final : public LawKernel {
   }
 
   template <std::size_t Arms>
-  [[gnu::flatten]] static bool sums_of(const LawPoint& point, const RunView& run, const RobustLoss& loss,
+  [[gnu::flatten]] static void sums_of(const LawPoint& point, const RunView& run, const RobustLoss& loss,
                                        Sums& sums) {
     NormalSums<2 * static_cast<int>(Arms) + 2> normal(loss);
     pass<Arms>(
@@ -140,27 +137,24 @@ class ArmsKernelOf final : public LawKernel {
         [&](std::size_t i, double force, const auto& row) {
           normal.add(force - run.force[i], run.weight[i], row);
         });
-    normal.write(columns<Arms>(), sums);
-    return true;
+    normal.write(columns<Arms>(point), sums);
   }
 
   template <std::size_t Arms>
-  [[gnu::flatten]] static bool rows_of(const LawPoint& point, const RunView& run,
+  [[gnu::flatten]] static void rows_of(const LawPoint& point, const RunView& run,
                                        Eigen::Ref<Eigen::VectorXd> forces,
                                        Eigen::Ref<Eigen::MatrixXd> jacobian) {
-    const auto at = columns<Arms>();
+    const auto at = columns<Arms>(point);
+    Eigen::Index next = 0;
     pass<Arms>(
-        point, run, [](std::size_t) { return true; },
-        [&](std::size_t i, double force, const auto& row) {
-          const auto sample = static_cast<Eigen::Index>(i);
-          forces[sample] = force;
+        point, run, [&](std::size_t i) { return run.is_row(i); },
+        [&](std::size_t, double force, const auto& row) {
+          forces[next] = force;
           for (std::size_t k = 0; k < at.size(); ++k)
-            jacobian(sample, static_cast<Eigen::Index>(k)) = row[at[k]];
+            jacobian(next, static_cast<Eigen::Index>(k)) = row[at[k]];
+          ++next;
         });
-    return true;
   }
-
-  LawKernelOf<Law, Most> whole_;
 };
 
 }  // namespace kerf::fitting

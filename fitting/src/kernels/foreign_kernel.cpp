@@ -166,11 +166,14 @@ class ForeignKernel final : public LawKernel {
   bool rows(const LawPoint& point, const RunView& run, Eigen::Ref<Eigen::VectorXd> force,
             Eigen::Ref<Eigen::MatrixXd> jacobian) const override {
     Eigen::VectorXd row(jacobian.cols());
+    Eigen::Index next = 0;
     return steps(point, run, [&](auto& law, std::size_t i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      force[at] = law.step(run.motion[i], run.period_s[i], row.data());
-      jacobian.row(at) = row.transpose();
-      return std::isfinite(force[at]) && row.allFinite();
+      const double there = law.step(run.motion[i], run.period_s[i], row.data());
+      if (!std::isfinite(there) || !row.allFinite()) return false;
+      if (!run.is_row(i)) return true;
+      force[next] = there;
+      jacobian.row(next++) = row.transpose();
+      return true;
     });
   }
 

@@ -48,14 +48,7 @@ class LawKernelOf final : public LawKernel {
         for (; next < values.size() && used < width; ++next) {
           if (point.slope[next] != 0.0) values[next].v[used++] = point.slope[next];
         }
-        const auto law = Law<Dual>::make(values, point.options);
-        typename Law<Dual>::State state;
-        for (std::size_t i = 0; i < run.count; ++i) {
-          const Dual f = law.step(state, run.motion[i], run.period_s[i]);
-          const auto row = static_cast<Eigen::Index>(i);
-          force[row] = f.a;
-          for (int k = 0; k < used; ++k) jacobian(row, column + k) = f.v[k];
-        }
+        step_along(Law<Dual>::make(values, point.options), run, force, jacobian.middleCols(column, used));
         column += used;
       } while (column < jacobian.cols());
       return true;
@@ -65,6 +58,21 @@ class LawKernelOf final : public LawKernel {
   }
 
  private:
+  template <typename Dual>
+  [[gnu::flatten]] static void step_along(const Law<Dual>& law, const RunView& run,
+                                          Eigen::Ref<Eigen::VectorXd> force,
+                                          Eigen::Ref<Eigen::MatrixXd> columns) {
+    typename Law<Dual>::State state;
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < run.count; ++i) {
+      const Dual f = law.step(state, run.motion[i], run.period_s[i]);
+      if (!run.is_row(i)) continue;
+      force[row] = f.a;
+      for (int k = 0; k < columns.cols(); ++k) columns(row, k) = f.v[k];
+      ++row;
+    }
+  }
+
   // Flattened: a call of the dual numbers' arithmetic for each sample costs more than the arithmetic.
   template <int N>
   [[gnu::flatten]] static bool one_pass(const LawPoint& point, const RunView& run, const RobustLoss& loss,

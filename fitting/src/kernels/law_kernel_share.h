@@ -8,6 +8,8 @@
 #include <kerf/models/registry.h>
 
 #include "kernels/arms_kernel_of.h"
+#include "kernels/law_kernel_of.h"
+#include "kernels/wide/wide_kernel.h"
 
 namespace kerf::fitting {
 
@@ -24,7 +26,8 @@ requires(L<double>::facts.search != models::Search::tables) struct KernelOf<L<do
   static const LawKernel* get() {
     constexpr int most = L<double>::facts.searched_at_once;
     constexpr bool has_arms = L<double>::facts.scan.over == models::Scan::prony;
-    static const std::conditional_t<has_arms, ArmsKernelOf<L, most>, LawKernelOf<L, most>> kernel;
+    using OnDuals = std::conditional_t<has_arms, ArmsKernelOf<L>, LawKernelOf<L, most>>;
+    static const std::conditional_t<wide::WideOf<L>::exists, wide::WideKernel<L, OnDuals>, OnDuals> kernel;
     return &kernel;
   }
 };

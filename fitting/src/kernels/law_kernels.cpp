@@ -15,10 +15,20 @@ RunView view_of(const Samples& samples, const Weights& weights, std::size_t run)
           .count = end - begin};
 }
 
+RunView summed_view_of(const Samples& samples, const Weights& weights, std::size_t run) {
+  RunView view = view_of(samples, weights, run);
+  while (view.count > 0 && view.weight[view.count - 1] == 0.0) --view.count;
+  return view;
+}
+
+const LawKernel* kernel_if_any(std::string_view model) {
+  if (const models::ForeignLaw* const foreign = models::foreign_law(model)) return &kernel_of(*foreign);
+  const LawKernel* const kernel = kernel_in_share<0>(model);
+  return kernel != nullptr ? kernel : kernel_in_share_2(model);
+}
+
 const LawKernel& kernel_of(std::string_view model) {
-  if (const models::ForeignLaw* const foreign = models::foreign_law(model)) return kernel_of(*foreign);
-  const LawKernel* kernel = kernel_in_share<0>(model);
-  if (kernel == nullptr) kernel = kernel_in_share_2(model);
+  const LawKernel* const kernel = kernel_if_any(model);
   if (kernel == nullptr) throw std::invalid_argument("law '" + std::string(model) + "' has no fit");
   return *kernel;
 }

@@ -43,10 +43,11 @@ std::vector<double> residuals_of(const SegmentedCurve& curve, const Samples& sam
 std::vector<SegmentedCurve> curves_of(const Problem& problem, const Curve& points, std::size_t segments) {
   const SegmentedOptions options{.max_segments = segments,
                                  .fewest_points = problem.points_per_segment,
-                                 .breakpoints = problem.breakpoints};
+                                 .breakpoints = problem.breakpoints,
+                                 .polish = problem.polish};
   if (!problem.breakpoints.empty() || !problem.segmented_memory || !problem.segmented_memory->covers(options))
     return fit_segments(points, options);
-  std::vector<SegmentedCurve> curves = problem.segmented_memory->curves(points);
+  std::vector<SegmentedCurve> curves = problem.segmented_memory->curves(points, options.polish);
   std::erase_if(curves, [&](const SegmentedCurve& curve) { return curve.segments() > segments; });
   return curves;
 }

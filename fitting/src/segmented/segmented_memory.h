@@ -21,7 +21,7 @@ class SegmentedMemory {
     return options.max_segments <= max_segments_ && options.fewest_points == fewest_points_;
   }
   /// @throws std::invalid_argument as fit_segments() does.
-  [[nodiscard]] std::vector<SegmentedCurve> curves(const Curve& points);
+  [[nodiscard]] std::vector<SegmentedCurve> curves(const Curve& points, Polish polish);
 
  private:
   struct Entry {
@@ -29,13 +29,14 @@ class SegmentedMemory {
     std::vector<double> force;
     std::vector<double> weight;
     std::vector<std::uint8_t> branch;
+    Polish polish;
     std::once_flag once;
     std::vector<SegmentedCurve> curves;
 
-    explicit Entry(const Curve& points);
-    [[nodiscard]] bool is_of(const Curve& points) const;
+    Entry(const Curve& points, Polish by);
+    [[nodiscard]] bool is_of(const Curve& points, Polish asked) const;
   };
-  Entry& entry_of(const Curve& points);
+  Entry& entry_of(const Curve& points, Polish polish);
 
   std::size_t max_segments_;
   std::size_t fewest_points_;

@@ -191,6 +191,16 @@ void polish(const Points& points, const SegmentedOptions& options, const OnGrid&
   for (Polished& each : best) each = relocate(points, each, options.fewest_points);
 }
 
+/// Leaves the grid from its best curves alone, and each from that of one segment less.
+void polish_briefly(const Points& points, const SegmentedOptions& options, std::vector<Polished>& best) {
+  const Climb climb(points, options, even_grid(options.cells), false);
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    best[i] = descend(points, best[i].knots, options.fewest_points);
+    if (i > 0 && best[i].error > best[i - 1].error)
+      climb.offer(best[i], climb.with_one_more(best[i - 1].knots));
+  }
+}
+
 }  // namespace
 
 std::vector<Found> search(const Points& points, const SegmentedOptions& options) {
@@ -203,7 +213,8 @@ std::vector<Found> search(const Points& points, const SegmentedOptions& options)
     best.push_back({.knots = path.knots, .error = error});
     all.push_back({.best = {}, .error_on_grid = error, .optimal_on_grid = path.optimal});
   }
-  if (options.polish) polish(points, options, even, best);
+  if (options.polish == Polish::thorough) polish(points, options, even, best);
+  if (options.polish == Polish::brief) polish_briefly(points, options, best);
   for (std::size_t i = 0; i < all.size(); ++i) {
     // The points carry one segment more only if it does not cost.
     if (i > 0 && best[i].error > best[i - 1].error + search_gain * points.weight) {

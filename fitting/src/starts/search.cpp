@@ -50,11 +50,8 @@ double squares_at(const Problem& problem, const Samples& samples, const Weights&
   return squares;
 }
 
-/// The best end of several starts on a thinned series, which is where a search of all samples begins.
-Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
-  const bool has_memory = problem.facts().scan.over == models::Scan::prony;
-  const Samples few = thinned(samples, has_memory ? thinned_with_memory : thinned_samples);
-  const Weights light = thinned_weights(samples, weights, few);
+/// The best end of several starts.
+Solution begin_on(const Problem& problem, const Samples& few, const Weights& light) {
   Solution best;
   best.message = "the data offer no start for a search";
   double least = 0.0;
@@ -66,14 +63,22 @@ Solution begin_on_few(const Problem& problem, const Samples& samples, const Weig
     Solution solution = solve_from(problem, few, light, for_all_runs(problem, start),
                                    {.loss = {}, .function_tolerance = 1e-7});
     iterations += solution.iterations;
-    const double squares = squares_at(problem, few, light, solution.values);
-    if (best.values.empty() || squares < least) {
+    if (best.values.empty() || solution.squares < least) {
       best = std::move(solution);
-      least = squares;
+      least = best.squares;
     }
   }
   best.iterations = iterations;
   return best;
+}
+
+/// The same on a thinned series, which is where a search of all samples begins.
+Solution begin_on_few(const Problem& problem, const Samples& samples, const Weights& weights) {
+  const bool has_memory = problem.facts().scan.over == models::Scan::prony;
+  const std::size_t enough = has_memory ? thinned_with_memory : thinned_samples;
+  if (samples.size() < 2 * enough) return begin_on(problem, samples, weights);
+  const Samples few = thinned(samples, enough);
+  return begin_on(problem, few, thinned_weights(samples, weights, few));
 }
 
 /// @throws std::invalid_argument for a name that is no parameter of the law.
@@ -125,8 +130,9 @@ void hold(Problem& problem, std::string_view name) {
 }  // namespace
 
 Problem make_problem(std::string_view model, const FitOptions& given, const Samples& samples,
-                     const Weights& seen) {
+                     const Weights& seen, Polish polish) {
   Problem problem{.model = model, .law_options = given.law_options, .runs = samples.runs.size()};
+  problem.polish = polish;
   const models::LawFacts& facts = problem.facts();
   models::Options& options = problem.law_options;
   for (const models::DataOption& option : facts.from_data) {

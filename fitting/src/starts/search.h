@@ -21,7 +21,7 @@ struct Solution {
 /// of a table, loop of a piecewise law), and which parameters are free. The number of segments, where the
 /// data decide it, follows from the samples of positive weight.
 [[nodiscard]] Problem make_problem(std::string_view model, const FitOptions& options, const Samples& samples,
-                                   const Weights& seen);
+                                   const Weights& seen, Polish polish = Polish::thorough);
 
 struct SearchOptions {
   RobustLoss loss;

@@ -2,10 +2,11 @@
 
 #include <atomic>
 #include <cmath>
-#include <future>
 #include <numeric>
 
 #include <boost/math/statistics/univariate_statistics.hpp>
+
+#include "share_out.h"
 
 namespace kerf::fitting {
 namespace {
@@ -63,26 +64,19 @@ HeldOut held_out(const std::function<Trained(const Weights& seen)>& train_on, co
   if (folds.size() < 2) return {};
   std::vector<Share> fitted(folds.size());
   std::vector<Share> as_rendered(folds.size());
-  std::atomic<std::size_t> next{0};
   std::atomic<bool> failed{false};
-  const auto work = [&] {
-    for (std::size_t k = next++; k < folds.size() && !failed; k = next++) {
-      const Trained law = train_on(without_fold(samples, weights, folds[k]));
-      failed = failed || law.solution.values.empty();
-      if (failed) break;
-      const Values& values = law.solution.values;
-      fitted[k] = judged(residuals_of(law.problem, values, samples), samples, weights, folds[k]);
-      as_rendered[k] =
-          judged(rendered_residuals(law.problem, values, samples, render), samples, weights, folds[k]);
+  share_out(folds.size(), threads, [&](std::size_t k) {
+    if (failed) return;
+    const Trained law = train_on(without_fold(samples, weights, folds[k]));
+    if (law.solution.values.empty()) {
+      failed = true;
+      return;
     }
-  };
-  {
-    std::vector<std::future<void>> helpers;
-    for (std::size_t i = 1; i < std::min(threads, folds.size()); ++i)
-      helpers.push_back(std::async(std::launch::async, work));
-    work();
-    for (auto& helper : helpers) helper.get();  // throws what it threw
-  }
+    const Values& values = law.solution.values;
+    fitted[k] = judged(residuals_of(law.problem, values, samples), samples, weights, folds[k]);
+    as_rendered[k] =
+        judged(rendered_residuals(law.problem, values, samples, render), samples, weights, folds[k]);
+  });
   if (failed) {
     const FoldErrors none{.rmse = std::numeric_limits<double>::infinity(), .folds = {}};
     return {.fitted = none, .rendered = render ? none : FoldErrors{}};

@@ -64,7 +64,8 @@ Weights by_noise(const Samples& samples, const std::vector<double>& residuals, c
 /// A law of a given size.
 Trained train_sized(std::string_view model, const FitOptions& options, const Samples& samples,
                     const Weights& seen, double function_tolerance) {
-  Trained law{.problem = make_problem(model, options, samples, seen), .weights = seen};
+  const Polish polish = function_tolerance < of_a_fold ? Polish::thorough : Polish::brief;
+  Trained law{.problem = make_problem(model, options, samples, seen, polish), .weights = seen};
   const auto p = static_cast<std::size_t>(law.problem.coordinates());
   const auto count = static_cast<std::size_t>(std::ranges::count_if(seen, [](double w) { return w > 0.0; }));
   if (count <= p) {
@@ -127,21 +128,23 @@ bool pays(const Size& larger, const Size& smaller) {
 
 /// A law of a given size, found once: nested folds ask again.
 Trained train_once(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
-                   const Weights& seen, double function_tolerance) {
+                   const Weights& seen, double function_tolerance, TrainedMemory* memory) {
   const auto train = [&] { return train_sized(model, sized, samples, seen, function_tolerance); };
-  return samples.trained ? samples.trained->once(seen, count, function_tolerance, train) : train();
+  return memory != nullptr ? memory->once(seen, count, function_tolerance, train) : train();
 }
 
 Size tried(std::string_view model, const FitOptions& sized, std::size_t count, const Samples& samples,
-           const Weights& seen, double function_tolerance) {
-  Size size{.law = train_once(model, sized, count, samples, seen, function_tolerance)};
+           const Weights& seen, double function_tolerance, TrainedMemory* memory) {
+  Size size{.law = train_once(model, sized, count, samples, seen, function_tolerance, memory)};
   if (size.law.solution.values.empty()) return size;
   const auto left = of_those(residuals_of(size.law.problem, size.law.solution.values, samples), seen);
   size.count = left.size();
   size.mean_square = std::pow(rms_of(left), 2);
   size.law.correlation_time = correlation_time(left);
   size.errors = held_out(
-      [&](const Weights& fewer) { return train_once(model, sized, count, samples, fewer, of_a_fold); },
+      [&](const Weights& fewer) {
+        return train_once(model, sized, count, samples, fewer, of_a_fold, memory);
+      },
       samples, seen, sized.threads);
   return size;
 }
@@ -149,14 +152,14 @@ Size tried(std::string_view model, const FitOptions& sized, std::size_t count, c
 /// A law as large as held-out samples among those shown pay for. Where one more does not but the residuals
 /// are still far from white, the next is tried too.
 Trained train_growing(std::string_view model, const FitOptions& options, const Samples& samples,
-                      const Weights& seen, double function_tolerance) {
+                      const Weights& seen, double function_tolerance, TrainedMemory* memory) {
   const models::SizeFacts& facts = models::law_facts(model).size;
   std::optional<Size> best;
   std::size_t failures = 0;
   for (std::size_t count = facts.first; count <= facts.last && failures < failures_borne; ++count) {
     FitOptions sized(options);
     sized.law_options[std::string(facts.option)] = static_cast<double>(count);
-    Size next = tried(model, sized, count, samples, seen, function_tolerance);
+    Size next = tried(model, sized, count, samples, seen, function_tolerance, memory);
     if (next.law.solution.values.empty()) return best ? best->law : next.law;
     const bool white = next.law.correlation_time < white_below;
     const bool better = !best || pays(next, *best);
@@ -180,7 +183,11 @@ std::vector<double> rendered_residuals(const Problem& problem, const Values& val
   std::vector<double> residuals;
   if (!render) return residuals;
   for (std::size_t run = 0; run < samples.runs.size(); ++run) {
-    const auto part = render(models::Law::make(problem.model, values[run], problem.law_options), run);
+    auto part = render(models::Law::make(problem.model, values[run], problem.law_options), run);
+    if (samples.runs.size() == 1) {
+      residuals = std::move(part);  // memory for one column, not for two
+      break;
+    }
     residuals.insert(residuals.end(), part.begin(), part.end());
   }
   for (std::size_t i = 0; i < residuals.size(); ++i) residuals[i] -= samples.force[i];
@@ -188,10 +195,10 @@ std::vector<double> rendered_residuals(const Problem& problem, const Values& val
 }
 
 Trained train(std::string_view model, const FitOptions& options, const Samples& samples, const Weights& seen,
-              double function_tolerance) {
+              double function_tolerance, TrainedMemory* memory) {
   const models::SizeFacts& size = models::law_facts(model).size;
   const bool grows = size.grows && !options.law_options.contains(size.option);
-  return grows ? train_growing(model, options, samples, seen, function_tolerance)
+  return grows ? train_growing(model, options, samples, seen, function_tolerance, memory)
                : train_sized(model, options, samples, seen, function_tolerance);
 }
 

@@ -7,6 +7,8 @@
 
 namespace kerf::fitting {
 
+class TrainedMemory;
+
 /// A law as it was found by the samples that it was shown.
 struct Trained {
   Problem problem;
@@ -16,13 +18,18 @@ struct Trained {
   double correlation_time = 1.0;  ///< of the residuals of the samples shown, in samples
 };
 
+/// Tolerances of a search: of a law, and where only an error is asked for.
+inline constexpr double of_a_law = 1e-12;
+inline constexpr double of_a_fold = 1e-8;
+
 /// Finds a law by the samples of positive weight alone. Whatever the data decide is decided by these: the
 /// start, the weight of each run, the scale of a robust loss, the number of segments, the number of arms.
 /// Only the range of the motion is taken from all samples, so that a law is defined where it is judged.
+/// Laws that were trained on the way are kept in `memory`, that of one fit; none: nothing is kept.
 /// @throws std::invalid_argument where there are no more samples than parameters.
 [[nodiscard]] Trained train(std::string_view model, const FitOptions& options, const Samples& samples,
-                            const Weights& seen, double function_tolerance = 1e-12);
-inline constexpr double of_a_fold = 1e-8;  ///< such a tolerance, where only an error is asked for
+                            const Weights& seen, double function_tolerance = of_a_law,
+                            TrainedMemory* memory = nullptr);
 
 /// What a law leaves of the force of each sample as a loop renders it; nothing where nothing renders it.
 [[nodiscard]] std::vector<double> rendered_residuals(const Problem& problem, const Values& values,

@@ -50,6 +50,14 @@ std::vector<Rows> runs_of(const Linearisation& linearisation) {
 }  // namespace
 
 Eigen::MatrixXd gram(const Eigen::MatrixXd& columns) {
+  constexpr Index few = 8;  // for which packing them for a product of matrices costs more than the product
+  if (columns.cols() <= few) {
+    Eigen::MatrixXd product(columns.cols(), columns.cols());
+    for (Index i = 0; i < columns.cols(); ++i) {
+      for (Index j = 0; j <= i; ++j) product(i, j) = product(j, i) = columns.col(i).dot(columns.col(j));
+    }
+    return product;
+  }
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
   product.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
   return product.selfadjointView<Eigen::Lower>();

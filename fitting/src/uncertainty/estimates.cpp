@@ -153,36 +153,41 @@ class Estimation {
   void estimate_within(const Problem& inner) {
     const LawObjective objective(inner, samples_, weights_, solution_.values, loss_);
     const Eigen::VectorXd at = coordinates_of(inner, solution_.values);
-    std::vector<double> scale;
     Uncertainty uncertainty;
+    std::vector<Limits> limits;
     if (options_.intervals == Intervals::white) {
       uncertainty = as_of_white_noise(objective, at, solution_, weights_, options_.confidence);
+      limits = wald_limits_of(inner, at, uncertainty);
+      result_.covariance_by = CovarianceBy::white;
     } else {
       const Linearisation linear = linearise(objective, inner, solution_, samples_, weights_, loss_);
-      scale = linear.scale;
       uncertainty = uncertainty_of(linear, options_.confidence);
+      limits = limits_within(inner, objective, at, linear, uncertainty);
+      result_.covariance_by = uncertainty.by_cycles ? CovarianceBy::cycles : CovarianceBy::residuals;
     }
-    result_.covariance_by = options_.intervals == Intervals::white ? CovarianceBy::white
-                            : uncertainty.by_cycles                ? CovarianceBy::cycles
-                                                                   : CovarianceBy::residuals;
     result_.correlation_time = std::min(uncertainty.correlation_time, static_cast<double>(samples_.size()));
-    Sums sums{.squares = solution_.squares, .score = {}, .normal = {}};
-    std::vector<Limits> limits;
-    if (objective.evaluate(at, sums)) {
-      Eigen::MatrixXd hessian = sums.normal;
-      if (result_.correlation_time > no_misfit_below && inner.facts().search == models::Search::descent) {
-        hessian = hessian_of(objective, at, sums);
-        take_curvature(uncertainty, sums, hessian);
-      }
-      limits = limits_of(inner, objective, at, sums, hessian, uncertainty, scale);
-    } else {
-      limits.resize(uncertainty.determined.size());
-    }
     take(inner, uncertainty, limits);
     if (options_.profile) {
       result_.profiles =
           profiles_of(inner, samples_, weights_, solution_.values, loss_, uncertainty, result_.searched);
     }
+  }
+
+  /// Takes the curvature of a law that misfits into the uncertainty.
+  [[nodiscard]] std::vector<Limits> limits_within(const Problem& inner, const LawObjective& objective,
+                                                  const Eigen::VectorXd& at, const Linearisation& linear,
+                                                  Uncertainty& uncertainty) const {
+    Sums sums{.squares = linear.residuals.squaredNorm(),
+              .score = linear.jacobian.transpose() * linear.residuals,
+              .normal = gram(linear.jacobian)};
+    if (loss_.kind != Loss::squares && !objective.evaluate(at, sums))  // whose squares cost less
+      return std::vector<Limits>(uncertainty.determined.size());
+    Eigen::MatrixXd hessian = sums.normal;
+    if (uncertainty.correlation_time > no_misfit_below && inner.facts().search == models::Search::descent) {
+      hessian = hessian_of(objective, at, sums);
+      take_curvature(uncertainty, sums, hessian);
+    }
+    return limits_of(inner, objective, at, sums, hessian, uncertainty, linear.scale, options_.threads);
   }
 
   void take(const Problem& inner, const Uncertainty& uncertainty, const std::vector<Limits>& limits) {

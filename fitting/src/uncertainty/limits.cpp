@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "infinite.h"
+#include "share_out.h"
 #include "uncertainty/ridge.h"
 #include "uncertainty/statistics.h"
 
@@ -88,14 +89,26 @@ std::optional<double> where_it_reaches(Ridge& ridge, double best, double step, d
 /// One coordinate and what is asked of it, on the search scale.
 struct Question {
   const models::ParameterInfo& info;
-  Index k;
-  double best;
-  double half;   ///< of Wald's interval
-  double scale;  ///< of a change that counts
-  double quantile;
-  double degrees_of_freedom;
-  double unit;
+  Index k = 0;
+  double best = 0.0;
+  double half = 0.0;  ///< of Wald's interval
+  double quantile = 0.0;
+  double degrees_of_freedom = 0.0;
+  double scale = 1.0;  ///< of a change that counts
+  double unit = 1.0;   ///< of the rise of the sum of squares
 };
+
+Question question_of(const models::ParameterInfo& info, const Eigen::VectorXd& at, Index k,
+                     const Uncertainty& uncertainty) {
+  const auto place = static_cast<std::size_t>(k);
+  const double error = uncertainty.determined[place] ? std::sqrt(uncertainty.covariance(k, k)) : infinite;
+  return {.info = info,
+          .k = k,
+          .best = at[k],
+          .half = uncertainty.quantile[place] * error,
+          .quantile = uncertainty.quantile[place],
+          .degrees_of_freedom = uncertainty.degrees_of_freedom[place]};
+}
 
 bool is_like_a_parabola(const LawObjective& objective, const Eigen::VectorXd& at, const Sums& sums,
                         const Eigen::MatrixXd& hessian, const Bounds& bounds, const Question& asked) {
@@ -111,6 +124,13 @@ bool is_like_a_parabola(const LawObjective& objective, const Eigen::VectorXd& at
     if (!(std::abs(deviation - asked.quantile) <= like_a_parabola * asked.quantile)) return false;
   }
   return true;
+}
+
+/// The others follow as if the sum of squares were a parabola, as far as Wald's interval goes.
+RidgeAhead ahead_of(const Eigen::MatrixXd& hessian, const Question& asked) {
+  if (!(std::isfinite(asked.half) && asked.half > 0.0)) return {};
+  const Eigen::VectorXd inverse = inverse_column(hessian, asked.k);
+  return {.slope = without(inverse, asked.k) / inverse[asked.k], .reach = asked.half};
 }
 
 /// Where none is on the search scale; its deviation is asked there.
@@ -156,7 +176,7 @@ Bounds ends_of(const Problem& problem) {
 
 Limits by_profile(Ridge ridge, const Bounds& bounds, const Bounds& ends, const Question& asked) {
   const double step =
-      std::isfinite(asked.half) && asked.half > 0.0 ? std::min(0.5 * asked.half, asked.scale) : asked.scale;
+      std::isfinite(asked.half) && asked.half > 0.0 ? std::min(asked.half, asked.scale) : asked.scale;
   Limits limits{.by = IntervalBy::profile};
   const auto reached = [&](double way, double bound) {
     const auto at = where_it_reaches(ridge, asked.best, way, bound, asked.quantile);
@@ -222,36 +242,44 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
   uncertainty.correlation = correlation_of(uncertainty.covariance);
 }
 
+std::vector<Limits> wald_limits_of(const Problem& problem, const Eigen::VectorXd& at,
+                                   const Uncertainty& uncertainty) {
+  const auto coordinates = problem.all();
+  std::vector<Limits> all;
+  for (Index k = 0; k < at.size(); ++k) {
+    const models::ParameterInfo& info =
+        problem.parameters[coordinates[static_cast<std::size_t>(k)].parameter];
+    const Question asked = question_of(info, at, k, uncertainty);
+    all.push_back(std::isfinite(asked.half) ? by_wald(asked) : Limits{});
+  }
+  return all;
+}
+
 std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
                               const Eigen::VectorXd& at, const Sums& sums, const Eigen::MatrixXd& hessian,
-                              const Uncertainty& uncertainty, const std::vector<double>& scale) {
+                              const Uncertainty& uncertainty, const std::vector<double>& scale,
+                              std::size_t threads) {
   const Bounds bounds = problem.bounds();
   const auto coordinates = problem.all();
   const Bounds ends = ends_of(problem);
   const bool smooth = problem.facts().search == models::Search::descent;
-  std::vector<Limits> all;
-  for (Index k = 0; k < at.size(); ++k) {
-    const auto place = static_cast<std::size_t>(k);
+  std::vector<Limits> all(coordinates.size());
+  share_out(all.size(), threads, [&](std::size_t place) {
+    const auto k = static_cast<Index>(place);
     const bool determined = uncertainty.determined[place];
-    const double error = determined ? std::sqrt(uncertainty.covariance(k, k)) : infinite;
-    const Question asked{.info = problem.parameters[coordinates[place].parameter],
-                         .k = k,
-                         .best = at[k],
-                         .half = uncertainty.quantile[place] * error,
-                         .scale = scale.empty() ? 1.0 : scale[place],
-                         .quantile = uncertainty.quantile[place],
-                         .degrees_of_freedom = uncertainty.degrees_of_freedom[place],
-                         .unit = unit_of_rise(uncertainty, hessian, sums, k)};
-    if (!smooth && !determined) {
-      all.emplace_back();
-    } else if (!smooth || asked.half <= short_half * asked.scale ||
-               (determined && is_like_a_parabola(objective, at, sums, hessian, bounds, asked))) {
-      all.push_back(by_wald(asked));
+    Question asked = question_of(problem.parameters[coordinates[place].parameter], at, k, uncertainty);
+    asked.scale = scale[place];
+    asked.unit = unit_of_rise(uncertainty, hessian, sums, k);
+    if (!smooth && !determined) return;
+    if (!smooth || asked.half <= short_half * asked.scale ||
+        (determined && is_like_a_parabola(objective, at, sums, hessian, bounds, asked))) {
+      all[place] = by_wald(asked);
     } else {
-      all.push_back(
-          by_profile(Ridge(objective, bounds, at, k, sums.squares, asked.unit), bounds, ends, asked));
+      all[place] =
+          by_profile(Ridge(objective, bounds, at, k, sums.squares, asked.unit, ahead_of(hessian, asked)),
+                     bounds, ends, asked);
     }
-  }
+  });
   return all;
 }
 

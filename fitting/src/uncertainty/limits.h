@@ -29,6 +29,10 @@ struct Limits {
 /// H^-1 (J^T Sigma J) H^-1. Source: [White1982].
 void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::MatrixXd& hessian);
 
+/// Estimate and standard errors alone, which ask for no pass over the samples.
+[[nodiscard]] std::vector<Limits> wald_limits_of(const Problem& problem, const Eigen::VectorXd& at,
+                                                 const Uncertainty& uncertainty);
+
 /// The interval of each coordinate, by the first rule that applies:
 ///
 /// 1. Wald's, estimate +- quantile * standard error on the search scale, where half of it is no more than
@@ -42,11 +46,12 @@ void take_curvature(Uncertainty& uncertainty, const Sums& sums, const Eigen::Mat
 ///
 /// With each, where the parameter may be zero, how likely estimates as far from it are if it is: by the
 /// deviation of the best fit without it, one-sided where it cannot be negative [SelfLiang1987].
+/// Coordinates are shared out among the threads; each is looked at alone.
 /// Source: [BatesWatts1988], section 6.1 (profiles).
 [[nodiscard]] std::vector<Limits> limits_of(const Problem& problem, const LawObjective& objective,
                                             const Eigen::VectorXd& at, const Sums& sums,
                                             const Eigen::MatrixXd& hessian, const Uncertainty& uncertainty,
-                                            const std::vector<double>& scale);
+                                            const std::vector<double>& scale, std::size_t threads = 1);
 
 /// The limit of a coordinate that lies at its lower bound, which stands for none.
 [[nodiscard]] Limits limits_above_zero(const Problem& problem, const LawObjective& objective,

@@ -31,17 +31,17 @@ Linearisation rows_of(const LawObjective& objective, const Eigen::VectorXd& at, 
   for (const Run& run : samples.runs) {
     std::uint32_t cycle = 0;
     for (std::size_t i = run.begin; i < run.end; ++i) {
-      if (!(weights[i] > 0.0)) continue;
+      if (weights[i] == 0.0) continue;
       if (const std::uint32_t here = samples.cycle[i]; here > 0 && here != cycle) {
         if (cycle > 0) all.cycle_ends.push_back(static_cast<std::size_t>(kept));
         cycle = here;  // what lies between two cycles belongs to the first
       }
-      const auto row = static_cast<Eigen::Index>(i);
-      const double residual = all.residuals[row] - samples.force[i];
-      const double root = std::sqrt(weights[i] * loss(weights[i] * residual * residual).slope);
+      const double residual = all.residuals[kept] - samples.force[i];
+      const bool as_it_is = weights[i] == 1.0 && loss.kind == Loss::squares;
+      const double root =
+          as_it_is ? 1.0 : std::sqrt(weights[i] * loss(weights[i] * residual * residual).slope);
       all.residuals[kept] = root * residual;
-      for (Eigen::Index k = 0; k < all.jacobian.cols(); ++k)
-        all.jacobian(kept, k) = root * all.jacobian(row, k);
+      if (!as_it_is) all.jacobian.row(kept) *= root;
       ++kept;
     }
     all.run_ends.push_back(static_cast<std::size_t>(kept));
@@ -49,10 +49,6 @@ Linearisation rows_of(const LawObjective& objective, const Eigen::VectorXd& at, 
     all_in_cycles = all_in_cycles && cycle > 0;
   }
   if (!all_in_cycles) all.cycle_ends.clear();
-  if (kept < all.residuals.size()) {
-    all.residuals.conservativeResize(kept);
-    all.jacobian.conservativeResize(kept, Eigen::NoChange);
-  }
   return all;
 }
 

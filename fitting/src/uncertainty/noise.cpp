@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "uncertainty/lattice.h"
+
 namespace kerf::fitting {
 namespace {
 
@@ -13,50 +15,6 @@ using Eigen::Index;
 
 constexpr Index max_order = 32;
 constexpr Index patience = 8;  // orders without an improvement before the search ends
-constexpr double near_one = 1.0 - 1e-9;
-
-/// A lattice filter over runs: forward and backward prediction errors of growing order, in place. Backward
-/// errors stay at the row where their run began.
-class Lattice {
- public:
-  Lattice(const Eigen::MatrixXd& series, const std::vector<Rows>& runs)
-      : forward_(series), backward_(series), runs_(runs) {}
-
-  [[nodiscard]] double reflection() const {
-    double product = 0.0;
-    double energy = 0.0;
-    for (const Rows& run : runs_) {
-      const Index count = run.count() - order_ - 1;
-      if (count <= 0) continue;
-      const auto f = forward_.middleCols(run.begin + order_ + 1, count);
-      const auto b = backward_.middleCols(run.begin, count);
-      product += f.cwiseProduct(b).sum();
-      energy += f.squaredNorm() + b.squaredNorm();
-    }
-    return energy > 0.0 ? std::clamp(-2.0 * product / energy, -near_one, near_one) : 0.0;
-  }
-  void apply(double reflection) {
-    for (const Rows& run : runs_) {
-      const Index count = run.count() - order_ - 1;
-      if (count <= 0) continue;
-      double* f = forward_.col(run.begin + order_ + 1).data();
-      double* b = backward_.col(run.begin).data();
-      for (Index i = 0; i < count * forward_.rows(); ++i) {
-        const double kept = f[i];
-        f[i] += reflection * b[i];
-        b[i] += reflection * kept;
-      }
-    }
-    ++order_;
-  }
-  [[nodiscard]] Eigen::MatrixXd& forward() { return forward_; }
-
- private:
-  Eigen::MatrixXd forward_;
-  Eigen::MatrixXd backward_;
-  const std::vector<Rows>& runs_;
-  Index order_ = 0;
-};
 
 double criterion(double count, double variance, double parameters, double price) {
   if (count - parameters - 2.0 <= 0.0) return std::numeric_limits<double>::infinity();
@@ -92,21 +50,40 @@ Eigen::MatrixXd unfiltered(Eigen::MatrixXd rows, const std::vector<Rows>& runs,
   return rows;
 }
 
+/// a_1 ... a_order of a recursion that is kept as reflections.
+Eigen::VectorXd coefficients_of(const std::vector<double>& reflections, Index order) {
+  Eigen::VectorXd a(order);
+  for (Index m = 0; m < order; ++m) {
+    const double k = reflections[static_cast<std::size_t>(m)];
+    a.head(m) += (k * a.head(m).reverse()).eval();
+    a[m] = k;
+  }
+  return a;
+}
+
 /// Divides each row of white noise by its deviation over that of the innovations: the first rows of a run
 /// are predicted from fewer.
 Eigen::MatrixXd whitened(const Eigen::MatrixXd& series, const std::vector<Rows>& runs,
                          const Autoregression& noise) {
-  Lattice lattice(series, runs);
-  for (const double k : noise.reflections) lattice.apply(k);
+  const Index order = noise.order();
+  Eigen::MatrixXd white = series;
   for (const Rows& run : runs) {
+    const Index first = std::min(order, run.count());
     double shrink = 1.0;
-    for (Index i = std::min(noise.order(), run.count()) - 1; i >= 0; --i) {
-      const double k = noise.reflections[static_cast<std::size_t>(i)];
-      shrink *= std::sqrt(1.0 - k * k);
-      lattice.forward().col(run.begin + i) *= shrink;
+    for (Index i = first - 1; i >= 0; --i) {
+      const Eigen::VectorXd a = coefficients_of(noise.reflections, i);
+      shrink *= std::sqrt(1.0 - std::pow(noise.reflections[static_cast<std::size_t>(i)], 2));
+      white.col(run.begin + i).noalias() += series.middleCols(run.begin, i) * a.reverse();
+      white.col(run.begin + i) *= shrink;
+    }
+    const Eigen::VectorXd a = noise.coefficients();
+    const Index rest = run.begin + first;
+    if (rest < run.end) {
+      filter_by_sum(white.col(rest).data(), series.col(rest).data(), (run.end - rest) * series.rows(),
+                    series.rows(), a.data(), order);
     }
   }
-  return std::move(lattice.forward());
+  return white;
 }
 
 /// Maps rows (Q, residuals) to (chol(C)^T Q, g).
@@ -213,6 +190,55 @@ Autoregression stage_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& ru
   return best;
 }
 
+/// Rows and their runs.
+struct Looked {
+  Eigen::MatrixXd rows;
+  std::vector<Rows> runs;
+};
+
+/// Stretches from all over very many rows, `count` of these in all, each a run of its own (two where it goes
+/// over the end of one). Q^T is made orthonormal there: what the parameters can take of these rows.
+Looked part_of(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, Index count) {
+  constexpr Index stretches = 16;
+  const Index length = count / stretches;
+  const Index r = rows.rows() - 1;
+  Looked part{.rows = Eigen::MatrixXd(rows.rows(), stretches * length), .runs = {}};
+  Index taken = 0;
+  auto run = runs.begin();
+  for (Index i = 0; i < stretches; ++i) {
+    Index at = i * (rows.cols() - length) / (stretches - 1);
+    const Index end = at + length;
+    while (at < end) {
+      while (run->end <= at) ++run;
+      const Index here = std::min(end, run->end) - at;
+      part.rows.middleCols(taken, here) = rows.middleCols(at, here);
+      part.runs.push_back({taken, taken + here});
+      taken += here;
+      at += here;
+    }
+  }
+  const Eigen::MatrixXd q = part.rows.topRows(r).transpose();
+  const Eigen::MatrixXd basis = basis_of(gram(q)).determined;
+  Eigen::MatrixXd all(basis.cols() + 1, part.rows.cols());
+  all.topRows(basis.cols()).noalias() = basis.transpose() * part.rows.topRows(r);
+  all.bottomRows(1) = part.rows.bottomRows(1);
+  part.rows = std::move(all);
+  return part;
+}
+
+/// The noise of one stage by all rows, or by a part of very many.
+Stage looked_at(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, Index size, double known_variance,
+                Index most) {
+  const auto stage = [&](const Eigen::MatrixXd& those, const std::vector<Rows>& in) {
+    return Stage{.size = size,
+                 .model = stage_of(those, in, known_variance),
+                 .count = static_cast<double>(those.cols() - (those.rows() - 1))};
+  };
+  if (rows.cols() <= most) return stage(rows, runs);
+  const Looked part = part_of(rows, runs, most);
+  return stage(part.rows, part.runs);
+}
+
 }  // namespace
 
 double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, const Autoregression& noise) {
@@ -232,15 +258,7 @@ double deviance(const Eigen::MatrixXd& rows, const std::vector<Rows>& runs, cons
          2.0 * parameters * count / std::max(1.0, count - parameters - 2.0);
 }
 
-Eigen::VectorXd Autoregression::coefficients() const {
-  Eigen::VectorXd a(order());
-  for (Index m = 0; m < order(); ++m) {
-    const double k = reflections[static_cast<std::size_t>(m)];
-    a.head(m) += (k * a.head(m).reverse()).eval();
-    a[m] = k;
-  }
-  return a;
-}
+Eigen::VectorXd Autoregression::coefficients() const { return coefficients_of(reflections, order()); }
 
 double Autoregression::variance() const {
   double variance = innovation_variance;
@@ -296,21 +314,19 @@ Eigen::MatrixXd in_blocks(const Eigen::MatrixXd& rows, std::vector<Rows>& runs, 
   return result.leftCols(block);
 }
 
-Noise noise_of(const Blocks& blocks) {
+Noise noise_of(const Blocks& blocks, Index most) {
   constexpr Index coarser = 8;
   const Index r = blocks.rows.rows() - 1;
   const Index fewest = std::max<Index>(24, 4 * r);
   Noise noise;
   Eigen::MatrixXd rows = blocks.rows;
   std::vector<Rows> runs = blocks.runs;
-  noise.stages.push_back({.model = stage_of(rows, runs, 0.0), .count = static_cast<double>(rows.cols() - r)});
+  noise.stages.push_back(looked_at(rows, runs, 1, 0.0, most));
   while (rows.cols() >= coarser * fewest) {
     const Autoregression& fine = noise.stages.back().model;
     rows = in_blocks(whitened(unfiltered(std::move(rows), runs, fine.flicker), runs, fine), runs, coarser);
     if (rows.cols() < fewest) break;  // runs shorter than a block
-    Autoregression model = stage_of(rows, runs, fine.innovation_variance);
-    noise.stages.push_back(
-        {.size = coarser, .model = std::move(model), .count = static_cast<double>(rows.cols() - r)});
+    noise.stages.push_back(looked_at(rows, runs, coarser, fine.innovation_variance, most));
   }
   return noise;
 }

@@ -57,8 +57,12 @@ struct Noise {
 ///
 /// so that Burg's sums run over 1 + r series. Without it residuals look whiter than the noise. The order is
 /// that of least AICc.
-/// Source: [Burg1967], for segments as by [WaeleBroersen2000];
-/// [Laird1987] for the expectation.
-[[nodiscard]] Noise noise_of(const Blocks& blocks);
+///
+/// Of more blocks than `most`, each stage is estimated by as many as that, in 16 stretches from all over
+/// them, and filters all: the next stage, whose blocks are eight times as long, sees slower noise by all of
+/// them once there are few enough. What a part does not say enters its stage's count, and so the degrees of
+/// freedom. Source: [Burg1967], for segments as by [WaeleBroersen2000]; [Laird1987] for the expectation.
+inline constexpr Eigen::Index most_blocks_looked_at = 32768;
+[[nodiscard]] Noise noise_of(const Blocks& blocks, Eigen::Index most = most_blocks_looked_at);
 
 }  // namespace kerf::fitting

@@ -1,6 +1,7 @@
 #include "uncertainty/uncertainty.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -21,14 +22,30 @@ using Eigen::Index;
 // only: the level to which the study of coverage leads.
 constexpr double flicker_variance = 0.1;
 
-/// y_s -= sum a_k y_{s-k}, on columns.
+/// y_s -= sum a_k y_{s-k}, on columns of P numbers, that stay in registers.
+template <int P>
+void recur_few(double* at, const double* a, Index count) {
+  std::array<double, P> sum{};
+  std::copy_n(at, P, sum.begin());
+  for (Index k = 0; k < count; ++k) {
+    const double* before = at - (k + 1) * P;
+    for (int i = 0; i < P; ++i) sum[static_cast<std::size_t>(i)] -= a[k] * before[i];
+  }
+  std::copy_n(sum.begin(), P, at);
+}
+
+/// The same of any number.
 void recur(Eigen::MatrixXd& y, Index s, const Eigen::VectorXd& a) {
   const Index p = y.rows();
+  const Index count = std::min(a.size(), s);
   double* at = y.col(s).data();
-  for (Index k = 1; k <= std::min(a.size(), s); ++k) {
-    const double coefficient = a[k - 1];
-    const double* before = at - k * p;
-    for (Index i = 0; i < p; ++i) at[i] -= coefficient * before[i];
+  if (p == 1) return recur_few<1>(at, a.data(), count);
+  if (p == 2) return recur_few<2>(at, a.data(), count);
+  if (p == 3) return recur_few<3>(at, a.data(), count);
+  if (p == 4) return recur_few<4>(at, a.data(), count);
+  for (Index k = 0; k < count; ++k) {
+    const double* before = at - (k + 1) * p;
+    for (Index i = 0; i < p; ++i) at[i] -= a[k] * before[i];
   }
 }
 
@@ -215,7 +232,7 @@ Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
-Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence) {
+Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence, Index most_blocks) {
   check(linearisation);
   const Eigen::MatrixXd& jacobian = linearisation.jacobian;
   const Index p = jacobian.cols();
@@ -228,7 +245,7 @@ Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence
     result = unknown(p);
   } else {
     const Blocks blocks = coarsen(linearisation, normal, basis.determined);
-    const Noise noise = noise_of(blocks);
+    const Noise noise = noise_of(blocks, most_blocks);
     if (linearisation.cycle_ends.size() >= fewest_cycles) {
       ByCycles by_cycles = covariance_by_cycles(linearisation, basis.determined);
       result.covariance = std::move(by_cycles.covariance);

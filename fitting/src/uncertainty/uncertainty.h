@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "uncertainty/blocks.h"
+#include "uncertainty/noise.h"
 #include "uncertainty/unidentifiable.h"
 
 namespace kerf::fitting {
@@ -44,8 +45,10 @@ struct Uncertainty {
 ///
 /// What fewer rows than parameters, residuals that are not finite, or a parameter without effect leave open
 /// is told by infinite variances and by `determined`, never by a number.
+/// Of very many blocks the noise is estimated by a part, `most_blocks` (noise.h).
 /// @throws std::invalid_argument if the sizes do not fit together or a scale is not above zero.
-[[nodiscard]] Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence);
+[[nodiscard]] Uncertainty uncertainty_of(const Linearisation& linearisation, double confidence,
+                                         Eigen::Index most_blocks = most_blocks_looked_at);
 
 [[nodiscard]] Eigen::MatrixXd correlation_of(const Eigen::MatrixXd& covariance);
 

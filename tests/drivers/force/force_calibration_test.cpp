@@ -1,5 +1,8 @@
 #include "kerf/drivers/force_calibration.h"
 
+#include <chrono>
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -149,6 +152,77 @@ TEST(ForceCalibration, RefusesAComponentThatThereIsNot) {
 TEST(ForceCalibration, RefusesALeverThatIsNone) {
   EXPECT_THAT(refusal(replaced("lever_m = 0.04", "lever_m = 0")),
               HasSubstr("c.toml:14: 'lever_m' must be more than 0"));
+}
+
+constexpr const char* dated = R"(date = 2026-03-01
+serial_number = "FT1"
+temperature = 22.5
+stale_after = 100
+units)";
+
+std::string with_quality(const std::string& text) {
+  return text +
+         "[quality]\nnoise = [0.001, 0.001, 0.001, 0.001, 0.001, 0.001]\n"
+         "bias_half_width = [0, 0, 0, 0, 0, 0]\nanything = 3\n";
+}
+
+TEST(ForceCalibration, KeepsWhenAndOfWhatItIsThroughItsOwnToml) {
+  const auto calibration = parse_force_calibration(with_quality(replaced("units", dated)), "c.toml");
+  const auto again = parse_force_calibration(to_toml(calibration), "again");
+  ASSERT_TRUE(again.date.has_value());
+  EXPECT_EQ(*again.date, std::chrono::year(2026) / 3 / 1);
+  EXPECT_EQ(again.serial_number, "FT1");
+  EXPECT_EQ(again.temperature, 22.5);
+  EXPECT_EQ(again.stale_after_days, 100.0);
+  ASSERT_TRUE(again.noise_v.has_value());
+  EXPECT_EQ((*again.noise_v)[5], 0.001);
+}
+
+TEST(ForceCalibration, IsStaleTheDayAfterItsTime) {
+  using std::chrono::days;
+  const auto calibration = parse_force_calibration(replaced("units", dated), "c.toml");
+  const std::chrono::sys_days made(std::chrono::year(2026) / 3 / 1);
+  EXPECT_TRUE(doubts_of(calibration, "c.toml", made + days(100)).empty());
+  EXPECT_THAT(doubts_of(calibration, "c.toml", made + days(101)),
+              testing::ElementsAre(HasSubstr("is 101 days old, and stale after 100")));
+  EXPECT_TRUE(doubts_of(parse_force_calibration(good, "c.toml"), "c.toml", made + days(9999)).empty());
+}
+
+TEST(ForceCalibration, IsOfOneTransducer) {
+  const auto calibration = parse_force_calibration(replaced("units", dated), "c.toml");
+  const std::chrono::sys_days made(std::chrono::year(2026) / 3 / 1);
+  EXPECT_TRUE(doubts_of(calibration, "c.toml", made, "FT1").empty());
+  EXPECT_THAT(doubts_of(calibration, "c.toml", made, "FT2"),
+              testing::ElementsAre(HasSubstr("of the transducer FT1")));
+}
+
+// Five standard deviations of 100 readings of 1 mV are 0.5 mV.
+TEST(ForceCalibration, SaysThatItsBiasHasMovedBeyondTheNoise) {
+  const auto calibration = parse_force_calibration(with_quality(good), "c.toml");
+  EXPECT_FALSE(moved_bias(calibration, "c.toml", {0.5 + 0.49e-3, 0, 0, 0, 0, -0.5}, 100).has_value());
+  const auto line = moved_bias(calibration, "c.toml", {0.5 + 0.51e-3, 0, 0, 0, 0, -0.5}, 100);
+  ASSERT_TRUE(line.has_value());
+  EXPECT_THAT(*line, HasSubstr("fx 0.001"));
+  EXPECT_FALSE(
+      moved_bias(parse_force_calibration(good, "c.toml"), "c.toml", {9, 9, 9, 9, 9, 9}, 100).has_value());
+}
+
+TEST(ForceCalibration, MayTellFewerComponentsThanSix) {
+  const auto cell = parse_force_calibration(R"(provenance = "a load cell"
+units = { force = "N", torque = "N·m", signal = "V" }
+components = ["fz"]
+matrix = [ [4] ]
+bias = [0.5]
+)",
+                                            "cell.toml");
+  const Axes wrench = cell.wrench({1.5, 9, 9, 9, 9, 9});
+  EXPECT_EQ(wrench[2], 4.0);
+  EXPECT_TRUE(std::isnan(wrench[0]));
+  EXPECT_EQ(parse_force_calibration(to_toml(cell), "again").wrench({1.5, 9, 9, 9, 9, 9})[2], 4.0);
+}
+
+TEST(ForceCalibration, RefusesADayThatIsNone) {
+  EXPECT_THAT(refusal(replaced("units", "date = \"1 March\"\nunits")), HasSubstr("'date' must be a day"));
 }
 
 }  // namespace

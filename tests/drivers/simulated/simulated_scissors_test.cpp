@@ -45,8 +45,32 @@ TEST(Scissors, AreTheHapticScissorsOfThePapers) {
   EXPECT_EQ(axes[1].name, "x_s");
   EXPECT_EQ(axes[1].resolution, 0.0152e-3);
   EXPECT_EQ(axes[1].force_limit, 159.0);
-  ASSERT_EQ(list_devices().size(), 3U);
+  ASSERT_EQ(list_devices().size(), 4U);
   EXPECT_EQ(list_devices()[0].uri, "sim:scissors");
+}
+
+TEST(Scissors, AreLedAlongOneWayForAsLongAsItIsAsked) {
+  const auto place = [](const char* uri, double time_s) {
+    const auto device = open_device(uri);
+    Sample sample;
+    for (int tick = 0; tick * period_s <= time_s; ++tick) {
+      EXPECT_EQ(device->read(tick * period_s, sample), Status::ok);
+      EXPECT_EQ(device->write({}), Status::ok);
+    }
+    return sample.position[0] / (std::acos(-1.0) / 180.0);
+  };
+  // Coulomb friction of 0.1 N holds the handle off 500 N/m by 0.31 deg, and the encoder steps by 0.056.
+  constexpr double sticks_deg = 0.31 + 0.056;
+  const auto strokes = "sim:scissors?target=strokes&open=30deg&close=10deg&stroke=0.8s&pause=0.2s";
+  EXPECT_NEAR(place(strokes, 0.0), 30.0, 0.1);
+  EXPECT_NEAR(place(strokes, 1.1), 10.0, sticks_deg) << "closed, before it opens again";
+  EXPECT_NEAR(place(strokes, 100.1), 30.0, sticks_deg) << "in step after fifty times";
+  EXPECT_NEAR(
+      place("sim:scissors?target=strokes&begins=closed&open=30deg&close=10deg&stroke=0.8s&pause=0.2s", 1.1),
+      30.0, sticks_deg);
+  EXPECT_NEAR(place("sim:scissors?target=sine&open=30deg&close=10deg&stroke=1s", 1.0), 10.0, 0.5);
+  EXPECT_THROW((void)open_device("sim:scissors?target=circle"), DeviceError);
+  EXPECT_THROW((void)open_device("sim:scissors?begins=ajar"), DeviceError);
 }
 
 TEST(Scissors, AreTheSameBitForBitWithOneSeed) {

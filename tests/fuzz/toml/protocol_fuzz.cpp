@@ -13,7 +13,7 @@ void check_trial(const bench::Protocol& protocol, const bench::TrialPlan& trial)
   promise(trial.tissue < protocol.tissues.size(), "a trial is of a tissue of the protocol");
   for (const std::size_t sample : trial.pair)
     promise(sample < protocol.samples.size(), "a pair is of its samples");
-  for (std::size_t slot = 0; slot < bench::slots_of(protocol.design); ++slot)
+  for (std::size_t slot = 0; slot < bench::slots_of(protocol); ++slot)
     promise(trial.slots.at(slot) < trial.pair.size(), "a slot plays one of the pair");
   promise(trial.right(protocol) < bench::answers_of(protocol.design), "what is right can be answered");
 }

@@ -27,6 +27,7 @@ std::optional<ResultKind> kind_of(const json& result) {
   if (has({"fits", "choice"})) return ResultKind::fits;
   if (has({"points", "front"})) return ResultKind::chart;
   if (has({"study", "in_words"})) return ResultKind::stability;
+  if (has({"device", "held", "good", "axes"})) return ResultKind::device;
   if (has({"mode", "laws", "recording_uuid"})) return ResultKind::replay;
   if (has({"verdict", "histograms", "missed"})) return ResultKind::check;
   return std::nullopt;
@@ -45,6 +46,8 @@ const char* owner_key(ResultKind kind) {
     case ResultKind::stability:
     case ResultKind::check:
       return "law_of_recording";
+    case ResultKind::device:
+      break;
   }
   return "";
 }
@@ -106,8 +109,9 @@ void look_through(const fs::path& folder, const std::string& uuid, std::vector<F
                     "the same",
                     folder.string()));
   }
-  throw std::invalid_argument(fmt::format(
-      "{}: holds no JSON of fit, choose, chart, stability, replay, check or inspect", folder.string()));
+  throw std::invalid_argument(
+      fmt::format("{}: holds no JSON of fit, choose, chart, stability, identify, replay, check or inspect",
+                  folder.string()));
 }
 
 }  // namespace
@@ -124,6 +128,8 @@ std::string_view verb_of(ResultKind kind) noexcept {
       return "kerf chart";
     case ResultKind::stability:
       return "kerf stability";
+    case ResultKind::device:
+      return "kerf identify";
     case ResultKind::replay:
       return "kerf replay";
     case ResultKind::check:
@@ -150,8 +156,9 @@ std::vector<FoundResult> find_results(const std::vector<fs::path>& paths, const 
     }
     auto result = result_of(path, read_result(path), uuid);
     if (!result) {
-      throw std::invalid_argument(fmt::format(
-          "{}: not the JSON of fit, choose, chart, stability, replay, check or inspect", path.string()));
+      throw std::invalid_argument(
+          fmt::format("{}: not the JSON of fit, choose, chart, stability, identify, replay, check or inspect",
+                      path.string()));
     }
     found.push_back(std::move(*result));
   }

@@ -11,12 +11,12 @@
 namespace kerf::bench {
 
 /// What a verb has found out.
-enum class ResultKind : std::uint8_t { inspection, fits, choice, chart, stability, replay, check };
+enum class ResultKind : std::uint8_t { inspection, fits, choice, chart, stability, device, replay, check };
 
 /// "kerf choose", which makes one.
 [[nodiscard]] std::string_view verb_of(ResultKind kind) noexcept;
 
-/// What a result says of whose it is.
+/// What a result says of whose it is. That of a device is of no recording.
 enum class Belongs : std::uint8_t { here, elsewhere, unknown };
 
 /// The JSON of a verb, as it was found.

@@ -11,6 +11,7 @@
 #include "chart/chart_picture.h"
 #include "choose/choice_page.h"
 #include "html/html.h"
+#include "identify/identified_page.h"
 #include "plot/plot.h"
 #include "report/fit_view.h"
 #include "stability/map_pictures.h"
@@ -87,7 +88,8 @@ std::string whose(const FoundResult& result) {
   std::string html = fmt::format("<p class=\"soft\">From <code>{}</code>",
                                  escaped((folder / result.file.filename()).string()));
   if (result.belongs == Belongs::elsewhere) html += ", which is of another recording";
-  if (result.belongs == Belongs::unknown) html += ", which does not say which recording it is of";
+  if (result.belongs == Belongs::unknown && result.kind != ResultKind::device)
+    html += ", which does not say which recording it is of";
   return html + ".</p>\n";
 }
 
@@ -135,6 +137,14 @@ std::string stability_section(const FoundResult& result) {
   if (const auto map = map_of(result)) html += html_figure(draw(*map));
   for (const json& line : study.at("in_words")) html += "<p>" + escaped(line.get<std::string>()) + "</p>\n";
   return html;
+}
+
+std::string device_section(const FoundResult& result) {
+  try {
+    return heading("The device", result) + identified_body(result.json);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", result.file.string(), error.what()));
+  }
 }
 
 std::string missing_section(const std::vector<FoundResult>& results, const std::string& recording) {

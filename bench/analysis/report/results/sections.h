@@ -20,6 +20,10 @@ namespace kerf::bench {
 /// @throws std::invalid_argument for cells that are no grid.
 [[nodiscard]] std::string stability_section(const FoundResult& result);
 
+/// What a device is to a loop: of each axis the verdict, its numbers and its charts.
+/// @throws std::invalid_argument for a chart that cannot be drawn.
+[[nodiscard]] std::string device_section(const FoundResult& result);
+
 /// What each law gave along the recording: errors, contacts, releases and drops, and its force over time as
 /// far as the recordings of the laws lie beside the result. @throws schema::FormatError for one that is
 /// damaged.
@@ -30,8 +34,8 @@ namespace kerf::bench {
 /// From which file a result is, and whether that is of another recording, or does not say of which.
 [[nodiscard]] std::string whose(const FoundResult& result);
 
-/// The kinds that nobody has looked at, each with the command that makes one; empty if there are none. Fits
-/// and check have sections that say so themselves.
+/// The kinds that nobody has looked at, each with the command that makes one; empty if there are none. A
+/// device is no part of a recording; fits and check have sections that say so themselves.
 [[nodiscard]] std::string missing_section(const std::vector<FoundResult>& results,
                                           const std::string& recording);
 

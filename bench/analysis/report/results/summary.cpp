@@ -5,11 +5,14 @@
 
 #include <fmt/core.h>
 
+#include "identify/identified_page.h"
+
 namespace kerf::bench {
 namespace {
 
 using json = nlohmann::ordered_json;
 
+/// What a report of a recording ought to have.
 constexpr std::array all_kinds{ResultKind::inspection, ResultKind::fits,      ResultKind::choice,
                                ResultKind::chart,      ResultKind::stability, ResultKind::replay,
                                ResultKind::check};
@@ -74,6 +77,19 @@ SummaryLine of_stability(const json& stability) {
           .text = fmt::format("stability: no stroke that was tried disproves that {} is passive", law)};
 }
 
+SummaryLine of_device(const json& device) {
+  std::string text = fmt::format("device {}:", device.at("device").get<std::string>());
+  bool known = true;
+  for (const json& axis : device.at("axes")) {
+    known = known && axis.contains("fits") && axis.at("fits").is_boolean();
+    text += fmt::format(" {}: {},", axis.at("name").get<std::string>(), axis_verdict(axis));
+  }
+  text.pop_back();
+  return {.answer = device.at("good").get<bool>() ? Answer::good : Answer::partly,
+          .is_known = known,
+          .text = text};
+}
+
 SummaryLine of_replay(const json& replay) {
   std::string text = "replay:";
   bool within = true;
@@ -130,6 +146,9 @@ SummaryLine summary_of(const FoundResult& result) {
     case ResultKind::stability:
       line = of_stability(result.json);
       break;
+    case ResultKind::device:
+      line = of_device(result.json);
+      break;
     case ResultKind::replay:
       line = of_replay(result.json);
       break;
@@ -143,6 +162,7 @@ SummaryLine summary_of(const FoundResult& result) {
     if (line.answer == Answer::good) line.answer = Answer::partly;
     line.text += " (of another recording)";
   }
+  if (result.kind == ResultKind::device) return line;
   if (result.belongs == Belongs::unknown && line.answer == Answer::good) {
     line = {.is_known = false, .text = line.text + " (of which recording, it does not say)"};
   }

@@ -13,6 +13,10 @@ double SampledDevice::velocity_gain() const noexcept {
   return velocity_corner_rad_s > 0.0 ? -std::expm1(-velocity_corner_rad_s * period_s) : 1.0;
 }
 
+double whole_periods(double delay_s, double period_s) noexcept {
+  return std::ceil(delay_s / period_s - 1e-9);
+}
+
 void check(const SampledDevice& device) {
   const auto demand = [](bool holds, const char* what, double value, const char* expected) {
     if (!holds) throw std::invalid_argument(fmt::format("{} is {}, expected {}", what, value, expected));
@@ -42,12 +46,14 @@ SampledDevice sampled_device(const drivers::DeviceInfo& device, std::size_t axis
         fmt::format("{}: mass and friction of axis '{}' are not known; give --mass, --viscous and --coulomb",
                     device.uri, about.name));
   }
-  SampledDevice sampled{.mass_kg = about.mechanics->mass_kg,
-                        .viscous_n_s_per_m = about.mechanics->viscous_n_s_per_m,
-                        .coulomb_n = about.mechanics->coulomb_n,
-                        .encoder_step_m = about.resolution * about.lever,
-                        .period_s = 1.0 / rate_hz,
-                        .velocity_corner_rad_s = drivers::VelocityFilter::corner_rad_s};
+  SampledDevice sampled{
+      .mass_kg = about.mechanics->mass_kg,
+      .viscous_n_s_per_m = about.mechanics->viscous_n_s_per_m,
+      .coulomb_n = about.mechanics->coulomb_n,
+      .encoder_step_m = about.resolution * about.lever,
+      .period_s = 1.0 / rate_hz,
+      .delay_s = about.delay_s,
+      .velocity_corner_rad_s = about.velocity_corner_rad_s.value_or(drivers::VelocityFilter::corner_rad_s)};
   check(sampled);
   return sampled;
 }

@@ -42,8 +42,12 @@ struct SampledDevice {
 /// @throws std::invalid_argument naming the member that is out of range.
 void check(const SampledDevice& device);
 
-/// An axis of a device as its driver describes it, at a rate and in no hand, with the velocity filter that
-/// the drivers have. @throws std::invalid_argument if its mass and friction are not known.
+/// A delay as the conditions for passivity count it: a part of a period as a whole one.
+[[nodiscard]] double whole_periods(double delay_s, double period_s) noexcept;
+
+/// An axis of a device as its driver, or a model of it (take_model()), describes it, at a rate and in no
+/// hand; where nobody says otherwise with the velocity filter that the drivers have. @throws
+/// std::invalid_argument if its mass and friction are not known.
 [[nodiscard]] SampledDevice sampled_device(const drivers::DeviceInfo& device, std::size_t axis,
                                            double rate_hz);
 

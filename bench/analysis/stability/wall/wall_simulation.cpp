@@ -5,14 +5,13 @@
 #include <numbers>
 
 #include "stability/bisection.h"
+#include "stability/wall/linear_walls.h"
 #include "stability/wall/wall_force.h"
 
 namespace kerf::bench {
 namespace {
 
-constexpr double lost_m = 10.0;            // farther than that nothing comes back
 constexpr double limit_cycle_decay = 0.5;  // of the energy, from the second to the last quarter
-constexpr double at_rest_share = 1e-9;     // of the first displacement
 constexpr double periods_of_soft_walls = 20.0;
 
 /// Sums over a stretch of time, for the energy about the mean.
@@ -29,8 +28,8 @@ struct Stretch {
     ++ticks;
   }
   [[nodiscard]] double energy(double mass, double stiffness) const noexcept {
-    return mass * speed_squared / static_cast<double>(ticks) +
-           stiffness * variance(position, position_squared);
+    return energy_about_mean(mass, stiffness, position, position_squared, speed_squared,
+                             static_cast<double>(ticks));
   }
   [[nodiscard]] double ripple_n() const noexcept { return std::sqrt(variance(force, force_squared)); }
 
@@ -41,7 +40,7 @@ struct Stretch {
   }
 };
 
-/// One wall's trial while it runs.
+/// A wall's trial while it runs, of one that has limit cycles.
 class Trial {
  public:
   Trial(const SampledDevice& device, const std::shared_ptr<const DeviceMotion>& moves, const Wall& wall,
@@ -60,13 +59,10 @@ class Trial {
   }
   [[nodiscard]] bool came_to_rest(const SampledDevice& device) noexcept {
     if (lost_) return false;
-    const bool exact = device.is_linear() && trial_.push_n == 0.0;
-    if (!exact && last_.ripple_n() <= trial_.felt_n) return true;
+    if (last_.ripple_n() <= trial_.felt_n) return true;
     const double mass = device.moving_mass_kg();
     const double stiffness = loop_.force().wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
-    const double energy = last_.energy(mass, stiffness);
-    if (energy <= stiffness * std::pow(at_rest_share * trial_.start_m, 2)) return true;
-    return energy < (exact ? 1.0 : limit_cycle_decay) * second_.energy(mass, stiffness);
+    return last_.energy(mass, stiffness) < limit_cycle_decay * second_.energy(mass, stiffness);
   }
 
  private:
@@ -91,6 +87,7 @@ std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, cons
   constexpr std::size_t together = 8;  // more no longer fit beside each other
   const auto quarter =
       std::max<std::size_t>(static_cast<std::size_t>(0.25 * trial.seconds / device_.period_s), 4);
+  if (is_linear(trial)) return linear_walls_come_to_rest(device_, *moves_, walls, trial.start_m, quarter);
   std::vector<bool> rest;
   for (std::size_t begin = 0; begin < walls.size(); begin += together) {
     std::vector<Trial> trials;
@@ -109,12 +106,20 @@ std::vector<bool> WallSimulation::come_to_rest(std::span<const Wall> walls, cons
 
 double WallSimulation::boundary(double wall_damping, double softest, double stiffest, const WallTrial& trial,
                                 double share) const {
-  return first_change({.lower = softest, .upper = stiffest, .share = share}, [&](double stiffness) {
-    const double rate = std::sqrt((stiffness + device_.hand.stiffness_n_per_m) / device_.moving_mass_kg());
+  const Search search{.lower = softest, .upper = stiffest, .share = share};
+  /// Of several stiffnesses, the first the softest.
+  const auto hold = [&](std::span<const double> stiffnesses) {
+    const double stiffness = stiffnesses.front() + device_.hand.stiffness_n_per_m;
     WallTrial longer = trial;
-    longer.seconds = std::max(trial.seconds, periods_of_soft_walls * 2.0 * std::numbers::pi / rate);
-    return comes_to_rest({.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}, longer);
-  });
+    longer.seconds = std::max(trial.seconds, periods_of_soft_walls * 2.0 * std::numbers::pi *
+                                                 std::sqrt(device_.moving_mass_kg() / stiffness));
+    std::vector<Wall> walls;
+    for (const double one : stiffnesses) walls.push_back({one, wall_damping});
+    return come_to_rest(walls, longer);
+  };
+  if (is_linear(trial)) return first_change_of_many(search, walls_together, hold);
+  return first_change(search,
+                      [&](double stiffness) -> bool { return hold(std::span(&stiffness, 1)).front(); });
 }
 
 }  // namespace kerf::bench

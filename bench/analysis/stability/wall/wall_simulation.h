@@ -40,6 +40,11 @@ class WallSimulation {
                                 double share = 2e-3) const;
 
  private:
+  /// Without limit cycles: what the eigenvalues speak of.
+  [[nodiscard]] bool is_linear(const WallTrial& trial) const noexcept {
+    return device_.is_linear() && trial.push_n == 0.0;
+  }
+
   SampledDevice device_;
   std::shared_ptr<const DeviceMotion> moves_;
 };

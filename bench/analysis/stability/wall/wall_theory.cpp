@@ -22,6 +22,12 @@ double abbott_okamura(const SampledDevice& device) {
   return std::min(by_damping, 2.0 * device.coulomb_n / device.encoder_step_m);
 }
 
+double friction_needed(const SampledDevice& device, double angle, std::complex<double> wall) {
+  const double delay = whole_periods(device.delay_s, device.period_s);
+  const std::complex<double> held = (1.0 - std::polar(1.0, -angle)) * std::polar(1.0, -angle * delay);
+  return 0.5 * device.period_s / (1.0 - std::cos(angle)) * (held * wall).real();
+}
+
 namespace {
 
 /// The two parts of the theorem at a frequency: what a unit of K and of B need of the device's friction.
@@ -33,12 +39,9 @@ struct Needs {
 Needs needs_at(const SampledDevice& device, double angle) {
   using Complex = std::complex<double>;
   const double gain = device.velocity_gain();
-  const double delay = std::ceil(device.delay_s / device.period_s - 1e-9);
   const Complex back = std::polar(1.0, -angle);
-  const Complex held =
-      0.5 * device.period_s / (1.0 - std::cos(angle)) * (1.0 - back) * std::polar(1.0, -angle * delay);
   const Complex damper = gain * (1.0 - back) / (device.period_s * (1.0 - (1.0 - gain) * back));
-  return {held.real(), (held * damper).real()};
+  return {friction_needed(device, angle, 1.0), friction_needed(device, angle, damper)};
 }
 
 constexpr int frequencies = 2000;
@@ -63,19 +66,18 @@ double worst_of_damping(const SampledDevice& device) {
   return most;
 }
 
-double spectral_radius(const SampledDevice& device, const Wall& wall) {
-  const SplitDelay delay(device);
-  const FreeMotion::Transition before = FreeMotion(device, delay.share * device.period_s).transition();
-  const FreeMotion::Transition after = FreeMotion(device, (1.0 - delay.share) * device.period_s).transition();
-  const double gain = device.velocity_gain();
+namespace {
 
+/// The sampled system of a wall on a device, tick to tick.
+Eigen::MatrixXd system_of(const SampledDevice& device, const DeviceMotion& moves, const Wall& wall) {
   // x, v, last reading, filtered velocity, what the motor holds, commands on their way from the newest on.
   enum Place : Eigen::Index { place, speed, reading, velocity, held, first_command };
-  const auto commands = static_cast<Eigen::Index>(delay.ticks);
+  const auto commands = static_cast<Eigen::Index>(moves.delay.ticks);
   const Eigen::Index size = first_command + commands;
   using Row = Eigen::RowVectorXd;
   const auto unit = [&](Eigen::Index at) -> Row { return Row::Unit(size, at); };
 
+  const double gain = device.velocity_gain();
   const Row filtered = (1.0 - gain) * unit(velocity) + gain / device.period_s * (unit(place) - unit(reading));
   const Row command = -wall.stiffness_n_per_m * unit(place) - wall.damping_n_s_per_m * filtered;
   const Row arrived = commands == 0 ? command : unit(first_command + commands - 1);
@@ -86,8 +88,8 @@ double spectral_radius(const SampledDevice& device, const Wall& wall) {
     v = Row(by.vx * x + by.vv * v + by.vf * force);
     x = x_then;
   };
-  if (delay.share > 0.0) move(before, unit(held));
-  move(after, arrived);
+  if (moves.delay.share > 0.0) move(moves.before.transition(), unit(held));
+  move(moves.after.transition(), arrived);
 
   Eigen::MatrixXd system(size, size);
   system.row(place) = x;
@@ -98,15 +100,47 @@ double spectral_radius(const SampledDevice& device, const Wall& wall) {
   for (Eigen::Index i = 0; i < commands; ++i) {
     system.row(first_command + i) = i == 0 ? command : unit(first_command + i - 1);
   }
+  return system;
+}
+
+}  // namespace
+
+SampledSystem::SampledSystem(const SampledDevice& device) {
+  constexpr double much = 1e6;  // a difference that loses no digits
+  SampledDevice smooth = device;
+  smooth.coulomb_n = 0.0;
+  const DeviceMotion moves(smooth);
+  free_ = system_of(smooth, moves, {});
+  of_stiffness_ = (system_of(smooth, moves, {.stiffness_n_per_m = much}) - free_) / much;
+  of_damping_ = (system_of(smooth, moves, {.damping_n_s_per_m = much}) - free_) / much;
+  std::vector<Eigen::Index> read;  // places of the state that a tick asks for; the others have eigenvalue 0
+  for (Eigen::Index k = 0; k < free_.cols(); ++k) {
+    const auto is_read = [&](const Eigen::MatrixXd& matrix) { return (matrix.col(k).array() != 0.0).any(); };
+    if (is_read(free_) || is_read(of_stiffness_) || is_read(of_damping_)) read.push_back(k);
+  }
+  for (Eigen::MatrixXd* const part : {&free_, &of_stiffness_, &of_damping_})
+    *part = Eigen::MatrixXd((*part)(read, read));
+}
+
+double SampledSystem::spectral_radius(const Wall& wall) const {
+  const Eigen::MatrixXd system =
+      free_ + wall.stiffness_n_per_m * of_stiffness_ + wall.damping_n_s_per_m * of_damping_;
   return Eigen::EigenSolver<Eigen::MatrixXd>(system, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+double spectral_radius(const SampledDevice& device, const Wall& wall) {
+  return SampledSystem(device).spectral_radius(wall);
 }
 
 double eigenvalue_boundary(const SampledDevice& device, double wall_damping, double softest,
                            double stiffest) {
-  SampledDevice linear = device;
-  linear.coulomb_n = 0.0;
+  return eigenvalue_boundary(SampledSystem(device), wall_damping, softest, stiffest);
+}
+
+double eigenvalue_boundary(const SampledSystem& system, double wall_damping, double softest,
+                           double stiffest) {
   return first_change({.lower = softest, .upper = stiffest, .share = 1e-6}, [&](double stiffness) {
-    return spectral_radius(linear, {.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}) < 1.0;
+    return system.spectral_radius({.stiffness_n_per_m = stiffness, .damping_n_s_per_m = wall_damping}) < 1.0;
   });
 }
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <complex>
+
+#include <Eigen/Core>
+
 #include "stability/device/sampled_device.h"
 
 namespace kerf::bench {
@@ -20,27 +24,44 @@ struct Wall {
 /// encoder step delta [AbbottOkamura2005].
 [[nodiscard]] double abbott_okamura(const SampledDevice& device);
 
-/// The same theorem of Colgate and Schenkel as it stands for any linear wall H(z), here with the velocity
-/// filter and a delay of d periods (a part of a period counts as a whole one):
+/// The same theorem of Colgate and Schenkel as it stands for any linear wall F = -H(z) x, with a delay of d
+/// periods (a part of a period counts as a whole one): what the right side says at an angle w T > 0.
 ///
-///     b > T / (2 (1 - cos wT)) Re{(1 - exp(-jwT)) H(exp(jwT))}   for 0 <= w <= pi / T
+///     b > T / (2 (1 - cos wT)) Re{(1 - exp(-jwT)) exp(-jwTd) H(exp(jwT))}   for 0 <= w <= pi / T
+[[nodiscard]] double friction_needed(const SampledDevice& device, double angle, std::complex<double> wall);
+
+/// By that theorem, of a wall with the velocity filter:
 ///
-///     H = z^-d (K + B g (1 - z^-1) / (T (1 - (1 - g) z^-1))),   g the filter's gain
+///     H = K + B g (1 - z^-1) / (T (1 - (1 - g) z^-1)),   g the filter's gain
 [[nodiscard]] double passive_stiffness(const SampledDevice& device, double wall_damping);
 
 /// How much of the device's friction a damper needs to be passive, by that theorem: 1 for the plain
 /// difference, less with a filter, whose lag in turn makes it a spring.
 [[nodiscard]] double worst_of_damping(const SampledDevice& device);
 
-/// Largest modulus of the eigenvalues of the sampled system: below 1 the motion dies away. The wall pulls as
-/// it pushes; encoder steps and Coulomb friction are left out.
+/// Walls on one device as a linear system from tick to tick: the wall pulls as it pushes; encoder steps and
+/// Coulomb friction are left out.
 ///
 /// State: x, v, the last reading, the filtered velocity, and the commands on their way. Exact: between the
-/// ticks the device and hand move by the matrix exponential.
+/// ticks the device and hand move by the matrix exponential. It is linear in the wall's two numbers.
+class SampledSystem {
+ public:
+  explicit SampledSystem(const SampledDevice& device);
+
+  /// Largest modulus of its eigenvalues: below 1 the motion dies away.
+  [[nodiscard]] double spectral_radius(const Wall& wall) const;
+
+ private:
+  Eigen::MatrixXd free_, of_stiffness_, of_damping_;
+};
+
+/// Of one wall alone.
 [[nodiscard]] double spectral_radius(const SampledDevice& device, const Wall& wall);
 
 /// Stiffness above `softest` at which the spectral radius first reaches 1, to a share of 1e-6; `stiffest` if
 /// it never does, `softest` if it does at once.
+[[nodiscard]] double eigenvalue_boundary(const SampledSystem& system, double wall_damping, double softest,
+                                         double stiffest);
 [[nodiscard]] double eigenvalue_boundary(const SampledDevice& device, double wall_damping, double softest,
                                          double stiffest);
 

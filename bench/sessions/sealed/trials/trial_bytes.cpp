@@ -18,7 +18,7 @@ constexpr std::size_t head_bytes = 4096;
 
 Json head_of(const RecordedTrial& trial) {
   Json head{{"what", to_json(trial.what)},
-            {"answer", trial.answer},
+            {"answer", trial.answer == no_answer ? Json(nullptr) : Json(trial.answer)},
             {"response_s", json_number(trial.response_s)},
             {"answerable_s", json_number(trial.answerable_s)},
             {"switches", trial.switches},
@@ -26,6 +26,8 @@ Json head_of(const RecordedTrial& trial) {
             {"ticks", trial.trace.size()},
             {"axes", Json::array()},
             {"channels", Json::array()}};
+  if (std::isfinite(trial.number)) head["number"] = trial.number;
+  if (trial.is_void()) head["void"] = joined(trial.void_reasons);
   for (const schema::Axis& axis : trial.axes) {
     head["axes"].push_back({axis.name, axis.position_unit, axis.force_unit, axis.lever,
                             json_number(axis.contact_position), json_number(axis.contact_direction)});
@@ -39,10 +41,12 @@ Json head_of(const RecordedTrial& trial) {
 RecordedTrial trial_of(const Json& head) {
   RecordedTrial trial;
   trial.what = trial_plan_from(head.at("what"));
-  trial.answer = head.at("answer").get<std::size_t>();
+  trial.answer = head.at("answer").is_null() ? no_answer : head["answer"].get<std::size_t>();
+  if (head.contains("number")) trial.number = head["number"].get<double>();
   trial.response_s = number_from(head.at("response_s"));
   if (head.contains("answerable_s")) trial.answerable_s = number_from(head.at("answerable_s"));
   trial.switches = head.at("switches").get<std::size_t>();
+  if (head.contains("void")) trial.void_reasons = void_reasons_in(head["void"].get<std::string>());
   trial.at = head.at("at").get<std::string>();
   for (const Json& axis : head.at("axes")) {
     trial.axes.push_back({.name = axis.at(0).get<std::string>(),

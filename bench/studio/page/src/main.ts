@@ -6,6 +6,7 @@ import { help, pageKeys } from "./ui/help";
 import { element } from "./ui/dom";
 import type { Place, View } from "./ui/view";
 import { chart } from "./views/chart";
+import { devices } from "./views/devices";
 import { editor } from "./views/editor";
 import { fits } from "./views/fits";
 import { recordings } from "./views/recordings";
@@ -14,7 +15,7 @@ import { sessions } from "./views/sessions";
 import { stability } from "./views/stability";
 import { studies } from "./views/studies";
 
-const views: readonly View[] = [scope, recordings, editor, fits, chart, stability, sessions, studies];
+const views: readonly View[] = [scope, recordings, editor, fits, chart, stability, sessions, studies, devices];
 
 function byId(id: string): HTMLElement {
   const node = document.getElementById(id);

@@ -44,6 +44,10 @@ struct AxisInfo {
   /// stop.
   double acceleration_limit = 0.0;
   std::optional<Mechanics> mechanics{};
+  double delay_s =
+      0.0;  ///< from a reading to the moment at which the force that it led to acts; 0 if not known
+  /// Of the first-order filter that the velocity comes through; not given: VelocityFilter's.
+  std::optional<double> velocity_corner_rad_s{};
 };
 
 /// A further quantity that a device measures, beside its axes.

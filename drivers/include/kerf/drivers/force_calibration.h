@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -24,6 +25,14 @@ struct ForceCalibration {
   std::optional<std::uint32_t> serial;  ///< of the LabJack whose inputs the transducer is wired to
   std::string provenance;               ///< where the numbers come from
   std::vector<ForceMount> mounts;       ///< which component acts on which axis of the device beside it
+  /// Which components it tells; the wrench of the others is NaN.
+  std::array<bool, max_axes> tells{true, true, true, true, true, true};
+  std::optional<std::chrono::year_month_day> date{};  ///< when it was calibrated
+  std::optional<std::string> serial_number{};         ///< of the transducer
+  std::optional<double> temperature{};                ///< at which it was calibrated [degC]
+  double stale_after_days = 365.0;                    ///< after `date`
+  std::optional<Axes> noise_v{};                      ///< of one reading, standard deviation
+  std::optional<Axes> bias_half_width_v{};            ///< of the 95 % interval of the bias
 
   /// The wrench of voltages; no allocation.
   [[nodiscard]] Axes wrench(const Axes& volts) const noexcept;
@@ -39,6 +48,13 @@ inline constexpr std::array<const char*, max_axes> wrench_names{"fx", "fy", "fz"
 ///     units = { force = "N", torque = "N·m", signal = "V" }           # required
 ///     matrix = [ [six numbers], ... ]    # rows fx fy fz [force per signal], tx ty tz [torque per signal]
 ///     bias = [six numbers]               # signal without load
+///     components = ["fz"]                # optional: of a sensor with fewer; then `matrix` has as many rows,
+///                                        # and rows and bias one to six numbers, of AIN0/1, 2/3, ...
+///     date = 2026-11-28                  # optional, as all below: when it was calibrated
+///     serial_number = "FT1234"           # of the transducer
+///     temperature = 22.5                 # at which it was calibrated [degC]
+///     stale_after = 365                  # days
+///     [quality]                          # what `kerf calibrate` found; noise and bias_half_width are used
 ///     [axes]                             # optional: component of an axis that is not called x ... rz
 ///     theta = { component = "-tz", lever_m = 0.0369 }
 ///     x_s = "fx"
@@ -49,6 +65,18 @@ inline constexpr std::array<const char*, max_axes> wrench_names{"fx", "fy", "fz"
 [[nodiscard]] ForceCalibration read_force_calibration(const std::string& file);
 /// The same from a text; `name` for the messages.
 [[nodiscard]] ForceCalibration parse_force_calibration(const std::string& text, const std::string& name);
+
+/// What ought to be known before the calibration is used on a day, a line each: it is older than it should
+/// be, or for the transducer of another serial number than `transducer` (empty: not known).
+[[nodiscard]] std::vector<std::string> doubts_of(const ForceCalibration& calibration, const std::string& file,
+                                                 std::chrono::sys_days today,
+                                                 const std::string& transducer = {});
+
+/// A line if the mean of `readings` readings of each signal is farther from the bias than five standard
+/// deviations of noise and bias explain, else nothing; nothing, too, of a file that does not say its noise.
+[[nodiscard]] std::optional<std::string> moved_bias(const ForceCalibration& calibration,
+                                                    const std::string& file, const Axes& mean_v,
+                                                    double readings);
 
 /// The calibration as TOML in one table without sub-tables, in SI, each number as it is to the last bit.
 [[nodiscard]] std::string to_toml(const ForceCalibration& calibration);

@@ -49,7 +49,8 @@ namespace kerf::drivers {
 class ForceSensorU6 final : public Device {
  public:
   struct Options {
-    std::string calibration_file;
+    std::string calibration_file;  ///< empty: none, with `raw` alone
+    bool raw = false;  ///< channels `signal_1` to `signal_6` [V]; force is NaN without a calibration
   };
   /// @throws DeviceError, also if no calibration is named: volts are no force.
   static Options parse_options(std::string_view text, Uri uri);
@@ -75,6 +76,7 @@ class ForceSensorU6 final : public Device {
  private:
   struct Scan {
     Axes wrench{};
+    Axes volts{};
     std::uint64_t number = 0;
     std::int64_t taken_ns = 0;  ///< on the host's clock
   };
@@ -88,6 +90,7 @@ class ForceSensorU6 final : public Device {
   void drain() noexcept;
   void stop_stream();
   void start_stream();
+  void note_doubts(const std::string& file);
 
   // The I/O thread.
   void stream(const std::stop_token& stop) noexcept;
@@ -98,6 +101,7 @@ class ForceSensorU6 final : public Device {
 
   std::string uri_;
   ForceCalibration calibration_;
+  bool raw_;
   usb::UsbDevice usb_;
   labjack_u6::Identification identification_;
   labjack_u6::Calibration volts_;
@@ -117,6 +121,9 @@ class ForceSensorU6 final : public Device {
   // Between the threads.
   TripleBuffer<Scan> latest_;
   std::atomic<bool> lost_{false};
+  /// Of the first readings: sums of the I/O thread, until there are as many as the bias is looked at by.
+  Axes opening_sum_{};
+  std::atomic<std::size_t> opening_count_{0};
   std::atomic<std::uint64_t> scans_{0};
   std::atomic<std::uint64_t> scans_lost_{0};
   std::atomic<std::uint64_t> checksum_errors_{0};

@@ -49,6 +49,8 @@ class SimulatedPremium final : public Device {
   [[nodiscard]] Status write(const Axes& force) noexcept override { return mechanism_.write(force); }
   void release(double at_s) noexcept override { mechanism_.release(at_s); }
 
+  static constexpr double viscous_n_m_s = 0.0005;  ///< b of each joint [N·m·s/rad]
+
  private:
   void move(double time_s, SimulatedMechanism::States& states, const Axes& force) const noexcept;
 

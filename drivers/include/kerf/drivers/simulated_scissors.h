@@ -22,7 +22,15 @@ namespace kerf::drivers {
 class SimulatedScissors final : public Device {
  public:
   struct Options {
+    /// What the hand does with the handle.
+    enum class Motion : std::uint8_t {
+      drawn,    ///< strokes that vary, of HandOptions::seed
+      strokes,  ///< without variation, a pause ahead of each, for as long as it is asked
+      sine,     ///< from one end, half of a period a stroke
+    };
     HandOptions hand;
+    Motion motion = Motion::drawn;
+    bool begins_open = true;  ///< strokes and sine
     bool with_hand = true;
     SimulatedMechanism::Options mechanism;
   };
@@ -30,7 +38,7 @@ class SimulatedScissors final : public Device {
   SimulatedScissors(std::string_view uri, const Options& options, Surroundings surroundings);
 
   /// Reads the options of a URI: seed, hand, noise, encoder, truth, open, close, stroke, pause, variation,
-  /// mass, damping, grip; it leaves `fault` to open_device().
+  /// target, begins, mass, damping, grip; it leaves `fault` to open_device().
   /// @throws DeviceError for one that is unknown or out of range.
   static Options parse_options(Uri uri);
 
@@ -42,7 +50,10 @@ class SimulatedScissors final : public Device {
   static constexpr double lever_m = 0.28 / 7.58;
 
  private:
-  bool with_hand_;
+  /// Where the hand wants the handle to be.
+  [[nodiscard]] Strokes::Equilibrium handle_at(double time_s) noexcept;
+
+  Options options_;
   SimulatedMechanism mechanism_;
   Strokes strokes_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -16,9 +16,9 @@ struct Uri {
   std::map<std::string, std::string> options;
 };
 
-/// The options, of any device, whose value is the path of a file that its driver opens. Whoever takes a URI
-/// from outside has to look at these.
-inline constexpr std::array<std::string_view, 2> file_options{"calibration", "firmware"};
+/// Whether the value of an option is the path of a file that the driver of a device opens: `calibration` and
+/// `firmware` of any, `model` of sim:axis. Whoever takes a URI from outside has to look at these.
+[[nodiscard]] bool names_a_file(std::string_view device, std::string_view option) noexcept;
 
 /// @throws DeviceError if an option has no '=' or stands twice.
 [[nodiscard]] Uri parse_uri(std::string_view text);
@@ -29,7 +29,8 @@ class UriOptions {
   explicit UriOptions(Uri uri) : uri_(std::move(uri)) {}
 
   /// A number with its unit behind it ("40deg", "1.2s"), in SI; `standard` if it is not given.
-  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/m", "Ns/m", "A", "1".
+  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/s", "N/m", "Ns/m", "Hz", "ticks", "A", "1"; what is
+  /// asked for in m, s or N may also stand in mm, ms or mN.
   /// @throws DeviceError if it is not such a number or not in [lower, upper], both in SI.
   struct Quantity {
     std::string_view unit;
@@ -38,6 +39,10 @@ class UriOptions {
     double upper;
   };
   [[nodiscard]] double number(const std::string& name, const Quantity& quantity);
+  /// The same of `count` values: one, which is that of all of them, or as many joined by commas; none if it
+  /// is not given. @throws DeviceError also for any other number of values.
+  [[nodiscard]] std::vector<double> numbers(const std::string& name, const Quantity& quantity,
+                                            std::size_t count);
   /// A whole number from 0 to 2^53. @throws DeviceError for any other.
   [[nodiscard]] std::uint64_t count(const std::string& name, std::uint64_t standard);
   /// "on" or "off".
@@ -45,7 +50,7 @@ class UriOptions {
 
   /// As it stands; nothing if it is not given.
   [[nodiscard]] std::optional<std::string> text(const std::string& name);
-  /// The same of one of the file_options. @throws std::logic_error for another.
+  /// The same of an option that names_a_file(). @throws std::logic_error for another.
   [[nodiscard]] std::optional<std::string> file(const std::string& name);
 
   /// Leaves an option to somebody else.
@@ -55,6 +60,9 @@ class UriOptions {
   void refuse_others() const;
 
  private:
+  [[nodiscard]] double number_from(std::string_view text, const std::string& name,
+                                   const Quantity& quantity) const;
+
   Uri uri_;
   std::vector<std::string> known_;
 };

@@ -11,17 +11,20 @@
 namespace kerf::drivers {
 
 /// Velocity from positions as a driver gives it: their difference over the time between two readings,
-/// low-passed at first order with a corner of 20 Hz, so that it lags by some 8 ms. Zero at the first reading.
+/// low-passed at first order with a corner, of 20 Hz unless another one is given, so that it lags by some 8
+/// ms. Zero at the first reading.
 class VelocityFilter {
  public:
   static constexpr double corner_rad_s = 2.0 * std::numbers::pi * 20.0;
 
   /// The velocity of an axis that stands at `position` at `now_s`; each axis once a reading, then advance().
-  double update(std::size_t axis, double position, double now_s) noexcept {
+  /// A corner of 0: the plain difference.
+  double update(std::size_t axis, double position, double now_s, double corner = corner_rad_s) noexcept {
     const double elapsed_s = now_s - last_s_;
     if (started_ && elapsed_s > 0.0) {
       const double difference = (position - last_position_[axis]) / elapsed_s;
-      velocity_[axis] += -std::expm1(-corner_rad_s * elapsed_s) * (difference - velocity_[axis]);
+      const double gain = corner > 0.0 ? -std::expm1(-corner * elapsed_s) : 1.0;
+      velocity_[axis] += gain * (difference - velocity_[axis]);
     }
     last_position_[axis] = position;
     return velocity_[axis];

@@ -65,10 +65,13 @@ struct FitOptions {
   std::string force_unit = "N";  ///< in the words of warnings and reasons
   std::size_t folds =
       5;  ///< of the cross-validation: by cycle, or by blocks of time where there are no cycles; 0: none
-  std::size_t threads = 1;   ///< among which the folds are shared out; the result does not depend on it
+  std::size_t threads = 1;   ///< share out folds and intervals; the result does not depend on it
   double test_share = 0.0;   ///< last share of the cycles (or of the time) that no fit sees, in [0, 0.9]
   double confidence = 0.95;  ///< of the intervals
   Intervals intervals = Intervals::correlated;
+  /// Ends a search where the error no longer changes, as on all folds: for a law that is compared with
+  /// others, and found anew if it is taken.
+  bool brief = false;
   Loss loss = Loss::squares;
   double loss_scale_n = 0.0;  ///< s [N]; 0: 1.345 robust standard deviations of the least-squares residuals
   bool profile = false;       ///< also intervals from the profile of the sum of squares

@@ -16,12 +16,19 @@ struct Curve {
   std::span<const std::uint8_t> branch;  ///< 0 closing, 1 opening; empty: all on one branch
 };
 
+/// How far curves leave the grid on which they were found.
+enum class Polish : std::uint8_t {
+  none,
+  brief,    ///< to the least error next to them: where an error is asked for, and not a curve
+  thorough  ///< by all starts and over all kinks
+};
+
 struct SegmentedOptions {
   std::size_t max_segments = 12;    ///< 1 to 16
   std::size_t cells = 256;          ///< of the grid of the dynamic programming, 4 to 1024
   std::size_t fewest_points = 4;    ///< in a segment, on each branch, its ends included; at least 1
   std::vector<double> breakpoints;  ///< inner knots by hand: then these alone, and no search
-  bool polish = true;               ///< leave the grid
+  Polish polish = Polish::thorough;
 };
 
 /// A continuous piecewise-linear curve with the least sum of squares that was found.

@@ -49,12 +49,18 @@ QuestPlus::QuestPlus(QuestPlusOptions options) : options_(std::move(options)) {
   require_grid(options_.thresholds, "thresholds");
   require_grid(options_.slopes, "slopes");
   require_grid(options_.lapses, "lapse rates");
+  if (options_.guesses.empty()) options_.guesses = {options_.guess};
+  require_grid(options_.guesses, "guess rates");
   require(options_.trials > 0, "QUEST+ needs trials");
-  const std::size_t rest = options_.slopes.size() * options_.lapses.size();
+  require(options_.narrow >= 0.0 && std::isfinite(options_.narrow),
+          "the width of an interval at which QUEST+ ends must be finite and not below zero");
+  require_probability(options_.narrow_confidence, "the confidence");
+  const std::size_t rest = points_beside_thresholds();
   const std::size_t points = options_.thresholds.size() * rest;
-  require(
-      points <= largest_table / options_.intensities.size(),
-      "the grids of QUEST+ are too fine: intensities x thresholds x slopes x lapse rates may be 20 million");
+  require(points <= largest_table / options_.intensities.size(),
+          "the grids of QUEST+ are too fine: intensities x thresholds x slopes x guess rates x lapse rates "
+          "may be "
+          "20 million");
   auto& prior = options_.weights_of_thresholds;
   if (prior.empty()) prior.assign(options_.thresholds.size(), 1.0);
   double sum = 0.0;
@@ -72,16 +78,43 @@ QuestPlus::QuestPlus(QuestPlusOptions options) : options_(std::move(options)) {
     Psychometric curve{.shape = options_.shape, .axis = options_.axis, .guess = options_.guess};
     for (const double threshold : options_.thresholds) {
       for (const double slope : options_.slopes) {
-        for (const double lapse : options_.lapses) {
-          curve.threshold = threshold;
-          curve.slope = slope;
-          curve.lapse = lapse;
-          right_.push_back(curve.probability(intensity));
+        for (const double guess : options_.guesses) {
+          for (const double lapse : options_.lapses) {
+            curve.threshold = threshold;
+            curve.slope = slope;
+            curve.guess = guess;
+            curve.lapse = lapse;
+            right_.push_back(curve.probability(intensity));
+          }
         }
       }
     }
   }
+  if (options_.nuisance.any()) set_interest();
   choose();
+}
+
+std::size_t QuestPlus::points_beside_thresholds() const {
+  return options_.slopes.size() * options_.guesses.size() * options_.lapses.size();
+}
+
+void QuestPlus::set_interest() {
+  const Nuisance& nuisance = options_.nuisance;
+  const std::size_t slopes = nuisance.slope ? 1 : options_.slopes.size();
+  const std::size_t guesses = nuisance.guess ? 1 : options_.guesses.size();
+  const std::size_t lapses = nuisance.lapse ? 1 : options_.lapses.size();
+  interest_.reserve(weights_.size());
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    std::size_t rest = i;
+    const std::size_t lapse = rest % options_.lapses.size();
+    rest /= options_.lapses.size();
+    const std::size_t guess = rest % options_.guesses.size();
+    rest /= options_.guesses.size();
+    const std::size_t slope = rest % options_.slopes.size();
+    const std::size_t threshold = rest / options_.slopes.size();
+    interest_.push_back(((threshold * slopes + slope % slopes) * guesses + guess % guesses) * lapses +
+                        lapse % lapses);
+  }
 }
 
 void QuestPlus::answer(bool is_right) {
@@ -114,14 +147,7 @@ void QuestPlus::update(std::size_t intensity, bool is_right) {
 void QuestPlus::choose() {
   double least = HUGE_VAL;
   for (std::size_t x = 0; x < options_.intensities.size(); ++x) {
-    const double* right = &right_[x * weights_.size()];
-    Entropy if_right;
-    Entropy if_wrong;
-    for (std::size_t i = 0; i < weights_.size(); ++i) {
-      if_right.add(weights_[i] * right[i]);
-      if_wrong.add(weights_[i] * (1.0 - right[i]));
-    }
-    const double expected = if_right.times_sum() + if_wrong.times_sum();
+    const double expected = interest_.empty() ? expected_entropy(x) : expected_entropy_of_interest(x);
     // What differs in the last digits alone is the same, whatever the machine's logarithm does with them.
     if (expected < least - 1e-10) {
       least = expected;
@@ -130,13 +156,45 @@ void QuestPlus::choose() {
   }
 }
 
+double QuestPlus::expected_entropy(std::size_t intensity) const {
+  const double* right = &right_[intensity * weights_.size()];
+  Entropy if_right;
+  Entropy if_wrong;
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    if_right.add(weights_[i] * right[i]);
+    if_wrong.add(weights_[i] * (1.0 - right[i]));
+  }
+  return if_right.times_sum() + if_wrong.times_sum();
+}
+
+double QuestPlus::expected_entropy_of_interest(std::size_t intensity) const {
+  const double* right = &right_[intensity * weights_.size()];
+  std::vector<double> sums_if_right(interest_.back() + 1, 0.0);
+  std::vector<double> sums_if_wrong(interest_.back() + 1, 0.0);
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    sums_if_right[interest_[i]] += weights_[i] * right[i];
+    sums_if_wrong[interest_[i]] += weights_[i] * (1.0 - right[i]);
+  }
+  Entropy if_right;
+  Entropy if_wrong;
+  for (const double sum : sums_if_right) if_right.add(sum);
+  for (const double sum : sums_if_wrong) if_wrong.add(sum);
+  return if_right.times_sum() + if_wrong.times_sum();
+}
+
 bool QuestPlus::finished() const {
   if (trials_ >= options_.trials) return true;
-  return options_.small_deviation > 0.0 && trials_ > 0 && estimate().deviation < options_.small_deviation;
+  if (trials_ < std::max(1, options_.least_trials)) return false;
+  if (options_.small_deviation > 0.0 && estimate().deviation < options_.small_deviation) return true;
+  if (options_.narrow == 0.0) return false;
+  const Interval interval = estimate(options_.narrow_confidence).interval;
+  const double width =
+      options_.axis == Axis::logarithmic ? interval.upper / interval.lower : interval.upper - interval.lower;
+  return width <= options_.narrow;
 }
 
 std::vector<double> QuestPlus::marginal() const {
-  const std::size_t rest = options_.slopes.size() * options_.lapses.size();
+  const std::size_t rest = points_beside_thresholds();
   std::vector<double> sums(options_.thresholds.size(), 0.0);
   for (std::size_t i = 0; i < weights_.size(); ++i) sums[i / rest] += weights_[i];
   return sums;
@@ -177,8 +235,10 @@ QuestPlusEstimate QuestPlus::estimate(double confidence) const {
                                         .upper = off_axis(quantile(0.5 + 0.5 * confidence))}};
   double log_slope = 0.0;
   const std::size_t lapses = options_.lapses.size();
+  const std::size_t guesses = options_.guesses.size();
   for (std::size_t i = 0; i < weights_.size(); ++i) {
-    log_slope += weights_[i] * std::log(options_.slopes[i / lapses % options_.slopes.size()]);
+    log_slope += weights_[i] * std::log(options_.slopes[i / (lapses * guesses) % options_.slopes.size()]);
+    result.guess += weights_[i] * options_.guesses[i / lapses % guesses];
     result.lapse += weights_[i] * options_.lapses[i % lapses];
   }
   result.slope = std::exp(log_slope);

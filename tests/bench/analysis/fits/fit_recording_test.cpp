@@ -3,8 +3,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <gtest/gtest.h>
+
+#include "fits/fit_files.h"
+#include "recordings/whole_recording.h"
 
 namespace kerf::bench {
 namespace {
@@ -53,6 +57,27 @@ TEST(FitRecording, LeavesOutOneRowForAPositionThatIsNoNumberAndNotItsNeighbours)
   const RecordingFit fit = fit_recording(recording, kelvin_only());
   EXPECT_EQ(fit.recordings.front().left_out, 2U);
   EXPECT_LT(rmse(recording), 2.0 * whole + 1e-3);
+}
+
+// Floor and rendering are found beside the fits, and the rows are let go of before.
+TEST(FitRecording, IsTheSameOnOneThreadAndOnSeveral) {
+  const schema::Recording whole = punch();
+  const auto fitted_on = [&whole](std::size_t threads) {
+    schema::Recording recording = whole;
+    FitRecordingOptions options = kelvin_only();
+    options.models = {"kelvin", "exponential"};
+    options.fit.threads = threads;
+    const FitSource source{
+        .recording = &recording, .name = "punch", .contact = *options.contact, .taken = [&recording] {
+          drop_rows(recording);
+        }};
+    RecordingFit fit = fit_recordings(std::span(&source, 1), options);
+    EXPECT_EQ(recording.rows(), 0U);
+    EXPECT_EQ(fit.recordings.front().samples, 4000U);
+    for (FittedLaw& law : fit.laws) law.result.seconds = 0.0;
+    return fits_as_json(fit).dump();
+  };
+  EXPECT_TRUE(fitted_on(1) == fitted_on(3));
 }
 
 }  // namespace

@@ -21,6 +21,16 @@ TEST(Sha256, IsThatOfTheStandard) {
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
+TEST(Sha256, OfAFileOfManyPiecesIsThatOfItsText) {
+  const test::TemporaryFolder folder;
+  std::string text(std::size_t{33} << 20U, 'k');
+  for (std::size_t i = 0; i < text.size(); i += 4093) text[i] = static_cast<char>('a' + i % 26);
+  test::write_text(folder / "long", text);
+  EXPECT_EQ(sha256_of(folder / "long"), sha256_of(std::string_view(text)));
+  test::write_text(folder / "empty", "");
+  EXPECT_EQ(sha256_of(folder / "empty"), sha256_of(std::string_view("")));
+}
+
 // Its definition written anew in Python: hashlib.sha256(b"kerf.samples 1\0" + struct.pack("<d", 1) +
 // b"theta\0rad\0N\xc2\xb7m\0"
 // + struct.pack("<d", 1) + b"time\0" + ... ), with the columns as NumPy has their bytes.

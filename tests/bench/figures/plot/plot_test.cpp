@@ -33,11 +33,13 @@ TEST(Plot, IsOneSvgElementWithItsLabels) {
 }
 
 TEST(Plot, NamesTicksOnBothAxes) {
-  const std::string svg = draw({.curves = {{.x = {0, 1, 2}, .y = {0, 3, 1}}},
-                                .x_ticks = {{.at = 1.0, .name = "the standard"}},
-                                .y_ticks = {{.at = 3.0, .name = "subject 1"}}});
+  const std::string svg =
+      draw({.curves = {{.x = {0, 1, 2}, .y = {0, 3, 1}}},
+            .x_ticks = {{.at = 1.0, .name = "the standard"}},
+            .y_ticks = {{.at = 3.0, .name = "subject 1"}, {.at = 2.0, .name = "50 % off"}}});
   EXPECT_THAT(svg, HasSubstr("the standard"));
   EXPECT_THAT(svg, HasSubstr("subject 1"));
+  EXPECT_THAT(svg, HasSubstr("50 % off"));
 }
 
 TEST(Plot, NumbersALogarithmicAxisOfOneDecadeByMoreThanItsEnds) {
@@ -47,6 +49,15 @@ TEST(Plot, NumbersALogarithmicAxisOfOneDecadeByMoreThanItsEnds) {
     EXPECT_THAT(svg, HasSubstr(number)) << number;
   const Chart wide{.curves = {{.x = {1.3, 1.4}, .y = {1, 2}}}, .x_range = {0.15, 240.0}, .log_x = true};
   EXPECT_THAT(draw(wide), AllOf(HasSubstr("<text>100</text>"), Not(HasSubstr("<text>0.5</text>"))));
+}
+
+TEST(Plot, NumbersALogarithmicAxisThatNobodyGaveARange) {
+  const std::string svg = draw({.curves = {{.x = {0, 1, 2}, .y = {300, 700, 1900}}}, .log_y = true});
+  for (const auto* number : {"<text>500</text>", "<text>1000</text>"})
+    EXPECT_THAT(svg, HasSubstr(number)) << number;
+  const std::string narrow = draw({.curves = {{.x = {0, 1, 2}, .y = {210, 250, 490}}}, .log_y = true});
+  for (const auto* number : {"<text>300</text>", "<text>400</text>"})
+    EXPECT_THAT(narrow, HasSubstr(number)) << number;
 }
 
 TEST(Plot, DrawsRunsOfCellsOfOneColourAsOneRectangle) {

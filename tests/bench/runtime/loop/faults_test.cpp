@@ -55,6 +55,17 @@ class FaultyRun : public testing::TestWithParam<bool> {
     }
     return outcome;
   }
+  /// The same, again where the bench saw no such fault in a loop that a busy machine kept from its work:
+  /// after some ticks without a reading a hand can have gone as far as the fault, and nobody could tell.
+  Outcome run_until_seen(const std::string& fault, schema::Flag flag) {
+    for (int tries = 1;; ++tries) {
+      Outcome outcome = run(fault);
+      const bool missed = first_row_with(schema::flag_missed_deadline) < recording_.rows();
+      const bool seen = first_row_with(flag) < recording_.rows();
+      if (GetParam() || seen || !missed || tries == 20) return outcome;
+      std::filesystem::remove(folder_ / "r.h5");
+    }
+  }
   [[nodiscard]] double force(std::size_t row) const { return recording_.force_commanded[2 * row]; }
   /// The first row with a flag; the number of rows if there is none.
   [[nodiscard]] std::size_t first_row_with(schema::Flag flag) const {
@@ -112,7 +123,7 @@ TEST_P(FaultyRun, StalledForAnyTimeChangesTheForceByTheRampAtMost) {
 }
 
 TEST_P(FaultyRun, WithoutANumberGetsZeroForceAndASoftStart) {
-  const Outcome outcome = run("nan@0.6");
+  const Outcome outcome = run_until_seen("nan@0.6", schema::flag_device_fault);
   EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
   const json result = json::parse(outcome.output);
   EXPECT_EQ(result.at("ticks_with").at("device_fault"), 1);
@@ -129,7 +140,7 @@ TEST_P(FaultyRun, WithoutANumberGetsZeroForceAndASoftStart) {
 
 TEST_P(FaultyRun, ThatJumpsGetsZeroForceUntilSomebodyConfirms) {
   for (const std::string travel : {"-20mm", "20mm", "1mm"}) {
-    const Outcome outcome = run("jump@0.6:" + travel);
+    const Outcome outcome = run_until_seen("jump@0.6:" + travel, schema::flag_position_jump);
     EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
     EXPECT_EQ(json::parse(outcome.output).at("ticks_with").at("position_jump"), 1);
     EXPECT_THAT(json::parse(outcome.output).at("causes"), testing::Contains("device"));
@@ -144,7 +155,8 @@ TEST_P(FaultyRun, ThatJumpsGetsZeroForceUntilSomebodyConfirms) {
 }
 
 TEST_P(FaultyRun, WithATurnedBitGetsZeroForceAndASoftStart) {
-  const Outcome outcome = run("flip@0.6:4.5mm");  // 128 counts of a Falcon
+  const Outcome outcome =
+      run_until_seen("flip@0.6:4.5mm", schema::flag_position_jump);  // 128 counts of a Falcon
   EXPECT_EQ(outcome.exit_status, 1) << outcome.errors;
   EXPECT_EQ(json::parse(outcome.output).at("ticks_with").at("position_jump"), 1);
   EXPECT_EQ(json::parse(outcome.output).at("ticks_with").at("zero_held"), 1);

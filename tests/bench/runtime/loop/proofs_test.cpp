@@ -290,10 +290,12 @@ TEST(FullDisk, LetsTheLoopGoOnAndKeepsWhatFitted) {
   const Outcome outcome = test::run({"unshare", "-rm", "sh", "-c",
                                      R"sh(mount -t tmpfs -o size=80M none "$2/disk" || exit 77
           "$1" check "$2/k.law.toml" --virtual --seconds 600 --record "$2/disk/r.h5" --json & check=$!
-          while kill -0 $check && [ "$(stat -c %s "$2/disk/r.h5.partial" || echo 0)" -lt 1000000 ]; do
-            sleep 0.01
+          # Stopped, lest it be quicker than who fills the disk, once rows are on it and not only in its buffers.
+          until kill -STOP $check && sleep 0.01 && "$1" info "$2/disk/r.h5.partial" --json |
+                grep -Eq '"samples": *[0-9]{5}'; do
+            kill -CONT $check || break
+            sleep 0.03
           done 2>/dev/null
-          kill -STOP $check  # lest it be quicker than who fills the disk
           head -c 100M /dev/zero 2>/dev/null > "$2/disk/of-somebody-else"
           kill -CONT $check
           wait $check; status=$?

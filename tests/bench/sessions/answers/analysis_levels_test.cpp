@@ -7,6 +7,7 @@
 
 #include "answer_pages/analysis_json.h"
 #include "answers/analysis.h"
+#include "answers/answers_table.h"
 #include "bench/sessions/answers/studies.h"
 #include "protocol/trial_sequence.h"
 
@@ -287,6 +288,57 @@ TEST(AQuestSession, HasItsPosteriorAndACurve) {
   EXPECT_LE(found.tracks[0].quest->interval.lower, 0.1);
   EXPECT_GE(found.tracks[0].quest->interval.upper, 0.1);
   EXPECT_TRUE(found.levels->pooled.jnd);
+}
+
+TEST(InterleavedStaircases, HaveTheMeanOfTheirReversalsEach) {
+  Study study = staircase_study(0.1, 3);
+  const std::size_t first = study.judgements.size();
+  study.scale.interleaved = {study.scale.staircase};
+  study.scale.interleaved[0].down = 3;
+  study.scale.interleaved[0].start = 0.03;
+  Study other = study;
+  other.scale.staircase = study.scale.interleaved[0];
+  other.judgements.clear();
+  psychophysics::Staircase staircase(other.scale.staircase);
+  Random random(8);
+  const Psychometric observer{.threshold = 0.1, .slope = 2.5, .guess = 0.5, .lapse = 0.0};
+  while (!staircase.finished()) {
+    const double level = staircase.next();
+    const bool is_right = random.chance(observer.probability(level));
+    study.judgements.push_back(
+        {.subject = "P1", .level = level, .track = 1, .right = 0, .answer = is_right ? 0U : 1U});
+    staircase.answer(is_right);
+  }
+  const Analysis found = analyse(study, quick());
+  ASSERT_EQ(found.tracks.size(), 2U);
+  EXPECT_EQ(found.tracks[0].levels.size(), first);
+  ASSERT_TRUE(found.tracks[0].staircase && found.tracks[1].staircase);
+  EXPECT_NEAR(found.tracks[1].staircase->probability, std::cbrt(0.5), 1e-9);
+  EXPECT_EQ(found.tracks[1].staircase->threshold, staircase.estimate().threshold);
+  EXPECT_EQ(found.levels->pooled.fit->degrees_of_freedom > 0, true);
+  EXPECT_EQ(analysis_as_json(found).at("tracks")[1].at("staircase"), 2);
+  // As a table whose rules are not known.
+  const Study again = parse_answers(answers_csv(study), "answers.csv");
+  EXPECT_EQ(again.judgements.back().track, 1U);
+  const Analysis of_table = analyse(again, quick());
+  ASSERT_EQ(of_table.tracks.size(), 2U);
+  EXPECT_THAT(of_table.tracks[1].note, HasSubstr("staircase 2 is not known"));
+}
+
+TEST(AQuestSession, ThatEndsByAnIntervalHasNoTestOfItsCount) {
+  Study study = study_with(Design::quest_plus);
+  study.scale.levels = {0.05, 0.1, 0.2};
+  for (const double level : {0.05, 0.1, 0.2, 0.2, 0.1, 0.05, 0.1, 0.2})
+    study.judgements.push_back(
+        {.subject = "P1", .level = level, .right = 0, .answer = level < 0.1 ? 1U : 0U});
+  EXPECT_LT(analyse(study, quick()).p_value, 1.0);
+  study.scale.quest.narrow = 2.5;
+  const Analysis found = analyse(study, quick());
+  EXPECT_TRUE(std::isnan(found.p_value));
+  EXPECT_THAT(found.main_test, HasSubstr("QUEST+ that ends by an interval"));
+  const Study again = parse_answers(answers_csv(study), "answers.csv");
+  EXPECT_EQ(again.scale.quest.narrow, 2.5);
+  EXPECT_TRUE(std::isnan(analyse(again, quick()).p_value));
 }
 
 TEST(TheSessions, OfASubjectHaveATrackEach) {

@@ -146,5 +146,37 @@ INSTANTIATE_TEST_SUITE_P(EveryDesign, Drawn,
                                          FeltTrial{Judging::preference, 2, {0, 1, 0}, 1.5},
                                          FeltTrial{Judging::preference, 2, {1, 0, 0}, 1.5}));
 
+class DrawnWords : public testing::TestWithParam<FeltTrial> {};
+
+TEST_P(DrawnWords, ComeAsOftenAsTheyShould) {
+  constexpr int draws = 20000;
+  const Observer observer{.lapse = 0.05, .bias = 0.3};
+  const std::size_t choices = 2 * std::max<std::size_t>(1, GetParam().confidence);
+  psychophysics::Random random(7);
+  std::vector<int> answers(choices);
+  for (int i = 0; i < draws; ++i) ++answers.at(drawn_answer(observer, GetParam(), random));
+  double sum = 0.0;
+  for (std::size_t choice = 0; choice < choices; ++choice) {
+    const double p = answer_probability(observer, GetParam(), choice);
+    sum += p;
+    EXPECT_NEAR(answers[choice] / double{draws}, p, 4.0 * std::sqrt(p * (1.0 - p) / draws)) << choice;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EveryRule, DrawnWords,
+    testing::Values(
+        FeltTrial{.judging = Judging::same_by_likelihood, .plays = {0, 1, 0}, .d_prime = 1.7},
+        FeltTrial{.judging = Judging::same_by_likelihood, .plays = {1, 1, 0}, .d_prime = 1.7},
+        FeltTrial{.judging = Judging::same_by_likelihood, .plays = {1, 0, 0}, .d_prime = 0.0},
+        FeltTrial{.judging = Judging::same_by_differencing, .plays = {1, 0, 0}, .d_prime = 1.7},
+        FeltTrial{.judging = Judging::same_by_differencing, .plays = {0, 0, 0}, .d_prime = 0.0},
+        FeltTrial{
+            .judging = Judging::yes_no, .slots = 1, .plays = {1, 0, 0}, .d_prime = 1.2, .confidence = 3},
+        FeltTrial{
+            .judging = Judging::yes_no, .slots = 1, .plays = {0, 0, 0}, .d_prime = 1.2, .confidence = 3},
+        FeltTrial{.judging = Judging::yes_no, .slots = 1, .plays = {1, 0, 0}, .d_prime = 1.2}));
+
 }  // namespace
 }  // namespace kerf::bench

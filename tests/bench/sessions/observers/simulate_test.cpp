@@ -1,5 +1,6 @@
 #include "observers/simulate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bench/sessions/observers/simulated_protocols.h"
@@ -169,6 +170,49 @@ TEST(Simulate, TellsOnItsPageWhatItTellsInItsLines) {
   EXPECT_TRUE(json["truth"]["jnd"].is_null());
 }
 
+// A trial that is void in a share p and comes again up to r times is void p + p^2 + ... + p^(r+1) times on
+// the average, and lost in a share p^(r+1).
+TEST(Simulate, CountsTheTrialsThatComeAgainAndThoseThatAreLost) {
+  const std::string rules = "[trial]\nslip = true\nexplore = { strokes = 2 }\nrepeats = 1\n";
+  SimulationOptions options = options_of(400);
+  options.observer.slip = 0.2;
+  options.observer.unexplored = 0.125;
+  const Simulation simulation =
+      simulated(simulated_protocol(abx + "practice = 10\n" + two_springs(8, 8.8) + rules), options);
+  ASSERT_TRUE(simulation.voided);
+  const SimulatedVoid& voided = *simulation.voided;
+  constexpr double p = 0.3;  // 0.2 + 0.8 x 0.125
+  constexpr double trials = 50.0;
+  // Standard errors of 400 x 50 trials are below 0.006 a trial.
+  EXPECT_NEAR((voided.slipped + voided.unexplored) / trials, p + p * p, 0.024);
+  EXPECT_NEAR(voided.slipped / voided.unexplored, 2.0, 0.2);
+  EXPECT_NEAR(voided.lost / trials, p * p, 0.012);
+  EXPECT_NEAR(voided.again / trials, p, 0.018);
+  EXPECT_NEAR(voided.given, trials + voided.again, 1e-9);
+  EXPECT_NEAR(simulation.found.trials, 40.0 * (1.0 - p * p), 0.5) << "what is lost is missing";
+  const Simulation careful =
+      simulated(simulated_protocol(abx + "practice = 10\n" + two_springs(8, 8.8) + rules), options_of(2));
+  EXPECT_FALSE(careful.voided);
+  EXPECT_GT(simulation.mean_session_s, 1.2 * careful.mean_session_s);
+  EXPECT_THAT(simulation_lines(simulation), testing::Contains(testing::HasSubstr("come again")));
+  EXPECT_NEAR(simulation_json(simulation)["void_per_session"]["lost"].get<double>(), voided.lost, 1e-12);
+  EXPECT_TRUE(simulation_json(careful)["void_per_session"].is_null());
+}
+
+TEST(Simulate, RefusesMishapsThatTheProtocolDoesNotProvideFor) {
+  SimulationOptions options = options_of(2);
+  options.observer.slip = 0.1;
+  EXPECT_THAT([&] { (void)simulated(simulated_protocol(abx + two_springs(8, 8.8)), options); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("say slip = true there")));
+  options.observer.slip = 0.0;
+  options.observer.unexplored = 0.1;
+  EXPECT_THAT([&] { (void)simulated(simulated_protocol(abx + two_springs(8, 8.8)), options); },
+              testing::ThrowsMessage<std::invalid_argument>(testing::HasSubstr("in 'explore'")));
+  options.observer.unexplored = 1.0;
+  EXPECT_THROW((void)simulated(simulated_protocol(abx + two_springs(8, 8.8)), options),
+               std::invalid_argument);
+}
+
 TEST(Simulate, RefusesWhatSaysNothing) {
   const Protocol protocol = simulated_protocol(abx + two_springs(8, 12));
   EXPECT_THROW(simulated(protocol, options_of(1)), std::invalid_argument);
@@ -178,6 +222,55 @@ TEST(Simulate, RefusesWhatSaysNothing) {
   options = options_of(10);
   options.observer.jnd = -0.1;
   EXPECT_THROW(simulated(protocol, options), std::invalid_argument);
+}
+
+const std::string third_of_catches =
+    "[[sample]]\nname = \"none\"\nlaw = \"law 0.001\"\n[catch]\nevery = 5\nsample = \"none\"\n";
+
+TEST(Simulate, TellsHowOftenCatchTrialsExcludeWhoAttendsAndWhoDoesNot) {
+  for (const std::string& design : {abx, std::string("design = \"preference\"\ntrials = 40\n")}) {
+    SimulationOptions options = options_of(200);
+    options.subjects = 4;
+    const Simulation simulation =
+        simulated(simulated_protocol(design + two_springs(8, 8.8) + third_of_catches), options);
+    ASSERT_TRUE(simulation.catches.has_value());
+    const SimulatedCatches& catches = *simulation.catches;
+    EXPECT_DOUBLE_EQ(catches.trials, 8.0);
+    EXPECT_EQ(catches.attentive_out.count.trials, 800);
+    // A lapse of 2 % misses half of its trials: seven or eight of eight are right in all but 0.3 %.
+    EXPECT_NEAR(catches.attentive_right, 0.99, 0.01);
+    EXPECT_LT(catches.attentive_out.value(), 0.02);
+    // Who answers by chance has seven or eight of eight right in 9 of 256.
+    EXPECT_NEAR(catches.inattentive_right, 0.5, 0.03);
+    EXPECT_NEAR(catches.inattentive_out.value(), 247.0 / 256.0, 0.03);
+    EXPECT_EQ(simulation_json(simulation)["catch"]["trials"], 8.0);
+  }
+}
+
+TEST(Simulate, LeavesOutWhoDoesNotAttendAsTheRuleHasIt) {
+  const Protocol protocol = simulated_protocol(abx + two_springs(8, 8.8) + third_of_catches);
+  SimulationOptions options = options_of(200);
+  options.subjects = 8;
+  options.observer.share_inattentive = 0.5;
+  const Simulation all = simulated(protocol, options);
+  options.catch_right = 0.8;
+  const Simulation attentive = simulated(protocol, options);
+  EXPECT_NEAR(all.found.trials, 320.0, 1e-9) << "without a rule everybody is analysed";
+  EXPECT_NEAR(attentive.found.trials, 165.0, 15.0);
+  EXPECT_GT(attentive.truth.share, all.truth.share) << "chance is not among those who attend";
+}
+
+TEST(Simulate, OfLevelsHasCatchTrialsThatNobodyMisses) {
+  SimulationOptions options = options_of(50);
+  const Simulation simulation =
+      simulated(simulated_protocol(
+                    "design = \"staircase\"\ntrials = 30\n[[sample]]\nname = \"spring\"\nlaw = \"law 8\"\n"
+                    "[scale]\nvary = \"force\"\nstaircase = { start = 0.3 }\n[catch]\nevery = 5\nlevel = "
+                    "2.0\n"),
+                options);
+  ASSERT_TRUE(simulation.catches.has_value());
+  EXPECT_GT(simulation.catches->attentive_right, 0.95);
+  EXPECT_LT(simulation.found.trials, 30.5) << "catch trials are none of those that count";
 }
 
 }  // namespace

@@ -308,5 +308,34 @@ TEST(SessionPlan, IsForOneToAThousandSubjects) {
   }
 }
 
+TEST(SessionPlan, OfSameDifferentIsEvenInWhatIsSaidAndInOrder) {
+  const Protocol protocol = of_tissues("same-different", 8);
+  for (const Plan& plan : make_plans(protocol, subjects, seed)) {
+    std::map<Cell, std::map<std::array<std::uint8_t, max_slots>, int>> ways;
+    for (const TrialPlan& trial : plan) {
+      ++ways[cell_of(trial)][trial.slots];
+      EXPECT_EQ(trial.right(protocol), trial.slots[0] == trial.slots[1] ? 0U : 1U);
+    }
+    for (const auto& [cell, counts] : ways) {
+      EXPECT_EQ(counts.size(), 4U);
+      for (const auto& [slots, count] : counts) EXPECT_EQ(count, 2);
+    }
+  }
+}
+
+TEST(SessionPlan, OfYesNoHasTheSignalInHalfOfTheTrials) {
+  const Protocol protocol =
+      protocol_from(protocol_text("design = \"yes-no\"\nsignal = \"soft\"\ntrials = 10"));
+  for (const Plan& plan : make_plans(protocol, subjects, seed)) {
+    int yes = 0;
+    for (const TrialPlan& trial : plan) {
+      const std::size_t right = trial.right(protocol);
+      yes += right == 1 ? 1 : 0;
+      EXPECT_EQ(protocol.samples[trial.pair[trial.slots[0]]].name, right == 1 ? "soft" : "stiff");
+    }
+    EXPECT_EQ(yes, 5);
+  }
+}
+
 }  // namespace
 }  // namespace kerf::bench

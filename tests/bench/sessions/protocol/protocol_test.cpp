@@ -293,5 +293,48 @@ TEST(SessionProtocol, HasAnExampleOfEveryDesign) {
   }
 }
 
+TEST(SessionProtocol, OfYesNoAsksHowSureSomebodyIs) {
+  const auto yes_no = [](const std::string& more) {
+    return protocol_from(protocol_text("design = \"yes-no\"\nsignal = \"soft\"\n" + more));
+  };
+  const Protocol protocol = yes_no("confidence = [\"unsure\", \"sure\"]");
+  EXPECT_EQ(slots_of(protocol.design), 1U);
+  EXPECT_EQ(choices_of(protocol), 4U);
+  EXPECT_THAT(choice_labels_of(protocol),
+              testing::ElementsAre("no, sure", "no, unsure", "yes, unsure", "yes, sure"));
+  for (std::size_t choice = 0; choice < 4; ++choice)
+    EXPECT_EQ(answer_of_choice(protocol, choice), choice < 2 ? 0U : 1U);
+  EXPECT_EQ(confidence_of_choice(protocol, 0), 2U);
+  EXPECT_EQ(confidence_of_choice(protocol, 2), 1U);
+  EXPECT_THAT(choice_labels_of(yes_no("confidence = []")), testing::ElementsAre("no", "yes"));
+  EXPECT_EQ(choices_of(yes_no("")), 6U);
+  const auto refused = [&](const std::string& more, const std::string& message) {
+    EXPECT_THAT([&] { (void)yes_no(more); }, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+  };
+  refused("confidence = [\"sure\"]", "array of 2 to 4 words");
+  refused("confidence = [\"sure\", \"sure\"]", "'sure' is there twice");
+  refused("confidence = [\"\", \"sure\"]", "is no word");
+  refused("strategy = \"differencing\"", "'strategy' is for the designs \"abx\" and \"same-different\"");
+  EXPECT_THAT([&] { (void)protocol_from(protocol_text("design = \"yes-no\"")); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("needs 'signal'")));
+  EXPECT_THAT([&] { (void)protocol_from(protocol_text("design = \"abx\"\nconfidence = []")); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'confidence' is for the design \"yes-no\"")));
+}
+
+TEST(SessionProtocol, OfSameDifferentHasTwoWordsForAnswers) {
+  const Protocol protocol =
+      protocol_from(protocol_text("design = \"same-different\"\nstrategy = \"differencing\""));
+  EXPECT_THAT(choice_labels_of(protocol), testing::ElementsAre("same", "different"));
+  EXPECT_EQ(task_of(protocol).decision, psychophysics::Decision::same_different_differencing);
+  EXPECT_EQ(protocol.switching, SwitchKind::through_zero);
+}
+
+TEST(SessionProtocol, HasExamplesOfAdaptiveMethods) {
+  for (const std::string name : test::adaptive_examples)
+    EXPECT_TRUE(is_adaptive(test::example_protocol(name).design)) << name;
+  EXPECT_EQ(test::example_protocol("interleaved").scale.staircases().size(), 2U);
+  EXPECT_TRUE(test::example_protocol("psi-marginal").scale.quest.nuisance.any());
+}
+
 }  // namespace
 }  // namespace kerf::bench

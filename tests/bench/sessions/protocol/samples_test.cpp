@@ -194,6 +194,14 @@ TEST(Loudness, RefusesASampleWithoutForceAndOneThatIsFarTooWeak) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("too unlike")));
 }
 
+// A hand gives way to a stiffer law: what is as strong along a motion is not as it is felt.
+TEST(ExampleSessions, MakeSamplesAsStrongAsTheyAreFelt) {
+  for (const std::string name : test::example_protocols) {
+    const Loudness loudness = test::example_protocol(name).loudness;
+    EXPECT_TRUE(loudness != Loudness::rms && loudness != Loudness::peak) << name;
+  }
+}
+
 TEST(ExampleSessions, CanBePlannedAndRendered) {
   for (const std::string name : test::example_protocols) {
     Protocol protocol = test::example_protocol(name);

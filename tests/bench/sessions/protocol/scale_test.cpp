@@ -5,6 +5,7 @@
 
 #include "bench/sessions/protocol/written_protocol.h"
 #include "protocol/protocol.h"
+#include "protocol/trial_sequence.h"
 
 namespace kerf::bench {
 namespace {
@@ -13,6 +14,7 @@ using psychophysics::Shape;
 using test::level_text;
 using test::protocol_from;
 using testing::AllOf;
+using testing::DoubleEq;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -144,12 +146,78 @@ const BadScale bad_scales[] = {
      "two reversals more than it drops"},
     {"QuestJnd", "quest", "vary = \"force\"\nquest = { expected_jnd = 0 }", "'expected_jnd' is 0"},
     {"QuestTrials", "quest", "vary = \"force\"\nquest = { trials = 0 }", "'trials' is 0"},
+    {"QuestKey", "quest", "vary = \"force\"\nquest = { slope = [1] }", "unknown key 'slope'"},
+    {"QuestFalls", "quest", "vary = \"force\"\nquest = { slopes = [2, 1] }", "has 1 after 2"},
+    {"QuestNone", "quest", "vary = \"force\"\nquest = { lapses = [] }", "array of 1 to 200 numbers"},
+    {"QuestThreshold", "quest", "vary = \"force\"\nquest = { thresholds = [0] }", "expected 1e-06 to 100"},
+    {"QuestGridEnds", "quest", "vary = \"force\"\nquest = { thresholds = { from = 0.2, to = 0.1 } }",
+     "from 0.2 to 0.1, expected it to rise"},
+    {"QuestGridKey", "quest", "vary = \"force\"\nquest = { slopes = { from = 1 } }", "'slopes' needs 'to'"},
+    {"QuestLapsesInRatios", "quest", "vary = \"force\"\nquest = { lapses = { from = 0, to = 0.1 } }",
+     "must be an array"},
+    {"QuestNoCurve", "quest", "vary = \"force\"\nquest = { guesses = [0.5, 0.9], lapses = [0.1] }",
+     "leave no curve"},
+    {"QuestNuisance", "quest", "vary = \"force\"\nquest = { nuisance = [\"threshold\"] }",
+     "'threshold' is no nuisance"},
+    {"QuestNuisanceTwice", "quest", "vary = \"force\"\nquest = { nuisance = [\"slope\", \"slope\"] }",
+     "named twice"},
+    {"QuestNuisanceKnown", "quest", "vary = \"force\"\nquest = { nuisance = [\"guess\"] }",
+     "the guess rate is known"},
+    {"QuestUntil", "quest", "vary = \"force\"\nquest = { until = { least = 20 } }", "needs 'ratio'"},
+    {"QuestUntilNever", "quest", "vary = \"force\"\nquest = { until = { ratio = 1 } }", "'ratio' is 1"},
+    {"QuestUntilLate", "quest",
+     "vary = \"force\"\nquest = { trials = 30, until = { ratio = 2, least = 31 } }", "'least' is 31"},
+    {"QuestSize", "quest",
+     "vary = \"force\"\nquest = { thresholds = { from = 0.01, to = 1, count = 200 }, slopes = { from = 1, to "
+     "= "
+     "8, count = 200 } }",
+     "120000 points and 33 levels"},
+    {"StaircaseAlone", "staircase", "vary = \"force\"\nstaircase = [{ start = 0.4 }]", "array of 2 to 8"},
+    {"StaircaseOther", "staircase", "vary = \"force\"\nstaircase = [{ start = 0.4 }, { up = 1 }]",
+     "needs 'start'"},
 };
 const auto name_of_bad_scale = [](const auto& tested) { return std::string(tested.param.name); };
 INSTANTIATE_TEST_SUITE_P(Scales, BadScales, testing::ValuesIn(bad_scales), name_of_bad_scale);
 
 void expect_refused(const std::string& text, const std::string& message) {
   EXPECT_THAT([&] { (void)protocol_from(text); }, ThrowsMessage<std::invalid_argument>(HasSubstr(message)));
+}
+
+TEST(SessionScale, OfQuestTakesItsGrids) {
+  const Protocol protocol = protocol_from(level_text("design = \"quest\"", R"(vary = "force"
+quest = { trials = 80, thresholds = { from = 0.02, to = 0.5, count = 3 }, slopes = [2, 4], guesses = [0.45, 0.5], lapses = [0, 0.05, 0.1], nuisance = ["slope", "lapse"], until = { ratio = 2.5, confidence = 0.9, least = 30 } })"));
+  const psychophysics::QuestPlusOptions options = quest_options_of(protocol.scale, 0.5);
+  EXPECT_THAT(options.thresholds, ElementsAre(DoubleEq(0.02), DoubleEq(0.1), DoubleEq(0.5)));
+  EXPECT_THAT(options.slopes, ElementsAre(2.0, 4.0));
+  EXPECT_THAT(options.guesses, ElementsAre(0.45, 0.5));
+  EXPECT_THAT(options.lapses, ElementsAre(0.0, 0.05, 0.1));
+  EXPECT_TRUE(options.nuisance.slope && options.nuisance.lapse && !options.nuisance.guess);
+  EXPECT_EQ(options.narrow, 2.5);
+  EXPECT_EQ(options.narrow_confidence, 0.9);
+  EXPECT_EQ(options.least_trials, 30);
+  EXPECT_EQ(options.trials, 80);
+  EXPECT_NEAR(protocol.scale.levels.front(), 0.01, 1e-12) << "a tenth of the middle of the thresholds";
+  EXPECT_TRUE(ends_by_answers(protocol.design, protocol.scale));
+}
+
+TEST(SessionScale, OfQuestWithoutGridsIsAsItEverWas) {
+  const Protocol protocol =
+      protocol_from(level_text("design = \"quest\"", "vary = \"force\"\nquest = { expected_jnd = 0.08 }"));
+  const psychophysics::QuestPlusOptions options = quest_options_of(protocol.scale, 0.5);
+  EXPECT_EQ(options.thresholds, psychophysics::geometric_grid(0.008, 0.8, 41));
+  EXPECT_EQ(options.slopes, psychophysics::QuestPlusOptions{}.slopes);
+  EXPECT_FALSE(options.nuisance.any());
+  EXPECT_FALSE(ends_by_answers(protocol.design, protocol.scale));
+}
+
+TEST(SessionScale, OfStaircasesHasEachItsRule) {
+  const Protocol protocol = protocol_from(level_text(
+      "design = \"staircase\"",
+      "vary = \"force\"\nstaircase = [{ start = 0.4 }, { start = 0.05, down = 3, step_ratio = 0.5 }]"));
+  ASSERT_EQ(protocol.scale.staircases().size(), 2U);
+  EXPECT_EQ(protocol.scale.staircases()[0].down, 2);
+  EXPECT_EQ(protocol.scale.staircases()[1].down, 3);
+  EXPECT_EQ(protocol.scale.staircases()[1].step_ratio, 0.5);
 }
 
 TEST(SessionScale, IsNeededWhereTheDesignHasLevels) {

@@ -1,7 +1,11 @@
 #include "protocol/trial_sequence.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -155,6 +159,87 @@ TEST(SessionCourse, BreaksAfterEverySoManyTrialsThatCount) {
 TEST(SessionCourse, GoesOnWithoutBreaksWhereNoneAreAskedFor) {
   TrialSequence sequence = sequence_of(protocol_from(protocol_text("design = \"abx\"\ntrials = 6")));
   for (; sequence.next(); sequence.answer(0)) EXPECT_FALSE(sequence.break_due());
+}
+
+Protocol interleaved(const std::string& top = "trials = 80") {
+  return protocol_from(level_text(fmt::format("design = \"staircase\"\n{}", top), R"(vary = "force"
+[[scale.staircase]]
+start = 0.4
+steps = [0.5, 0.25]
+[[scale.staircase]]
+start = 0.05
+down = 3
+steps = [0.4]
+reversals = 8)"));
+}
+
+TEST(SessionCourse, OfInterleavedStairsIsThatOfEachByItself) {
+  const Protocol protocol = interleaved();
+  TrialSequence sequence = sequence_of(protocol);
+  std::vector<psychophysics::Staircase> alone;
+  for (const auto& options : protocol.scale.staircases()) alone.emplace_back(options);
+  psychophysics::Random random(4);
+  std::array<int, 2> turns{};
+  while (const std::optional<TrialPlan> trial = sequence.next()) {
+    ASSERT_LT(trial->track, 2U);
+    psychophysics::Staircase& own = alone[trial->track];
+    ASSERT_FALSE(own.finished());
+    EXPECT_EQ(trial->level, own.next());
+    const bool is_right = random.chance(trial->level > 0.1 ? 0.95 : 0.6);
+    own.answer(is_right);
+    sequence.answer(answer_of(protocol, *trial, is_right));
+    ++turns[trial->track];
+  }
+  EXPECT_GT(turns[0], 10);
+  EXPECT_GT(turns[1], 10);
+  for (const psychophysics::Staircase& each : alone)
+    EXPECT_TRUE(each.finished() || sequence.answered() == sequence.at_most());
+}
+
+TEST(SessionCourse, OfInterleavedStairsTakesTurnsByChance) {
+  const Protocol protocol = interleaved();
+  const std::vector<Plan> plans = make_plans(protocol, 2, 5);
+  std::vector<std::size_t> first;
+  for (const Plan& plan : plans) {
+    ASSERT_EQ(plan.size(), 80U);
+    for (std::size_t block = 0; block < 80; block += 8)
+      EXPECT_EQ(std::count_if(plan.begin() + static_cast<std::ptrdiff_t>(block),
+                              plan.begin() + static_cast<std::ptrdiff_t>(block) + 8,
+                              [](const TrialPlan& trial) { return trial.track == 1; }),
+                4);
+    if (first.empty()) {
+      for (const TrialPlan& trial : plan) first.push_back(trial.track);
+    }
+  }
+  std::vector<std::size_t> second;
+  for (const TrialPlan& trial : plans[1]) second.push_back(trial.track);
+  EXPECT_NE(first, second);
+}
+
+TEST(SessionCourse, OfInterleavedStairsPractisesAtTheEasiestStart) {
+  EXPECT_DOUBLE_EQ(sequence_of(interleaved("trials = 40\npractice = 1")).next()->level, 0.4);
+}
+
+TEST(SessionCourse, OfOneStaircaseKnowsNoTurns) {
+  const Plan plan = make_plans(staircase(), 1, 5).front();
+  EXPECT_EQ(to_json_text(plan).find("track"), std::string::npos);
+  const Plan both = make_plans(interleaved(), 1, 5).front();
+  const Plan read = plan_from_json(to_json_text(both));
+  for (std::size_t i = 0; i < both.size(); ++i) EXPECT_EQ(read[i].track, both[i].track);
+}
+
+TEST(SessionCourse, OfQuestEndsWithANarrowInterval) {
+  const Protocol protocol = protocol_from(level_text(
+      "design = \"quest\"",
+      "vary = \"force\"\nquest = { trials = 200, expected_jnd = 0.1, until = { ratio = 2, least = 12 } }"));
+  TrialSequence sequence = sequence_of(protocol);
+  EXPECT_EQ(sequence.at_most(), 200U);
+  psychophysics::Random random(9);
+  while (const std::optional<TrialPlan> trial = sequence.next())
+    sequence.answer(
+        answer_of(protocol, *trial, random.chance(1.0 - 0.5 * std::exp(-std::pow(trial->level / 0.1, 3.0)))));
+  EXPECT_GE(sequence.answered(), 12U);
+  EXPECT_LT(sequence.answered(), 150U);
 }
 
 }  // namespace

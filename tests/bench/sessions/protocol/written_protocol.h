@@ -115,9 +115,14 @@ name = "skin"
 samples = ["third", "soft"]
 )";
 
-/// Every name of examples/sessions.
+/// The example of every design in examples/sessions.
 inline constexpr std::initializer_list<const char*> example_protocols{
-    "preference", "abx", "2ifc", "3ifc", "constant", "staircase", "quest"};
+    "preference",     "abx",    "2ifc",      "3ifc",  "constant", "staircase", "quest",
+    "same-different", "yes-no", "magnitude", "rating"};
+/// And of a hand that is led.
+inline constexpr const char* guided_example = "guided";
+/// And of ways to choose levels that have no design of their own.
+inline constexpr std::initializer_list<const char*> adaptive_examples{"interleaved", "psi-marginal"};
 
 inline bench::Protocol example_protocol(const std::string& name) {
   return bench::read_protocol(fmt::format("{}/examples/sessions/{}.protocol.toml", KERF_SOURCE_DIR, name));

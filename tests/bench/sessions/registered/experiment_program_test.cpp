@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/sessions/protocol/written_protocol.h"
+#include "bench/sessions/sealed/stored_session.h"
 #include "sealed/session_store.h"
 #include "support/program.h"
 
@@ -58,6 +59,31 @@ class ExperimentProgram : public testing::Test {
   void run(const std::string& participant) const {
     const Outcome outcome = session({"run", study(), "--subject", participant, "--rehearse", "--no-check"});
     ASSERT_EQ(outcome.exit_status, 0) << outcome.errors;
+  }
+  /// The first trial of somebody who then leaves.
+  void answer_one(const std::string& participant) const {
+    const std::string file = study(participant + ".h5");
+    SessionStore store(file, SealKey::from_file(path("k.key"), derivation_of(file)),
+                       SessionStore::Purpose::run);
+    store.note("run", "sim:scissors");
+    store.append(kerf::test::answered(store.plan().front(), 1));
+    store.close();
+  }
+  /// A whole session, with so many right answers of catch trials and every other one of the rest.
+  void answer_all(const std::string& participant, std::size_t right_catches) const {
+    const std::string file = study(participant + ".h5");
+    SessionStore store(file, SealKey::from_file(path("k.key"), derivation_of(file)),
+                       SessionStore::Purpose::run);
+    store.note("run", "sim:scissors");
+    std::size_t given = 0;
+    for (const TrialPlan& trial : store.plan()) {
+      const std::size_t right = trial.right(store.protocol());
+      const bool is_right = trial.is_catch ? right_catches > 0 : given++ % 2 == 0;
+      if (trial.is_catch && right_catches > 0) --right_catches;
+      store.append(kerf::test::answered(trial, is_right ? right : 1 - right));
+    }
+    store.note("finished", "");
+    store.close();
   }
   void begin_study(const Words& more = {"--participants", "2"}) const {
     plan(more);
@@ -153,6 +179,59 @@ TEST_F(ExperimentProgram, GivesAReplacementTheOrderOfWhoeverLeft) {
   EXPECT_THAT(analysis.output, HasSubstr("S02 dropped: left in practice; S03 has their order"));
 }
 
+TEST_F(ExperimentProgram, SharesWhatWasRegisteredAndWhatBecameOfEveryone) {
+  begin_study({"--participants", "2", "--exclude", "left-handed"});
+  run("S01");
+  answer_one("S02");
+  expect_refused(session({"share", study(), "-o", path("early")}), "an experiment that is under way");
+  ASSERT_EQ(session({"drop", study(), "S02", "--reason", "left, in pain"}).exit_status, 0);
+  make({"--replaces", "S02"});
+  run("S03");
+  expect_refused(session({"share", study(), "-o", path("early")}), "an experiment that was not analysed");
+  EXPECT_FALSE(fs::exists(path("early")));
+  ASSERT_EQ(analyze().exit_status, 0);
+  const std::string data = "/data/task-abx_description-";
+  const Outcome shared = session({"share", study(), "-o", path("set")});
+  ASSERT_EQ(shared.exit_status, 0) << shared.errors;
+  const std::string people = read_text(path("set") + data + "participants_data.csv");
+  EXPECT_THAT(people, HasSubstr("group,order,stage,analysed,replaces,rule,reason\nS01,1,1,2,"));
+  EXPECT_THAT(people, HasSubstr(",1,completed,TRUE,,,\n"));
+  EXPECT_THAT(people, HasSubstr("S02,0,0,0,")) << "what was answered by who was dropped stays at home";
+  EXPECT_THAT(people, HasSubstr(",2,dropped,FALSE,,,\"left, in pain\"\n"));
+  EXPECT_THAT(people, HasSubstr(",2,completed,TRUE,S02,,\n"));
+  EXPECT_THAT(read_text(path("set") + data + "trials_data.csv"), Not(HasSubstr("S02-")));
+  const std::string methods = read_text(path("set/documentation/methods.md"));
+  EXPECT_THAT(
+      methods,
+      HasSubstr("2 participants; primary test: difference, alpha = 0.05; stopping rule: one analysis"));
+  EXPECT_THAT(methods, HasSubstr("left out of the analysis: left-handed"));
+  EXPECT_THAT(methods, HasSubstr("- S02 dropped: left, in pain; S03 has their order"));
+  EXPECT_THAT(methods, HasSubstr("Look 1 at 2 participants"));
+  EXPECT_EQ(read_text(path("set/materials/experiment.toml")), read_text(study("experiment.toml")));
+  EXPECT_EQ(read_text(path("set/documentation/experiment.log")), read_text(study("experiment.log")));
+  ASSERT_EQ(session({"share", study(), "--dropped", "-o", path("all")}).exit_status, 0);
+  EXPECT_THAT(read_text(path("all") + data + "trials_data.csv"), HasSubstr("S02-1-001"));
+  ASSERT_EQ(session({"drop", study(), "S01", "--rule", "left-handed", "--reason", "seen"}).exit_status, 0);
+  ASSERT_EQ(session({"share", study(), "-o", path("less")}).exit_status, 0);
+  EXPECT_THAT(read_text(path("less") + data + "participants_data.csv"),
+              HasSubstr(",1,excluded,FALSE,,left-handed,seen\n"));
+  EXPECT_THAT(read_text(path("less") + data + "trials_data.csv"), HasSubstr("S01-1-001"))
+      << "so that others can analyse with and without";
+  expect_refused(session({"share", study(), study("S01.h5"), "-o", path("two")}), "shared alone");
+  expect_refused(session({"share", study("S01.h5"), "--dropped", "-o", path("two")}), "is for an experiment");
+}
+
+TEST_F(ExperimentProgram, KeepsThatItWasSharedBeforeItsAnalysis) {
+  begin_study();
+  run("S01");
+  ASSERT_EQ(session({"share", study(), "--reason", "for a pilot", "-o", path("set")}).exit_status, 0);
+  EXPECT_THAT(read_text(path("set/documentation/experiment.log")), HasSubstr("for a pilot"));
+  EXPECT_THAT(read_text(path("set/documentation/methods.md")),
+              HasSubstr("had not been looked at as registered"));
+  run("S02");
+  EXPECT_THAT(deviations(), HasSubstr("for a pilot"));
+}
+
 TEST_F(ExperimentProgram, NamesWhatIsOtherThanItWasRegistered) {
   begin_study();
   run("S01");
@@ -191,6 +270,44 @@ TEST_F(ExperimentProgram, MakesNoSessionInThePlaceOfAnother) {
   expect_refused(session({"new", study(), "--no-check"}), "S02.h5: exists already");
   EXPECT_FALSE(fs::exists(study("S01.h5"))) << "all of them or none";
   EXPECT_FALSE(fs::exists(study("experiment.log")));
+}
+
+TEST_F(ExperimentProgram, ExcludesWhoMissesCatchTrialsAndSaysWhatHadBeenWithThem) {
+  write_text(folder_ / "third.law.toml", kerf::test::law_called("third.law.toml"));
+  write_text(path("p.protocol.toml"),
+             kerf::test::protocol_text("design = \"abx\"\ntrials = 12\ndevice = \"sim:scissors\"\n",
+                                       "[[sample]]\nname = \"third\"\nlaw = \"third.law.toml\"\n[catch]\n"
+                                       "every = 3\nsample = \"third\"\n"));
+  plan({"--participants", "3", "--exclude-catch-right", "0.75"});
+  make();
+  answer_all("S01", 4);
+  answer_all("S02", 3);
+  answer_all("S03", 2);
+  const Outcome said = analyze();
+  ASSERT_EQ(said.exit_status, 0) << said.errors;
+  EXPECT_THAT(said.output, HasSubstr("3 completed, 0 dropped, 0 replaced, 1 excluded, 2 analysed"));
+  EXPECT_THAT(
+      said.output,
+      HasSubstr("S03 excluded: catch_right (2 of 4 catch trials right, at least 75.0 % were registered)"));
+  EXPECT_THAT(said.output, HasSubstr("S01 4 of 4 right, S02 3 of 4\n"));
+  EXPECT_THAT(said.output, HasSubstr("ad those been analysed whom a measured criterion excludes: p "));
+  const auto json = analyzed();
+  EXPECT_EQ(json["registered"]["catch_right"], 0.75);
+  EXPECT_TRUE(json["p_value_with_excluded"].is_number());
+  EXPECT_THAT(json["deviations"].dump(), Not(HasSubstr("by no registered rule")));
+  ASSERT_EQ(session({"share", study(), "-o", path("set")}).exit_status, 0);
+  const std::string methods = read_text(path("set/documentation/methods.md"));
+  EXPECT_THAT(methods, HasSubstr("less than 75 % of the catch trials right"));
+  EXPECT_THAT(methods, HasSubstr("S03 excluded: catch_right"));
+  EXPECT_THAT(methods, HasSubstr("Among each 3 trials, at a place by chance, stood one more, a catch trial"));
+  const std::string people = read_text(path("set/data/task-abx_description-participants_data.csv"));
+  EXPECT_THAT(people, HasSubstr(",excluded,FALSE,,catch_right,"));
+}
+
+TEST_F(ExperimentProgram, RefusesARuleOfCatchTrialsWhereThereAreNone) {
+  plan();
+  kerf::test::replace_in(study("experiment.toml"), "rules = ", "catch_right = 0.75\nrules = ");
+  expect_refused(session({"new", study(), "--no-check"}), "'catch_right' needs catch trials");
 }
 
 TEST_F(ExperimentProgram, NamesAnExclusionByNoRule) {

@@ -97,6 +97,14 @@ TEST(Experiment, RefusesATestThatItsDesignHasNot) {
       require_fits(parsed_plan("target = 12"), protocol_from(protocol_text("design = \"abx\"\n")), "e.toml"));
 }
 
+TEST(Experiment, OfTheExamplesFitsItsProtocol) {
+  const std::string file = KERF_SOURCE_DIR "/examples/sessions/abx.experiment.toml";
+  ASSERT_TRUE(is_experiment(file));
+  const Experiment experiment = read_experiment(experiment_file(file));
+  EXPECT_EQ(protocol_of(experiment, file).design, Design::abx);
+  EXPECT_THAT(experiment.planned_looks(), testing::ElementsAre(8U, 12U));
+}
+
 TEST(Experiment, IsFoundByItsFolderOrItsFile) {
   const kerf::test::TemporaryFolder folder;
   EXPECT_THAT([&] { (void)experiment_file(folder.path()); },

@@ -34,16 +34,17 @@ TEST_F(SessionExport, IsATableOfAllTrials) {
   std::istringstream table(kerf::test::read_text(folder_ / "trials.csv"));
   std::vector<std::string> lines;
   for (std::string line; std::getline(table, line);) lines.push_back(line);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "questionnaire.csv")) << "none is asked";
   ASSERT_THAT(lines, SizeIs(7));
   EXPECT_EQ(lines[0], "# name = \"two laws\"");
   EXPECT_EQ(lines[1], "# design = \"abx\"");
   EXPECT_THAT(lines[2], HasSubstr("answerable_s [s]"));
   EXPECT_EQ(lines[3],
             "subject,number,trial,practice,tissue,first,second,level,slots,right,answer,correct,response_s,"
-            "switches,at,answerable_s");
-  EXPECT_EQ(lines[4], "S2,2,1,1,,soft,stiff,,first/second/first,A,B,0,3.25,1,2026-01-31T12:00:00Z,");
-  EXPECT_EQ(lines[5], "S2,2,2,0,,soft,stiff,,second/first/second,A,B,0,3.25,1,2026-01-31T12:00:00Z,");
-  EXPECT_EQ(lines[6], "S2,2,3,0,,soft,stiff,,first/second/second,B,A,0,3.25,1,2026-01-31T12:00:00Z,");
+            "switches,at,answerable_s,void,catch");
+  EXPECT_EQ(lines[4], "S2,2,1,1,,soft,stiff,,first/second/first,A,B,0,3.25,1,2026-01-31T12:00:00Z,,,0");
+  EXPECT_EQ(lines[5], "S2,2,2,0,,soft,stiff,,second/first/second,A,B,0,3.25,1,2026-01-31T12:00:00Z,,,0");
+  EXPECT_EQ(lines[6], "S2,2,3,0,,soft,stiff,,first/second/second,B,A,0,3.25,1,2026-01-31T12:00:00Z,,,0");
 }
 
 TEST_F(SessionExport, HasARecordingOfEachTrialThatHasTicks) {

@@ -26,6 +26,7 @@ TEST(SessionStore, GivesBackWhatItWasMadeOf) {
   EXPECT_EQ(store.protocol().toml, up.protocol.toml);
   EXPECT_EQ(store.protocol().samples[1].name, "stiff");
   EXPECT_EQ(store.protocol().samples[1].gain, 0.1 + 0.2);
+  EXPECT_FALSE(store.protocol().gain_origin) << "as in sessions of earlier versions";
   ASSERT_THAT(store.plan(), SizeIs(3));
   EXPECT_EQ(store.plan()[1].slots, up.plan[1].slots);
   EXPECT_TRUE(store.plan()[0].practice);
@@ -36,6 +37,25 @@ TEST(SessionStore, GivesBackWhatItWasMadeOf) {
   EXPECT_THAT(store.warnings(), IsEmpty());
   EXPECT_THAT(schema::validate(session.file()), IsEmpty());
   EXPECT_EQ(derivation_of(session.file()).kind, "key file");
+}
+
+TEST(SessionStore, KeepsUnderTheSealHowTheGainsWereFound) {
+  SessionSetUp up = test::set_up();
+  up.protocol.gain_origin = GainOrigin{.hand = "sim:pose6",
+                                       .stands_for = "falcon:0",
+                                       .fallback = "none",
+                                       .tolerance = 0.005,
+                                       .felt_n = {3.1, 0.1 + 0.2}};
+  const test::StoredSession session(up);
+  const SessionStore store = session.read();
+  const GainOrigin& found = *store.protocol().gain_origin;
+  EXPECT_EQ(found.hand, "sim:pose6");
+  EXPECT_EQ(found.stands_for, "falcon:0");
+  EXPECT_EQ(found.fallback, "none");
+  EXPECT_EQ(found.tolerance, 0.005);
+  EXPECT_EQ(found.felt_n, (std::vector{3.1, 0.1 + 0.2}));
+  const std::string file = test::read_text(session.file());
+  EXPECT_EQ(file.find("sim:pose6"), std::string::npos);
 }
 
 TEST(SessionStore, KeepsAnswersAndTracesThroughACrashAndToTheEnd) {

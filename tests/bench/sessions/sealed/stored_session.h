@@ -10,9 +10,13 @@
 namespace kerf::test {
 
 /// A session of two samples, ABX, of three trials.
-inline bench::SessionSetUp set_up(const std::string& top = "design = \"abx\"\ntrials = 2\n") {
-  bench::SessionSetUp up{
-      .protocol = protocol_from(protocol_text(top)), .subject = "S2", .number = 2, .subjects = 3, .plan = {}};
+inline bench::SessionSetUp set_up(const std::string& top = "design = \"abx\"\ntrials = 2\n",
+                                  const std::string& tables = "") {
+  bench::SessionSetUp up{.protocol = protocol_from(protocol_text(top, tables)),
+                         .subject = "S2",
+                         .number = 2,
+                         .subjects = 3,
+                         .plan = {}};
   up.protocol.samples[1].gain = 0.1 + 0.2;
   up.plan = {{.pair = {0, 1}, .slots = {0, 1, 0}, .practice = true},
              {.pair = {0, 1}, .slots = {1, 0, 1}},

@@ -230,6 +230,67 @@ TEST(BlindRendering, CostsTheSameWhicheverPlays) {
       1.0, 0.1);
 }
 
+/// A standard linear solid, whose arm relaxes in a second.
+LawRendering kelvin() {
+  return {test::example("kelvin"), {.position = 0.0, .direction = -1.0}, std::vector<std::size_t>{0}};
+}
+
+TEST(BlindRendering, BeginsLawsAnewInTheMiddleOfASwitchIfAskedTo) {
+  for (const bool anew : {false, true}) {
+    BlindRendering rendering(0.1, SwitchKind::through_zero);
+    TrialRendering trial = trial_of({kelvin(), spring(30.0)}, {0, 1});
+    if (anew) trial.fresh = trial.laws;
+    rendering.begin(trial);
+    rendering.play(0);
+    for (int i = 0; i < 200; ++i) (void)tick(rendering, 0.002 * i);
+    rendering.play(1);
+    for (int i = 0; i < 200; ++i) (void)tick(rendering, 0.4);
+    rendering.play(0);
+    LawRendering fresh = kelvin();
+    double force = 0.0;
+    double alone = 0.0;
+    bool was_zero = false;
+    for (int i = 0; i < 150; ++i) {
+      force = tick(rendering, 0.4);
+      was_zero = was_zero || force == 0.0;
+      if (anew ? was_zero : i >= 50) alone = fresh(at(0.4), period_s).force[0];
+    }
+    EXPECT_EQ(was_zero, anew);
+    EXPECT_EQ(force == alone, anew) << force << " and of one that begins there " << alone;
+  }
+}
+
+TEST(BlindRendering, WaitsInASwitchUntilTheToolTouchesNone) {
+  BlindRendering rendering(0.1, SwitchKind::through_zero);
+  TrialRendering trial = trial_of({spring(10.0), spring(30.0)}, {0, 1});
+  trial.fresh = trial.laws;
+  trial.touched = {{.contact = {.position = 0.0, .direction = -1.0}},
+                   {.contact = {.position = -0.05, .direction = -1.0}}};
+  rendering.begin(trial);
+  rendering.play(0);
+  for (int i = 0; i < 60; ++i) (void)tick(rendering, -0.1);
+  for (int i = 0; i < 60; ++i) (void)tick(rendering, 0.1);
+  EXPECT_NE(tick(rendering, 0.1), 0.0);
+  rendering.play(1);
+  for (int i = 0; i < 60; ++i) (void)tick(rendering, 0.1);
+  for (int i = 0; i < 500; ++i) ASSERT_EQ(tick(rendering, 0.02), 0.0) << "the first is still touched";
+  (void)tick(rendering, -0.1);
+  for (int i = 0; i < 60; ++i) (void)tick(rendering, -0.1);
+  EXPECT_NE(tick(rendering, 0.1), 0.0);
+}
+
+TEST(BlindRendering, BeginsAnewWithoutMemory) {
+  BlindRendering rendering(0.05, SwitchKind::through_zero);
+  TrialRendering trial = trial_of({kelvin(), spring(30.0)}, {0, 1});
+  trial.fresh = trial.laws;
+  const test::NoAllocation guard;
+  rendering.begin(trial);
+  for (int i = 0; i < 400; ++i) {
+    if (i % 70 == 0) rendering.play(static_cast<std::size_t>(i / 70 % 2));
+    (void)tick(rendering);
+  }
+}
+
 TEST(BlindRendering, AllocatesNothingInTheTick) {
   BlindRendering rendering(0.05, SwitchKind::blend);
   TrialRendering trial = trial_of({spring(10.0), spring(30.0)}, {0, 1});

@@ -181,6 +181,8 @@ class ClickedOnAPage : public bench::Subject {
         return "answer";
       case Kind::quit:
         return "quit";
+      case Kind::slip:
+        return "slip";
     }
     return "?";
   }

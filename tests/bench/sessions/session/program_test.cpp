@@ -31,12 +31,12 @@ using testing::Not;
 /// A folder with a protocol, its laws and a key.
 class SessionFolder {
  public:
-  explicit SessionFolder(
-      const std::string& top = "design = \"abx\"\ntrials = 4\ndevice = \"sim:scissors\"\n") {
+  explicit SessionFolder(const std::string& top = "design = \"abx\"\ntrials = 4\ndevice = \"sim:scissors\"\n",
+                         const std::string& tables = "") {
     for (const char* law : {"soft", "stiff", "third", "still"})
       write_text(folder_ / fmt::format("{}.law.toml", law),
                  kerf::test::law_called(fmt::format("{}.law.toml", law)));
-    write_text(protocol(), kerf::test::protocol_text(top));
+    write_text(protocol(), kerf::test::protocol_text(top, tables));
     EXPECT_EQ(run_kerf({"session", "key", path("k.key")}).exit_status, 0);
   }
   [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
@@ -77,7 +77,8 @@ Outcome at_a_terminal(std::vector<std::string> command, std::vector<std::string>
   std::array<char, 512> bytes{};
   for (ssize_t count = 0; (count = read(terminal, bytes.data(), bytes.size())) > 0;) {
     outcome.errors.append(bytes.data(), static_cast<std::size_t>(count));
-    if (answers.empty() || !outcome.errors.ends_with(": ")) continue;
+    // A warning may come in two pieces, the first of which asks for nothing.
+    if (answers.empty() || !outcome.errors.ends_with(": ") || outcome.errors.ends_with("warning: ")) continue;
     const std::string answer = answers.front() + "\n";
     EXPECT_EQ(write(terminal, answer.data(), answer.size()), static_cast<ssize_t>(answer.size()));
     answers.erase(answers.begin());
@@ -118,6 +119,38 @@ TEST(SessionProgram, GoesFromAProtocolToAnAnalysis) {
   EXPECT_EQ(nlohmann::json::parse(again.output)["correct"], json["correct"]);
   const Outcome replay = run_kerf({"info", folder.path("open/trial-001.h5")});
   EXPECT_EQ(replay.exit_status, 0) << replay.errors;
+}
+
+TEST(SessionProgram, RehearsesEverySubjectByASeedOfItsOwn) {
+  const SessionFolder folder("design = \"abx\"\ntrials = 2\ndevice = \"sim:scissors\"\n",
+                             "[questionnaire]\nuse = \"nasa-tlx\"\n");
+  const auto scores = [&](const std::string& subject, const std::string& file, const std::string& seed) {
+    const auto with_key = [&](std::vector<std::string> command) {
+      command.insert(command.end(), {"--key-file", folder.path("k.key")});
+      const Outcome outcome = run_kerf(command);
+      EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+      return outcome;
+    };
+    (void)with_key({"session", "new", folder.protocol(), "--subject", subject, "-o", folder.path(file)});
+    (void)with_key({"session", "run", folder.path(file), "--rehearse", "--no-check", "--seed", seed});
+    const Outcome opened =
+        with_key({"session", "open", folder.path(file), "-o", folder.path(file + ".open")});
+    EXPECT_THAT(opened.output, HasSubstr("trials.csv, slots.csv, questionnaire.csv and a recording"));
+    std::istringstream table(read_text(folder.path(file + ".open/questionnaire.csv")));
+    std::vector<std::string> found;
+    for (std::string line; std::getline(table, line);) {
+      if (!line.starts_with(subject)) continue;
+      const std::size_t end = line.rfind(',');
+      const std::size_t begin = line.rfind(',', end - 1) + 1;
+      found.push_back(line.substr(begin, end - begin));
+    }
+    EXPECT_EQ(found.size(), 6U);
+    return found;
+  };
+  const auto first = scores("S01", "a.h5", "1");
+  EXPECT_NE(scores("S02", "b.h5", "1"), first);
+  EXPECT_EQ(scores("S01", "c.h5", "1"), first) << "a rehearsal can be had again";
+  EXPECT_NE(scores("S01", "d.h5", "2"), first);
 }
 
 TEST(SessionProgram, AnswersAtAKeyboardThatIsAPipe) {

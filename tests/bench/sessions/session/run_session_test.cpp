@@ -66,6 +66,29 @@ TEST(RunSession, GoesThroughAllTrialsAndRecordsEach) {
   }
 }
 
+TEST(RunSession, TakesAnswersThatAreWords) {
+  for (const std::string design : {"same-different\"", "yes-no\"\nsignal = \"soft\""}) {
+    test::BlindRun session(protocol_from(
+        protocol_text("design = \"" + design + "\ntrials = 12\npractice = 1\n" + short_sequence)));
+    RehearsalSubject subject(1);
+    EXPECT_EQ(session.run(subject).end, SessionEnd::finished);
+    const SessionStore store = session.read();
+    const Study study = study_of(std::vector<const SessionStore*>{&store});
+    const std::size_t slots = slots_of(store.protocol());
+    std::set<std::size_t> choices;
+    for (std::size_t i = 0; i < store.trials().size(); ++i) {
+      const RecordedTrial trial = store.trial(i);
+      std::set<int> played;
+      for (const TraceRow& tick : trial.trace) played.insert(tick.slot);
+      EXPECT_EQ(played.size(), slots + 1);
+      choices.insert(trial.answer);
+      EXPECT_EQ(study.judgements[i].answer, answer_of_choice(store.protocol(), trial.answer));
+      EXPECT_EQ(study.judgements[i].confidence, confidence_of_choice(store.protocol(), trial.answer));
+    }
+    EXPECT_GT(choices.size(), slots == 1 ? 3U : 1U) << "a rehearsal names all of them";
+  }
+}
+
 TEST(RunSession, PlaysTheLawsThatThePlanSays) {
   test::BlindRun session(
       protocol_from(protocol_text("design = \"preference\"\ntrials = 8\n" + short_sequence)));

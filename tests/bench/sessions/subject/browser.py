@@ -11,7 +11,8 @@ import urllib.error
 import urllib.request
 
 ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
-KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004", "Space": " "}
+KEYS = {"Enter": "\ue007", "Escape": "\ue00c", "Tab": "\ue004", "Space": " ",
+        "Backspace": "\ue003", "ArrowLeft": "\ue012", "ArrowRight": "\ue014", "End": "\ue010"}
 DIRECT = urllib.request.build_opener(urllib.request.ProxyHandler({}))
 
 

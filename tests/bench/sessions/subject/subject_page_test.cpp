@@ -88,7 +88,7 @@ TEST_F(SubjectPage, RefusesOtherNamesForThisMachineAndOtherSites) {
 }
 
 TEST_F(SubjectPage, ServesItsOwnFilesAndNoOthers) {
-  for (const char* path : {"/page.css", "/page.js", "/icon.svg"})
+  for (const char* path : {"/page.css", "/page.js", "/noise.js", "/guide.js", "/icon.svg"})
     EXPECT_EQ(status_of(get(path, ours())), "200");
   for (const char* path :
        {"/page.html", "/../page.js", "//etc/passwd", "/%2e%2e/etc/passwd", "/page.js/", "/action/"}) {
@@ -181,6 +181,16 @@ TEST_F(SubjectPage, RefusesWhatTheViewDoesNotPermit) {
   EXPECT_EQ(act("play", 3, "trial", 5), "409");
 }
 
+TEST_F(SubjectPage, TakesATrialBackOnlyWhereItMayBe) {
+  SubjectView view = test::free_trial(5);
+  page_.show(view);
+  EXPECT_EQ(act("slip", 0, "trial", 5), "409");
+  view.may_slip = true;
+  page_.show(view);
+  EXPECT_EQ(act("slip", 0, "trial", 5), "200");
+  EXPECT_EQ(in_words(page_.next()), "slip");
+}
+
 TEST_F(SubjectPage, RefusesWhatIsNoAction) {
   page_.show(test::free_trial(5));
   const std::string nested(4000, '[');
@@ -200,6 +210,75 @@ TEST_F(SubjectPage, KeepsOnlySoManyActions) {
   page_.show(test::free_trial(5));
   for (int i = 0; i < 16; ++i) EXPECT_EQ(act("play", 0, "trial", 5), "200");
   EXPECT_EQ(act("play", 0, "trial", 5), "503");
+}
+
+TEST_F(SubjectPage, AsksForTheLoudnessOfTheNoiseFirstAndKeepsItOnTheSessionsThread) {
+  std::vector<double> kept;
+  page_.page().use_noise(MaskingNoise::pink, std::nullopt,
+                         [&](double level_db) { kept.push_back(level_db); });
+  page_.show({.stage = SessionStage::welcome, .may_go_on = true});
+  const auto noise = [&] { return nlohmann::json::parse(body_of(get("/view?after=0", ours()))).at("noise"); };
+  EXPECT_EQ(noise().at("kind"), "pink");
+  EXPECT_TRUE(noise().at("level_db").is_null());
+  EXPECT_EQ(act("go_on", 0, "welcome", 0), "409");
+  const auto set = [&](const std::string& body) {
+    return status_of(test::answer_to(
+        port(), fmt::format("POST /noise HTTP/1.1\r\n{}Content-Type: application/json\r\nContent-Length: "
+                            "{}\r\n\r\n{}",
+                            ours(), body.size(), body)));
+  };
+  for (const char* const body :
+       {"{}", "[]", R"({"level_db": 0})", R"({"level_db": -80})", R"({"level_db": "x"})"})
+    EXPECT_EQ(set(body), "400") << body;
+  EXPECT_EQ(set(R"({"level_db": -30})"), "200");
+  EXPECT_TRUE(kept.empty());
+  EXPECT_FALSE(page_.next());
+  EXPECT_THAT(kept, testing::ElementsAre(-30.0));
+  EXPECT_EQ(noise().at("level_db"), -30.0);
+  EXPECT_EQ(set(R"({"level_db": -20})"), "409") << "it is set once";
+  EXPECT_EQ(act("go_on", 0, "welcome", 0), "200");
+}
+
+TEST_F(SubjectPage, ShowsTargetAndToolAsSharesOfTheWayWhileTheLoopRuns) {
+  EXPECT_EQ(status_of(get("/guide", ours())), "404") << "nothing leads";
+  GuideLook look;
+  page_.page().use_guide({.kind = GuideKind::strokes,
+                          .from = 0.5,
+                          .to = 0.1,
+                          .stroke_s = 1.0,
+                          .pause_s = 0.5,
+                          .felt = FeltGuide{.stiffness = 5.0, .limit = 1.0}},
+                         [&] { return look; });
+  page_.show({.stage = SessionStage::trial, .guided = true});
+  const nlohmann::json view = nlohmann::json::parse(body_of(get("/view?after=0", ours())));
+  EXPECT_EQ(view.at("guide"),
+            (nlohmann::json{
+                {"target", true}, {"tool", true}, {"cycle_s", 3.0}, {"clicks", false}, {"leads", true}}));
+  EXPECT_EQ(status_of(get("/guide", ours())), "409") << "the loop does not run yet";
+  look = {.time_s = 1.0, .position = 0.4};
+  const nlohmann::json now = nlohmann::json::parse(body_of(get("/guide", ours())));
+  EXPECT_EQ(now.at("time_s"), 1.0);
+  EXPECT_NEAR(now.at("target").get<double>(), 0.5, 1e-12) << "half way along the first stroke";
+  EXPECT_NEAR(now.at("tool").get<double>(), 0.25, 1e-12);
+  EXPECT_EQ(now.size(), 3U) << "and no force";
+  EXPECT_EQ(status_of(get("/guide", "Host: " + host() + "\r\n")), "403");
+  EXPECT_EQ(status_of(test::answer_to(port(), "POST /guide HTTP/1.1\r\n" + ours() + "\r\n")), "405");
+}
+
+TEST_F(SubjectPage, TellsOfABeatItsTimeAlone) {
+  page_.page().use_guide({.kind = GuideKind::metronome, .beat_s = 0.75},
+                         [] { return GuideLook{.time_s = 2.0, .position = 0.4}; });
+  page_.show({.stage = SessionStage::trial, .guided = true});
+  EXPECT_EQ(nlohmann::json::parse(body_of(get("/guide", ours()))), (nlohmann::json{{"time_s", 2.0}}));
+  const nlohmann::json view = nlohmann::json::parse(body_of(get("/view?after=0", ours())));
+  EXPECT_EQ(view.at("guide").at("clicks"), true);
+  EXPECT_EQ(view.at("guide").at("cycle_s"), 0.75);
+}
+
+TEST_F(SubjectPage, SpeaksOfNoNoiseWhereNoneIsAskedFor) {
+  page_.show({.stage = SessionStage::welcome, .may_go_on = true});
+  EXPECT_TRUE(nlohmann::json::parse(body_of(get("/view?after=0", ours()))).at("noise").is_null());
+  EXPECT_EQ(act("go_on", 0, "welcome", 0), "200");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "subject/subject_keys.h"
 #include "subject/subject_words.h"
 #include "views.h"
 
@@ -79,6 +80,52 @@ TEST(SubjectScreen, SaysInPlainLinesOnlyWhatChanged) {
 TEST(SubjectScreen, TellsHowLongABreakLasts) {
   SubjectView view{.stage = SessionStage::pause, .wait_s = 29.2};
   EXPECT_THAT(screen_of(view, "", "", 79).body, Contains("You can go on after 30 s."));
+}
+
+TEST(SubjectKeys, TakeATrialBackOnlyWhereItMayBe) {
+  SubjectKeys keys;
+  SubjectView view = test::free_trial(5);
+  keys.show(view);
+  EXPECT_EQ(test::in_words(keys.press('s')), "nothing");
+  EXPECT_THAT(keys.what_keys_do(), testing::Not(HasSubstr("slipped")));
+  view.may_slip = true;
+  keys.show(view);
+  EXPECT_THAT(keys.what_keys_do(), HasSubstr("S: I slipped."));
+  EXPECT_EQ(test::in_words(keys.press('S')), "slip");
+  EXPECT_EQ(test::in_words(command_of(view, "slip")), "slip");
+}
+
+SubjectView in_german(SubjectView view) {
+  view.texts = shipped_texts("de");
+  return view;
+}
+
+TEST(SubjectKeys, AreTheSameInEveryLanguageAndNamedInIt) {
+  SubjectKeys keys;
+  SubjectView view = in_german(test::free_trial(5));
+  view.may_slip = true;
+  keys.show(view);
+  EXPECT_EQ(keys.what_keys_do(),
+            "A, B oder X: fühlen. Eingabetaste: antworten. S: Ich habe mich vertan. Q: abbrechen.");
+  EXPECT_EQ(test::in_words(keys.press('q')), "nothing");
+  EXPECT_EQ(keys.what_keys_do(), "Die Sitzung abbrechen? Y: ja. Jede andere Taste: nein.");
+  EXPECT_EQ(test::in_words(keys.press('y')), "quit");
+  keys.show(in_german(test::words_trial(6)));
+  EXPECT_EQ(test::in_words(keys.press('4')), "answer 3");
+  EXPECT_EQ(test::in_words(keys.press('5')), "nothing");
+  keys.show(in_german({.stage = SessionStage::consent, .may_go_on = true}));
+  EXPECT_EQ(keys.what_keys_do(), "Leertaste: Ich willige ein. D: Ich willige nicht ein. Q: abbrechen.");
+}
+
+TEST(SubjectKeys, TakeCommandsInTheSubjectsLanguageAndInEnglish) {
+  const SubjectView german = in_german(test::free_trial(5));
+  EXPECT_THAT(said_of(in_german(test::free_trial(4)), german),
+              Contains("Befehle: fühle A, B oder X; antworte A oder B; abbrechen."));
+  EXPECT_EQ(test::in_words(command_of(german, "fühle x")), "play 2");
+  EXPECT_EQ(test::in_words(command_of(german, "Antworte B")), "answer 1");
+  EXPECT_EQ(test::in_words(command_of(german, "abbrechen")), "quit");
+  EXPECT_EQ(test::in_words(command_of(german, "play A")), "play 0");
+  EXPECT_EQ(test::in_words(command_of(test::free_trial(5), "fühle A")), "nothing");
 }
 
 TEST(SubjectWords, NameTheStagesAsTheyAreRecorded) {

@@ -310,5 +310,33 @@ TEST_F(SubjectLines, EndWithQuit) {
   EXPECT_EQ(in_words(subject.next()), "quit");
 }
 
+TEST(SubjectWords, HaveNumbersForKeys) {
+  SubjectKeys keys;
+  keys.show(test::words_trial(1));
+  EXPECT_NE(keys.what_keys_do().find("1 (no, sure), 2 (no, guessing), 3 (yes, guessing) or 4 (yes, sure)"),
+            std::string::npos);
+  EXPECT_EQ(in_words(keys.press('a')), "nothing") << "a slot is no answer";
+  EXPECT_EQ(in_words(keys.press('5')), "nothing");
+  EXPECT_EQ(in_words(keys.press('4')), "answer 3");
+}
+
+TEST(SubjectWords, AreAnsweredAfterEnterWhereTheSubjectSwitches) {
+  SubjectView view = test::words_trial(1);
+  view.may_switch = true;
+  SubjectKeys keys;
+  keys.show(view);
+  EXPECT_EQ(in_words(keys.press('1')), "play 0");
+  EXPECT_EQ(in_words(keys.press('\r')), "nothing");
+  EXPECT_EQ(in_words(keys.press('3')), "answer 2");
+}
+
+TEST(SubjectWords, AreTypedInLines) {
+  const SubjectView view = test::words_trial(1);
+  EXPECT_EQ(in_words(command_of(view, "answer yes, sure")), "answer 3");
+  EXPECT_EQ(in_words(command_of(view, "answer 2")), "answer 1");
+  EXPECT_EQ(in_words(command_of(view, "play A")), "play 0");
+  EXPECT_EQ(in_words(command_of(view, "answer maybe")), "nothing");
+}
+
 }  // namespace
 }  // namespace kerf::bench

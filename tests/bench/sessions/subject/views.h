@@ -35,6 +35,15 @@ inline bench::SubjectView sequence_trial(std::size_t number) {
   return view;
 }
 
+/// One slot has been played; the answers are words.
+inline bench::SubjectView words_trial(std::size_t number) {
+  bench::SubjectView view = sequence_trial(number);
+  view.labels = {"A"};
+  view.answers = 4;
+  view.answer_labels = {"no, sure", "no, guessing", "yes, guessing", "yes, sure"};
+  return view;
+}
+
 /// "play 1", "answer 0", "go_on"; "nothing".
 inline std::string in_words(const std::optional<bench::SubjectAction>& action) {
   using Kind = bench::SubjectAction::Kind;
@@ -50,6 +59,8 @@ inline std::string in_words(const std::optional<bench::SubjectAction>& action) {
       return "answer " + std::to_string(action->slot);
     case Kind::quit:
       return "quit";
+    case Kind::slip:
+      return "slip";
   }
   return "?";
 }

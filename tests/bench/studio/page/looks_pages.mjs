@@ -18,6 +18,15 @@ async function furnish(studio) {
   studio.makeSession(protocol);
   await makePunch(studio);
   await makeStudy(studio);
+  const search = ["--max-force", "2", "--z-width", "--rungs", "3", "--repeats", "1", "--resolution", "0.2"];
+  studio.kerfOrThrow(
+    "identify",
+    "sim:axis?hand=off&coulomb=0.1N&step=0.01mm&limit=40N",
+    "--free",
+    search,
+    "-o",
+    "axis",
+  );
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
   const recording = await studio.id("recordings", "cut.h5");
   const work = async (path, body) => {
@@ -37,6 +46,7 @@ async function furnish(studio) {
   return {
     recording,
     punch: await studio.id("recordings", "punch.h5"),
+    device: await studio.id("files", "axis/identify.json"),
     study: (await studio.api("/api/studies")).json[0].id,
     fit: await work("/api/fit", { recording, axis: "theta", models: ["kelvin", "exponential", "piecewise"], folds: 2 }),
     chart: await work("/api/chart", { recording, axis: "theta", models: ["kelvin", "exponential"] }),
@@ -65,6 +75,7 @@ export const tests = {
       chart: `chart/${ids.chart}`,
       stability: `stability/${ids.stability}`,
       sessions: "sessions",
+      device: `devices/${ids.device}`,
       flags: `recordings/${ids.punch}`,
       study: `studies/${ids.study}`,
     };

@@ -1,7 +1,7 @@
-// Fits, the speed-accuracy chart, the choice of a law and stability maps, as a person works through them: each is
+// Fits, the speed-accuracy chart, the choice of a law, stability maps and devices, as a person works through them: each is
 // ordered on the page, and what is shown is held to what the program's own verb says.
 
-import { readFile } from "node:fs/promises";
+import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
@@ -215,6 +215,45 @@ async function testMapOfALaw(page, studio) {
   expect(told.includes(`depth ${depth_mm} mm: ${cells[11].stable ? "passive" : "gains energy"}`), told);
 }
 
+/** A device that was identified: what its file tells stands on its page, and a chart that somebody adds to it is drawn. */
+async function testDevice(page, studio) {
+  const search = ["--max-force", "2", "--z-width", "--rungs", "2", "--repeats", "1", "--resolution", "0.3"];
+  const excitation = ["--free", "--seconds", "8", "--period", "0.5", "--band", "2", "40"];
+  const uri = "sim:axis?hand=off&coulomb=0.1N&step=0.01mm&limit=40N";
+  studio.kerfOrThrow("identify", uri, excitation, search, "-o", "axis");
+  const written = await jsonIn(studio, "axis/identify.json");
+  const [axis] = written.axes;
+  await page.goto(`${studio.url}#/devices`);
+  await page.getByRole("link", { name: "axis", exact: true }).click();
+  await heading(page, /^Device axis$/);
+  expect((await page.textContent("main .verdict")).includes(axis.verdict), "its verdict");
+  expectEqual(
+    await page.locator("main tbody td:nth-child(1)").allTextContents(),
+    axis.numbers.map((it) => it.name),
+    "its numbers",
+  );
+  const unknown = await page
+    .locator("main tbody td:nth-child(2)")
+    .filter({ hasText: /^unknown$/ })
+    .count();
+  expectEqual(unknown, axis.numbers.filter((it) => it.value === null).length, "what is unknown is said to be");
+  const titles = axis.charts.map((it) => it.figure.title);
+  expectEqual(await page.locator("main figcaption").allTextContents(), titles, "its charts");
+  expect(titles.length === 5 && titles[4].startsWith("Z-width"), `response, coherence, friction, Z-width: ${titles}`);
+  const marks = axis.charts[0].figure.curves.find((it) => it.mark === "points").x.length;
+  expectEqual(
+    await page.locator("main figure").first().locator(".over .mark").count(),
+    marks,
+    "points of the response",
+  );
+  written.charts = [{ name: "others", figure: { ...axis.charts[3].figure, title: "What somebody adds" } }];
+  await writeFile(join(studio.folder, "axis/identify.json"), JSON.stringify(written));
+  await page.reload();
+  await until("the chart that was added is drawn", async () =>
+    (await page.locator("main figcaption").allTextContents()).includes("What somebody adds"),
+  );
+}
+
 /** All of it on a page of a studio whose folder has cut.h5, segmented. */
 export async function testResults(page, studio) {
   studio.kerf(["record", "--device", "sim:scissors", "--seconds", "6", "--virtual", "-o", "short.h5"]);
@@ -225,6 +264,7 @@ export async function testResults(page, studio) {
   await testChoice(page, studio);
   await testStability(page, studio);
   await testMapOfALaw(page, studio);
+  await testDevice(page, studio);
 }
 
 export const tests = {

@@ -3,6 +3,7 @@
 import { readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 
+import { audit } from "./accessibility.mjs";
 import { expect, expectEqual, expectNoComplaints, openPage, until } from "./harness.mjs";
 
 const protocol = `name = "one law or another"
@@ -11,6 +12,10 @@ instructions = "Close and open the scissors."
 trials = 4
 practice = 0
 device = "sim:scissors"
+
+[apparatus]
+headphones = "closed, over both ears"
+checks = ["the curtain hides the hand", "the door is shut"]
 
 [[sample]]
 name = "soft"
@@ -34,6 +39,14 @@ async function prepare(studio, device = "sim:scissors") {
   studio.kerfOrThrow("session", "key", "keeper.key");
   studio.makeSession("abx.protocol.toml");
   await studio.serve("--key-file", join(studio.folder, "keeper.key"));
+}
+
+/** What the experimenter's page is given has no name of a sample, no slot, no level and no answer. */
+function tellsNothing({ status, json }) {
+  expectEqual(status, 200, "the answer");
+  const text = JSON.stringify(json);
+  for (const told of ['"soft"', "hard", "slot", "level", "correct", "answers", "plays"])
+    expect(!text.includes(told), `${told} in ${text}`);
 }
 
 /** Goes on, feels every slot and answers, as long as the page lets. */
@@ -61,6 +74,14 @@ export const tests = {
     await experimenter.goto(studio.page("sessions"));
     await experimenter.getByRole("button", { name: "Begin S01.h5" }).click();
     await experimenter.getByLabel("Try the laws on the device first").uncheck();
+    await experimenter.getByLabel("headphones: closed, over both ears").check();
+    const curtain = experimenter.getByLabel("check 1: the curtain hides the hand");
+    await curtain.click();
+    await curtain.click(); // it is not so
+    const untouched = experimenter.getByLabel("check 2: the door is shut");
+    expect(await untouched.evaluate((it) => it.indeterminate), "what nobody touched is neither yes nor no");
+    await experimenter.screenshot({ path: join(screenshots, "experimenter-set-up.png"), fullPage: true });
+    expectEqual(await audit(experimenter), [], "what of the set-up is not accessible");
     await experimenter.getByRole("button", { name: "Begin the session" }).click();
     const link = experimenter.getByRole("link", { name: "Open the subject's page" });
     await link.waitFor();
@@ -73,7 +94,15 @@ export const tests = {
       experimenter
         .getByText("1 of 4 trials")
         .waitFor()
-        .then(() => experimenter.screenshot({ path: join(screenshots, "experimenter.png") })),
+        .then(async () => {
+          const answered = experimenter.locator(".quality div", { hasText: "Trials answered" }).locator("dd");
+          await until("its trials are told", async () => Number(await answered.textContent()) >= 1);
+          await experimenter.getByLabel("Note, for everybody to read").fill("the telephone rang");
+          await experimenter.getByRole("button", { name: "Keep the note" }).click();
+          await experimenter.locator(".notes li", { hasText: "the telephone rang" }).waitFor();
+          tellsNothing(await studio.api("/api/session"));
+          await experimenter.screenshot({ path: join(screenshots, "experimenter.png"), fullPage: true });
+        }),
     ]);
     await experimenter.getByText("Ended: finished: 4 trials").waitFor();
     expectNoComplaints(experimenter);
@@ -84,6 +113,27 @@ export const tests = {
     expect(JSON.stringify(analysis).includes("S01"), "the analysis knows the subject");
     const facts = JSON.parse(studio.kerfOrThrow("info", "S01.h5", "--json").stdout);
     expectEqual([facts.finished, facts.trials], [true, 4], "what the file says");
+    const texts = (kind) => facts.entries.filter((it) => it.kind === kind).map((it) => it.text);
+    expectEqual(texts("note"), ["the telephone rang"], "the note is in the file");
+    expectEqual(
+      texts("apparatus").map((it) => JSON.parse(it)),
+      [{ headphones: true, "check 1": false, "check 2": null }],
+      "what was confirmed, what was denied, and what nobody said",
+    );
+    await experimenter.getByRole("button", { name: "Read all sessions" }).click();
+    const row = experimenter.locator(".folder_quality tbody");
+    await row.getByText("finished").waitFor();
+    expect((await row.textContent()).includes("the telephone rang"), "the note stands in the row");
+    tellsNothing(await studio.api("/api/session/quality", { session: await studio.id("sessions", "S01.h5") }));
+    for (const colorScheme of ["light", "dark"]) {
+      await experimenter.emulateMedia({ colorScheme });
+      await experimenter.evaluate(() => scrollTo(0, 0));
+      await experimenter.screenshot({
+        path: join(screenshots, `experimenter-quality-${colorScheme}.png`),
+        fullPage: true,
+      });
+      expectEqual(await audit(experimenter), [], `what of the trials' table is not accessible in the ${colorScheme}`);
+    }
   },
 
   async "who has the subject's address gets at nothing else, and sees nothing of the loop"({ browser, studio }) {

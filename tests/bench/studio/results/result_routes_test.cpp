@@ -96,6 +96,14 @@ TEST_F(ResultRoutes, DrawWhatEarlierVersionsWrote) {
   }
 }
 
+TEST_F(ResultRoutes, ShowADeviceAsItStands) {
+  std::filesystem::create_directory(folder_ / "axis");
+  test::write_text(folder_ / "axis/identify.json", R"({"device": "falcon:0", "axes": [], "charts": []})");
+  const HttpResponse device = get("/api/result", {{"id", id("axis/identify.json")}});
+  ASSERT_EQ(device.status, 200) << device.body;
+  EXPECT_EQ(json::parse(device.body), json::parse(test::read_text(folder_ / "axis/identify.json")));
+}
+
 TEST_F(ResultRoutes, ShowALawAndWhatItLeavesOfARecording) {
   const HttpResponse law = get("/api/law", {{"id", id("tissue.law.toml")}});
   ASSERT_EQ(law.status, 200) << law.body;

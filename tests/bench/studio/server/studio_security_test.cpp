@@ -85,9 +85,10 @@ const std::vector<std::string> gets{"/",
                                     "/api/study/report?id=0",
                                     "/api/session",
                                     "/nothing"};
-const std::vector<std::string> posts{"/api/live/start", "/api/live/resume", "/api/live/record",
-                                     "/api/live/feel",  "/api/editor/save", "/api/fit",
-                                     "/api/chart",      "/api/stability",   "/api/session/start"};
+const std::vector<std::string> posts{"/api/live/start",      "/api/live/resume", "/api/live/record",
+                                     "/api/live/feel",       "/api/editor/save", "/api/fit",
+                                     "/api/chart",           "/api/stability",   "/api/session/start",
+                                     "/api/session/quality", "/api/session/note"};
 const std::string zero = "/api/live/zero";
 
 std::string with_parameter(const std::string& target, const std::string& parameter) {
@@ -225,7 +226,8 @@ TEST_F(StudioUnderAttack, LeadsNowhereByAnyTextOfABody) {
       {"/api/chart", R"({{"recording": "{}", "axis": "theta", "models": []}})"},
       {"/api/choose", R"({{"recording": "{}", "axis": "theta"}})"},
       {"/api/stability", R"({{"device": "sim:scissors", "rate_hz": 1000, "law": "{}", "cells": 10}})"},
-      {"/api/session/start", R"({{"session": "{}"}})"}};
+      {"/api/session/start", R"({{"session": "{}"}})"},
+      {"/api/session/quality", R"({{"session": "{}"}})"}};
   for (const auto& [path, body] : bodies) {
     for (std::string way : ways_out) {
       for (std::size_t at = way.find('\\'); at != std::string::npos; at = way.find('\\', at + 2))
@@ -260,7 +262,7 @@ TEST_F(StudioUnderAttack, LetsNoDriverOpenAFileOutsideOfTheFolder) {
     return post(path, fmt::format(R"({{"session": "0", "{}": "{}"}})", field, file));
   };
   for (const char* const uri :
-       {"u6:0?calibration=", "falcon:0?firmware=", "sim:scissors?seed=3&calibration="}) {
+       {"u6:0?calibration=", "falcon:0?firmware=", "sim:scissors?seed=3&calibration=", "sim:axis?model="}) {
     for (const std::string& file :
          {std::string("/etc/passwd"), std::string("../../etc/passwd"), (folder_ / "bad.toml").string(),
           std::string("./bad.toml"), std::string("link"), std::string("fifo"), std::string("/dev/zero"),

@@ -159,7 +159,51 @@ export interface LawStability extends StabilityOf {
   cells: { depth_m: number; rate_hz: number; stable: boolean; theory: boolean }[];
 }
 
-export type StabilityFile = WallStability | LawStability;
+export interface PlaneStability extends StabilityOf {
+  study: "plane";
+  cells: { viscous: number; coulomb: number; behaviour: string; region: string }[];
+}
+
+/** What has a picture and no cells. */
+export interface CurveStability extends StabilityOf {
+  study: "several" | "z_width" | "controllers";
+}
+
+export type StabilityFile = WallStability | LawStability | PlaneStability | CurveStability;
+
+/** What was found of a device, unknown where it is null. */
+export interface DeviceNumber {
+  name: string;
+  value: number | null;
+  lower: number | null;
+  upper: number | null;
+  unit: string;
+}
+
+/** Whatever a result describes so is drawn. */
+export interface DescribedChart {
+  name: string;
+  figure: Figure;
+}
+
+export interface DeviceAxis {
+  name: string;
+  problem: string;
+  fits?: boolean | null; // missing, as what follows, where nothing was found; null: nobody can tell
+  verdict?: string;
+  why_not?: string[];
+  numbers?: DeviceNumber[]; // missing in files of earlier versions, as the next
+  charts?: DescribedChart[];
+  z_width?: { in_words: string[] } | null; // null: it was not searched
+}
+
+export interface DeviceFile {
+  device: string;
+  model: string;
+  held: boolean;
+  axes: DeviceAxis[];
+  charts?: DescribedChart[]; // of the whole device
+}
 
 /** A law file, and what a tool feels that goes in and out at a constant speed. */
 export interface LawView {

@@ -30,13 +30,20 @@ export interface WorkspaceSession {
   key: string; // "key file" or "passphrase"
   finished: boolean;
   answered: number;
+  apparatus: ApparatusItem[]; // what is to be confirmed before a run
   error: string;
+}
+
+/** What an experimenter confirms of the set-up: "headphones", "closed, over both ears". */
+export interface ApparatusItem {
+  name: string;
+  what: string;
 }
 
 export interface WorkspaceFile {
   id: string;
   name: string;
-  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study";
+  kind: "fit" | "chart" | "choice" | "stability" | "suite" | "scene" | "protocol" | "study" | "device";
 }
 
 export interface Workspace {

@@ -36,6 +36,7 @@ export class StabilityMap {
       this.readout,
       this.drawing.legend,
     );
+    if (figure.cells.x_edges.length === 0) this.readout.textContent = "";
     this.drawing.plot.layer.append(this.cursor);
     this.drawing.show();
   }
@@ -61,6 +62,7 @@ export class StabilityMap {
     const { x_edges, y_edges } = this.drawing.figure.cells;
     const rows = y_edges.length - 1;
     const columns = x_edges.length - 1;
+    if (rows < 1 || columns < 1) return;
     if (this.row < 0) return this.go(Math.floor(rows / 2), Math.floor(columns / 2));
     this.go(
       Math.min(rows - 1, Math.max(0, this.row + (step[0] ?? 0))),
@@ -85,6 +87,13 @@ export class StabilityMap {
 
 /** "K 4.2 kN/m, B 3.1 N·s/m: comes to rest; theory (the eigenvalues) agrees", of a cell of the file. */
 function cellInWords(file: StabilityFile, at: number): string {
+  if (!("cells" in file)) return "";
+  if (file.study === "plane") {
+    const point = file.cells[at];
+    if (!point) return "";
+    const place = `b/(K T) ${point.viscous.toPrecision(3)}, f_c/(K delta) ${point.coulomb.toPrecision(3)}`;
+    return `${place}: ${point.behaviour}; by the lines ${point.region}`;
+  }
   const cell = file.cells[at];
   if (!cell) return "";
   const agrees = cell.stable === cell.theory ? "agrees" : "says otherwise";

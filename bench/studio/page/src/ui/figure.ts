@@ -50,9 +50,10 @@ export class FigurePlot {
   }
 
   show(): void {
-    const { curves, x_range, y_range } = this.figure;
+    const { curves, x_range, y_range, log_x, log_y } = this.figure;
     const lines = curves.filter((it) => it.mark === "line").map((it) => ({ x: it.x, y: it.y, class: lineClass(it) }));
-    const needed = XyPlot.around(curves.map((it) => ({ x: it.x, y: it.y, class: "" })));
+    const all = curves.map((it) => ({ x: it.x, y: it.y, class: "" }));
+    const needed = XyPlot.around(all, { x: log_x, y: log_y });
     this.plot.show(lines, { x: x_range ?? needed.x, y: y_range ?? needed.y });
   }
 

@@ -33,6 +33,7 @@ export interface FigureLabel {
 }
 /** What the server sends of chart_to_json() in bench/figures/plot. */
 export interface Figure {
+  title?: string;
   x_label: string;
   y_label: string;
   curves: FigureCurve[];

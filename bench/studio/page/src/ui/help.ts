@@ -10,7 +10,7 @@ export function singleKeysOn(): boolean {
 
 const keys: readonly (readonly [string, string])[] = [
   ["Escape", "zero force, from anywhere"],
-  ["Ctrl + Alt + 1 to 8", "the pages, in the order of the bar"],
+  ["Ctrl + Alt + 1 to 9", "the pages, in the order of the bar"],
   ["?", "this help"],
   ["Space", "scope: pause, go on"],
   ["← →", "plot: move the cursor; loops: the cycle before, after"],

@@ -15,6 +15,7 @@ export function withUnit(value: number | null | undefined, unit: string, digits 
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (unit === "1" || unit === "") return plain(value, digits);
   if (value === 0) return `0 ${unit}`;
+  if (unit.startsWith("kg")) return withUnit(1000 * value, unit.slice(1), digits);
   const size = Math.abs(value);
   const [factor, prefix] = prefixes.find(([it]) => size >= it * 0.9995) ?? [1e-9, "n"];
   return `${plain(value / factor, digits)} ${prefix}${unit}`;

@@ -68,23 +68,24 @@ export class XyPlot {
     this.observer.disconnect();
   }
 
-  /** Limits that hold all lines, with a little room; logarithmic axes in whole factors. */
-  static around(lines: readonly PlotLine[]): Limits {
-    const span = (pick: (line: PlotLine) => readonly (number | null)[]): [number, number] => {
+  /** Limits that hold all lines, with a little room; of a logarithmic axis what is above zero. */
+  static around(lines: readonly PlotLine[], logarithmic = { x: false, y: false }): Limits {
+    const span = (pick: (line: PlotLine) => readonly (number | null)[], factors: boolean): [number, number] => {
       let lower = Infinity;
       let upper = -Infinity;
       for (const line of lines) {
         for (const value of pick(line)) {
-          if (value === null || !Number.isFinite(value)) continue;
+          if (value === null || !Number.isFinite(value) || (factors && value <= 0)) continue;
           lower = Math.min(lower, value);
           upper = Math.max(upper, value);
         }
       }
-      if (!(lower <= upper)) return [0, 1];
+      if (!(lower <= upper)) return factors ? [1, 10] : [0, 1];
+      if (factors) return [lower / 1.15, upper * 1.15];
       const room = 0.04 * (upper - lower || Math.abs(upper) || 1);
       return [lower - room, upper + room];
     };
-    return { x: span((it) => it.x), y: span((it) => it.y) };
+    return { x: span((it) => it.x, logarithmic.x), y: span((it) => it.y, logarithmic.y) };
   }
 
   show(lines: PlotLine[], limits: Limits): void {

@@ -2,6 +2,9 @@ import "./sessions.css";
 
 import type { SessionState } from "../api/sessions";
 import type { Workspace, WorkspaceSession } from "../api/workspace";
+import { apparatusFields } from "../sessions/apparatus";
+import { notes } from "../sessions/notes";
+import { folderQuality, liveQuality } from "../sessions/quality_panel";
 import { button, element, labelled } from "../ui/dom";
 import type { Context, View } from "../ui/view";
 
@@ -16,8 +19,12 @@ const stages: Record<string, string> = {
   finished: "The subject has finished",
 };
 
-/** How far a session is: nothing of what was felt or answered. */
-function progressCard(): { root: HTMLElement; show: (state: SessionState) => void; stop: HTMLButtonElement } {
+/** How far a session is and how its trials go: nothing of what was felt or answered. */
+function progressCard(context: Context): {
+  root: HTMLElement;
+  show: (state: SessionState) => void;
+  stop: HTMLButtonElement;
+} {
   const name = element("h2", {}, "No session is running");
   const stage = element("p", { role: "status" });
   const bar = element("progress", { max: 1, value: 0, "aria-label": "Trials done" });
@@ -25,6 +32,8 @@ function progressCard(): { root: HTMLElement; show: (state: SessionState) => voi
   const link = element("a", { target: "_blank", rel: "noopener noreferrer" }, "Open the subject's page");
   const warnings = element("ul", { class: "warnings", "aria-label": "Warnings" });
   const stop = button("Stop the session", () => {});
+  const quality = liveQuality();
+  const written = notes(context);
   const root = element(
     "section",
     { class: "card progress", "aria-label": "Progress" },
@@ -35,6 +44,8 @@ function progressCard(): { root: HTMLElement; show: (state: SessionState) => voi
     link,
     warnings,
     stop,
+    quality.root,
+    written.root,
   );
   return {
     root,
@@ -51,6 +62,8 @@ function progressCard(): { root: HTMLElement; show: (state: SessionState) => voi
       stop.hidden = !state.running;
       if (warnings.childElementCount !== state.warnings.length)
         warnings.replaceChildren(...state.warnings.map((it) => element("li", {}, it)));
+      quality.show(state);
+      written.show(state);
     },
   };
 }
@@ -79,13 +92,20 @@ function startForm(
     required: session.key === "passphrase",
   });
   const check = element("input", { type: "checkbox", checked: true });
+  const apparatus = apparatusFields(session.apparatus);
   return element(
     "form",
     {
       class: "card start",
       submit: (event: SubmitEvent) => {
         event.preventDefault();
-        start({ session: session.id, device: uri.value.trim(), passphrase: passphrase.value, check: check.checked });
+        start({
+          session: session.id,
+          device: uri.value.trim(),
+          passphrase: passphrase.value,
+          check: check.checked,
+          apparatus: apparatus.given(),
+        });
         passphrase.value = "";
       },
     },
@@ -94,6 +114,7 @@ function startForm(
     session.key === "passphrase"
       ? labelled("Passphrase of whoever keeps the blinding", passphrase)
       : element("p", { class: "quiet" }, "Sealed with a key file: the studio has to be started with --key-file."),
+    apparatus.root,
     element("label", { class: "tick" }, check, element("span", {}, "Try the laws on the device first")),
     element(
       "button",
@@ -104,7 +125,7 @@ function startForm(
 }
 
 function mount(root: HTMLElement, context: Context): () => void {
-  const card = progressCard();
+  const card = progressCard(context);
   const list = element("ul", { class: "files", "aria-label": "Sessions" });
   const form = element("div", { class: "form" });
   const intro = element(
@@ -116,8 +137,10 @@ function mount(root: HTMLElement, context: Context): () => void {
   root.append(
     element("h1", { tabindex: -1 }, "Sessions"),
     element("div", { class: "columns" }, element("div", {}, intro, list, form), card.root),
+    folderQuality(context, () => known),
   );
   let device = "";
+  let known: readonly WorkspaceSession[] = [];
   let running = ""; // the name of the session that runs
 
   const choose = (session: WorkspaceSession): void => {
@@ -138,6 +161,7 @@ function mount(root: HTMLElement, context: Context): () => void {
   const refresh = async (): Promise<void> => {
     const workspace = await context.api.get<Workspace>("/api/workspace");
     device = workspace.device;
+    known = workspace.sessions;
     list.replaceChildren(
       ...workspace.sessions.map((it) =>
         element(

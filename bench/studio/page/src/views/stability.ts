@@ -25,10 +25,17 @@ function listOf(files: readonly WorkspaceFile[]): HTMLElement {
 /** What was mapped, in a line. */
 function about(file: StabilityFile): string {
   const { on } = file;
+  const what = {
+    wall: "Virtual walls",
+    plane: "Diolaiti's plane",
+    z_width: "Z-width",
+    controllers: "Controllers of a wall",
+  };
+  if (file.study === "several") return `Several axes of ${on.device} at once, hand: ${on.grip}.`;
   const of =
-    file.study === "wall"
-      ? "Virtual walls"
-      : `${file.law}, to ${withUnit(file.range.depth_m, "m")} at up to ${withUnit(file.range.speed_m_s, "m/s")}`;
+    file.study === "law"
+      ? `${file.law}, to ${withUnit(file.range.depth_m, "m")} at up to ${withUnit(file.range.speed_m_s, "m/s")}`
+      : what[file.study];
   return `${of}, on ${on.device}, axis ${on.axis}, at ${withUnit(on.rate_hz, "Hz")}, hand: ${on.grip}.`;
 }
 

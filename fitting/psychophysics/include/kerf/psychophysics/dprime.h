@@ -17,6 +17,10 @@ enum class Decision {
   abx_differencing,  ///< pc = P(d'/sqrt2) P(d'/sqrt6) + P(-d'/sqrt2) P(-d'/sqrt6); both: [Macmillan1977].
                      ///< Differencing where stimuli rove, otherwise independent.
   same_different,    ///< two intervals, independent observations: pc = P(d'/2)^2 + P(-d'/2)^2
+  /// Likewise by differencing, |x1 - x2| > k with the k that is right most often, cosh(d' k / 2) = exp(d'^2 /
+  /// 4): pc = (1 + P((d' - k) / sqrt2) + P((-d' - k) / sqrt2) - 2 P(-k / sqrt2)) / 2; see same_different.h
+  same_different_differencing,
+  yes_no,  ///< one interval, with the signal or without: pc = P(d' / 2)
 };
 
 struct Task {
@@ -27,10 +31,12 @@ struct Task {
 /// Proportion of right answers by guessing: 1 / m, 1/3 or 1/2.
 [[nodiscard]] double chance_of(const Task& task);
 
-/// Of an unbiased observer. d' may be negative in a forced choice alone: the other rendering is then named.
+/// Of an unbiased observer. d' may be negative in a forced choice and in yes/no alone: the other one is then
+/// named.
 [[nodiscard]] double proportion_correct(const Task& task, double d_prime);
 
-/// The other way. 1 gives infinity, and what is at or below chance gives 0, except in a forced choice.
+/// The other way. 1 gives infinity, and what is at or below chance gives 0, except in a forced choice and in
+/// yes/no.
 [[nodiscard]] double d_prime(const Task& task, double proportion_correct);
 
 struct DPrime {
@@ -62,20 +68,12 @@ struct Detection {
 [[nodiscard]] Detection yes_no(Count hits, Count false_alarms, Correction correction = Correction::extremes,
                                double confidence = 0.95);
 
+/// d' = z(H) - z(F) of exact rates in (0, 1), as of an observer whose probabilities are known.
+[[nodiscard]] double yes_no_d_prime(double hit, double false_alarm);
+
 /// Two intervals with a bias to one of them: `first` counts "first" when it was the first, `second` counts
 /// "first" when it was the second. d' = (z(H) - z(F)) / sqrt2, and the criterion alike.
 [[nodiscard]] Detection two_interval(Count first, Count second, Correction correction = Correction::extremes,
                                      double confidence = 0.95);
-
-/// Same-different by differencing with a criterion k: the answer is "different" where |x1 - x2| > k.
-///
-///     F = 2 P(-k / sqrt2),   H = P((d' - k) / sqrt2) + P((-d' - k) / sqrt2)
-///
-/// `hits` counts "different" when they were, `false_alarms` when they were not; criterion is k. H <= F gives
-/// d' = 0. Errors by the delta method, the interval is d' +- z times the error, not below 0.
-/// [MacmillanCreelman2005], chapter 9.
-[[nodiscard]] Detection same_different(Count hits, Count false_alarms,
-                                       Correction correction = Correction::extremes,
-                                       double confidence = 0.95);
 
 }  // namespace kerf::psychophysics

@@ -1,5 +1,6 @@
 #include "report/results/summary.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,6 +63,22 @@ TEST(Summary, TakesWhatNobodyJudgedForUnknown) {
   EXPECT_FALSE(summary_of(of_kind(ResultKind::chart, R"({"points": [{"error_jnd": 0.1}]})")).is_known);
   EXPECT_FALSE(summary_of(of_kind(ResultKind::stability, R"({"study": "wall"})")).is_known);
   EXPECT_FALSE(summary_of(of_kind(ResultKind::replay, R"({"laws": []})")).is_known);
+}
+
+TEST(Summary, TakesADeviceForWhatItIsThoughItIsOfNoRecording) {
+  const auto of_axis = [](const char* good, const char* fits) {
+    return summary_of(of_kind(ResultKind::device,
+                              fmt::format(R"({{"device": "falcon:0", "good": {},
+                                   "axes": [{{"name": "x", "fits": {}, "verdict": "to 2 %"}}]}})",
+                                          good, fits)
+                                  .c_str(),
+                              Belongs::unknown));
+  };
+  EXPECT_EQ(of_axis("true", "true").answer, Answer::good);
+  EXPECT_EQ(of_axis("true", "true").text, "device falcon:0: x: the model fits: to 2 %");
+  EXPECT_EQ(of_axis("false", "false").answer, Answer::partly);
+  EXPECT_TRUE(of_axis("false", "false").is_known);
+  EXPECT_FALSE(of_axis("false", "null").is_known);
 }
 
 TEST(Summary, CountsFlagsAndWarningsAlsoWithoutAnyCycle) {

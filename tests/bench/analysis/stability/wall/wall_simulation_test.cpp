@@ -1,9 +1,14 @@
 #include "stability/wall/wall_simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "stability/bisection.h"
+#include "stability/wall/wall_force.h"
 
 namespace kerf::bench {
 namespace {
@@ -27,6 +32,44 @@ TEST_P(LinearWall, BreaksWhereItsEigenvaluesSay) {
   EXPECT_GE(compared, 2);
 }
 
+/// Whether a wall comes to rest by a loop of its own, tick by tick.
+bool alone(const SampledDevice& device, const Wall& wall, double seconds) {
+  SampledLoop loop(device, WallForce{.wall = wall, .one_sided = false}, {.position_m = 1e-3});
+  const int quarter = static_cast<int>(0.25 * seconds / device.period_s);
+  const double stiffness = wall.stiffness_n_per_m + device.hand.stiffness_n_per_m;
+  double energy[4] = {};
+  for (double& of_quarter : energy) {
+    double sum = 0.0, squares = 0.0, speeds = 0.0;
+    for (int tick = 0; tick < quarter; ++tick) {
+      loop.step();
+      const auto [x, v] = loop.motion();
+      if (!(std::abs(x) < 1.0)) return false;
+      sum += x;
+      squares += x * x;
+      speeds += v * v;
+    }
+    of_quarter = device.moving_mass_kg() * speeds / quarter +
+                 stiffness * (squares / quarter - sum * sum / (1.0 * quarter * quarter));
+  }
+  return energy[3] < energy[1] || energy[3] < stiffness * 1e-24;
+}
+
+TEST_P(LinearWall, ComesToRestAmongManyAsItDoesAlone) {
+  const SampledDevice& device = GetParam().device;
+  std::vector<Wall> walls;
+  for (int i = 0; i < 37; ++i)  // two packets and a part of one
+    walls.push_back({20.0 * std::pow(1.25, i), 0.07 * (i % 9) * (i % 9)});
+  const std::vector<bool> together = WallSimulation(device).come_to_rest(walls, {.seconds = 1.0});
+  int rest = 0;
+  for (std::size_t i = 0; i < walls.size(); ++i) {
+    EXPECT_EQ(together[i], alone(device, walls[i], 1.0)) << i;
+    EXPECT_EQ(together[i], WallSimulation(device).comes_to_rest(walls[i], {.seconds = 1.0})) << i;
+    rest += together[i] ? 1 : 0;
+  }
+  EXPECT_GT(rest, 2);
+  EXPECT_LT(rest, 35);
+}
+
 constexpr SampledDevice handle{.mass_kg = 0.1, .viscous_n_s_per_m = 0.4};
 SampledDevice with(double delay_s, double corner, HandImpedance hand, double period_s = 1e-3) {
   SampledDevice device = handle;
@@ -44,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(Devices, LinearWall,
                                          NamedDevice{"InAHand", with(1.3e-3, 200.0, {0.15, 5.0, 500.0})},
                                          NamedDevice{"At250Hz", with(0.0, 0.0, {}, 4e-3)}),
                          [](const auto& about) { return about.param.name; });
+
+TEST(FirstChange, IsFoundByManyQuestionsAtOnceAsByOneAfterAnother) {
+  const Search search{.lower = 1.0, .upper = 1000.0, .share = 1e-3};
+  for (const double change : {0.5, 1.5, 37.0, 999.0, 2000.0}) {
+    const auto holds = [&](double number) { return number < change; };
+    const double truth = std::clamp(change, search.lower, search.upper);
+    EXPECT_NEAR(first_change(search, holds), truth, 1e-3 * truth);
+    for (const std::size_t many : {std::size_t{2}, std::size_t{5}, std::size_t{16}}) {
+      const auto hold = [&](std::span<const double> numbers) {
+        EXPECT_LE(numbers.size(), many);
+        std::vector<bool> all;
+        for (const double number : numbers) all.push_back(holds(number));
+        return all;
+      };
+      EXPECT_NEAR(first_change_of_many(search, many, hold), truth, 1e-3 * truth) << many;
+    }
+  }
+}
 
 TEST(Wall, WithoutAnyFrictionNeverComesToRest) {
   const SampledDevice free{.mass_kg = 0.1, .viscous_n_s_per_m = 0.0};

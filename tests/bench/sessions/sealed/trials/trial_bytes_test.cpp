@@ -88,6 +88,18 @@ TEST(TrialBytes, AreAsManyWhateverWasPlayedOrAnswered) {
   EXPECT_EQ(trial_bytes(trial).size(), length) << "zeros take their room, too";
 }
 
+TEST(TrialBytes, KeepWhyATrialIsVoidInTheSameRoom) {
+  RecordedTrial trial = trial_of(10);
+  const std::size_t length = trial_bytes(trial).size();
+  EXPECT_FALSE(trial_from(trial_bytes(trial), TraceToo::no).is_void());
+  trial.void_reasons = {VoidReason::fault, VoidReason::slipped};
+  trial.answer = no_answer;
+  EXPECT_EQ(trial_bytes(trial).size(), length);
+  const RecordedTrial back = trial_from(trial_bytes(trial), TraceToo::yes);
+  EXPECT_EQ(back.void_reasons, trial.void_reasons);
+  EXPECT_EQ(back.answer, no_answer);
+}
+
 TEST(TrialBytes, RefuseNamesThatDoNotFit) {
   RecordedTrial trial = trial_of(1);
   trial.axes[0].name.assign(5000, 'x');

@@ -66,6 +66,53 @@ TEST(TrialQuality, IsNotSoundWithAFaultOrANewSoftStartWhileASlotPlays) {
   EXPECT_EQ(quality_of(two_slots(2.0, 3.0, schema::flag_missed_deadline), 2)->missed_deadlines, 1U);
 }
 
+TEST(TrialQuality, CountsStrokesFromTurnToTurn) {
+  RecordedTrial trial;
+  trial.axes = {{.name = "x", .position_unit = "m", .force_unit = "N"}};
+  for (std::size_t i = 0; i <= 2000; ++i) {
+    const double t_s = period_s * static_cast<double>(i);
+    TraceRow row{.row = {.tick = i, .time_s = t_s}, .slot = 0};
+    // Five strokes of 10 mm in 2 s, with a tremor of 0.5 mm that is none.
+    row.row.position[0] = 0.005 * (1.0 - std::cos(2.5 * M_PI * t_s)) + 0.00025 * std::sin(60.0 * t_s);
+    trial.trace.push_back(row);
+  }
+  EXPECT_EQ(quality_of(trial, 1)->slots[0].strokes, 5U);
+}
+
+TEST(TrialQuality, IsVoidForWhatTheProtocolSaysAndNothingElse) {
+  using R = VoidReason;
+  const auto reasons = [](std::uint32_t flag, const TrialRules& rules) {
+    return void_reasons_of(*quality_of(two_slots(2.0, 3.0, flag), 2), rules);
+  };
+  const TrialRules all{.fault = true, .soft_start = true, .limited_ticks = 0, .missed_deadlines = 0};
+  EXPECT_EQ(reasons(0, all), std::vector<R>{});
+  EXPECT_EQ(reasons(schema::flag_device_fault, all), std::vector<R>{R::fault});
+  EXPECT_EQ(reasons(schema::flag_soft_start, all), std::vector<R>{R::soft_start});
+  EXPECT_EQ(reasons(schema::flag_slew_limited, all), std::vector<R>{R::limited_ticks});
+  EXPECT_EQ(reasons(schema::flag_missed_deadline, all), std::vector<R>{R::missed_deadline});
+  EXPECT_EQ(reasons(schema::flag_device_fault | schema::flag_soft_start, all),
+            (std::vector<R>{R::fault, R::soft_start}));
+  EXPECT_EQ(reasons(schema::flag_slew_limited, {.limited_ticks = 1}), std::vector<R>{}) << "one still counts";
+  EXPECT_EQ(reasons(schema::flag_device_fault | schema::flag_missed_deadline, {}), std::vector<R>{});
+}
+
+TEST(TrialQuality, IsKnownThroughAPositionThatWasNoNumber) {
+  RecordedTrial trial = two_slots(2.0, 3.0);
+  trial.trace[400].row.position[0] = std::nan("");
+  EXPECT_NEAR(quality_of(trial, 2)->slots[0].travel_m, 0.998, 1e-9) << "without the two ticks around it";
+  EXPECT_TRUE(is_explored(*quality_of(trial, 2), {.travel_m = 0.4}));
+}
+
+TEST(TrialQuality, IsExploredOnlyWhereEverySlotIs) {
+  const TrialQuality quality = *quality_of(two_slots(2.0, 3.0), 2);  // 1 s and 0.5 s, 1 m and 0.5 m
+  EXPECT_TRUE(is_explored(quality, {}));
+  EXPECT_TRUE(is_explored(quality, {.contact_s = 0.4, .travel_m = 0.4, .force_n = 1.9, .strokes = 1}));
+  EXPECT_FALSE(is_explored(quality, {.contact_s = 0.6}));
+  EXPECT_FALSE(is_explored(quality, {.travel_m = 0.6}));
+  EXPECT_FALSE(is_explored(quality, {.force_n = 2.1}));
+  EXPECT_FALSE(is_explored(quality, {.strokes = 2}));
+}
+
 TEST(TrialQuality, IsUnknownWithoutATrace) { EXPECT_FALSE(quality_of(RecordedTrial(), 2)); }
 
 TEST(Sessions, SayWhichTrialsWereFeltAndSoundAndWhatTheOthersSay) {

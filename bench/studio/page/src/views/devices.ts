@@ -1,0 +1,52 @@
+import "./results.css";
+
+import type { DeviceFile } from "../api/results";
+import type { Workspace, WorkspaceFile } from "../api/workspace";
+import { DevicePage } from "../devices/device_page";
+import { byName, resultName } from "../results/names";
+import { element } from "../ui/dom";
+import type { View } from "../ui/view";
+
+function listOf(files: readonly WorkspaceFile[]): HTMLElement {
+  const links = files.map((it) => element("li", {}, element("a", { href: `#/devices/${it.id}` }, resultName(it))));
+  return element(
+    "section",
+    { class: "card", "aria-label": "Devices in this folder" },
+    element("h2", {}, "Devices in this folder"),
+    links.length > 0
+      ? element("ul", { class: "links" }, ...links)
+      : element("p", { class: "quiet" }, "There is none yet: kerf identify URI -o FOLDER measures one."),
+  );
+}
+
+export const devices: View = {
+  name: "devices",
+  title: "Devices",
+  mount(root, context) {
+    const gone = new AbortController();
+    const title = element("h1", {}, "Devices");
+    root.append(title);
+    let page: DevicePage | null = null;
+    const show = async (): Promise<void> => {
+      const { id } = context.place;
+      const workspace = await context.api.get<Workspace>("/api/workspace", {}, gone.signal);
+      const files = workspace.files.filter((it) => it.kind === "device").sort(byName);
+      const file = files.find((it) => it.id === id);
+      const of = file ? await context.api.get<DeviceFile>("/api/result", { id }, gone.signal) : null;
+      if (gone.signal.aborted) return;
+      if (file && of) {
+        title.textContent = `Device ${resultName(file)}`;
+        page = new DevicePage(of);
+        root.append(page.root);
+        return;
+      }
+      if (id) context.say("That device is not in this folder any more.");
+      root.append(listOf(files));
+    };
+    show().catch(context.complain);
+    return () => {
+      gone.abort();
+      page?.end();
+    };
+  },
+};

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kerf::drivers {
+
+/// Keeps a line that ought to be known before a device is used and is no reason to refuse it: a calibration
+/// that is old, a bias that has moved. Set-up alone calls it, from any thread.
+void note_device(std::string line);
+
+/// What has been noted since this was last asked, the first first.
+[[nodiscard]] std::vector<std::string> take_device_notes();
+
+}  // namespace kerf::drivers
