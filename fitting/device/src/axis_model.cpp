@@ -70,16 +70,22 @@ AxisSimulation::AxisSimulation(const AxisModel& model, double period_s) : model_
 }
 
 Motion AxisSimulation::part(Motion motion, double force_n, double time_s, const Transition& whole,
-                            double* impulse) const noexcept {
+                            FrictionSums* sums) const noexcept {
+  const auto note = [&](double friction_n, double for_s) {
+    if (sums == nullptr) return;
+    sums->impulse += friction_n * for_s;
+    sums->moment += friction_n * for_s * (sums->from_s + 0.5 * (for_s - period_s_));
+    sums->from_s += for_s;
+  };
   const double f = model_.coulomb_n;
   const double sign = direction_of(model_, motion, force_n);
   if (sign == 0.0) {
-    if (impulse != nullptr) *impulse -= time_s * drive_at(model_, motion, force_n);
+    note(-drive_at(model_, motion, force_n), time_s);
     return {motion.position_m, 0.0};
   }
   const Motion end = whole.step(motion, force_n - sign * f);
   if (end.speed_m_s * sign >= 0.0) {
-    if (impulse != nullptr) *impulse -= time_s * sign * f;
+    note(-sign * f, time_s);
     return end;
   }
   // The speed passes through zero: Newton's steps, kept between the ends.
@@ -101,40 +107,41 @@ Motion AxisSimulation::part(Motion motion, double force_n, double time_s, const 
   }
   rest.speed_m_s = 0.0;
   const double left_s = time_s - at;
-  if (impulse != nullptr) *impulse -= at * sign * f;
+  note(-sign * f, at);
   const double back = direction_of(model_, rest, force_n);
   if (back == 0.0) {
-    if (impulse != nullptr) *impulse -= left_s * drive_at(model_, rest, force_n);
+    note(-drive_at(model_, rest, force_n), left_s);
     return rest;
   }
-  if (impulse != nullptr) *impulse -= left_s * back * f;
+  note(-back * f, left_s);
   return transition_over(model_, left_s).step(rest, force_n - back * f);
 }
 
 Motion AxisSimulation::after(Motion motion, std::span<const double> commanded_n, std::size_t n,
-                             double* friction_n) const noexcept {
+                             TickFriction* friction) const noexcept {
   const double most = model_.saturation_n > 0.0 ? model_.saturation_n : infinity;
   const auto command = [&](std::size_t back) {
     return n >= back ? std::clamp(commanded_n[n - back], -most, most) : 0.0;
   };
-  double impulse = 0.0;
-  double* const told = friction_n != nullptr ? &impulse : nullptr;
+  FrictionSums sums;
+  FrictionSums* const told = friction != nullptr ? &sums : nullptr;
   if (before_s_ > 0.0) {
     motion = part(motion, command(whole_ticks_ + 1) + model_.offset_n, before_s_, before_, told);
   }
   motion = part(motion, command(whole_ticks_) + model_.offset_n, after_s_, after_, told);
-  if (friction_n != nullptr) *friction_n = impulse / period_s_;
+  if (friction != nullptr) {
+    *friction = {.mean_n = sums.impulse / period_s_, .moment_n_s = sums.moment / period_s_};
+  }
   return motion;
 }
 
 void simulate(const AxisModel& model, double period_s, Motion at_begin, std::span<const double> commanded_n,
-              std::size_t begin, std::span<double> position_m, std::span<double> friction_n) {
+              std::size_t begin, std::span<double> position_m, std::span<TickFriction> friction) {
   const AxisSimulation simulation(model, period_s);
   Motion motion = at_begin;
   for (std::size_t i = 0; i < position_m.size(); ++i) {
     position_m[i] = motion.position_m;
-    double* const friction = friction_n.empty() ? nullptr : &friction_n[i];
-    motion = simulation.after(motion, commanded_n, begin + i, friction);
+    motion = simulation.after(motion, commanded_n, begin + i, friction.empty() ? nullptr : &friction[i]);
   }
 }
 

@@ -38,11 +38,13 @@ Eigen::MatrixXd free_ways(const AxisModel& model, double period_s, std::size_t c
   return ways;
 }
 
-bool slides_one_way(std::span<const double> friction_n, double coulomb_n) {
+bool slides_one_way(std::span<const TickFriction> friction, double coulomb_n) {
   if (coulomb_n <= 0.0) return true;
-  return std::all_of(friction_n.begin(), friction_n.end(),
-                     [&](double force) { return std::abs(force - friction_n.front()) < 1e-6 * coulomb_n; }) &&
-         std::abs(std::abs(friction_n.front()) - coulomb_n) < 1e-6 * coulomb_n;
+  const double first_n = friction.front().mean_n;
+  return std::ranges::all_of(
+             friction,
+             [&](const TickFriction& tick) { return std::abs(tick.mean_n - first_n) < 1e-6 * coulomb_n; }) &&
+         std::abs(std::abs(first_n) - coulomb_n) < 1e-6 * coulomb_n;
 }
 
 /// How readings of a shot, by blocks and without what a free begin explains, follow a unit of noise of each
@@ -90,7 +92,7 @@ std::vector<Left> left_of(const AxisData& data, std::span<const Shot> shots, con
   const Eigen::MatrixXd of_force = per_force * per_force * seen.of_speeds * seen.of_speeds.transpose();
   std::vector<Left> out;
   for (const Shot& shot : shots) {
-    const auto friction = std::span(fit.friction_n).subspan(shot.begin, shot.count);
+    const auto friction = std::span(fit.friction).subspan(shot.begin, shot.count);
     if (!slides_one_way(friction, model.axis.coulomb_n)) continue;
     Eigen::VectorXd residual(static_cast<Eigen::Index>(shot.count));
     Eigen::VectorXd speeds(residual.size());

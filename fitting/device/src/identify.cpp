@@ -14,7 +14,6 @@
 namespace kerf::identification {
 namespace {
 
-constexpr std::size_t parts_of_a_period = 8;
 constexpr std::size_t short_parts = 20;
 constexpr double worth_a_word = 0.01;      // of a value
 constexpr double least_share = 0.3;        // of what is missed, to name what explains it

@@ -14,13 +14,16 @@ constexpr std::size_t direction_ticks = 4;
 
 std::vector<Window> windows_of(const AxisData& data, std::span<const Stretch> stretches) {
   std::vector<Window> windows;
+  std::size_t first_cluster = 0;
   for (const Stretch& stretch : stretches) {
     for (std::size_t begin = std::max<std::size_t>(stretch.begin, 16); begin + window <= stretch.end();
          begin += half_window) {
       bool whole = true;
       for (std::size_t n = begin; n < begin + window; ++n) whole &= std::isfinite(data.position_m[n]);
-      if (whole) windows.push_back({begin, stretch.place});
+      const std::size_t part = (begin - stretch.begin) % stretch.period * parts_of_a_period / stretch.period;
+      if (whole) windows.push_back({begin, stretch.place, first_cluster + part});
     }
+    first_cluster += parts_of_a_period;
   }
   return windows;
 }
@@ -38,7 +41,7 @@ Signals::Signals(const AxisData& data, const OutputErrorFit& fit)
   for (std::size_t n = 1; n < direction_.size(); ++n) {
     // Means over a tick: that of the two around a reading has the same place among the weights as the
     // reading.
-    const double both = 0.5 * (fit.friction_n[n - 1] + fit.friction_n[n]);
+    const double both = 0.5 * (fit.friction[n - 1].mean_n + fit.friction[n].mean_n);
     direction_[n] = f > 0.0 ? -both / f : 0.0;
   }
 }

@@ -45,6 +45,7 @@ double product(const std::array<double, window>& weights, std::size_t begin, con
 struct Window {
   std::size_t begin = 0;
   std::size_t place = 0;
+  std::size_t cluster = 0;  ///< of an eighth of a stretch's periods, which repeat each other
 };
 [[nodiscard]] std::vector<Window> windows_of(const AxisData& data, std::span<const Stretch> stretches);
 

@@ -6,11 +6,12 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/core.h>
 
 #include <kerf/identification/output_error.h>
+
+#include "jackknife.h"
 
 namespace kerf::identification {
 namespace {
@@ -167,13 +168,8 @@ class Problem {
 
 /// Normal equations of what all shots share, each shot's own state eliminated.
 struct Normal {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd gradient;
-  struct OfCluster {
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd gradient;
-  };
-  std::map<std::size_t, OfCluster> by_cluster;
+  Cluster all;
+  std::map<std::size_t, Cluster> by_cluster;
   std::vector<Eigen::Matrix<double, 2, Eigen::Dynamic>> own_of_shared;  ///< how a shot's state follows
   std::vector<Eigen::Vector2d> own_step;
 };
@@ -210,11 +206,7 @@ class OwnColumns {
 Normal normal_equations(const Problem& problem, std::span<const Shot> shots, const PlacedModel& model,
                         std::span<const Motion> begins, bool with_shared) {
   const auto p = static_cast<Eigen::Index>(problem.free().size());
-  Normal normal{.matrix = Eigen::MatrixXd::Zero(p, p),
-                .gradient = Eigen::VectorXd::Zero(p),
-                .by_cluster = {},
-                .own_of_shared = {},
-                .own_step = {}};
+  Normal normal{.all = Cluster(p), .by_cluster = {}, .own_of_shared = {}, .own_step = {}};
   for (std::size_t shot = 0; shot < shots.size(); ++shot) {
     Linearised line = problem.linearise(model, shot, begins[shot], with_shared);
     const OwnColumns own(line.own);
@@ -223,14 +215,9 @@ Normal normal_equations(const Problem& problem, std::span<const Shot> shots, con
     for (Eigen::Index i = 0; i < p; ++i) own_of_shared.col(i) = own.solve(line.shared.col(i));
     const Eigen::VectorXd residual = line.residual - line.own * own_step;
     const Eigen::MatrixXd shared = line.shared - line.own * own_of_shared;
-    const Eigen::MatrixXd matrix = shared.transpose() * shared;
-    const Eigen::VectorXd gradient = shared.transpose() * residual;
-    normal.matrix += matrix;
-    normal.gradient += gradient;
-    const Normal::OfCluster none{Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p)};
-    Normal::OfCluster& of_cluster = normal.by_cluster.try_emplace(shots[shot].cluster, none).first->second;
-    of_cluster.matrix += matrix;
-    of_cluster.gradient += gradient;
+    const Cluster of_shot(shared, residual);
+    normal.all += of_shot;
+    normal.by_cluster[shots[shot].cluster] += of_shot;
     normal.own_step.push_back(own_step);
     normal.own_of_shared.push_back(own_of_shared);
   }
@@ -252,8 +239,8 @@ Proposed propose(const Problem& problem, const Normal& normal, PlacedModel model
   if (with_shared) {
     std::vector<bool> held(count, false);
     for (int round = 0; round < 3; ++round) {
-      Eigen::MatrixXd matrix = normal.matrix;
-      Eigen::VectorXd gradient = normal.gradient;
+      Eigen::MatrixXd matrix = normal.all.matrix;
+      Eigen::VectorXd gradient = normal.all.gradient;
       for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
         matrix(i, i) *= 1.0 + damping;
         if (held[static_cast<std::size_t>(i)] || !(matrix(i, i) > 0.0)) {
@@ -367,14 +354,14 @@ OutputErrorFit described(const AxisData& data, std::span<const Shot> shots, cons
   const std::size_t ticks = data.position_m.size();
   fit.residual_m.assign(ticks, nan);
   fit.simulated_m.assign(ticks, nan);
-  fit.friction_n.assign(ticks, nan);
+  fit.friction.assign(ticks, {.mean_n = nan, .moment_n_s = nan});
   double squares = 0.0;
   std::size_t count = 0;
   for (std::size_t shot = 0; shot < shots.size(); ++shot) {
     const Shot& of = shots[shot];
     const std::span simulated = std::span(fit.simulated_m).subspan(of.begin, of.count);
     simulate(model.at(of.place), data.period_s, fit.begins[shot], data.commanded_n, of.begin, simulated,
-             std::span(fit.friction_n).subspan(of.begin, of.count));
+             std::span(fit.friction).subspan(of.begin, of.count));
     for (std::size_t i = 0; i < of.count; ++i) {
       const double residual = data.position_m[of.begin + i] - simulated[i];
       fit.residual_m[of.begin + i] = residual;
@@ -448,20 +435,13 @@ OutputErrorFit fit_output_error(const AxisData& data, std::span<const Shot> shot
         fmt::format("{} stretches of data are too few for {} numbers and their intervals; measure longer",
                     normal.by_cluster.size(), problem.free().size()));
   }
-  const Eigen::VectorXd scale = normal.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = normal.all.matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd inverse =
-      scale.asDiagonal() * (scale.asDiagonal() * normal.matrix * scale.asDiagonal())
+      scale.asDiagonal() * (scale.asDiagonal() * normal.all.matrix * scale.asDiagonal())
                                .ldlt()
                                .solve(Eigen::MatrixXd(scale.asDiagonal() * Eigen::MatrixXd::Identity(p, p)));
-  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(p, p);
-  for (const auto& [cluster, of] : normal.by_cluster) {
-    // What the result would change by without the cluster.
-    const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(p, p) - of.matrix * inverse;
-    const Eigen::VectorXd gradient = rest.partialPivLu().solve(of.gradient);
-    between += gradient * gradient.transpose();
-  }
   const auto numbers = static_cast<double>(p);
-  const Eigen::MatrixXd own = inverse * between * inverse * ((clusters - 1.0) / clusters);
+  const Eigen::MatrixXd own = jackknife(inverse, normal.by_cluster);
 
   OutputErrorFit fit = described(data, shots, model, std::move(begins));
   const auto all = static_cast<Eigen::Index>(shared_parameters + start.offset_n.size());

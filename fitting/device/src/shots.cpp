@@ -7,6 +7,7 @@ namespace kerf::identification {
 namespace {
 
 constexpr std::size_t slope_ticks = 8;
+constexpr std::size_t shortest_part = 36;  // of which a shot may begin a third later
 constexpr std::size_t shortest_shot = 24;
 
 /// The tick of [from, to) where the axis moves fastest.
@@ -25,10 +26,12 @@ std::size_t fastest(const AxisData& data, std::size_t from, std::size_t to) {
 
 }  // namespace
 
-std::vector<Shot> make_shots(const AxisData& data, std::span<const Stretch> stretches, std::size_t parts) {
+std::vector<Shot> make_shots(const AxisData& data, std::span<const Stretch> stretches,
+                             std::size_t most_parts) {
   std::vector<Shot> shots;
   std::size_t first_cluster = 0;
   for (const Stretch& stretch : stretches) {
+    const std::size_t parts = std::clamp<std::size_t>(stretch.period / shortest_part, 1, most_parts);
     const std::size_t length = stretch.period / parts;
     std::vector<std::size_t> begins;
     for (std::size_t cut = 0; cut < stretch.periods * parts; ++cut) {

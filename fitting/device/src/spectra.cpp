@@ -5,10 +5,11 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <boost/math/distributions/students_t.hpp>
 
 #include <kerf/identification/spectra.h>
+
+#include "jackknife.h"
 
 namespace kerf::identification {
 namespace {
@@ -58,6 +59,7 @@ struct Held {
   Complex before;         ///< of a force during the first part of a tick
   Complex after;          ///< during the rest
   Complex whole;          ///< during all of it
+  Complex late;           ///< of a force's moment about the middle of a tick
   Complex from_position;  ///< of (s_0 - s_N) in the position
   Complex from_speed;
 };
@@ -76,6 +78,7 @@ Held held_at(const AxisModel& model, double period_s, double turn) {
                             after.vx * before.xf + after.vv * before.vf),
           .after = through(after.xf, after.vf),
           .whole = through(tick.xf, tick.vf),
+          .late = through(-period_s / model.mass_kg, 0.0),
           .from_position = of_position * z,
           .from_speed = of_speed * z};
 }
@@ -83,7 +86,8 @@ Held held_at(const AxisModel& model, double period_s, double turn) {
 /// Means over the periods of a stretch, at the lines.
 struct Averaged {
   std::vector<Complex> position;
-  std::vector<Complex> friction;
+  std::vector<Complex> friction;                          ///< for f = 1 N
+  std::vector<Complex> late_friction;                     ///< its moments
   std::map<std::size_t, std::vector<Complex>> commanded;  ///< by how many ticks ago
 };
 
@@ -104,11 +108,15 @@ class FrequencyProblem {
       const std::size_t from = stretch.periods > 1 ? 1 : 0;
       const std::size_t count = stretch.periods - from;
       averaged.position = mean_of(data.position_m, stretch, from, count, 0);
-      std::vector<double> pattern(time.friction_n.size(), 0.0);
-      for (std::size_t n = 0; n < pattern.size(); ++n) {
-        if (f > 0.0 && std::isfinite(time.friction_n[n])) pattern[n] = time.friction_n[n] / f;
-      }
-      averaged.friction = mean_of(pattern, stretch, from, count, 0);
+      const auto pattern_of = [&](double TickFriction::*what) {
+        std::vector<double> pattern(time.friction.size(), 0.0);
+        for (std::size_t n = 0; n < pattern.size(); ++n) {
+          if (f > 0.0 && std::isfinite(time.friction[n].*what)) pattern[n] = time.friction[n].*what / f;
+        }
+        return mean_of(pattern, stretch, from, count, 0);
+      };
+      averaged.friction = pattern_of(&TickFriction::mean_n);
+      averaged.late_friction = pattern_of(&TickFriction::moment_n_s);
       averaged_.push_back(std::move(averaged));
     }
   }
@@ -128,7 +136,8 @@ class FrequencyProblem {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       const Held held = held_at(model, data_.period_s, turn(stretch, i));
       const Complex value = held.before * older[i] + held.after * newer[i] +
-                            held.whole * model.coulomb_n * averaged_[stretch].friction[i];
+                            model.coulomb_n * (held.whole * averaged_[stretch].friction[i] +
+                                               held.late * averaged_[stretch].late_friction[i]);
       out[static_cast<Eigen::Index>(2 * i)] = value.real();
       out[static_cast<Eigen::Index>(2 * i + 1)] = value.imag();
     }
@@ -339,17 +348,13 @@ FrequencyFit fit_frequencies(const AxisData& data, std::span<const Stretch> stre
   const auto of_stretch = [&](const auto& of, std::size_t s) {
     return of.middleRows(rows * static_cast<Eigen::Index>(s), rows);
   };
-  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(p, p);
+  std::map<std::size_t, Cluster> by_stretch;
   for (std::size_t s = 0; s < stretches.size(); ++s) {
-    const Eigen::MatrixXd here = of_stretch(columns, s);
-    const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(p, p) - here.transpose() * here * inverse;
-    const Eigen::VectorXd gradient =
-        rest.partialPivLu().solve(Eigen::VectorXd(here.transpose() * of_stretch(residual, s)));
-    between += gradient * gradient.transpose();
+    by_stretch.emplace(s, Cluster(of_stretch(columns, s), of_stretch(residual, s)));
   }
   const auto clusters = static_cast<double>(stretches.size());
   fit.degrees_of_freedom = std::max(1.0, clusters - 1.0);
-  const Eigen::MatrixXd own = inverse * between * inverse * ((clusters - 1.0) / clusters);
+  const Eigen::MatrixXd own = jackknife(inverse, by_stretch);
   fit.covariance = Eigen::MatrixXd::Zero(shared_parameters, shared_parameters);
   for (Eigen::Index i = 0; i < p; ++i) {
     for (Eigen::Index j = 0; j < p; ++j) {

@@ -1,15 +1,22 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <Eigen/Core>
 #include <boost/math/distributions/students_t.hpp>
 
 #include <kerf/identification/weak_form.h>
 
+#include "jackknife.h"
 #include "modulated.h"
 
 namespace kerf::identification {
+namespace {
+
+constexpr double small_delay = 0.1;  // ticks
+
+}  // namespace
 
 std::optional<PlacedModel> first_model(const AxisData& data, std::span<const Stretch> stretches,
                                        std::size_t places, double longest_delay_ticks) {
@@ -55,10 +62,15 @@ std::optional<MotorConstant> motor_constant(const AxisData& data, std::span<cons
   }
   const Eigen::MatrixXd all = columns_of(data, signals, windows, model.offset_n.size());
   if (all.rows() < all.cols() + 8) return std::nullopt;
-  // Without a spring: what pulls the handle back is the hand, and the sensor reads it.
-  Eigen::MatrixXd columns(all.rows(), all.cols());
+  // Without a spring: what pulls the handle back is the hand, and the sensor reads it. With what an error of
+  // the delay would do.
+  const double delay_ticks = model.axis.delay_s / data.period_s;
+  const double earlier = std::max(0.0, delay_ticks - small_delay);
+  Eigen::MatrixXd columns(all.rows(), all.cols() + 1);
   columns << all.leftCols(2), all.rightCols(all.cols() - 3),
-      -forces_of(data, signals, windows, model.axis.delay_s / data.period_s);
+      forces_of(data, signals, windows, delay_ticks + small_delay) -
+          forces_of(data, signals, windows, earlier),
+      -forces_of(data, signals, windows, delay_ticks);
   const Modulating w(data.period_s);
   Eigen::VectorXd sensed(columns.rows());
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -70,19 +82,16 @@ std::optional<MotorConstant> motor_constant(const AxisData& data, std::span<cons
   const double mean = sensed.mean();
   const double read = (sensed.array() - mean).matrix().squaredNorm();
   if (!(read > 0.0) || left > 0.5 * read) return std::nullopt;
-  // Windows share half of their readings with the next: errors of neighbours go together.
   const auto p = columns.cols();
-  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(p, p);
-  for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-    const Eigen::VectorXd gradient = columns.row(row).transpose() * solved.residual[row];
-    between += gradient * gradient.transpose();
-    if (row == 0) continue;
-    const Eigen::VectorXd before = columns.row(row - 1).transpose() * solved.residual[row - 1];
-    between += 0.5 * (gradient * before.transpose() + before * gradient.transpose());
+  std::map<std::size_t, Cluster> clusters;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    clusters[windows[i].cluster] += Cluster(columns.row(row), solved.residual.segment(row, 1));
   }
-  const Eigen::MatrixXd covariance = solved.inverse * between * solved.inverse;
-  const double degrees = static_cast<double>(columns.rows() - p) / 2.0;
-  const boost::math::students_t t(std::max(1.0, degrees));
+  const double degrees = static_cast<double>(clusters.size()) - static_cast<double>(p);
+  if (degrees < 1.0) return std::nullopt;
+  const Eigen::MatrixXd covariance = jackknife(solved.inverse, clusters);
+  const boost::math::students_t t(degrees);
   return MotorConstant{.value = solved.solution[p - 1],
                        .half_width = boost::math::quantile(boost::math::complement(t, 0.025)) *
                                      std::sqrt(std::max(0.0, covariance(p - 1, p - 1)))};

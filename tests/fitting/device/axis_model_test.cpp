@@ -37,12 +37,38 @@ TEST(AxisModel, ComesToRestWhereCoulombFrictionHasTakenItsEnergy) {
   const AxisModel axis{.mass_kg = 0.2, .coulomb_n = 0.3};
   const std::vector<double> nothing(200, 0.0);
   std::vector<double> position(200);
-  std::vector<double> friction(200);
+  std::vector<TickFriction> friction(200);
   simulate(axis, 1e-3, {.position_m = 0.0, .speed_m_s = 0.15}, nothing, 0, position, friction);
   EXPECT_NEAR(position.back(), 0.2 * 0.15 * 0.15 / 2.0 / 0.3, 1e-12);
   EXPECT_EQ(position[150], position.back());
-  EXPECT_NEAR(friction.front(), -0.3, 1e-12);
-  EXPECT_NEAR(friction.back(), 0.0, 1e-12);
+  EXPECT_NEAR(friction.front().mean_n, -0.3, 1e-12);
+  EXPECT_NEAR(friction.back().mean_n, 0.0, 1e-12);
+}
+
+TEST(AxisModel, FrictionsMeanAndMomentMoveAMassFromTickToTick) {
+  // Without damping and spring: m x_1 = m (x_0 + v_0 T) + (u + F) T^2 / 2 - M T and m v_1 = m v_0 + (u + F)
+  // T, also where it turns round or stops within a tick.
+  constexpr double m = 0.1;
+  constexpr double period_s = 1e-3;
+  const AxisModel axis{.mass_kg = m, .coulomb_n = 0.2};
+  std::vector<double> commanded(400);
+  for (std::size_t n = 0; n < commanded.size(); ++n) {
+    commanded[n] = 0.6 * std::sin(0.083 * static_cast<double>(n)) + 0.1 * static_cast<double>(n % 3);
+  }
+  std::vector<double> position(400);
+  std::vector<TickFriction> friction(400);
+  simulate(axis, period_s, {}, commanded, 0, position, friction);
+  double x = 0.0;
+  double v = 0.0;
+  std::size_t turns = 0;
+  for (std::size_t n = 0; n + 1 < position.size(); ++n) {
+    const auto& [mean, moment] = friction[n];
+    turns += std::abs(moment) > 1e-9 ? 1U : 0U;
+    x += v * period_s + ((commanded[n] + mean) * period_s / 2.0 - moment) * period_s / m;
+    v += (commanded[n] + mean) * period_s / m;
+    ASSERT_NEAR(x, position[n + 1], 1e-13) << n;
+  }
+  EXPECT_GT(turns, 5U);
 }
 
 TEST(AxisModel, FrictionByDirectionAndAConstantForceMoveItInTheSameWay) {

@@ -33,6 +33,12 @@ struct Motion {
   double speed_m_s = 0.0;
 };
 
+/// The force of friction F over a tick of length T.
+struct TickFriction {
+  double mean_n = 0.0;
+  double moment_n_s = 0.0;  ///< mean of F (t - T/2): how much of it comes late in the tick
+};
+
 /// An affine step of a motion over a fixed time under a constant force: exact for the model without friction.
 struct Transition {
   double xx = 1.0, xv = 0.0, xf = 0.0;
@@ -53,9 +59,9 @@ class AxisSimulation {
   AxisSimulation(const AxisModel& model, double period_s);
 
   /// The motion a tick after `motion` was true at tick n. Commands before the first one are zero.
-  /// `friction_n`: gets the mean force of friction over the tick, where it is asked for.
+  /// `friction`: gets that of the tick, where it is asked for.
   [[nodiscard]] Motion after(Motion motion, std::span<const double> commanded_n, std::size_t n,
-                             double* friction_n = nullptr) const noexcept;
+                             TickFriction* friction = nullptr) const noexcept;
 
   /// The parts of a tick: until the delayed command changes, and from there.
   [[nodiscard]] const Transition& before_change() const noexcept { return before_; }
@@ -63,8 +69,15 @@ class AxisSimulation {
   [[nodiscard]] std::size_t whole_ticks() const noexcept { return whole_ticks_; }
 
  private:
+  /// Sums of a tick's friction: F t and F t (t - T/2) of each piece in which it does not change.
+  struct FrictionSums {
+    double from_s = 0.0;
+    double impulse = 0.0;
+    double moment = 0.0;
+  };
+  /// Motion over a part of a tick that begins at `sums->from_s`.
   [[nodiscard]] Motion part(Motion motion, double force_n, double time_s, const Transition& whole,
-                            double* impulse) const noexcept;
+                            FrictionSums* sums) const noexcept;
 
   AxisModel model_;
   double period_s_;
@@ -76,8 +89,8 @@ class AxisSimulation {
 };
 
 /// Positions at the ticks begin, begin + 1, ... of `count` readings from a motion at `begin`.
-/// `friction_n`: gets the mean force of friction from each reading to the next, where it is asked for.
+/// `friction`: gets that of the ticks from each reading to the next, where it is asked for.
 void simulate(const AxisModel& model, double period_s, Motion at_begin, std::span<const double> commanded_n,
-              std::size_t begin, std::span<double> position_m, std::span<double> friction_n = {});
+              std::size_t begin, std::span<double> position_m, std::span<TickFriction> friction = {});
 
 }  // namespace kerf::identification

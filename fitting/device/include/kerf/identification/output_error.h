@@ -61,12 +61,12 @@ struct OutputErrorFit {
   /// Of mass, viscous, coulomb, stiffness, delay, saturation and the offsets; zero where one was not
   /// estimated.
   Eigen::MatrixXd covariance;
-  double degrees_of_freedom = 0.0;  ///< of that covariance
-  double rms_m = 0.0;               ///< of the residuals
-  std::vector<double> residual_m;   ///< a value a tick of the data; NaN outside of the shots
-  std::vector<double> simulated_m;  ///< likewise
-  std::vector<double> friction_n;   ///< mean over the tick that begins there
-  std::vector<Motion> begins;       ///< of the shots
+  double degrees_of_freedom = 0.0;     ///< of that covariance
+  double rms_m = 0.0;                  ///< of the residuals
+  std::vector<double> residual_m;      ///< a value a tick of the data; NaN outside of the shots
+  std::vector<double> simulated_m;     ///< likewise
+  std::vector<TickFriction> friction;  ///< of the tick that begins there; NaN outside of the shots
+  std::vector<Motion> begins;          ///< of the shots
   bool converged = false;
 
   [[nodiscard]] double standard_error(std::size_t parameter) const;

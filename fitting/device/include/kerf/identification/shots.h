@@ -19,10 +19,14 @@ struct Stretch {
   [[nodiscard]] std::size_t end() const noexcept { return begin + period * periods; }
 };
 
-/// Cuts each period into so many shots. Each begins where the axis moves fastest within the first third after
-/// its cut: a state is told best where friction does not change its sign. The same part of all periods of a
-/// stretch is one cluster: where nothing is random but an encoder's rounding, periods repeat it exactly.
+/// Into how many parts a stretch's periods are cut where each part, in all periods, is one cluster.
+inline constexpr std::size_t parts_of_a_period = 8;
+
+/// Cuts each period into so many shots, or into fewer of 36 ticks or more. Each begins where the axis moves
+/// fastest within the first third after its cut: a state is told best where friction does not change its
+/// sign. The same part of all periods of a stretch is one cluster: where nothing is random but an encoder's
+/// rounding, periods repeat it exactly.
 [[nodiscard]] std::vector<Shot> make_shots(const AxisData& data, std::span<const Stretch> stretches,
-                                           std::size_t parts);
+                                           std::size_t most_parts);
 
 }  // namespace kerf::identification

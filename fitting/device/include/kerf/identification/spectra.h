@@ -63,12 +63,14 @@ struct FrequencyFit {
 /// Least squares of the position's coefficients at the excited lines, averaged over the periods of a stretch
 /// after its first, on those of the exact sampled model:
 ///
-///     X = H_0(z) (z^-D (W_b(d) z^-1 + W_a(d)) U + F) + C (zI - A)^-1 z (s_0 - s_N),   z = exp(i w T)
+///     X = H_0(z) (z^-D (W_b(d) z^-1 + W_a(d)) U + F) - C (zI - A)^-1 (M T / m, 0)
+///         + C (zI - A)^-1 z (s_0 - s_N),   z = exp(i w T)
 ///
 /// with the delayed command in two parts of a tick, the state at both ends of the period (two numbers a
-/// stretch, eliminated), and the mean force of friction in each tick, F = f P, whose pattern P is that of the
-/// motion of the time domain's model. What weighs is another part of the data than in the time domain: no
-/// reading between the lines, and means over periods. Covariance: that of the jackknife over the stretches.
+/// stretch, eliminated), and the force of friction in each tick, F = f P its mean and M = f Q its moment
+/// about the middle, whose patterns P and Q are those of the motion of the time domain's model. What weighs
+/// is another part of the data than in the time domain: no reading between the lines, and means over periods.
+/// Covariance: that of the jackknife over the stretches.
 [[nodiscard]] FrequencyFit fit_frequencies(const AxisData& data, std::span<const Stretch> stretches,
                                            std::span<const std::size_t> lines, const OutputErrorFit& time,
                                            const FitOptions& options = {});
