@@ -361,6 +361,13 @@ json axis_as_json(const IdentifiedDevice& device, const IdentifiedAxis& of) {
   out["validation_error"] = json_number(found.validation_error);
   out["fits"] = found.fits ? json(*found.fits) : json(nullptr);
   out["why_not"] = found.why_not;
+  json explanations = json::array();
+  for (const identification::Explanation& one : found.explanations) {
+    json about{{"name", std::string(identification::name_of(one.missing))}, {"share", one.share}};
+    if (one.missing == identification::Missing::backlash) about["kurtosis"] = one.blows;
+    explanations.push_back(std::move(about));
+  }
+  out["explanations"] = std::move(explanations);
   out["missing"] = found.missing ? json(std::string(identification::name_of(*found.missing))) : json(nullptr);
   out["verdict"] = found.verdict;
   out["z_width"] = of.z_width ? of.z_width->json : json(nullptr);

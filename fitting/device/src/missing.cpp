@@ -21,7 +21,7 @@ constexpr std::array link_dampings_per_s{3.0, 10.0, 30.0};
 constexpr double share_behind = 0.5;          // of the mass, behind a link
 constexpr double share_behind_in_hand = 0.8;  // with that of the hand
 constexpr std::array smoothing_ticks{2, 3};   // on both sides
-constexpr double clear_share = 0.7;
+constexpr double clear_share = 0.9;
 
 /// What the model leaves in the windows, and how much of that something else explains.
 class Leftover {

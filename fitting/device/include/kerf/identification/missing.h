@@ -37,9 +37,9 @@ struct Explanation {
 };
 
 /// Play comes in blows of which this or more is the kurtosis.
-inline constexpr double least_blows = 4.5;
+inline constexpr double least_blows = 4.3;
 
-/// The likeliest first: what explains 0.7; else backlash where there are blows; else what explains most.
+/// The likeliest first: what explains 0.9; else backlash where there are blows; else what explains most.
 [[nodiscard]] std::vector<Explanation> explanations(const AxisData& data, std::span<const Stretch> stretches,
                                                     const PlacedModel& model, bool held,
                                                     double encoder_step_m);
