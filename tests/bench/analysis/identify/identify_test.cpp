@@ -1,4 +1,5 @@
 #include <atomic>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -27,7 +28,8 @@ constexpr const char* free_axis =
     "sim:axis?hand=off&mass=0.12kg&viscous=0.6Ns/m&coulomb=0.15N&gravity=-0.08N&delay=1.63ms&step=0.01mm&"
     "tells=off&sensor=off";
 
-void expect_holds(const drivers::Known& number, double truth) {
+template <typename Interval>
+void expect_holds(const std::optional<Interval>& number, double truth) {
   ASSERT_TRUE(number);
   // Of so many intervals of 95 % one may miss its truth: half as wide again does not.
   const double half = 0.5 * (number->upper - number->lower);
@@ -53,6 +55,27 @@ TEST(IdentifiedDevice, HasTheTruthOfASimulatedAxisInItsFile) {
   EXPECT_NEAR(axis.encoder_step->value, 1e-5, 1e-10);
   EXPECT_EQ(axis.validation.fits, true);
   EXPECT_FALSE(axis.motor_constant) << "nothing measures a force";
+}
+
+TEST(IdentifiedDevice, HasTheTruthByPeriodsOfAQuarterOfASecondAndBothDomainsAgree) {
+  const std::atomic<bool> stop{false};
+  const AxisExperiment measured = excite_axis({.device_uri = free_axis,
+                                               .force_n = 2.0,
+                                               .travel_m = 0.02,
+                                               .seconds = 10.0,
+                                               .period_s = 0.25,
+                                               .places = 1,
+                                               .lowest_hz = 5.0,
+                                               .highest_hz = 60.0,
+                                               .virtual_time = true},
+                                              0, {}, stop);
+  const IdentifiedAxis axis = identified_axis(measured, 0);
+  ASSERT_EQ(axis.problem, "");
+  expect_holds(axis.found->mass_kg, 0.12);
+  expect_holds(axis.found->coulomb_n, 0.15);
+  expect_holds(axis.found->delay_s, 1.63e-3);
+  EXPECT_EQ(axis.found->fits, true);
+  for (const identification::Agreement& one : axis.found->agreements) EXPECT_TRUE(one.agrees) << one.name;
 }
 
 TEST(IdentifiedDevice, LeavesGravityUnknownWhereItIsNotTold) {
@@ -83,6 +106,15 @@ TEST(IdentifiedDevice, NamesPlayBehindTheMotorAsBacklash) {
   ASSERT_FALSE(found.explanations.empty());
   EXPECT_EQ(found.missing, identification::Missing::backlash);
   EXPECT_NE(found.why_not.back().find("backlash"), std::string::npos) << found.why_not.back();
+}
+
+TEST(IdentifiedDevice, NamesPlayInTheHandAsBacklashThoughALinkExplainsThreeQuarters) {
+  const auto found = found_of(
+      "sim:axis?sensor=off&tells=off&seed=5091&mass=0.272kg&viscous=0.98Ns/m&coulomb=0.121N&gravity=0.18N&"
+      "delay=1.84ms&step=0.01mm&hand_mass=0.187kg&hand_damping=6Ns/m&grip=419N/m&backlash=0.33mm",
+      true);
+  EXPECT_EQ(found.fits, false);
+  EXPECT_EQ(found.missing, identification::Missing::backlash);
 }
 
 TEST(IdentifiedDevice, NamesALinkThatYieldsAsOneWithItsStiffness) {
