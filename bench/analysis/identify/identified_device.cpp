@@ -233,7 +233,7 @@ void axis_lines(const IdentifiedDevice& device, const IdentifiedAxis& of, std::v
   const double compliance = std::max(0.0, found.compliance_m_per_n) + found.compliance_half_width;
   lines.push_back(fmt::format("  {:28}{}", "stiffness of the structure",
                               std::isfinite(compliance)
-                                  ? fmt::format("none shows; at least {:.3g} {}",
+                                  ? fmt::format("none shows; at least {:.5g} {}",
                                                 1.0 / std::max(compliance, 1e-12), units.stiffness())
                                   : std::string("unknown")));
   for (const identification::Agreement& agreement : found.agreements) {

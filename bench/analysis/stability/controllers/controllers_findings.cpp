@@ -69,11 +69,11 @@ json transparency_as_json(const ComparedController& one) {
 std::string held_in_words(const WallRung& rung) {
   switch (rung.end) {
     case SearchEnd::found:
-      return fmt::format("holds to {:.4g} N/m", rung.held_n_per_m);
+      return fmt::format("holds to {:.5g} N/m", rung.held_n_per_m);
     case SearchEnd::holds_throughout:
-      return fmt::format("holds to {:.4g} N/m, the end of the search", rung.held_n_per_m);
+      return fmt::format("holds to {:.5g} N/m, the end of the search", rung.held_n_per_m);
     case SearchEnd::holds_nowhere:
-      return fmt::format("fails at {:.4g} N/m already", rung.failed_n_per_m);
+      return fmt::format("fails at {:.5g} N/m already", rung.failed_n_per_m);
     case SearchEnd::not_finished:
       break;
   }
@@ -87,11 +87,11 @@ std::string line_of(const ComparedController& one, const Wall& wall) {
   if (one.transparency) {
     const TransparencyError& error = one.transparency->error;
     if (error.lines == 0) {
-      text += fmt::format("; at {:.4g} N/m nothing coherent: a stronger --strike would tell",
+      text += fmt::format("; at {:.5g} N/m nothing coherent: a stronger --strike would tell",
                           wall.stiffness_n_per_m);
     } else {
       text += fmt::format(
-          "; at {:.4g} N/m it renders the wall to {:.2g} % ({:.2g} dB), with the device {:.2g} %",
+          "; at {:.5g} N/m it renders the wall to {:.2g} % ({:.2g} dB), with the device {:.2g} %",
           wall.stiffness_n_per_m, 100.0 * error.loop_share, error.loop_db, 100.0 * error.felt_share);
     }
   } else if (!one.without.empty()) {

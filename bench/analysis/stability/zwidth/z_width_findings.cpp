@@ -28,13 +28,13 @@ json found_or_null(const WallRung& rung) {
 std::string in_words(const WallRung& rung, const ZWidthTheory* theory) {
   std::string text = fmt::format("B = {:.4g} N·s/m: ", rung.damping_n_s_per_m);
   if (rung.end == SearchEnd::holds_throughout) {
-    text += fmt::format("holds to {:.4g} N/m, the end of the search", rung.held_n_per_m);
+    text += fmt::format("holds to {:.5g} N/m, the end of the search", rung.held_n_per_m);
   } else if (rung.end == SearchEnd::holds_nowhere) {
-    text += fmt::format("fails at {:.4g} N/m already", rung.failed_n_per_m);
+    text += fmt::format("fails at {:.5g} N/m already", rung.failed_n_per_m);
   } else if (rung.end == SearchEnd::not_finished) {
     return text + "not finished";
   } else {
-    text += fmt::format("holds to {:.4g} N/m, fails at {:.4g} N/m", rung.held_n_per_m, rung.failed_n_per_m);
+    text += fmt::format("holds to {:.5g} N/m, fails at {:.5g} N/m", rung.held_n_per_m, rung.failed_n_per_m);
   }
   if (rung.failed_n_per_m > 0.0) {
     text += rung.cycle_n > 0.0 ? fmt::format(" with {:.2g} N rms at {:.3g} Hz", rung.cycle_n, rung.cycle_hz)
@@ -42,7 +42,7 @@ std::string in_words(const WallRung& rung, const ZWidthTheory* theory) {
     if (rung.hysteresis) text += "; struck softly it holds there (hysteresis)";
   }
   if (theory == nullptr) return text;
-  text += fmt::format("; the model says {:.4g} N/m", theory->boundary);
+  text += fmt::format("; the model says {:.5g} N/m", theory->boundary);
   if (theory->band) text += fmt::format(" ({:.4g} to {:.4g})", theory->band->begin, theory->band->end);
   return text + fmt::format(", passive in any hand to {:.4g}", theory->passive);
 }
