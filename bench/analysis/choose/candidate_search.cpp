@@ -129,7 +129,36 @@ void CandidateSearch::take_the_best() {
 void CandidateSearch::finish() {
   choice_.serves = choice_.taken.has_value() && !choice_.in_doubt;
   if (!choice_.taken) take_the_best();
+  look_for_a_controller();
   explain();
+  explain_the_controller();
+}
+
+void CandidateSearch::look_for_a_controller() {
+  if (!options_.controlled) return;
+  const std::size_t end = choice_.serves ? *choice_.taken : choice_.candidates.size();
+  for (std::size_t place = 0; place < end; ++place) {
+    const Candidate& one = choice_.candidates[place];
+    if (!one.within_jnd || one.stability.stable != Stable::no) continue;
+    end_if_stopped();
+    if (options_.begins) options_.begins(one.law.name + " under the passivity controller");
+    const ControlledInHand found = options_.controlled(*one.file);
+    if (found.verdict.stable != Stable::yes) continue;
+    if (options_.deadline && !options_.deadline(*one.file).held) continue;
+    choice_.advice = {.candidate = place, .added_n = found.added_n};
+    return;
+  }
+}
+
+void CandidateSearch::explain_the_controller() {
+  if (!choice_.advice) return;
+  const Candidate& one = choice_.candidates[choice_.advice->candidate];
+  const double added_jnd = choice_.advice->added_n / choice_.jnd_n;
+  choice_.why += fmt::format(
+      ". Under the passivity controller (--passivity-control) {} with {} parameters is stable too: while a "
+      "hand presses, the controller adds {:.2g} {} (rms), {:.2g} JND, {}",
+      one.law.name, one.law.parameters, choice_.advice->added_n, choice_.force_unit, added_jnd,
+      added_jnd <= 1.0 ? "less than would be felt" : "which is felt");
 }
 
 void CandidateSearch::explain() {

@@ -15,6 +15,7 @@
 #include "choose/candidates.h"
 #include "choose/effects.h"
 #include "fits/fit_recording.h"
+#include "stability/device/in_hand.h"
 #include "stability/stability_verdict.h"
 
 namespace kerf::bench {
@@ -33,10 +34,13 @@ struct Deadline {
 using DeadlineCheck = std::function<Deadline(const LawFile&)>;
 /// Judges a law with the given hand and device.
 using StabilityCheck = std::function<StabilityVerdict(const LawFile&, const schema::Recording&)>;
+/// Judges a law that is not stable by itself under the passivity controller.
+using ControllerCheck = std::function<ControlledInHand(const LawFile&)>;
 
 struct CandidateSearchOptions {
   DeadlineCheck deadline;                              ///< empty: not checked
   StabilityCheck stability;                            ///< empty: not checked
+  ControllerCheck controlled;                          ///< empty: no controller is recommended
   std::function<void(const std::string& law)> begins;  ///< a check in closed loop, which takes its time
 };
 
@@ -58,6 +62,13 @@ struct Candidate {
   std::string why;  ///< it was passed over; empty for the law that was taken
 };
 
+/// A law within the JND that is simpler than the one that was taken, and stable under the passivity
+/// controller alone.
+struct ControllerAdvice {
+  std::size_t candidate = 0;
+  double added_n = 0.0;  ///< rms of what the controller adds while a hand presses
+};
+
 /// The law that was taken, among those it was taken from.
 struct LawChoice {
   double jnd_n = 0.0;  ///< at the root mean square force
@@ -70,6 +81,7 @@ struct LawChoice {
   bool in_doubt = false;              ///< it would serve, but the machine was too late to tell
   /// Where none is within the JND: the simplest law that leaves out no more than the JND against the best.
   std::optional<std::size_t> as_good;
+  std::optional<ControllerAdvice> advice;
   std::string why;
   std::optional<fitting::Floor> floor;  ///< what is possible at all on the recording
   std::string blame;  ///< what is to blame where the law that is named is not within the JND
@@ -114,9 +126,11 @@ class CandidateSearch {
   [[nodiscard]] bool passes_checks(Candidate& candidate);
   void check_all_the_same(Candidate& candidate);
   void take_the_best();
+  void look_for_a_controller();
   void explain();
   void explain_the_best(const std::string& limit);
   void explain_stability(const Candidate& candidate);
+  void explain_the_controller();
 
   LawChoice& choice_;
   const CandidateSearchOptions& options_;

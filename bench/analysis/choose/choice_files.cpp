@@ -64,6 +64,14 @@ json effect_as_json(const EffectVerdict& verdict) {
           {"why", verdict.why}};
 }
 
+json advice_as_json(const LawChoice& choice) {
+  if (!choice.advice) return nullptr;
+  return {{"controller", "passivity"},
+          {"law", choice.candidates.at(choice.advice->candidate).law.name},
+          {"added", choice.advice->added_n},
+          {"added_jnd", choice.advice->added_n / choice.jnd_n}};
+}
+
 json parameters_of(const Candidate& candidate) {
   json parameters = json::object();
   if (!candidate.fit) return parameters;
@@ -105,6 +113,7 @@ json choice_as_json(const LawChoice& choice) {
         {"in_doubt", choice.in_doubt},
         {"as_good", name_at(choice.as_good)},
         {"parameters", choice.taken ? parameters_of(choice.candidates.at(*choice.taken)) : json::object()},
+        {"controller", advice_as_json(choice)},
         {"why", choice.why},
         {"blame", choice.blame.empty() ? json(nullptr) : json(choice.blame)}}},
       {"floor", choice.floor ? floor_as_json(*choice.floor) : json(nullptr)},

@@ -35,6 +35,7 @@ void connect(const LoopChecks& checks, TriedBy tried_by, CandidateSearchOptions&
   search.stability = [&checks](const LawFile& law, const schema::Recording&) {
     return checks.stability(law);
   };
+  search.controlled = [&checks](const LawFile& law) { return checks.controlled(law); };
 }
 
 DeviceChoice choose_on_device(const schema::Recording& recording, const std::filesystem::path& file,

@@ -11,7 +11,6 @@
 #include "report/charts.h"
 #include "run/check.h"
 #include "run/run.h"
-#include "stability/device/in_hand.h"
 
 namespace kerf::bench {
 namespace {
@@ -149,22 +148,35 @@ Deadline LoopChecks::deadline(const LawFile& law) const {
   return deadline;
 }
 
-StabilityVerdict LoopChecks::stability(const LawFile& law) const {
-  StabilityVerdict verdict =
-      stability_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_);
-  if (!verdict.why.empty()) verdict.why = fmt::format("on {}, {}", options_.device_uri, verdict.why);
-  if (verdict.stable == Stable::no || !device_.simulated) return verdict;
-  if (auto why = misrendered(law)) return not_stable(*std::move(why));
-  return verdict;
+StabilityVerdict LoopChecks::judged(StabilityVerdict in_hand, const LawFile& law,
+                                    bool passivity_control) const {
+  if (!in_hand.why.empty()) in_hand.why = fmt::format("on {}, {}", options_.device_uri, in_hand.why);
+  if (in_hand.stable == Stable::no || !device_.simulated) return in_hand;
+  if (auto why = misrendered(law, passivity_control)) return not_stable(*std::move(why));
+  return in_hand;
 }
 
-std::optional<std::string> LoopChecks::misrendered(const LawFile& law) const {
+StabilityVerdict LoopChecks::stability(const LawFile& law) const {
+  return judged(stability_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_), law,
+                false);
+}
+
+ControlledInHand LoopChecks::controlled(const LawFile& law) const {
+  ControlledInHand found =
+      controlled_in_hand(law, device_, options_.rate_hz, grip_named(options_.grip), deepest_);
+  found.verdict = judged(std::move(found.verdict), law, true);
+  return found;
+}
+
+std::optional<std::string> LoopChecks::misrendered(const LawFile& law, bool passivity_control) const {
   const auto run = [&](double seconds) {
     return run_on_device({.device_uri = options_.device_uri,
                           .seconds = seconds,
                           .rate_hz = options_.rate_hz,
                           .virtual_time = true,
-                          .law = placed(law)},
+                          .law = placed(law),
+                          .passivity_control = passivity_control,
+                          .device_model = passivity_control ? options_.device_model : std::string()},
                          stop_)
         .report;
   };

@@ -11,6 +11,7 @@
 #include "choose/candidate_search.h"
 #include "device_model/model_in_use.h"
 #include "laws/law_file.h"
+#include "stability/device/in_hand.h"
 #include "stability/stability_verdict.h"
 
 namespace kerf::bench {
@@ -50,6 +51,9 @@ class LoopChecks {
   /// hand cannot be judged and nothing else speaks against the law.
   [[nodiscard]] StabilityVerdict stability(const LawFile& law) const;
 
+  /// The same under the passivity controller.
+  [[nodiscard]] ControlledInHand controlled(const LawFile& law) const;
+
   [[nodiscard]] const std::string& device_uri() const noexcept { return options_.device_uri; }
   /// Whose numbers the stability rests on, where the driver's were not enough.
   [[nodiscard]] const std::optional<ModelInUse>& model() const noexcept { return model_; }
@@ -60,7 +64,9 @@ class LoopChecks {
  private:
   [[nodiscard]] LawFile placed(LawFile law) const;
   /// What of a run in virtual time speaks against a law; nothing if nothing does.
-  [[nodiscard]] std::optional<std::string> misrendered(const LawFile& law) const;
+  [[nodiscard]] std::optional<std::string> misrendered(const LawFile& law, bool passivity_control) const;
+  [[nodiscard]] StabilityVerdict judged(StabilityVerdict in_hand, const LawFile& law,
+                                        bool passivity_control) const;
 
   LoopCheckOptions options_;
   const std::atomic<bool>& stop_;

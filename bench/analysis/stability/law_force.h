@@ -35,6 +35,12 @@ class LawForce {
     return -law_.step(state_, motion, period_s_).force;
   }
 
+  /// Energy that the law means to give back, after its last step.
+  [[nodiscard]] double stored_j() const noexcept {
+    const double stored = law_.stored_energy(state_);
+    return spatial_ ? stored : stored / per_lever_;
+  }
+
  private:
   double along_the_way(const AxisReading& reading) noexcept {
     models::SpatialMotion motion;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <kerf/drivers/hand.h>
 
 #include "stability/bisection.h"
+#include "stability/device/passivity_controlled.h"
 #include "stability/strokes.h"
 #include "stability/wall/wall_theory.h"
 
@@ -184,18 +186,24 @@ LawLimits limits_of(const SampledDevice& device, const AxisLaw& law, const ToolR
   return limits;
 }
 
-PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press& how, double felt_n) {
-  const double pulled_m = held_force(law, how.depth_m, device.period_s) / device.hand.stiffness_n_per_m;
+namespace {
+
+/// press() of a force, of which `added` tells what a controller has put on it in a step.
+template <typename Force, typename Added>
+PressVerdict pressed(const SampledDevice& device, Force force, const Press& how, double pulled_m,
+                     double felt_n, Added added) {
   const double begin_m = -0.2 * how.depth_m;
   const double way_m = how.depth_m + pulled_m - begin_m;
-  SampledLoop loop(device, LawForce(law, device.period_s), {.position_m = begin_m});
+  SampledLoop loop(device, std::move(force), {.position_m = begin_m});
   const auto approach = static_cast<std::size_t>(how.approach_s / device.period_s);
   const auto quarter =
       std::max<std::size_t>(static_cast<std::size_t>(0.25 * how.hold_s / device.period_s), 4);
+  const std::size_t ticks = approach + 4 * quarter;
   Ripple second;
   Ripple last;
+  double added_squares = 0.0;
   PressVerdict verdict;
-  for (std::size_t tick = 0; tick < approach + 4 * quarter; ++tick) {
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
     const double part = static_cast<double>(tick) / static_cast<double>(std::max<std::size_t>(approach, 1));
     const drivers::MinimumJerk hand = drivers::MinimumJerk::at(part);
     const double hand_speed = part < 1.0 ? hand.speed * way_m / how.approach_s : 0.0;
@@ -204,13 +212,33 @@ PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press&
     verdict.peak_n = std::max(verdict.peak_n, std::abs(force_n));
     if (!(std::abs(force_n) < largest_force_n))
       return {.stable = false, .ripple_n = force_n, .peak_n = force_n};
+    const double added_n = added(loop.force());
+    added_squares += added_n * added_n;
     if (tick < approach) continue;
     if ((tick - approach) / quarter == 1) second.add(force_n);
     if ((tick - approach) / quarter == 3) last.add(force_n);
   }
   verdict.ripple_n = last.rms();
+  verdict.added_n = std::sqrt(added_squares / static_cast<double>(ticks));
   verdict.stable = verdict.ripple_n <= felt_n || verdict.ripple_n < 0.9 * second.rms();
   return verdict;
+}
+
+/// As a PassivityControlled force asks for it.
+struct StoredByLaw {
+  double operator()(const LawForce& force, const AxisReading&) const noexcept { return force.stored_j(); }
+};
+
+}  // namespace
+
+PressVerdict press(const SampledDevice& device, const AxisLaw& law, const Press& how, double felt_n) {
+  const double pulled_m = held_force(law, how.depth_m, device.period_s) / device.hand.stiffness_n_per_m;
+  LawForce force(law, device.period_s);
+  if (how.passivity_control) {
+    return pressed(device, PassivityControlled(std::move(force), device, StoredByLaw{}), how, pulled_m,
+                   felt_n, [](const auto& controlled) { return controlled.added_n(); });
+  }
+  return pressed(device, std::move(force), how, pulled_m, felt_n, [](const LawForce&) { return 0.0; });
 }
 
 }  // namespace kerf::bench

@@ -84,6 +84,7 @@ struct Press {
   double depth_m = 0.01;
   double approach_s = 0.3;
   double hold_s = 1.0;
+  bool passivity_control = false;  ///< under the loop's passivity controller
 };
 
 /// Whether a hand that presses and holds feels a limit cycle.
@@ -91,6 +92,7 @@ struct PressVerdict {
   bool stable = true;
   double ripple_n = 0.0;  ///< rms of the force about its mean over the last quarter of the hold
   double peak_n = 0.0;    ///< largest force of the whole press
+  double added_n = 0.0;   ///< rms of what a controller adds to the law's force, over the whole press
 };
 
 /// The hand's spring rests where the law at `depth_m` would hold it. Unstable: the force is not finite or

@@ -144,6 +144,33 @@ TEST(Choose, PassesOverALawThatIsNotStable) {
   EXPECT_THAT(choice.why, Not(HasSubstr("not judged")));
 }
 
+TEST(Choose, RecommendsAControllerForASimplerLawThatIsStableUnderItAlone) {
+  ChooseOptions options = small();
+  options.search.stability = [](const LawFile& law, const schema::Recording&) {
+    return law.law.model() == "kelvin" ? not_stable("it chatters") : StabilityVerdict{Stable::yes, {}};
+  };
+  options.search.controlled = [](const LawFile& law) {
+    EXPECT_EQ(law.law.model(), "kelvin") << "only what is not stable by itself needs one";
+    return ControlledInHand{.verdict = {.stable = Stable::yes, .why = {}}, .added_n = 0.02};
+  };
+  const LawChoice choice = choose(cut_of(known_kelvin()), options);
+  EXPECT_EQ(taken_name(choice), "springpot") << "it is advice, and takes nothing";
+  EXPECT_THAT(choice.why, HasSubstr("(--passivity-control) kelvin with 3 parameters is stable too"));
+  EXPECT_THAT(choice.why, HasSubstr("adds 0.02 N (rms)"));
+  EXPECT_THAT(choice.why, HasSubstr("less than would be felt"));
+  const auto advice = choice_as_json(choice).at("choice").at("controller");
+  EXPECT_EQ(advice.at("law"), "kelvin");
+  EXPECT_EQ(advice.at("controller"), "passivity");
+  EXPECT_EQ(advice.at("added"), 0.02);
+
+  options.search.controlled = [](const LawFile&) {
+    return ControlledInHand{.verdict = not_stable("it chatters all the same")};
+  };
+  const LawChoice without = choose(cut_of(known_kelvin()), options);
+  EXPECT_TRUE(choice_as_json(without).at("choice").at("controller").is_null());
+  EXPECT_THAT(without.why, Not(HasSubstr("controller")));
+}
+
 TEST(Choose, TakesALawThatNobodyCouldJudgeAndSaysSo) {
   ChooseOptions options = small();
   options.search.stability = [](const LawFile&, const schema::Recording&) {

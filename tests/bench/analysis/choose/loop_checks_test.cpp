@@ -68,6 +68,34 @@ TEST(LoopChecks, FindAWallThatIsTooStiffUnstable) {
   EXPECT_THAT(verdict.why, HasSubstr("on sim:scissors"));
 }
 
+TEST(LoopChecks, JudgeALawUnderThePassivityControllerAsItIsThere) {
+  LoopChecks checks(
+      {.device_uri = "sim:axis?noise=off&viscous=0.5Ns/m&limit=40N&slew=100000N/s", .grip = "light"}, go_on);
+  schema::Recording recording = test::cut_of(test::known_kelvin(), {.seconds = 2.0, .depth = 1e-3});
+  recording.axes[0].name = "x";
+  recording.axes[0].position_unit = "m";
+  const models::Contact at_rest{.position = 0.0, .direction = 1.0};
+  checks.place(recording, 0, at_rest);
+  const auto wall = [&](double stiffness_n_per_m) {
+    return LawFile{.law = models::Law::make("kelvin", std::array{stiffness_n_per_m, 1e-9, 1e-9}),
+                   .contact = at_rest,
+                   .axis = "x",
+                   .position_unit = "m",
+                   .force_unit = "N"};
+  };
+  const ControlledInHand soft = checks.controlled(wall(300.0));
+  EXPECT_EQ(soft.verdict.stable, Stable::yes);
+  EXPECT_EQ(soft.added_n, 0.0) << "2 b / T = 1000 N/m: it never acts";
+  EXPECT_GT(checks.controlled(wall(3000.0)).added_n, 0.0);
+  // In a hand that damps well the wall alone holds more than one that is braked by late readings
+  // (`kerf stability --controllers` says the same of this device).
+  double stiffness = 500.0;
+  while (checks.stability(wall(stiffness)).stable == Stable::yes) stiffness *= 1.2;
+  const ControlledInHand found = checks.controlled(wall(stiffness));
+  EXPECT_EQ(found.verdict.stable, Stable::no) << stiffness;
+  EXPECT_THAT(found.verdict.why, HasSubstr("its force swings by"));
+}
+
 TEST(LoopChecks, FindALawThatGivesEnergyUnstable) {
   LawFile law = kelvin(5.0);
   law.law = models::Law::make("exponential", std::array{0.2, 0.5, -0.1}, {{"thickness", 0.1}});

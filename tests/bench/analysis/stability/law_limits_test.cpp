@@ -166,6 +166,26 @@ TEST(Press, OnATissueThatIsTooStiffForTheDeviceHums) {
   EXPECT_GT(limit_cycle.ripple_n, 0.05);
 }
 
+TEST(Press, UnderThePassivityControllerHumsLaterAndASoftTissueIsNotTouched) {
+  SampledDevice held = handle;
+  held.coulomb_n = 0.0;
+  held.hand = {.mass_kg = 0.15, .damping_n_s_per_m = 2.0, .stiffness_n_per_m = 300.0};
+  const auto pressed = [&](double stiffness, bool controlled) {
+    const double values[] = {stiffness, 1e-9, 1e-9};
+    return press(held, {models::Law::make("kelvin", values)},
+                 {.depth_m = 0.002, .passivity_control = controlled});
+  };
+  // b < K T / 2 < b + B_h: what the hand damps is not the controller's to know.
+  const PressVerdict soft = pressed(2.0 * 0.9 * held.viscous_n_s_per_m / held.period_s, true);
+  EXPECT_EQ(soft.added_n, 0.0);
+  double hums = 1000.0;
+  while (pressed(hums, false).stable) hums *= 1.1;
+  const PressVerdict controlled = pressed(hums, true);
+  EXPECT_TRUE(controlled.stable) << hums;
+  EXPECT_GT(controlled.added_n, 0.0);
+  EXPECT_LT(controlled.ripple_n, pressed(hums, false).ripple_n);
+}
+
 TEST(WallMap, IsTheSameForAnyNumberOfThreads) {
   SampledDevice device = handle;
   device.coulomb_n = 0.05;

@@ -274,12 +274,6 @@ TEST(PassivityControlled, SavesNothingUpOnTheWayThroughFreeAir) {
   EXPECT_NEAR(added_n, 0.06, 0.015);
 }
 
-TEST(PassivityControlled, RefusesADeviceWithADelay) {
-  SampledDevice late = perfect_handle();
-  late.delay_s = 1e-3;
-  EXPECT_THROW(ControlledWall(WallForce{}, late, {}), std::invalid_argument);
-}
-
 /// A wall as the loop gives it to a hand: through Safety, with passivity control.
 class SafeWall {
  public:
