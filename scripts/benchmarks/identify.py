@@ -1,4 +1,4 @@
-# peers:
+# peers: python3-scipy
 # targets: kerf kerf-reader
 """How often the intervals of `kerf identify` hold the truth of simulated axes, and whether what does not fit is said not to, and named.
 
@@ -13,34 +13,11 @@ import statistics
 import sys
 
 from identify_draws import RIGHT, WRONG, rows_of, sources_of
+from population import LEAST, MOST, exact
 from sections import replace_section
 
-LEAST, MOST = 0.93, 0.97
 NUMBERS = ("mass", "viscous", "coulomb", "stiffness", "constant_force", "delay_s", "delay_jitter_s", "motor_constant", "saturation")
 FREQUENCY = ("mass", "viscous", "stiffness", "delay_s")
-
-
-def exact(held, trials, level=0.999):
-    """Clopper and Pearson's interval of a share, by bisection of the binomial distribution."""
-    from math import comb
-
-    def above(share):
-        return sum(comb(trials, i) * share**i * (1.0 - share) ** (trials - i) for i in range(held, trials + 1))
-
-    def below(share):
-        return sum(comb(trials, i) * share**i * (1.0 - share) ** (trials - i) for i in range(held + 1))
-
-    def solve(grows, tail):
-        low, high = 0.0, 1.0
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if grows(middle) else (low, middle)
-        return 0.5 * (low + high)
-
-    tail = 0.5 * (1.0 - level)
-    lower = 0.0 if held == 0 else solve(lambda share: above(share) < tail, tail)
-    upper = 1.0 if held == trials else solve(lambda share: below(share) > tail, tail)
-    return lower, upper
 
 
 def tally(rows, name, of=lambda found: found):

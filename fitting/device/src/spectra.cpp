@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -361,6 +362,19 @@ FrequencyFit fit_frequencies(const AxisData& data, std::span<const Stretch> stre
       fit.covariance(static_cast<Eigen::Index>(free[static_cast<std::size_t>(i)]),
                      static_cast<Eigen::Index>(free[static_cast<std::size_t>(j)])) = own(i, j);
     }
+  }
+  // One stretch says nothing of the spread, and a fit that still moves is at no answer.
+  bool is_told = stretches.size() > 1 && own.allFinite();
+  const Eigen::VectorXd next_step = inverse * (columns.transpose() * residual);
+  for (Eigen::Index i = 0; i < p && is_told; ++i) {
+    const Parameter parameter = free[static_cast<std::size_t>(i)];
+    const bool may_be_bounded = parameter == Parameter::coulomb || parameter == Parameter::delay;
+    if (may_be_bounded && value_of(model, parameter) == 0.0) continue;
+    is_told = std::abs(next_step[i]) <= std::sqrt(std::max(0.0, own(i, i)));
+  }
+  for (const Parameter parameter : free) {
+    const bool is_seen = parameter != Parameter::coulomb || time.model.axis.coulomb_n > 0.0;
+    if (!is_told || !is_seen) value_of(model, parameter) = std::numeric_limits<double>::quiet_NaN();
   }
   const Eigen::VectorXd beyond = compliance - columns * (inverse * (columns.transpose() * compliance));
   const double squares = beyond.squaredNorm();

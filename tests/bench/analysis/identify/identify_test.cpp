@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -76,6 +77,16 @@ TEST(IdentifiedDevice, HasTheTruthByPeriodsOfAQuarterOfASecondAndBothDomainsAgre
   expect_holds(axis.found->delay_s, 1.63e-3);
   EXPECT_EQ(axis.found->fits, true);
   for (const identification::Agreement& one : axis.found->agreements) EXPECT_TRUE(one.agrees) << one.name;
+}
+
+TEST(IdentifiedDevice, HasNothingFromTheFrequencyDomainOfOneStretchWhichTellsNoSpread) {
+  AxisExperiment measured = excited(free_axis);
+  measured.experiment.stretches.resize(1);
+  const identification::Identified found = identification::identify(measured.experiment);
+  EXPECT_NEAR(found.mass_kg->value, 0.12, 1e-3);
+  EXPECT_TRUE(std::isnan(found.frequency.model.axis.mass_kg));
+  EXPECT_TRUE(std::isnan(found.frequency.model.axis.delay_s));
+  EXPECT_TRUE(found.agreements.empty()) << "nothing was found there, and nothing disagrees";
 }
 
 TEST(IdentifiedDevice, LeavesGravityUnknownWhereItIsNotTold) {

@@ -70,7 +70,9 @@ struct FrequencyFit {
 /// stretch, eliminated), and the force of friction in each tick, F = f P its mean and M = f Q its moment
 /// about the middle, whose patterns P and Q are those of the motion of the time domain's model. What weighs
 /// is another part of the data than in the time domain: no reading between the lines, and means over periods.
-/// Covariance: that of the jackknife over the stretches.
+/// Covariance: that of the jackknife over the stretches. Numbers are NaN where nothing is told: of a single
+/// stretch, of a fit that does not come to rest, and of the friction of an axis whose motion has none in the
+/// time domain.
 [[nodiscard]] FrequencyFit fit_frequencies(const AxisData& data, std::span<const Stretch> stretches,
                                            std::span<const std::size_t> lines, const OutputErrorFit& time,
                                            const FitOptions& options = {});
