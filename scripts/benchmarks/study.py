@@ -27,25 +27,18 @@ import time
 
 import numpy
 from scipy.signal import lfilter
-from scipy.stats import beta
 from scipy.stats import t as student
 
+from population import LEAST, MOST, told
 from sections import replace_section
 
 SEEDS = 2000
-LEAST, MOST = 0.93, 0.97
 TISSUES = {"liver": 1.0, "skin": 1.0, "cartilage": 1.5}
 SPEEDS = {"slow": 1.0, "fast": 2.0}  # strokes a second
 MEANS = {"parallel_stiffness": 300.0, "series_stiffness": 500.0, "damping": 50.0}
 BETWEEN, WITHIN = 0.1, 0.05
 RATE, SECONDS, DEPTH, NOISE = 500.0, 4.0, 0.005, 0.01
 MAP = "time=1[s],position=2[mm],force=3[N]"
-
-
-def exact(held, trials, level=0.999):
-    """Clopper and Pearson's interval of a share."""
-    tail = 0.5 * (1.0 - level)
-    return (beta.ppf(tail, held, trials - held + 1) if held else 0.0, beta.ppf(1.0 - tail, held + 1, trials - held) if held < trials else 1.0)
 
 
 FINE = 20  # steps a row, so that the simulation's own error is far below a standard error
@@ -198,8 +191,7 @@ def table(counts):
         trials = counts[parameter, "trials"]
         cells = []
         for what in ("mean", "spread"):
-            lower, upper = exact(counts[parameter, what], trials)
-            cells.append("%.1f%s" % (100.0 * counts[parameter, what] / trials, " **low**" if upper < LEAST else " (high)" if lower > MOST else ""))
+            cells.append(told(counts[parameter, what], trials))
         lines.append("| %s | %s | %s |" % (parameter, *cells))
     differences = counts["differences"]
     lines += ["", "| found | of |", "|---|---|"]
@@ -299,9 +291,7 @@ def blanks_table(counts):
              "differ by %.0f %%. `subtract` was suggested in %d." % (seeds, RUBBING, 100 * OF_CYCLES, 100 * OF_SPECIMENS, counts["suggested"]), "",
              "| 95 % interval of a mean | with the blank's error [%] | without [%] |", "|---|---|---|"]
     for parameter in MEANS:
-        lower, upper = exact(counts[parameter, "held"], seeds)
-        lines.append("| %s | %.1f%s | %.1f |" % (parameter, 100.0 * counts[parameter, "held"] / seeds, " **low**" if upper < LEAST else " (high)" if lower > MOST else "",
-                                             100.0 * counts[parameter, "held without"] / seeds))
+        lines.append("| %s | %s | %.1f |" % (parameter, told(counts[parameter, "held"], seeds), 100.0 * counts[parameter, "held without"] / seeds))
     return lines
 
 

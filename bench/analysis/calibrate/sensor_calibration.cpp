@@ -4,12 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,6 +15,7 @@
 #include <kerf/fitting/calibration/calibration.h>
 #include <kerf/fitting/calibration/load_checks.h>
 
+#include "calibrate/prepared_holds.h"
 #include "files/json_number.h"
 
 namespace kerf::bench {
@@ -44,148 +42,6 @@ std::string day_in_words(const std::chrono::year_month_day& date) {
   return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
                      static_cast<unsigned>(date.day()));
 }
-
-/// Measured holds as the fit takes them.
-class Prepared {
- public:
-  Prepared(MeasuredHolds& measured, const LoadScript* script, const SensorCalibrationOptions& options,
-           std::vector<std::string>& warnings)
-      : measured_(measured), script_(script), options_(options), warnings_(warnings) {
-    components_ = options.components.empty() ? measured.components : options.components;
-    leave_out();
-    holds_ = as_holds();
-    take_copies_out();
-    take_errors();
-  }
-
-  [[nodiscard]] const cal::Holds& holds() const { return holds_; }
-  [[nodiscard]] const std::vector<std::size_t>& components() const { return components_; }
-
-  /// Six ways and the levers that there were, at the largest loads that there were.
-  [[nodiscard]] std::vector<cal::Candidate> candidates() const {
-    std::vector<cal::Candidate> all;
-    const auto add = [&](std::string name, const Wrench& load) {
-      cal::Candidate one{.name = std::move(name), .load = {}};
-      for (const std::size_t k : components_) one.load.push_back(load(static_cast<Eigen::Index>(k)));
-      all.push_back(std::move(one));
-    };
-    double force = 0.0;
-    double torque = 0.0;
-    for (const MeasuredHold& hold : measured_.holds) {
-      force = std::max(force, hold.load.head<3>().norm());
-      torque = std::max(torque, hold.load.tail<3>().norm());
-    }
-    if (!(force > 0.0)) force = 1.0;
-    const double lever = torque > 0.0 ? torque / force : 0.05;
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      for (const double sign : {1.0, -1.0}) {
-        const Eigen::Vector3d push = sign * force * Eigen::Vector3d::Unit(axis);
-        const std::string way = fmt::format("{:.3g} N along {}{}", force, sign > 0.0 ? '+' : '-',
-                                            "xyz"[static_cast<std::size_t>(axis)]);
-        Wrench load = Wrench::Zero();
-        load.head<3>() = push;
-        add(way, load);
-        for (Eigen::Index arm = 0; arm < 3; ++arm) {
-          if (arm == axis) continue;
-          load.tail<3>() = (lever * Eigen::Vector3d::Unit(arm)).cross(push);
-          add(fmt::format("{} at {:.3g} mm along {}", way, 1e3 * lever, "xyz"[static_cast<std::size_t>(arm)]),
-              load);
-        }
-      }
-    }
-    return all;
-  }
-
- private:
-  void leave_out() {
-    const std::size_t before = measured_.holds.size();
-    std::erase_if(measured_.holds, [&](const MeasuredHold& one) {
-      return std::ranges::find(options_.leave_out, one.row) != options_.leave_out.end();
-    });
-    if (before - measured_.holds.size() < options_.leave_out.size())
-      warnings_.emplace_back("of the rows to leave out some are not there, or stand within a hold");
-    for (const MeasuredHold& one : measured_.holds) {
-      if (!one.settled)
-        warnings_.push_back(fmt::format("row {}: it never became steady, and is left out", one.row));
-    }
-    std::erase_if(measured_.holds, [](const MeasuredHold& one) { return !one.settled; });
-  }
-
-  [[nodiscard]] cal::Holds as_holds() const {
-    cal::Holds holds{.components = {}, .signals = measured_.signals, .holds = {}, .load_error = {}};
-    for (const std::size_t k : components_) holds.components.emplace_back(wrench_components.at(k));
-    std::map<std::vector<double>, std::size_t> load_numbers;
-    std::map<std::vector<double>, std::size_t> placements;
-    std::map<std::size_t, std::size_t> tares;
-    for (const MeasuredHold& one : measured_.holds) {
-      cal::Hold hold{.load = {}, .signal = one.signal, .time_s = one.time_s, .temperature = one.temperature};
-      for (const std::size_t k : components_) hold.load.push_back(one.load(static_cast<Eigen::Index>(k)));
-      hold.row = one.row;
-      if (script_ != nullptr && one.step > 0) {
-        const LoadStep& step = script_->steps.at(one.step - 1);
-        hold.load_number = step.load_number;
-        hold.placement = step.placement;
-        hold.tare = tares.emplace(step.tare, tares.size()).first->second;
-      } else {
-        hold.load_number = load_numbers.emplace(hold.load, load_numbers.size()).first->second;
-        hold.placement = placements.emplace(direction_of(hold.load), placements.size()).first->second;
-      }
-      holds.holds.push_back(std::move(hold));
-    }
-    return holds;
-  }
-
-  /// Rounded, so that loads of one direction have the same.
-  static std::vector<double> direction_of(std::vector<double> load) {
-    double size = 0.0;
-    for (const double one : load) size += one * one;
-    for (double& one : load) one = size > 0.0 ? std::round(1e3 * one / std::sqrt(size)) + 0.0 : 0.0;
-    return load;
-  }
-
-  void take_copies_out() {
-    auto copies = cal::copies(holds_);
-    std::ranges::sort(copies, {}, [](const auto& pair) { return pair.second; });
-    for (auto pair = copies.rbegin(); pair != copies.rend(); ++pair) {
-      warnings_.push_back(
-          fmt::format("rows {} and {} are the same to the last digit, load and signals: one of them "
-                      "counts",
-                      holds_.holds[pair->first].row, holds_.holds[pair->second].row));
-      const auto at = static_cast<std::ptrdiff_t>(pair->second);
-      holds_.holds.erase(holds_.holds.begin() + at);
-      measured_.holds.erase(measured_.holds.begin() + at);
-    }
-  }
-
-  void take_errors() {
-    if (script_ != nullptr) {
-      std::vector<const LoadStep*> steps;
-      for (const MeasuredHold& one : measured_.holds) steps.push_back(&script_->steps.at(one.step - 1));
-      holds_.load_error = load_errors(steps, components_);
-      return;
-    }
-    if (!(options_.tolerance > 0.0)) return;
-    std::size_t loads = 0;
-    for (const cal::Hold& hold : holds_.holds) loads = std::max(loads, hold.load_number + 1);
-    const auto count = static_cast<Eigen::Index>(components_.size());
-    holds_.load_error.setZero(static_cast<Eigen::Index>(holds_.holds.size()) * count,
-                              static_cast<Eigen::Index>(loads));
-    for (std::size_t i = 0; i < holds_.holds.size(); ++i) {
-      for (Eigen::Index k = 0; k < count; ++k) {
-        holds_.load_error(static_cast<Eigen::Index>(i) * count + k,
-                          static_cast<Eigen::Index>(holds_.holds[i].load_number)) =
-            options_.tolerance / std::numbers::sqrt3 * holds_.holds[i].load[static_cast<std::size_t>(k)];
-      }
-    }
-  }
-
-  MeasuredHolds& measured_;
-  const LoadScript* script_;
-  const SensorCalibrationOptions& options_;
-  std::vector<std::string>& warnings_;
-  std::vector<std::size_t> components_;
-  cal::Holds holds_;
-};
 
 /// Root of the mean square of a signal's noise over the holds; NaN: not known.
 double noise_of_signal(const MeasuredHolds& measured, std::size_t signal) {
@@ -258,7 +114,7 @@ Json estimate_as_json(const std::optional<cal::Estimate>& one) {
 /// All that is said of a calibration that was made.
 class Telling {
  public:
-  Telling(const MeasuredHolds& measured, const Prepared& prepared, const cal::SensorCalibration& found,
+  Telling(const MeasuredHolds& measured, const PreparedHolds& prepared, const cal::SensorCalibration& found,
           const SensorCalibrationOptions& options)
       : measured_(measured), prepared_(prepared), found_(found), options_(options) {
     const auto signals = static_cast<Eigen::Index>(measured.signals.size());
@@ -440,7 +296,7 @@ class Telling {
   }
 
   const MeasuredHolds& measured_;
-  const Prepared& prepared_;
+  const PreparedHolds& prepared_;
   const cal::SensorCalibration& found_;
   const SensorCalibrationOptions& options_;
   Eigen::VectorXd noise_;
@@ -468,7 +324,7 @@ void say_mirrored(const cal::SensorCalibration& found, std::vector<std::string>&
 SensorCalibrationFiles calibrate_sensor(MeasuredHolds measured, const LoadScript* script,
                                         const SensorCalibrationOptions& options) {
   SensorCalibrationFiles files;
-  const Prepared prepared(measured, script, options, files.warnings);
+  const PreparedHolds prepared(measured, script, options, files.warnings);
   const cal::Holds& holds = prepared.holds();
   if (holds.holds.empty())
     throw std::invalid_argument(measured.source + ": there is no load: nothing to calibrate by");

@@ -12,9 +12,8 @@ namespace kerf::bench {
 /// Energy in the spring of a one-sided wall.
 struct WallEnergy {
   double stiffness_n_per_m = 0.0;
-  double operator()(const WallForce&, const AxisReading& at) const noexcept { return (*this)(at.position_m); }
-  double operator()(double position_m) const noexcept {
-    const double inside_m = std::max(position_m, 0.0);
+  double operator()(const WallForce&, const AxisReading& at) const noexcept {
+    const double inside_m = std::max(at.position_m, 0.0);
     return 0.5 * stiffness_n_per_m * inside_m * inside_m;
   }
 };

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "stability/device/passivity_controlled.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -16,14 +18,6 @@ SampledDevice without_hand(const ControllerDesign& design) {
   alone.hand = {};
   alone.coulomb_n = 0.0;
   return alone;
-}
-
-PassivityController brake_of(const SampledDevice& device) {
-  return {{{.name = "x",
-            .force_unit = "N",
-            .mechanics = drivers::Mechanics{.mass_kg = device.mass_kg,
-                                            .viscous_n_s_per_m = device.viscous_n_s_per_m}}},
-          device.period_s};
 }
 
 }  // namespace
@@ -53,7 +47,7 @@ ControlledWall::ControlledWall(const ControllerDesign& design)
       coupling_stiffness_(design.coupling_stiffness_n_per_m),
       coupling_damping_(design.coupling_damping_n_s_per_m),
       delay_(design.device),
-      brake_(brake_of(design.device)) {
+      brake_(passivity_controller_of(design.device)) {
   const SampledDevice alone = without_hand(design);
   const DeviceMotion moves(alone);
   before_ = moves.before.transition();

@@ -7,6 +7,15 @@
 
 namespace kerf::bench {
 
+/// The loop's passivity controller, which knows mass and viscous friction of a device.
+[[nodiscard]] inline PassivityController passivity_controller_of(const SampledDevice& device) {
+  return {{{.name = "x",
+            .force_unit = "N",
+            .mechanics = drivers::Mechanics{.mass_kg = device.mass_kg,
+                                            .viscous_n_s_per_m = device.viscous_n_s_per_m}}},
+          device.period_s};
+}
+
 /// A Force under the loop's passivity controller (PassivityController), which is told the energy that the
 /// rendering means to store: `Stored` is double(const Force&, const AxisReading&), asked after its step. On a
 /// device with a delay it brakes late, which may push.
@@ -16,11 +25,7 @@ class PassivityControlled {
   PassivityControlled(Force force, const SampledDevice& device, Stored stored)
       : force_(std::move(force)),
         stored_(std::move(stored)),
-        controller_({{.name = "x",
-                      .force_unit = "N",
-                      .mechanics = drivers::Mechanics{.mass_kg = device.mass_kg,
-                                                      .viscous_n_s_per_m = device.viscous_n_s_per_m}}},
-                    device.period_s),
+        controller_(passivity_controller_of(device)),
         period_s_(device.period_s) {}
 
   double operator()(const AxisReading& reading) noexcept {

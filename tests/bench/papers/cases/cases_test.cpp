@@ -296,7 +296,7 @@ class SafeWall {
     for (int tick = 200; tick > 0; --tick) (void)force_at(1e-4 * tick, 0.0, 0.0);
   }
   double operator()(const AxisReading& reading) noexcept {
-    const double stored_j = energy_(reading.position_m);
+    const double stored_j = energy_(wall_, reading);
     return force_at(reading.position_m, wall_(reading), stored_j - std::exchange(stored_j_, stored_j));
   }
 
