@@ -25,12 +25,14 @@ def share(count, trials):
     return "%.1f" % (100.0 * count / trials)
 
 
-def repeated(program, what, rows, studies, is_outside, key):
+def repeated(program, what, studies, is_outside):
     """Cells outside the band are run again with ten times the studies."""
-    if not any(is_outside(row) for row in rows):
-        return rows
-    again = {key(row): row for row in rows_of(program, what, str(10 * studies))}
-    return [again[key(row)] if is_outside(row) else row for row in rows]
+    rows = rows_of(program, what, str(studies))
+    outside = [number for number, row in enumerate(rows) if is_outside(row)]
+    if outside:
+        for number, row in zip(outside, rows_of(program, what, str(10 * studies), *map(str, outside)), strict=True):
+            rows[number] = row
+    return rows
 
 
 def alarm_table(rows):
@@ -124,18 +126,16 @@ def main(house, scale=1.0):
     program = str(house / "build" / "release" / "bin" / "kerf_people_study")
     looks = rows_of(str(house / "build" / "release" / "bin" / "kerf_looks_study"), str(max(10, int(scale * LOOKS))))
 
-    def run(what, studies):
-        return rows_of(program, what, str(max(10, int(scale * studies))))
+    def number(studies):
+        return max(10, int(scale * studies))
 
-    alarms = run("alarms", ALARMS)
-    alarms = repeated(program, "alarms", alarms, int(scale * ALARMS), lambda row: "more" in alarm(row["people"], row["studies"]),
-                      lambda row: (row["design"], row["sd"], row["subjects"]))
-    coverage = run("coverage", COVERAGE)
-    coverage = repeated(program, "coverage", coverage, int(scale * COVERAGE),
-                        lambda row: "low" in told(row["jnd"], row["told"]) or (row["pse"] >= 0 and "low" in told(row["pse"], row["told"])),
-                        lambda row: (row["design"], row["sd"], row["subjects"]))
-    lines = [*largest_differences(house, program), "", *alarm_table(alarms), "", *equivalence_table(run("equivalence", EQUIVALENCE)), "",
-             *coverage_table(coverage), "", *power_table(run("power", POWER)), "", *looks_table(looks)]
+    alarms = repeated(program, "alarms", number(ALARMS), lambda row: "more" in alarm(row["people"], row["studies"]))
+    coverage = repeated(program, "coverage", number(COVERAGE),
+                        lambda row: "low" in told(row["jnd"], row["told"]) or (row["pse"] >= 0 and "low" in told(row["pse"], row["told"])))
+    equivalence = rows_of(program, "equivalence", str(number(EQUIVALENCE)))
+    power = rows_of(program, "power", str(number(POWER)))
+    lines = [*largest_differences(house, program), "", *alarm_table(alarms), "", *equivalence_table(equivalence), "",
+             *coverage_table(coverage), "", *power_table(power), "", *looks_table(looks)]
     print("\n".join(lines))
     replace_section(house / "docs" / "benchmarks.md", "sessions", "Sessions: what holds for people", "\n".join(lines))
 

@@ -1,6 +1,8 @@
 // Simulated studies of people with a known truth: kerf_people_study
-// alarms|equivalence|coverage|power|words|words-power STUDIES prints a line of JSON a cell; kerf_people_study
-// oracle STUDIES the answers of studies with what was found of them.
+// alarms|equivalence|coverage|power|words|words-power STUDIES [CELL...] prints a line of JSON a cell (of
+// those numbered, from 0); kerf_people_study oracle STUDIES the answers of studies with what was found of
+// them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +11,7 @@
 #include <initializer_list>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -102,6 +105,21 @@ Study drawn_ranking(int subjects, int trials, const std::vector<double>& worth, 
   return study;
 }
 
+/// The cells of a table in their order, of which only some may be wanted.
+class Cells {
+ public:
+  explicit Cells(std::vector<int> wanted) : wanted_(std::move(wanted)) {}
+  /// Whether the next one is.
+  bool next() {
+    const int number = count_++;
+    return wanted_.empty() || std::ranges::find(wanted_, number) != wanted_.end();
+  }
+
+ private:
+  std::vector<int> wanted_;
+  int count_ = 0;
+};
+
 AnalysisOptions quick() { return {.truths = {}, .bootstrap = 0}; }
 
 using Draw = std::function<Study(Random&)>;
@@ -147,11 +165,12 @@ void print_alarms(const Alarms& cell, int studies, const Draw& draw) {
 
 constexpr std::array designs{Design::preference, Design::abx, Design::two_interval, Design::three_interval};
 
-void alarms(int studies) {
+void alarms(int studies, Cells& cells) {
   for (const Design design : designs) {
     for (const double sd : {0.0, 1.0, 2.0}) {
       const double middle = middle_of(design == Design::three_interval ? 1.0 / 3.0 : 0.5, sd);
       for (const int subjects : {8, 12, 24}) {
+        if (!cells.next()) continue;
         print_alarms({std::string(name_of(design)), sd, subjects}, studies,
                      [=](Random& random) { return drawn_shares(design, subjects, 12, middle, sd, random); });
       }
@@ -160,6 +179,7 @@ void alarms(int studies) {
   for (const std::size_t samples : {std::size_t{3}, std::size_t{5}}) {
     for (const double sd : {0.0, 1.0, 2.0}) {
       for (const int subjects : {8, 12, 24}) {
+        if (!cells.next()) continue;
         print_alarms({fmt::format("preference among {}", samples), sd, subjects, 4}, studies,
                      [=](Random& random) {
                        return drawn_ranking(subjects, 4, std::vector<double>(samples, 0.0), sd, random);
@@ -170,7 +190,7 @@ void alarms(int studies) {
 }
 
 /// Some hear at a d', the others guess; "d' below a bound" is said of them.
-void equivalence(int studies) {
+void equivalence(int studies, Cells& cells) {
   const psychophysics::Task abx{.decision = psychophysics::Decision::abx_independent};
   struct Cell {
     int subjects, hearing;
@@ -187,6 +207,7 @@ void equivalence(int studies) {
                            {12, 0, 0.0, 1.0, 24},
                            {12, 0, 0.0, 1.0, 48},
                            {24, 0, 0.0, 1.0, 48}}) {
+    if (!cells.next()) continue;
     const double heard = psychophysics::proportion_correct(abx, cell.d_prime);
     const auto draw = [&](Random& random) {
       Study study = study_of_design(Design::abx);
@@ -265,10 +286,11 @@ Study drawn_levels(const LevelTruth& truth, Random& random) {
   return study;
 }
 
-void coverage(int studies) {
+void coverage(int studies, Cells& cells) {
   for (const bool two_sided : {true, false}) {
     for (const double sd : {0.0, 1.0, 2.0}) {
       for (const int subjects : {8, 12, 24}) {
+        if (!cells.next()) continue;
         const LevelTruth truth{
             .two_sided = two_sided, .subjects = subjects, .trials = two_sided ? 12 : 20, .sd = sd};
         std::vector<MainResult> results(static_cast<std::size_t>(studies));
@@ -297,10 +319,11 @@ void coverage(int studies) {
   }
 }
 
-void power(int studies) {
+void power(int studies, Cells& cells) {
   for (const double effect : {0.25, 0.5, 1.0}) {
     for (const double sd : {0.0, 1.0}) {
       for (const int subjects : {8, 12, 24}) {
+        if (!cells.next()) continue;
         const int found = counted(studies, 14, [&](Random& random) {
           return main_result(drawn_shares(Design::two_interval, subjects, 12, effect, sd, random), quick())
                      .p_value <= 0.05;
@@ -366,12 +389,14 @@ void print_words(const WordsTruth& truth, int studies) {
   std::fflush(stdout);
 }
 
-void same_different(std::initializer_list<double> d_primes, int studies) {
+void same_different(std::initializer_list<double> d_primes, int studies, Cells& cells) {
   for (const double d_prime : d_primes) {
     for (const double bias : {0.0, 0.5}) {
       for (const double sd : {0.0, 1.0, 2.0}) {
-        for (const int subjects : {8, 12, 24})
-          print_words({.d_prime = d_prime, .bias = bias, .sd = sd, .subjects = subjects}, studies);
+        for (const int subjects : {8, 12, 24}) {
+          if (cells.next())
+            print_words({.d_prime = d_prime, .bias = bias, .sd = sd, .subjects = subjects}, studies);
+        }
       }
     }
   }
@@ -465,17 +490,20 @@ int main(int count, char** words) {
   const std::string what = count > 1 ? words[1] : "";
   const int studies = count > 2 ? std::atoi(words[2]) : 0;
   if (studies < 1) {
-    std::fprintf(
-        stderr,
-        "usage: kerf_people_study alarms|equivalence|coverage|power|words|words-power|oracle STUDIES\n");
+    std::fprintf(stderr,
+                 "usage: kerf_people_study alarms|equivalence|coverage|power|words|words-power|oracle "
+                 "STUDIES [CELL...]\n");
     return 2;
   }
-  if (what == "alarms") alarms(studies);
-  if (what == "equivalence") equivalence(studies);
-  if (what == "coverage") coverage(studies);
-  if (what == "power") power(studies);
-  if (what == "words") same_different({0.0}, studies);
-  if (what == "words-power") same_different({0.5, 1.0, 1.5}, studies);
+  std::vector<int> wanted;
+  for (int i = 3; i < count; ++i) wanted.push_back(std::atoi(words[i]));
+  Cells cells(wanted);
+  if (what == "alarms") alarms(studies, cells);
+  if (what == "equivalence") equivalence(studies, cells);
+  if (what == "coverage") coverage(studies, cells);
+  if (what == "power") power(studies, cells);
+  if (what == "words") same_different({0.0}, studies, cells);
+  if (what == "words-power") same_different({0.5, 1.0, 1.5}, studies, cells);
   if (what == "oracle") oracle(studies);
   return 0;
 }
