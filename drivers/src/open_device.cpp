@@ -8,7 +8,10 @@
 #include "kerf/drivers/device.h"
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
+#include "kerf/drivers/force_sensor_t7.h"
 #include "kerf/drivers/force_sensor_u6.h"
+#include "kerf/drivers/net_ft.h"
+#include "kerf/drivers/serial_force_sensors.h"
 #include "kerf/drivers/simulated_drive.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
@@ -55,7 +58,8 @@ std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroun
 struct Wanted {
   std::string_view uri;
   Uri parsed;
-  std::size_t number = 0;  ///< 1 of "falcon:1"
+  std::size_t number = 0;   ///< 1 of "falcon:1"
+  std::string_view rest{};  ///< "192.168.1.1" of "net-ft:192.168.1.1", "/dev/ttyUSB0" of "bota:/dev/ttyUSB0"
   const std::atomic<bool>* stop = nullptr;
 };
 
@@ -75,16 +79,34 @@ std::unique_ptr<Device> open_u6(const Wanted& wanted) {
   return std::make_unique<ForceSensorU6>(wanted.uri, wanted.number,
                                          ForceSensorU6::parse_options(wanted.uri, wanted.parsed));
 }
+template <net_ft::Box box>
+std::unique_ptr<Device> open_box(const Wanted& wanted) {
+  return open_net_ft(wanted.uri, box, wanted.rest, wanted.parsed);
+}
 
+using OpenAtPlace = std::unique_ptr<Device> (*)(std::string_view, std::string_view, Uri);
+template <OpenAtPlace open>
+std::unique_ptr<Device> at_place(const Wanted& wanted) {
+  return open(wanted.uri, wanted.rest, wanted.parsed);
+}
+
+/// What follows the colon.
+enum class Follows : std::uint8_t { number, product, host, port };
 struct Scheme {
   std::string_view name;
-  bool numbered;  ///< a number follows the colon
+  Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 4> schemes{{{"falcon", true, open_falcon},
-                                         {"spacemouse", true, open_spacemouse},
-                                         {"hid", false, open_hid},
-                                         {"u6", true, open_u6}}};
+constexpr std::array<Scheme, 10> schemes{{{"falcon", Follows::number, open_falcon},
+                                          {"spacemouse", Follows::number, open_spacemouse},
+                                          {"hid", Follows::product, open_hid},
+                                          {"u6", Follows::number, open_u6},
+                                          {"net-ft", Follows::host, open_box<net_ft::Box::ati>},
+                                          {"onrobot", Follows::host, open_box<net_ft::Box::onrobot>},
+                                          {"t7", Follows::host, at_place<open_t7>},
+                                          {"bota", Follows::port, at_place<open_bota>},
+                                          {"optoforce", Follows::port, at_place<open_optoforce>},
+                                          {"ft300", Follows::port, at_place<open_ft300>}}};
 
 std::optional<std::size_t> number_in(std::string_view digits) {
   std::size_t number = 0;
@@ -111,11 +133,21 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed,
   const std::string_view name = parsed.name;
   const auto colon = std::min(name.find(':'), name.size());
   const auto* scheme = std::ranges::find(schemes, name.substr(0, colon), &Scheme::name);
-  const auto number = number_in(name.substr(std::min(colon + 1, name.size())));
-  if (scheme == schemes.end() || colon == name.size() || (scheme->numbered && !number)) refuse_name(name);
+  const std::string_view rest = name.substr(std::min(colon + 1, name.size()));
+  const auto number = number_in(rest);
+  if (scheme == schemes.end() || colon == name.size() || (scheme->follows == Follows::number && !number))
+    refuse_name(name);
+  if (scheme->follows == Follows::host && rest.empty()) {
+    throw DeviceError(std::string(uri) + ": at which address? For example " + std::string(scheme->name) +
+                      ":192.168.1.1");
+  }
+  if (scheme->follows == Follows::port && rest.empty()) {
+    throw DeviceError(std::string(uri) + ": at which port? For example " + std::string(scheme->name) +
+                      ":/dev/ttyUSB0; ls /dev/serial/by-id shows those that there are");
+  }
   refuse_surroundings(uri, surroundings);
   return scheme->open(
-      {.uri = uri, .parsed = parsed, .number = number.value_or(0), .stop = surroundings.stop});
+      {.uri = uri, .parsed = parsed, .number = number.value_or(0), .rest = rest, .stop = surroundings.stop});
 }
 
 /// "falcon:" and 1 make "falcon:1"; a HID product is its own name, and its others have an option.

@@ -1,6 +1,7 @@
 #include "kerf/drivers/uri.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -33,6 +34,11 @@ Uri parse_uri(std::string_view text) {
 
 bool names_a_file(std::string_view device, std::string_view option) noexcept {
   return option == "calibration" || option == "firmware" || (option == "model" && device == "sim:axis");
+}
+
+bool names_a_place(std::string_view device) noexcept {
+  constexpr std::array schemes{"net-ft:", "onrobot:", "t7:", "bota:", "optoforce:", "ft300:"};
+  return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
 }
 
 double UriOptions::number_from(std::string_view text, const std::string& name,

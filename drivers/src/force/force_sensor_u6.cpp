@@ -34,10 +34,6 @@ constexpr std::chrono::milliseconds opening_wait{10};
 constexpr int most_opening_waits = 50;
 constexpr usb::Identity labjack{labjack_u6::vendor, labjack_u6::product, "LabJack U6"};
 
-AxisInfo axis(std::string name, bool turns) {
-  return {.name = std::move(name), .position_unit = turns ? "rad" : "m", .force_unit = turns ? "N·m" : "N"};
-}
-
 std::string advice(std::uint8_t error) {
   switch (error) {
     case static_cast<std::uint8_t>(Error::overlap):
@@ -77,7 +73,7 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
       usb_(labjack, number),
       assembler_(channel_count, channel_count),
       clock_(scan_period_s),
-      opened_ns_(usb::now_ns()) {
+      force_(options.raw ? channel_count : 0) {
   drain();
   stop_stream();
   identify();
@@ -93,8 +89,7 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
       .uri = uri_,
       .model = fmt::format("LabJack U6{}", identification_.pro ? "-Pro" : ""),
       .about = std::string(about),
-      .axes = {axis("x", false), axis("y", false), axis("z", false), axis("rx", true), axis("ry", true),
-               axis("rz", true)},
+      .axes = sensor_axes(),
       .channels = {{.name = "force_age", .unit = "s"}, {.name = "force_scan", .unit = "1"}},
       .measures_force = true,
       .configuration = fmt::format(
@@ -115,13 +110,12 @@ ForceSensorU6::ForceSensorU6(std::string_view uri, std::size_t number, const Opt
     transfers_.push_back(
         std::make_unique<Transfer>(usb_, labjack_u6::stream_endpoint, labjack_u6::max_packet,
                                    [this, i](Transfer::End end, std::span<const std::uint8_t> bytes) {
-                                     if (end == Transfer::End::gone) lost_.store(true);
+                                     if (end == Transfer::End::gone) force_.lose();
                                      if (end == Transfer::End::stalled || end == Transfer::End::failed)
                                        broken_ = true;
                                      if (end != Transfer::End::completed || broken_) return;
                                      take_packet(bytes);
-                                     if (!lost_.load(std::memory_order_relaxed) && !transfers_[i]->submit())
-                                       lost_.store(true);
+                                     if (!force_.lost() && !transfers_[i]->submit()) force_.lose();
                                    }));
   }
   start_stream();
@@ -148,7 +142,7 @@ ForceSensorU6::~ForceSensorU6() {
   thread_.stop();
   broken_ = true;  // transfers that end now are not submitted again
   transfers_.clear();
-  if (lost_.load()) return;
+  if (force_.lost()) return;
   try {
     stop_stream();
   } catch (const DeviceError&) {
@@ -243,18 +237,18 @@ void ForceSensorU6::stream(const std::stop_token& stop) noexcept {
   std::int64_t last_scan_ns = last_packet_ns_;
   std::uint64_t last_scans = 0;
   for (const auto& transfer : transfers_) {
-    if (!transfer->submit()) lost_.store(true);
+    if (!transfer->submit()) force_.lose();
   }
-  while (!stop.stop_requested() && !lost_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested() && !force_.lost()) {
     usb_.handle_events(wait_ns, thread_.wake_descriptor());
     const std::int64_t now = usb::now_ns();
     if (scans_.load(std::memory_order_relaxed) != last_scans) {
       last_scans = scans_.load(std::memory_order_relaxed);
       last_scan_ns = now;
     }
-    if (now - last_scan_ns > max_silence_ns) lost_.store(true);
+    if (now - last_scan_ns > max_silence_ns) force_.lose();
     const bool silent = now - last_packet_ns_ > silent_ns;
-    if (!lost_.load(std::memory_order_relaxed) && (broken_ || silent) && !restart()) lost_.store(true);
+    if (!force_.lost() && (broken_ || silent) && !restart()) force_.lose();
   }
   // Not again and again: the kernel needs the processor to take the device away.
 }
@@ -283,10 +277,10 @@ void ForceSensorU6::take_scan(std::uint64_t number, std::span<const std::uint16_
   clock_.add(number, arrived_ns);
   Axes volts{};
   for (std::size_t i = 0; i < channel_count; ++i) volts[i] = volts_.volts(codes[i]);
-  latest_.put({.wrench = calibration_.wrench(volts),
-               .volts = volts,
-               .number = number,
-               .taken_ns = clock_.time_ns(number)});
+  StreamedForce::Reading reading{
+      .wrench = calibration_.wrench(volts), .number = number, .taken_ns = clock_.time_ns(number)};
+  std::ranges::copy(volts, reading.extras.begin());
+  force_.put(reading);
   if (const std::size_t count = opening_count_.load(std::memory_order_relaxed); count < opening_readings) {
     for (std::size_t i = 0; i < channel_count; ++i) opening_sum_[i] += volts[i];
     opening_count_.store(count + 1, std::memory_order_release);
@@ -307,7 +301,7 @@ bool ForceSensorU6::restart() noexcept {
     return std::ranges::any_of(transfers_, [](const auto& transfer) { return transfer->pending(); });
   };
   for (int waited = 0; pending() && waited < 50; ++waited) usb_.handle_events(wait_ns);
-  if (pending() || lost_.load(std::memory_order_relaxed)) return false;
+  if (pending() || force_.lost()) return false;
   try {
     // A stall lasts until the host clears it.
     for (const std::uint8_t endpoint :
@@ -334,37 +328,6 @@ bool ForceSensorU6::restart() noexcept {
   broken_ = was_recovering_ = false;
   last_packet_ns_ = now;
   return std::ranges::all_of(transfers_, [](const auto& transfer) { return transfer->submit(); });
-}
-
-Status ForceSensorU6::read(double now_s, Sample& sample) noexcept {
-  if (lost_.load(std::memory_order_relaxed)) return Status::lost;
-  has_scan_ = latest_.take(scan_) || has_scan_;
-  const std::int64_t now = usb::now_ns();
-  // The loop's zero on this clock: no tick is woken early, and the least late one tells it.
-  const auto loop_ns = static_cast<std::int64_t>(std::llround(1e9 * now_s));
-  loop_start_ns_ = std::min(loop_start_ns_, now - loop_ns);
-  sample.position = sample.velocity = {};
-  const std::int64_t age_ns = loop_start_ns_ + loop_ns - scan_.taken_ns;
-  const bool fresh = has_scan_ && now - scan_.taken_ns <= max_reading_age_ns;
-  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  if (fresh) {
-    sample.force_measured = scan_.wrench;
-  } else {
-    sample.force_measured.fill(nothing);
-  }
-  sample.channels[0] = has_scan_ ? 1e-9 * static_cast<double>(age_ns) : nothing;
-  sample.channels[1] = has_scan_ ? static_cast<double>(scan_.number) : nothing;
-  for (std::size_t i = 0; raw_ && i < channel_count; ++i)
-    sample.channels[2 + i] = fresh ? scan_.volts[i] : nothing;
-  if (fresh) return Status::ok;
-  return now - (has_scan_ ? scan_.taken_ns : opened_ns_) > max_silence_ns ? Status::lost : Status::fault;
-}
-
-Status ForceSensorU6::write(const Axes& force) noexcept {
-  for (const double one : force) {
-    if (!std::isfinite(one)) return Status::fault;
-  }
-  return lost_.load(std::memory_order_relaxed) ? Status::lost : Status::ok;
 }
 
 std::vector<Figure> ForceSensorU6::figures() const {

@@ -101,11 +101,18 @@ std::vector<Figure> SensedDevice::figures() const {
 
 std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri,
                                     Surroundings surroundings) {
+  const bool alone = uri == "none";
+  if (alone && sensor_uri.empty())
+    throw DeviceError(
+        "--device none: then what? It is for a force sensor that is recorded alone, by --sensor");
   if (sensor_uri.empty()) return open_device(uri, std::move(surroundings));
   Surroundings around_sensor;
   around_sensor.pass_time = surroundings.pass_time;
   around_sensor.stop = surroundings.stop;
   auto sensor = open_device(sensor_uri, std::move(around_sensor));
+  if (alone && !sensor->info().measures_force)
+    throw DeviceError(fmt::format("{} measures no force: it is no --sensor", sensor->info().uri));
+  if (alone) return sensor;
   return std::make_unique<SensedDevice>(open_device(uri, std::move(surroundings)), std::move(sensor));
 }
 

@@ -14,7 +14,7 @@
 #include <kerf/drivers/protocols/labjack_u6.h>
 #include <kerf/drivers/protocols/labjack_u6_commands.h>
 #include <kerf/drivers/scan_clock.h>
-#include <kerf/drivers/triple_buffer.h>
+#include <kerf/drivers/streamed_force.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/drivers/usb/io_thread.h>
 #include <kerf/drivers/usb/usb_device.h>
@@ -65,22 +65,16 @@ class ForceSensorU6 final : public Device {
   ~ForceSensorU6() override;
 
   [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
-  [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
-  /// It has no motors: any force is taken and none is exerted.
-  [[nodiscard]] Status write(const Axes& force) noexcept override;
+  [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override {
+    return force_.read(now_s, sample);
+  }
+  [[nodiscard]] Status write(const Axes& force) noexcept override { return force_.write(force); }
   void release(double) noexcept override {}
   /// scan_rate, scans, scans_lost, checksum_errors, overflows, restarts, and once there are four blocks of
   /// ScanClock clock_drift and clock_drift_error.
   [[nodiscard]] std::vector<Figure> figures() const override;
 
  private:
-  struct Scan {
-    Axes wrench{};
-    Axes volts{};
-    std::uint64_t number = 0;
-    std::int64_t taken_ns = 0;  ///< on the host's clock
-  };
-
   // Set-up and restart, on one thread at a time.
   [[nodiscard]] std::size_t ask(const labjack_u6::Message& question, std::span<std::uint8_t> answer);
   [[noreturn]] void refuse(const std::string& why) const;
@@ -119,8 +113,7 @@ class ForceSensorU6 final : public Device {
   bool was_recovering_ = false;
 
   // Between the threads.
-  TripleBuffer<Scan> latest_;
-  std::atomic<bool> lost_{false};
+  StreamedForce force_;  ///< extras: the volts, with `raw`
   /// Of the first readings: sums of the I/O thread, until there are as many as the bias is looked at by.
   Axes opening_sum_{};
   std::atomic<std::size_t> opening_count_{0};
@@ -133,12 +126,6 @@ class ForceSensorU6 final : public Device {
   std::atomic<std::int64_t> last_ns_{0};
   std::atomic<double> drift_ppm_{0.0};
   std::atomic<double> drift_error_ppm_{std::numeric_limits<double>::infinity()};
-
-  // Of the tick.
-  Scan scan_;
-  bool has_scan_ = false;
-  std::int64_t opened_ns_;
-  std::int64_t loop_start_ns_ = std::numeric_limits<std::int64_t>::max();
 
   usb::IoThread thread_;  ///< last: it ends first
 };

@@ -46,7 +46,7 @@ class SensedDevice final : public Device {
 };
 
 /// Opens a device and, unless `sensor_uri` is empty, the sensor of its forces: first the sensor, which moves
-/// nothing.
+/// nothing. The device `none` is the sensor alone.
 /// @throws DeviceError as open_device() and SensedDevice.
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri,
                                                   Surroundings surroundings);
