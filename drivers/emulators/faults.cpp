@@ -17,7 +17,7 @@ struct Name {
   Kind kind;
   Takes takes;
 };
-constexpr std::array<Name, 10> names{{{"drop", Kind::drop, Takes::count},
+constexpr std::array<Name, 14> names{{{"drop", Kind::drop, Takes::count},
                                       {"split", Kind::split, Takes::count},
                                       {"corrupt", Kind::corrupt, Takes::count},
                                       {"stall", Kind::stall, Takes::count},
@@ -26,7 +26,13 @@ constexpr std::array<Name, 10> names{{{"drop", Kind::drop, Takes::count},
                                       {"delay", Kind::delay, Takes::time_and_duration},
                                       {"refuse-out", Kind::refuse_out, Takes::duration},
                                       {"stick", Kind::stick, Takes::duration},
-                                      {"unplug", Kind::unplug, Takes::nothing}}};
+                                      {"unplug", Kind::unplug, Takes::nothing},
+                                      {"swap", Kind::swap, Takes::count},
+                                      {"silence", Kind::silence, Takes::duration},
+                                      {"overload", Kind::overload, Takes::duration},
+                                      {"restart", Kind::restart, Takes::duration}}};
+constexpr std::array of_network{Kind::drop,  Kind::corrupt, Kind::duplicate,
+                                Kind::delay, Kind::stick,   Kind::unplug};
 
 Kind kind_of(Disturbance disturbance) noexcept {
   switch (disturbance) {
@@ -100,9 +106,10 @@ Fault parse_fault(std::string_view text) {
   }
   throw std::invalid_argument(
       "fault '" + std::string(text) +
-      "': expected KIND@SECONDS, for drop, split, corrupt, stall and duplicate with :COUNT, for flip with "
-      ":COUNT:SEED, for delay with :TIME:DURATION, for refuse-out and stick with :DURATION, or unplug; for "
-      "example drop@2.0:3 or refuse-out@2.0:30ms");
+      "': expected KIND@SECONDS, for drop, split, corrupt, stall, duplicate and swap with :COUNT, for flip "
+      "with "
+      ":COUNT:SEED, for delay with :TIME:DURATION, for refuse-out, stick, silence, overload and restart with "
+      ":DURATION, or unplug; for example drop@2.0:3 or refuse-out@2.0:30ms");
 }
 
 /// A number that looks drawn, the next of a row by its place in it (SplitMix64).
@@ -123,6 +130,35 @@ std::vector<Fault> parse_faults(std::string_view text) {
     text.remove_prefix(std::min(comma + 1, text.size()));
   }
   return faults;
+}
+
+namespace {
+
+void check(const std::vector<Fault>& faults, std::string_view where, bool (*happens)(Kind)) {
+  for (const Fault& fault : faults) {
+    if (happens(fault.kind)) continue;
+    const auto* name = std::ranges::find(names, fault.kind, &Name::kind);
+    throw std::invalid_argument("fault '" + std::string(name->text) + "': it does not happen " +
+                                std::string(where));
+  }
+}
+
+}  // namespace
+
+void check_faults_of_usb(const std::vector<Fault>& faults) {
+  check(faults, "on the USB", [](Kind kind) { return kind <= Kind::unplug; });
+}
+
+void check_faults_of_network(const std::vector<Fault>& faults) {
+  check(faults, "in the network", [](Kind kind) {
+    return kind >= Kind::unplug || std::ranges::find(of_network, kind) != of_network.end();
+  });
+}
+
+void check_faults_of_line(const std::vector<Fault>& faults) {
+  check_faults_of_network(faults);
+  check(faults, "on a serial line",
+        [](Kind kind) { return kind != Kind::delay && kind != Kind::stick && kind != Kind::swap; });
 }
 
 const Fault* FaultPlan::find(Kind kind, double time_s) const noexcept {
@@ -176,6 +212,18 @@ std::optional<double> FaultPlan::refuses_until_s(double time_s) const noexcept {
 }
 
 bool FaultPlan::sticks(double time_s) const noexcept { return find(Kind::stick, time_s) != nullptr; }
+
+bool FaultPlan::swaps(double time_s) noexcept { return count(Kind::swap, time_s); }
+
+bool FaultPlan::is_silent(double time_s) const noexcept { return find(Kind::silence, time_s) != nullptr; }
+
+bool FaultPlan::is_overloaded(double time_s) const noexcept {
+  return find(Kind::overload, time_s) != nullptr;
+}
+
+bool FaultPlan::is_without_power(double time_s) const noexcept {
+  return find(Kind::restart, time_s) != nullptr;
+}
 
 std::optional<double> FaultPlan::unplugged_at_s() const noexcept {
   std::optional<double> first;

@@ -24,6 +24,13 @@ namespace kerf::emulators {
 /// | refuse-out | nothing that the host sends is taken (NAK), and it waits | DURATION |
 /// | stick | the counters stand still | DURATION |
 /// | unplug | it is gone | |
+/// | swap | an answer comes after the next one | COUNT |
+/// | silence | nothing is sent, and time goes on | DURATION |
+/// | overload | the sensor says that it is overloaded | DURATION |
+/// | restart | it is without power, and begins anew | DURATION |
+///
+/// What is on the USB knows those to `unplug`, what is in the network `drop`, `corrupt`, `duplicate`,
+/// `delay`, `stick`, and those from `unplug` on.
 struct Fault {
   enum class Kind : std::uint8_t {
     drop,
@@ -35,7 +42,11 @@ struct Fault {
     delay,
     refuse_out,
     stick,
-    unplug
+    unplug,
+    swap,
+    silence,
+    overload,
+    restart
   };
   Kind kind = Kind::drop;
   double at_s = 0.0;
@@ -48,6 +59,10 @@ struct Fault {
 /// Reads "drop@2.0,flip@3:10:7,delay@5:20ms:1s,unplug@8": KIND@SECONDS and what the kind takes behind colons.
 /// @throws std::invalid_argument with what was expected.
 [[nodiscard]] std::vector<Fault> parse_faults(std::string_view text);
+/// @throws std::invalid_argument for one that does not happen there.
+void check_faults_of_usb(const std::vector<Fault>& faults);
+void check_faults_of_network(const std::vector<Fault>& faults);
+void check_faults_of_line(const std::vector<Fault>& faults);
 
 /// The faults of one run, as they come due. Times are seconds since the device was attached.
 class FaultPlan {
@@ -70,6 +85,11 @@ class FaultPlan {
   /// Until when nothing that the host sends is taken, if that is so now.
   [[nodiscard]] std::optional<double> refuses_until_s(double time_s) const noexcept;
   [[nodiscard]] bool sticks(double time_s) const noexcept;
+  /// Whether the answer that is sent now comes after the next one; counts it.
+  [[nodiscard]] bool swaps(double time_s) noexcept;
+  [[nodiscard]] bool is_silent(double time_s) const noexcept;
+  [[nodiscard]] bool is_overloaded(double time_s) const noexcept;
+  [[nodiscard]] bool is_without_power(double time_s) const noexcept;
   /// When the device is unplugged, if ever.
   [[nodiscard]] std::optional<double> unplugged_at_s() const noexcept;
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -11,11 +13,15 @@
 #include <sys/prctl.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/uri.h>
 #include <kerf/version.h>
 
 #include "attach.h"
 #include "faults.h"
 #include "make_device.h"
+#include "network/labjack_t7.h"
+#include "network/net_ft.h"
+#include "serial/serial_sensor.h"
 #include "session.h"
 
 namespace {
@@ -65,8 +71,47 @@ const char* in_words(Session::End end) {
   }
 }
 
+/// What is in the network has an address instead of a plug.
+int run_in_network(const Arguments& arguments, kerf::drivers::Uri uri) {
+  std::vector<Fault> faults = parse_faults(arguments.faults);
+  check_faults_of_network(faults);
+  if (uri.name == "t7") {
+    EmulatedT7 t7(EmulatedT7::parse_options(std::move(uri)), std::move(faults));
+    std::fprintf(stderr, "kerf-emulate: %s has its registers at port %u, its stream at port %u\n",
+                 arguments.device.c_str(), t7.port(), t7.stream_port());
+    t7.run(stop, arguments.seconds);
+    std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), t7.tell().c_str());
+    return 0;
+  }
+  EmulatedNetFt box(EmulatedNetFt::parse_options(std::move(uri)), std::move(faults));
+  std::fprintf(
+      stderr, "kerf-emulate: %s listens at UDP port %u%s\n", arguments.device.c_str(), box.port(),
+      box.http_port() == 0 ? "" : fmt::format(" and serves its page at port {}", box.http_port()).c_str());
+  box.run(stop, arguments.seconds);
+  std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), box.tell().c_str());
+  return 0;
+}
+
+/// What is on a serial line has a port.
+int run_on_a_line(const Arguments& arguments, kerf::drivers::Uri uri) {
+  std::vector<Fault> faults = parse_faults(arguments.faults);
+  check_faults_of_line(faults);
+  const auto sensor = make_serial_sensor(std::move(uri), std::move(faults));
+  std::fprintf(stderr, "kerf-emulate: %s is at the port %s\n", arguments.device.c_str(),
+               sensor->path().c_str());
+  sensor->run(stop, arguments.seconds);
+  std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), sensor->tell().c_str());
+  return 0;
+}
+
 int run(const Arguments& arguments) {
-  const FaultPlan plan(parse_faults(arguments.faults));
+  kerf::drivers::Uri uri = kerf::drivers::parse_uri(arguments.device);
+  if (uri.name == "net-ft" || uri.name == "onrobot" || uri.name == "t7")
+    return run_in_network(arguments, std::move(uri));
+  if (is_serial_sensor(uri.name)) return run_on_a_line(arguments, std::move(uri));
+  std::vector<Fault> faults = parse_faults(arguments.faults);
+  check_faults_of_usb(faults);
+  const FaultPlan plan(std::move(faults));
   Descriptor listening;
   if (!arguments.attach) {
     listening = listen_on(arguments.port);
@@ -99,8 +144,13 @@ int main(int count, char** texts) {
   CLI::App app(
       "kerf-emulate plays a device on the USB of this machine or of another, over USB/IP: its descriptors, "
       "its wire\n"
-      "protocol, and behind them a mechanism in a hand that the motor commands really move.\n\n"
-      "Devices: falcon, woody, u6, spacemouse; options stand behind a question mark, as in docs/devices.md.\n"
+      "protocol, and behind them a mechanism in a hand that the motor commands really move; or a force "
+      "sensor "
+      "in the\n"
+      "network, on loopback.\n\n"
+      "Devices: falcon, woody, u6, spacemouse, and net-ft, onrobot; options stand behind a question mark, as "
+      "in\n"
+      "docs/devices.md.\n"
       "Example, as root: modprobe vhci-hcd && kerf-emulate falcon --attach");
   app.add_option("device", arguments.device, "Device, with its options: 'woody?generation=v1'")->required();
   app.add_flag("--attach", arguments.attach, "Plug it into this machine's own kernel (root, vhci-hcd)");
@@ -111,7 +161,8 @@ int main(int count, char** texts) {
       "What goes wrong, from so many seconds after it was plugged in: KIND@SECONDS[:COUNT],... with KIND "
       "drop, "
       "split, corrupt, stall or duplicate; flip@SECONDS[:COUNT[:SEED]], delay@SECONDS:TIME[:DURATION], "
-      "refuse-out@SECONDS:DURATION, stick@SECONDS:DURATION, unplug@SECONDS; docs/devices.md has each");
+      "refuse-out@SECONDS:DURATION, stick@SECONDS:DURATION, unplug@SECONDS; in the network and on a line "
+      "also silence, overload, restart with a DURATION, and swap; docs/devices.md has each");
   app.add_option("--seconds", arguments.seconds, "Unplug it after so long; 0: never")
       ->check(CLI::Range(0.0, 1e9));
   app.add_option("--times", arguments.times, "Plug it in so many times; 0: for ever")->capture_default_str();

@@ -20,7 +20,9 @@ std::unique_ptr<EmulatedDevice> make_device(std::string_view text) {
   if (uri.name == "u6") return std::make_unique<EmulatedU6>(EmulatedU6::parse_options(std::move(uri)));
   if (uri.name == "woody")
     return std::make_unique<EmulatedWoodenHaptics>(EmulatedWoodenHaptics::parse_options(std::move(uri)));
-  throw drivers::DeviceError("no emulator of '" + uri.name + "'; there are falcon, woody, u6 and spacemouse");
+  throw drivers::DeviceError(
+      "no emulator of '" + uri.name +
+      "'; there are falcon, woody, u6 and spacemouse, net-ft, onrobot and t7, bota, optoforce and ft300");
 }
 
 }  // namespace kerf::emulators

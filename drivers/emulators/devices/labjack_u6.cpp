@@ -19,7 +19,6 @@ namespace {
 namespace wire = drivers::labjack_u6;
 using drivers::Axes;
 
-constexpr std::array wrench_hz{0.7, 1.1, 1.3, 1.7, 1.9, 2.3};
 constexpr std::size_t buffer_samples = 984;
 constexpr std::uint16_t dummy_sample = 0xFFFF;
 constexpr std::int64_t blocked_ns = 190'000'000;
@@ -67,8 +66,8 @@ const drivers::ForceCalibration& example_transducer() {
 EmulatedU6::Options EmulatedU6::parse_options(drivers::Uri uri) {
   drivers::UriOptions given(std::move(uri));
   Options options;
-  options.force_n = given.number("force", {"N", options.force_n, 0.0, 1e6});
-  options.torque_n_m = given.number("torque", {"Nm", options.torque_n_m, 0.0, 1e6});
+  options.wrench.force_n = given.number("force", {"N", options.wrench.force_n, 0.0, 1e6});
+  options.wrench.torque_n_m = given.number("torque", {"Nm", options.wrench.torque_n_m, 0.0, 1e6});
   options.drift_ppm = given.number("drift", {"ppm", options.drift_ppm, -1000.0, 1000.0});
   options.noise_codes = given.number("noise", {"1", options.noise_codes, 0.0, 1000.0});
   options.trim_ppm = given.number("trim", {"ppm", options.trim_ppm, -40e3, 40e3});
@@ -99,14 +98,7 @@ void EmulatedU6::receive(std::uint8_t endpoint, std::span<const std::uint8_t> by
   answers_.push_back(answer(bytes, now_ns));
 }
 
-Axes EmulatedU6::wrench(double time_s) const noexcept {
-  Axes wrench{};
-  for (std::size_t i = 0; i < wrench.size(); ++i) {
-    const double amplitude = i < 3 ? options_.force_n : options_.torque_n_m;
-    wrench[i] = amplitude * std::sin(2.0 * std::numbers::pi * wrench_hz[i] * time_s);
-  }
-  return wrench;
-}
+Axes EmulatedU6::wrench(double time_s) const noexcept { return options_.wrench.at(time_s); }
 
 std::array<double, 4> EmulatedU6::constants(std::uint8_t block) const noexcept {
   const wire::Calibration nominal;

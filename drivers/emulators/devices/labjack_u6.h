@@ -14,6 +14,7 @@
 #include <kerf/drivers/uri.h>
 
 #include "emulated_device.h"
+#include "swaying_wrench.h"
 
 namespace kerf::emulators {
 
@@ -21,17 +22,13 @@ namespace kerf::emulators {
 /// examples/u6.calibration.toml.
 [[nodiscard]] const drivers::ForceCalibration& example_transducer();
 
-/// A LabJack U6 (0cd5:0006) with a six-axis force/torque transducer on AIN0/1 to AIN10/11, on which a known
-/// wrench acts:
-///
-///     component i = A_i sin(2 pi f_i t),   f = 0.7, 1.1, 1.3, 1.7, 1.9, 2.3 Hz,   t from the first
-///     StreamStart
-///
-/// It becomes volts by the inverse of the transducer's matrix, and codes by the inverse of the U6's own
-/// constants, rounded and cut to 16 bits. All channels of a scan are sampled at one instant (a real one takes
-/// some tens of us from channel to channel). A converter of 16 bits, 984 samples of buffer and a clock that
-/// may run wrong stand between that and the host: when the host does not read, the buffer fills, what is in
-/// it comes with error 59 and then one dummy scan with error 60 and the count of those that are missing.
+/// A LabJack U6 (0cd5:0006) with a six-axis force/torque transducer on AIN0/1 to AIN10/11, on which a
+/// SwayingWrench acts from the first StreamStart on. It becomes volts by the inverse of the transducer's
+/// matrix, and codes by the inverse of the U6's own constants, rounded and cut to 16 bits. All channels of a
+/// scan are sampled at one instant (a real one takes some tens of us from channel to channel). A converter of
+/// 16 bits, 984 samples of buffer and a clock that may run wrong stand between that and the host: when the
+/// host does not read, the buffer fills, what is in it comes with error 59 and then one dummy scan with error
+/// 60 and the count of those that are missing.
 ///
 /// Options: force (8N), torque (0.4Nm): the amplitudes; calibration=FILE.toml: another transducer; drift
 /// (0ppm): by how much its millisecond is longer than the host's; noise (0): of the converter, its deviation
@@ -44,8 +41,7 @@ namespace kerf::emulators {
 class EmulatedU6 final : public EmulatedDevice {
  public:
   struct Options {
-    double force_n = 8.0;
-    double torque_n_m = 0.4;
+    SwayingWrench wrench;
     drivers::ForceCalibration transducer = example_transducer();
     double drift_ppm = 0.0;
     double noise_codes = 0.0;

@@ -1,0 +1,167 @@
+#include "serial/serial_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <time.h>
+
+#include <kerf/drivers/usb/io_thread.h>
+
+namespace kerf::emulators {
+namespace {
+
+using drivers::usb::now_ns;
+
+constexpr double bits_of_a_byte = 10.0;
+constexpr std::int64_t end_of_burst_ns = 3'000'000;
+constexpr std::int64_t between_looks_ns = 1'000'000;
+constexpr double torque_share = 0.05;
+
+}  // namespace
+
+EmulatedSerialSensor::Options EmulatedSerialSensor::parse_common(drivers::UriOptions& given) {
+  Options options;
+  options.link = given.text("link").value_or("");
+  options.wrench.force_n = given.number("force", {"N", options.wrench.force_n, 0.0, 1e4});
+  options.wrench.torque_n_m = given.number("torque", {"Nm", options.wrench.torque_n_m, 0.0, 1e3});
+  options.noise_n = given.number("noise", {"N", 0.0, 0.0, 1e3});
+  options.drift_ppm = given.number("drift", {"ppm", 0.0, -500.0, 500.0});
+  options.loss = given.number("loss", {"1", 0.0, 0.0, 1.0});
+  options.seed = given.count("seed", 1);
+  options.trace = given.text("trace").value_or("");
+  return options;
+}
+
+EmulatedSerialSensor::EmulatedSerialSensor(const Options& options, std::vector<Fault> faults, double baud)
+    : options_(options),
+      faults_(std::move(faults)),
+      baud_(baud),
+      port_(options.link),
+      noise_(options.seed),
+      losses_(options.seed),
+      began_ns_(now_ns()) {
+  if (options_.trace.empty()) return;
+  trace_.open(options_.trace);
+  trace_ << "number,host_ns,fx,fy,fz,tx,ty,tz,left\n";
+}
+
+double EmulatedSerialSensor::world_s(std::int64_t at_ns) const noexcept {
+  return world_start_ns_ ? 1e-9 * static_cast<double>(at_ns - *world_start_ns_) : 0.0;
+}
+
+std::int64_t EmulatedSerialSensor::frame_ns(std::uint64_t frame) const noexcept {
+  const double period_ns = 1e9 / rate_hz_ * (1.0 + 1e-6 * options_.drift_ppm);
+  return stream_start_ns_ + std::llround(period_ns * static_cast<double>(frame));
+}
+
+void EmulatedSerialSensor::stream(double rate_hz) {
+  rate_hz_ = rate_hz;
+  stream_start_ns_ = now_ns();
+  measured_of_stream_ = 0;
+}
+
+void EmulatedSerialSensor::say(const Bytes& bytes) {
+  const double seconds = bits_of_a_byte * static_cast<double>(bytes.size()) / baud_;
+  line_free_ns_ = std::max(line_free_ns_, now_ns()) + std::llround(1e9 * seconds);
+  on_the_way_.push_back({.due_ns = line_free_ns_, .bytes = bytes});
+}
+
+void EmulatedSerialSensor::say(const std::string& text) { say(Bytes(text.begin(), text.end())); }
+
+void EmulatedSerialSensor::run(const std::atomic<bool>& stop, double seconds) {
+  const auto unplugged_at_s = faults_.unplugged_at_s();
+  while (!stop.load()) {
+    const std::int64_t now = now_ns();
+    if (seconds > 0.0 && 1e-9 * static_cast<double>(now - began_ns_) >= seconds) return;
+    if (unplugged_at_s && world_start_ns_ && world_s(now) >= *unplugged_at_s) {
+      port_.pull_out();
+      return;
+    }
+    set_power(!world_start_ns_ || !faults_.is_without_power(world_s(now)), now);
+    const bool is_open = port_.is_open();
+    if (is_open && !was_open_) {
+      if (!world_start_ns_) world_start_ns_ = powered_ns_ = now;
+      opened();
+    }
+    was_open_ = is_open;
+    if (has_power_ && is_open) listen(now);
+    if (has_power_) send_due(now);
+    send_on_the_way(now);
+    std::int64_t next = now + between_looks_ns;
+    if (!on_the_way_.empty()) next = std::min(next, on_the_way_.front().due_ns);
+    if (streams()) next = std::min(next, frame_ns(measured_of_stream_ + 1));
+    const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, next - now_ns())};
+    nanosleep(&wait, nullptr);
+  }
+}
+
+void EmulatedSerialSensor::set_power(bool on, std::int64_t at_ns) {
+  if (on == has_power_) return;
+  has_power_ = on;
+  on_the_way_.clear();
+  if (!on) {
+    stop_stream();
+    return;
+  }
+  powered_ns_ = at_ns;
+  number_ = 0;
+  begin_anew();
+}
+
+void EmulatedSerialSensor::listen(std::int64_t at_ns) {
+  Bytes bytes(512);
+  const std::ptrdiff_t size = port_.receive(bytes);
+  if (size > 0) {
+    hear(std::span(bytes).first(static_cast<std::size_t>(size)));
+    heard_ns_ = at_ns;
+  } else if (heard_ns_ && at_ns - *heard_ns_ > end_of_burst_ns) {
+    heard_ns_.reset();
+    heard_all();
+  }
+}
+
+void EmulatedSerialSensor::send_due(std::int64_t at_ns) {
+  while (streams() && frame_ns(measured_of_stream_ + 1) <= at_ns) measure(frame_ns(++measured_of_stream_));
+}
+
+void EmulatedSerialSensor::measure(std::int64_t taken_ns) {
+  Measured measured{.time_s = world_s(taken_ns),
+                    .powered_s = 1e-9 * static_cast<double>(taken_ns - powered_ns_),
+                    .number = ++number_,
+                    .wrench = options_.wrench.at(world_s(taken_ns)),
+                    .overloaded = faults_.is_overloaded(world_s(taken_ns))};
+  const auto acting = measured.wrench;
+  for (std::size_t i = 0; i < measured.wrench.size(); ++i)
+    measured.wrench[i] += options_.noise_n * (i < 3 ? 1.0 : torque_share) * noise_();
+  Bytes bytes = frame(measured);
+  const bool drawn = static_cast<double>(losses_() >> 11U) * 0x1p-53 < options_.loss;
+  const bool dropped = faults_.due(measured.time_s) == Disturbance::drop;
+  if (dropped) faults_.done(Disturbance::drop, measured.time_s);
+  const bool leaves = !drawn && !dropped && !faults_.is_silent(measured.time_s);
+  if (trace_.is_open())
+    trace_ << fmt::format("{},{},{},{}\n", number_, taken_ns, fmt::join(acting, ","), leaves ? 1 : 0);
+  ++(leaves ? sent_ : left_out_);
+  if (!leaves) return;
+  if (faults_.due(measured.time_s) == Disturbance::corrupt) {
+    faults_.done(Disturbance::corrupt, measured.time_s);
+    bytes[bytes.size() / 2] ^= 0x10U;
+  }
+  say(bytes);
+  if (faults_.duplicates(measured.time_s)) say(bytes);
+}
+
+void EmulatedSerialSensor::send_on_the_way(std::int64_t at_ns) {
+  while (!on_the_way_.empty() && on_the_way_.front().due_ns <= at_ns) {
+    port_.send(on_the_way_.front().bytes);
+    on_the_way_.pop_front();
+  }
+}
+
+std::string EmulatedSerialSensor::tell() const {
+  return fmt::format("{} frames sent, {} left out", sent_, left_out_);
+}
+
+}  // namespace kerf::emulators
