@@ -1,0 +1,106 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include <kerf/drivers/uri.h>
+
+#include "faults.h"
+#include "network/labjack_t7.h"
+#include "network/net_ft.h"
+#include "serial/serial_sensor.h"
+
+namespace kerf::test {
+
+/// An emulated force sensor of the network at free ports of loopback, while it lives.
+class RunningBox {
+ public:
+  explicit RunningBox(const std::string& device, const std::string& faults = "")
+      : box_(options_of(device), emulators::parse_faults(faults)),
+        thread_([this] { box_.run(stop_, 0.0); }) {}
+  RunningBox(const RunningBox&) = delete;
+  RunningBox& operator=(const RunningBox&) = delete;
+  ~RunningBox() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  /// By which a driver finds it.
+  [[nodiscard]] std::string uri() const {
+    if (box_.http_port() == 0) return fmt::format("onrobot:127.0.0.1?port={}", box_.port());
+    return fmt::format("net-ft:127.0.0.1?port={}&http={}", box_.port(), box_.http_port());
+  }
+  [[nodiscard]] std::uint16_t http_port() const { return box_.http_port(); }
+
+ private:
+  static emulators::EmulatedNetFt::Options options_of(const std::string& device) {
+    auto options = emulators::EmulatedNetFt::parse_options(drivers::parse_uri(device));
+    options.port = options.http_port = 0;
+    return options;
+  }
+
+  emulators::EmulatedNetFt box_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// An emulated T7 at free ports of loopback, while it lives.
+class RunningT7 {
+ public:
+  explicit RunningT7(const std::string& device = "t7", const std::string& faults = "")
+      : t7_(options_of(device), emulators::parse_faults(faults)), thread_([this] { t7_.run(stop_, 0.0); }) {}
+  RunningT7(const RunningT7&) = delete;
+  RunningT7& operator=(const RunningT7&) = delete;
+  ~RunningT7() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  /// By which a driver finds it.
+  [[nodiscard]] std::string uri() const {
+    return fmt::format("t7:127.0.0.1?port={}&stream_port={}", t7_.port(), t7_.stream_port());
+  }
+
+ private:
+  static emulators::EmulatedT7::Options options_of(const std::string& device) {
+    auto options = emulators::EmulatedT7::parse_options(drivers::parse_uri(device));
+    options.port = options.stream_port = 0;
+    return options;
+  }
+
+  emulators::EmulatedT7 t7_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// An emulated force sensor on a pseudo-terminal, while it lives.
+class RunningSerialSensor {
+ public:
+  explicit RunningSerialSensor(const std::string& device, const std::string& faults = "")
+      : name_(drivers::parse_uri(device).name),
+        sensor_(emulators::make_serial_sensor(drivers::parse_uri(device), emulators::parse_faults(faults))),
+        thread_([this] { sensor_->run(stop_, 0.0); }) {}
+  RunningSerialSensor(const RunningSerialSensor&) = delete;
+  RunningSerialSensor& operator=(const RunningSerialSensor&) = delete;
+  ~RunningSerialSensor() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  /// By which a driver finds it.
+  [[nodiscard]] std::string uri() const { return fmt::format("{}:{}", name_, sensor_->path()); }
+  [[nodiscard]] const std::string& path() const { return sensor_->path(); }
+
+ private:
+  std::string name_;
+  std::unique_ptr<emulators::EmulatedSerialSensor> sensor_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace kerf::test
