@@ -155,7 +155,8 @@ void add_devices(CLI::App& app, Context& context) {
       "  falcon:N          Novint Falcon. Its firmware must be given once after power-on, as the file that\n"
       "                    came with the device: falcon:0?firmware=FILE. Kerf ships none.\n"
       "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
-      "  u6:N              LabJack U6 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
+      "  u6:N, t7:HOST     LabJack U6, T7 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
+      "  net-ft:HOST, onrobot:HOST, bota:PORT, optoforce:PORT, ft300:PORT   force sensors, by --sensor\n"
       "  spacemouse:N      3Dconnexion, a source of trajectories\n"
       "Options, permissions and what was verified: docs/devices.md.",
       [arguments, &context] {

@@ -41,7 +41,7 @@ const std::vector<NamedValue>& named_values() {
       {"URI", {devices, {}}},
       {"--probe", {devices, {}}},
       {"identify URI", {devices, {}}},
-      {"--sensor", {words, {"u6:0?calibration="}}},
+      {"--sensor", {words, {"u6:0?calibration=", "net-ft:", "onrobot:", "t7:", "bota:/dev/", "optoforce:/dev/", "ft300:/dev/"}}},
       {"--several", {files, {".toml"}}},
       {"--device-model", {files, {".device.toml"}}},
       {"--scene", {files, {".scene.toml"}}},

@@ -52,7 +52,8 @@ void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& s
       "Device URI; 'kerf devices' lists them (default: the scene's, else " + options.device_uri + ")");
   verb.add_option("--scene", arguments.scene, scene_is);
   verb.add_option("--sensor", options.sensor_uri,
-                  "URI of a force sensor beside the device: u6:0?calibration=FILE.toml");
+                  "URI of a force sensor beside the device, or alone with --device none: "
+                  "u6:0?calibration=FILE.toml, net-ft:HOST");
   verb.add_option("--seconds", arguments.seconds,
                   fmt::format("Duration [s] (default: the scene's, else {:g})", options.seconds))
       .within(0.01, 1e6);

@@ -280,6 +280,19 @@ TEST_F(StudioUnderAttack, LetsNoDriverOpenAFileOutsideOfTheFolder) {
   start_the_loop();
 }
 
+// A page of the lab's network is not to be asked by whoever has a page of the studio.
+TEST_F(StudioUnderAttack, LetsNoDriverOpenAMachineOrAPort) {
+  for (const char* const uri : {"net-ft:192.168.1.1", "onrobot:localhost", "net-ft:127.0.0.1?http=22",
+                                "bota:/dev/tty", "ft300:fifo"}) {
+    for (const char* const field : {"device", "sensor"}) {
+      const std::string answer =
+          post("/api/live/start", fmt::format(R"({{"session": "0", "{}": "{}"}})", field, uri));
+      EXPECT_EQ(status_of(answer), "400") << uri;
+      EXPECT_THAT(body_of(answer), HasSubstr("no machine of the network")) << uri;
+    }
+  }
+}
+
 TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {
   start_the_loop();
   expect_the_loop_goes_on();  // its memory is locked by then, which counts as in use
