@@ -23,8 +23,8 @@ std::uint32_t word_at(std::span<const std::uint8_t> bytes, std::size_t at) noexc
 }
 
 struct Bit {
-  unsigned number;
-  const char* words;
+  unsigned number = 0;
+  const char* words = "";
   bool overload = false;
 };
 /// Of the Net F/T. An Axia's differ; where both have a bit, the words are of both.
