@@ -245,6 +245,19 @@ TEST(Excitation, KeepsWhatWasMeasuredWhenACableSlips) {
   EXPECT_FALSE(measured.experiment.stretches.empty());
 }
 
+// A hand that sways by three times of what the axis may travel, faster than the spring of the experiment
+// holds it.
+TEST(Excitation, LetsGoWhereAHandPushesItAway) {
+  const AxisExperiment measured = excited(
+      "sim:axis?mass=0.12kg&viscous=0.6Ns/"
+      "m&coulomb=0.15N&delay=1.63ms&step=0.01mm&sway=0.06m&range=0.2m&tells=off",
+      2.0, true);
+  EXPECT_EQ(measured.end, ExperimentEnd::too_far) << measured.problem;
+  EXPECT_NE(measured.problem, "");
+  const IdentifiedAxis axis = identified_axis(measured, 0);
+  EXPECT_NE(axis.problem, "") << "and nothing is told of what was not measured";
+}
+
 TEST(Excitation, SaysThatNothingMovesAnAxisWithoutAMotor) {
   const AxisExperiment measured = excited(std::string(free_axis) + "&motor=off");
   EXPECT_NE(measured.problem.find("no motor"), std::string::npos) << measured.problem;

@@ -1,6 +1,7 @@
 #include <atomic>
 #include <cmath>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,47 @@ TEST(ControllersStudy, OfASimulatedDeviceIsThatOfItsEigenvalues) {
       << "and renders it too soft";
   const bench::Chart of_json = bench::map_picture(nlohmann::ordered_json::parse(found.json.dump())).value();
   EXPECT_EQ(bench::chart_to_json(of_json), bench::chart_to_json(found.figures.at(0).chart));
+}
+
+// What a sensor between device and hand reads is the wall with the device's own mass and friction.
+TEST(ControllersStudy, FeelsByASensorWhatItsModelSays) {
+  const std::atomic<bool> never{false};
+  StudyOptions options = study_of(linear);
+  options.stiffness_n_per_m = {300.0, 400.0};
+  const Findings by_model = bench::study_controllers(options, never);
+  options.sensor_at_hand = true;
+  const Findings by_sensor = bench::study_controllers(options, never);
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < by_sensor.json["controllers"].size(); ++i) {
+    const auto& sensed = by_sensor.json["controllers"][i]["transparency"];
+    if (sensed.is_null()) continue;
+    EXPECT_EQ(sensed["felt_by"], "sensor");
+    const auto& told = by_model.json["controllers"][i]["transparency"];
+    ASSERT_EQ(sensed["lines"].size(), told["lines"].size());
+    for (std::size_t line = 0; line < sensed["lines"].size(); ++line) {
+      const auto number = [&](const auto& from) {
+        return std::complex<double>(from["lines"][line]["felt"][0].template get<double>(),
+                                    from["lines"][line]["felt"][1].template get<double>());
+      };
+      EXPECT_LT(std::abs(number(sensed) - number(told)), 0.03 * std::abs(number(told)))
+          << sensed["lines"][line]["frequency_hz"] << " Hz of controller " << i;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 100U);
+}
+
+TEST(ControllersStudy, RefusesASensorThatTellsNothing) {
+  const std::atomic<bool> never{false};
+  StudyOptions options = study_of(linear + "&sensor=off");
+  options.stiffness_n_per_m = {300.0, 400.0};
+  options.sensor_at_hand = true;
+  try {
+    (void)bench::study_controllers(options, never);
+    FAIL() << "no sensor tells what the hand exerts";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("leave out --hand-sensor"));
+  }
 }
 
 TEST(ControllersStudy, SaysWhatItLeavesOut) {
