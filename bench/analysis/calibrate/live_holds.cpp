@@ -110,10 +110,12 @@ class Measuring {
   }
 
  private:
-  /// The volts of a U6 are channels when they are asked for.
+  [[nodiscard]] bool is_labjack() const {
+    return options_.uri.starts_with("u6:") || options_.uri.starts_with("t7:");
+  }
+  /// The volts of a LabJack are channels when they are asked for.
   [[nodiscard]] std::string uri() const {
-    if (!options_.uri.starts_with("u6:") || options_.uri.find("raw=") != std::string::npos)
-      return options_.uri;
+    if (!is_labjack() || options_.uri.find("raw=") != std::string::npos) return options_.uri;
     return options_.uri + (options_.uri.find('?') == std::string::npos ? "?raw=on" : "&raw=on");
   }
 
@@ -256,7 +258,7 @@ class Measuring {
   }
 
   [[nodiscard]] std::optional<std::uint32_t> labjack() const {
-    if (!options_.uri.starts_with("u6:")) return std::nullopt;
+    if (!is_labjack()) return std::nullopt;
     const toml::table settings = toml::parse(device_->info().configuration);
     const auto serial = settings["labjack"]["serial"].value<std::int64_t>();
     return serial ? std::optional(static_cast<std::uint32_t>(*serial)) : std::nullopt;

@@ -15,6 +15,8 @@
 
 #include <fmt/core.h>
 
+#include <kerf/drivers/uri.h>
+
 #include "calibrate/live_holds.h"
 #include "calibrate/loads_script.h"
 #include "calibrate/measured_holds.h"
@@ -51,7 +53,7 @@ struct CalibrateArguments {
 
 bool is_sensor(const std::string& text) {
   return text.starts_with("sim:") || text.starts_with("u6:") || text.starts_with("hid:") ||
-         text.starts_with("falcon:") || text.starts_with("spacemouse:");
+         text.starts_with("falcon:") || text.starts_with("spacemouse:") || drivers::names_a_place(text);
 }
 
 std::chrono::year_month_day today() {
@@ -237,7 +239,7 @@ void add_calibrate(CLI::App& app, Context& context) {
       [arguments, &context] { Calibrating(*arguments, context).run(); });
   CalibrateArguments& given = *arguments;
   verb.add_option("SENSOR", given.sensor,
-                  "Sensor (u6:0, sim:sensor), or a table or recording of signals and loads")
+                  "Sensor (u6:0, t7:HOST, sim:sensor), or a table or recording of signals and loads")
       .required();
   verb.add_option("--loads", given.loads, "Script of the loads (TOML)");
   verb.add_option("--map", given.map, "Columns of a table: 'signal_1=U1[V],fx=2[N],time=t[s]'");
