@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "kerf/drivers/streaming_force_sensors.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "network/http_get.h"
 

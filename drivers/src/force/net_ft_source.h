@@ -7,12 +7,24 @@
 #include <string>
 #include <string_view>
 
-#include "kerf/drivers/net_ft.h"
 #include "kerf/drivers/protocols/net_ft.h"
 #include "kerf/drivers/streaming_force_sensor.h"
 #include "network/datagrams.h"
 
 namespace kerf::drivers {
+
+struct NetFtOptions {
+  net_ft::Box box = net_ft::Box::ati;
+  std::string host;
+  std::uint16_t port = net_ft::port;
+  std::uint16_t http_port = 80;
+  bool has_page = true;           ///< ATI: the box says its units; OnRobot has none
+  double counts_per_n = 0.0;      ///< without a page
+  double counts_per_n_m = 0.0;    ///< without a page
+  std::optional<double> rate_hz;  ///< not given: the page's; of OnRobot 1 kHz, which is set
+  double filter = 0.0;            ///< of OnRobot, set: its number; 0: none
+  bool bias = false;              ///< tells the box to take what it reads at the beginning for nothing
+};
 
 /// Records of a Net F/T or an EtherDAQ by UDP. Channels: `force_counter`, the box's own count of readings,
 /// which stands in no relation to the host's time, and `force_status`, its status word.

@@ -17,10 +17,10 @@
 
 #include "kerf/drivers/device_notes.h"
 #include "kerf/drivers/force_calibration.h"
-#include "kerf/drivers/force_sensor_t7.h"
 #include "kerf/drivers/protocols/frame_reader.h"
 #include "kerf/drivers/protocols/labjack_t7.h"
 #include "kerf/drivers/streaming_force_sensor.h"
+#include "kerf/drivers/streaming_force_sensors.h"
 #include "kerf/drivers/usb/io_thread.h"
 #include "network/byte_stream.h"
 #include "network/datagrams.h"

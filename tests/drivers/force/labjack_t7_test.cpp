@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "kerf/drivers/force_sensor_t7.h"
+#include "kerf/drivers/streaming_force_sensors.h"
 #include "support/program.h"
 #include "support/running_box.h"
 #include "watched_sensor.h"

@@ -1,4 +1,4 @@
-#include "kerf/drivers/net_ft.h"
+#include "network/net_ft.h"
 
 #include <chrono>
 #include <cmath>
@@ -17,7 +17,7 @@
 #include <gtest/gtest.h>
 
 #include "kerf/drivers/sensed_device.h"
-#include "network/net_ft.h"
+#include "kerf/drivers/streaming_force_sensors.h"
 #include "support/program.h"
 #include "support/running_box.h"
 #include "watched_sensor.h"

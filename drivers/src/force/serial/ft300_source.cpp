@@ -14,7 +14,7 @@
 
 #include "force/serial/serial_source.h"
 #include "kerf/drivers/protocols/serial_force.h"
-#include "kerf/drivers/serial_force_sensors.h"
+#include "kerf/drivers/streaming_force_sensors.h"
 
 namespace kerf::drivers {
 namespace {
