@@ -18,9 +18,14 @@ namespace {
 constexpr std::int64_t ask_again_ns = 100'000'000;
 constexpr int most_questions = 10;
 constexpr std::int64_t rate_window_ns = 300'000'000;
+constexpr int rate_windows = 5;
 constexpr double rate_tolerance = 0.02;  // of the rate told, by what arrives in that window
 constexpr double least_steps = 10.0;     // with fewer it cannot be told
 constexpr std::uint64_t wrong_frames_of_a_storm = 10;
+
+double rate_of(double frames, std::int64_t span_ns) noexcept {
+  return span_ns > 0 ? frames / (1e-9 * static_cast<double>(span_ns)) : 0.0;
+}
 
 }  // namespace
 
@@ -107,23 +112,29 @@ void StreamingForceSensor::wait_for_frames() {
 }
 
 double StreamingForceSensor::find_rate() {
-  const std::uint64_t before = intake_.frames() + intake_.lost();
+  const auto arrived = [&] { return static_cast<double>(intake_.frames() + intake_.lost()); };
+  const double before = arrived();
   const std::int64_t start = intake_.last_ns();
-  const std::int64_t until = start + rate_window_ns;
-  for (std::int64_t now = usb::now_ns(); now < until; now = usb::now_ns()) wait_and_take(until - now);
-  const auto steps = static_cast<double>(intake_.frames() + intake_.lost() - before);
-  const double seconds = 1e-9 * static_cast<double>(std::max<std::int64_t>(1, intake_.last_ns() - start));
-  const double found = steps / seconds;
+  double found = 0.0;
+  bool is_known = false;
   const auto fits = [&](std::optional<double> rate) {
-    return rate && (steps < least_steps || std::abs(found / *rate - 1.0) < rate_tolerance);
+    return rate && (!is_known || std::abs(found / *rate - 1.0) < rate_tolerance);
   };
+  // A thread that was held up makes one window wrong, and the next one right.
+  for (int window = 0; window < rate_windows; ++window) {
+    const double before_window = arrived();
+    const std::int64_t begin = intake_.last_ns();
+    const std::int64_t until = usb::now_ns() + rate_window_ns;
+    for (std::int64_t now = usb::now_ns(); now < until; now = usb::now_ns()) wait_and_take(until - now);
+    found = rate_of(arrived() - before_window, intake_.last_ns() - begin);
+    is_known = arrived() - before_window >= least_steps;
+    if (const auto told = source_->told_rate_hz(); fits(told)) return *told;
+  }
+  found = rate_of(arrived() - before, intake_.last_ns() - start);
+  if (const auto near = source_->rate_near(found); is_known && fits(near)) return *near;
   const auto told = source_->told_rate_hz();
-  if (fits(told)) return *told;
-  const auto near = source_->rate_near(found);
-  if (steps >= least_steps && fits(near)) return *near;
   refuse(fmt::format(
-      "{:.0f} frames a second arrive, and {}; give the rate that it is set to, for example "
-      "rate=1000Hz",
+      "{:.0f} frames a second arrive, and {}; give the rate that it is set to, for example rate=1000Hz",
       found, told ? fmt::format("{:g} were told", *told) : std::string("it does not say how many")));
 }
 
