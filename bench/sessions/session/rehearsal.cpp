@@ -48,14 +48,17 @@ std::optional<SubjectAction> RehearsalSubject::next() {
   }
   if (!view_.may_answer) return std::nullopt;
   if (view_.number) {
-    // Of a line anywhere, of magnitudes about 10.
-    const bool is_line = !view_.number->ends.empty();
-    const double step = view_.number->step > 0.0 ? view_.number->step : 1.0;
-    const double number = is_line ? step * std::floor(view_.number->upper / step * random_.uniform())
-                                  : std::exp(std::log(10.0) + 0.5 * random_.normal());
-    return tried({.kind = Kind::answer, .number = number});
+    return tried({.kind = Kind::answer, .number = number(*view_.number)});
   }
   return tried({.kind = Kind::answer, .slot = random_.below(view_.answers)});
+}
+
+/// Of a line any of its steps, both ends among them; of magnitudes about 10.
+double RehearsalSubject::number(const SubjectView::AskedNumber& asked) {
+  if (asked.ends.empty()) return std::exp(std::log(10.0) + 0.5 * random_.normal());
+  const double step = asked.step > 0.0 ? asked.step : 1.0;
+  const auto steps = static_cast<std::size_t>((asked.upper - asked.lower) / step);
+  return asked.lower + step * static_cast<double>(random_.below(steps + 1));
 }
 
 SubjectAction RehearsalSubject::tried(const SubjectAction& action) {

@@ -38,6 +38,7 @@ class RehearsalSubject : public Subject {
   static constexpr int ticks_a_slot = 800;  ///< of polls, before it goes on to the next
   static constexpr int most_tries = 5;      ///< of leaving a stage or a trial
 
+  [[nodiscard]] double number(const SubjectView::AskedNumber& asked);
   [[nodiscard]] SubjectAction tried(const SubjectAction& action);
 
   psychophysics::Random random_;
