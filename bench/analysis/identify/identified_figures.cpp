@@ -78,6 +78,15 @@ Curve felt_friction(const identification::Experiment& experiment, const Identifi
   return curve;
 }
 
+/// Whether there is something to draw: without one whole period there is no response, and of a single one no
+/// coherence.
+bool has_points(const Chart& chart) {
+  return std::ranges::any_of(chart.curves, [&](const Curve& curve) {
+    return std::ranges::any_of(curve.y,
+                               [&](double y) { return std::isfinite(y) && (y > 0.0 || !chart.log_y); });
+  });
+}
+
 /// Points of the device over a line of its model.
 std::vector<Curve> both(Curve model, Curve device) { return {std::move(model), std::move(device)}; }
 
@@ -142,10 +151,13 @@ std::vector<Figure> axis_figures(const IdentifiedDevice& identified, const Ident
                  .log_x = true};
   coherent.curves = both(std::move(lower), std::move(coherence));
   std::vector<Figure> figures;
-  figures.push_back({.name = name + "-gain", .chart = std::move(gain)});
-  figures.push_back({.name = name + "-phase", .chart = std::move(phase)});
-  figures.push_back({.name = name + "-coherence", .chart = std::move(coherent)});
-  figures.push_back({.name = name + "-friction", .chart = friction_chart(identified, of)});
+  const auto add = [&](const char* what, Chart chart) {
+    if (has_points(chart)) figures.push_back({.name = name + what, .chart = std::move(chart)});
+  };
+  add("-gain", std::move(gain));
+  add("-phase", std::move(phase));
+  add("-coherence", std::move(coherent));
+  add("-friction", friction_chart(identified, of));
   if (!of.z_width) return figures;
   for (const Figure& figure : of.z_width->figures)
     figures.push_back({.name = fmt::format("{}-{}", name, figure.name), .chart = figure.chart});

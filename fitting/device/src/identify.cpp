@@ -174,9 +174,12 @@ void judge_speed(const Experiment& experiment, std::span<const Stretch> training
       (left ? high : low) = left ? b : a;
     }
     const double corner = std::exp(0.5 * (low + high));
+    const double noise = speed_rms(experiment, out.time, stretch, corner);
+    if (!std::isfinite(noise)) continue;  // too short to settle in
     corners.push_back(corner);
-    noises.push_back(speed_rms(experiment, out.time, stretch, corner));
+    noises.push_back(noise);
   }
+  if (corners.empty()) return;
   out.velocity_corner_rad_s = mean_of(corners);
   out.velocity_noise_m_s = mean_of(noises);
   if (out.velocity_corner_rad_s && out.velocity_corner_rad_s->value > 0.9 * fastest) {
