@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <sys/prctl.h>
 
 #include <kerf/drivers/device.h>
+#include <kerf/drivers/urgent_thread.h>
 #include <kerf/drivers/uri.h>
 #include <kerf/version.h>
 
@@ -21,6 +23,7 @@
 #include "make_device.h"
 #include "network/labjack_t7.h"
 #include "network/net_ft.h"
+#include "serial/serial_device.h"
 #include "serial/serial_sensor.h"
 #include "session.h"
 
@@ -42,8 +45,10 @@ struct Arguments {
   double pause_s = 0.5;
 };
 
-/// As prompt as the permissions allow: an emulated device that answers late is a late device.
+/// As prompt as the permissions allow: an emulated device that answers late is a late device. Off the
+/// processor of a loop that it may be tried with.
 void be_prompt() {
+  kerf::drivers::stay_off_loop_processor();
   constexpr sched_param parameters{.sched_priority = 82};  // above the threads that wait for it
   sched_setscheduler(0, SCHED_FIFO, &parameters);
   prctl(PR_SET_TIMERSLACK, 1UL);
@@ -92,15 +97,19 @@ int run_in_network(const Arguments& arguments, kerf::drivers::Uri uri) {
   return 0;
 }
 
-/// What is on a serial line has a port.
-int run_on_a_line(const Arguments& arguments, kerf::drivers::Uri uri) {
-  std::vector<Fault> faults = parse_faults(arguments.faults);
-  check_faults_of_line(faults);
-  const auto sensor = make_serial_sensor(std::move(uri), std::move(faults));
+/// What is on a serial line has a port; nothing for what is on none.
+std::unique_ptr<EmulatedOnLine> make_on_line(const kerf::drivers::Uri& uri,
+                                             const std::vector<Fault>& faults) {
+  if (auto sensor = make_serial_sensor(uri, faults)) return sensor;
+  return make_serial_device(uri, faults);
+}
+
+int run_on_a_line(const Arguments& arguments, EmulatedOnLine& device) {
+  check_faults_of_line(parse_faults(arguments.faults));
   std::fprintf(stderr, "kerf-emulate: %s is at the port %s\n", arguments.device.c_str(),
-               sensor->path().c_str());
-  sensor->run(stop, arguments.seconds);
-  std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), sensor->tell().c_str());
+               device.path().c_str());
+  device.run(stop, arguments.seconds);
+  std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), device.tell().c_str());
   return 0;
 }
 
@@ -108,8 +117,8 @@ int run(const Arguments& arguments) {
   kerf::drivers::Uri uri = kerf::drivers::parse_uri(arguments.device);
   if (uri.name == "net-ft" || uri.name == "onrobot" || uri.name == "t7")
     return run_in_network(arguments, std::move(uri));
-  if (is_serial_sensor(uri.name)) return run_on_a_line(arguments, std::move(uri));
   std::vector<Fault> faults = parse_faults(arguments.faults);
+  if (const auto device = make_on_line(uri, faults)) return run_on_a_line(arguments, *device);
   check_faults_of_usb(faults);
   const FaultPlan plan(std::move(faults));
   Descriptor listening;
@@ -147,9 +156,11 @@ int main(int count, char** texts) {
       "protocol, and behind them a mechanism in a hand that the motor commands really move; or a force "
       "sensor "
       "in the\n"
-      "network, on loopback.\n\n"
-      "Devices: falcon, woody, u6, spacemouse, and net-ft, onrobot; options stand behind a question mark, as "
-      "in\n"
+      "network, on loopback, or a sensor or device on a serial line, on a pseudo-terminal.\n\n"
+      "Devices: falcon, woody, u6, spacemouse; net-ft, onrobot, t7; bota, optoforce, ft300, and the toys "
+      "gauge, slider; options "
+      "stand behind\n"
+      "a question mark, as in\n"
       "docs/devices.md.\n"
       "Example, as root: modprobe vhci-hcd && kerf-emulate falcon --attach");
   app.add_option("device", arguments.device, "Device, with its options: 'woody?generation=v1'")->required();

@@ -9,6 +9,7 @@
 #include "kerf/drivers/falcon.h"
 #include "kerf/drivers/faulty_device.h"
 #include "kerf/drivers/force_sensor_u6.h"
+#include "kerf/drivers/hosted_device.h"
 #include "kerf/drivers/simulated_drive.h"
 #include "kerf/drivers/simulated_pose6.h"
 #include "kerf/drivers/simulated_premium.h"
@@ -52,26 +53,26 @@ std::unique_ptr<Device> open_simulated(std::string_view uri, Uri parsed, Surroun
   refuse_name(parsed.name);
 }
 
-/// What a URI of an attached device says, and what ends the wait for it.
+/// What a URI of an attached device says, and who waits for it.
 struct Wanted {
   std::string_view uri;
   Uri parsed;
   std::size_t number = 0;   ///< 1 of "falcon:1"
   std::string_view rest{};  ///< "192.168.1.1" of "net-ft:192.168.1.1", "/dev/ttyUSB0" of "bota:/dev/ttyUSB0"
-  const std::atomic<bool>* stop = nullptr;
+  const Surroundings& surroundings;
 };
 
 std::unique_ptr<Device> open_falcon(const Wanted& wanted) {
   return std::make_unique<Falcon>(wanted.uri, wanted.number, Falcon::parse_options(wanted.parsed),
-                                  wanted.stop);
+                                  wanted.surroundings.stop);
 }
 std::unique_ptr<Device> open_spacemouse(const Wanted& wanted) {
   return std::make_unique<SpaceMouse>(wanted.uri, wanted.number, SpaceMouse::parse_options(wanted.parsed));
 }
 std::unique_ptr<Device> open_hid(const Wanted& wanted) {
   const auto& product = WoodenHaptics::product(wanted.parsed.name);
-  return std::make_unique<WoodenHaptics>(wanted.uri, product,
-                                         WoodenHaptics::parse_options(wanted.parsed, product), wanted.stop);
+  return std::make_unique<WoodenHaptics>(
+      wanted.uri, product, WoodenHaptics::parse_options(wanted.parsed, product), wanted.surroundings.stop);
 }
 std::unique_ptr<Device> open_u6(const Wanted& wanted) {
   return std::make_unique<ForceSensorU6>(wanted.uri, wanted.number,
@@ -88,14 +89,18 @@ std::unique_ptr<Device> at_place(const Wanted& wanted) {
   return open(wanted.uri, wanted.rest, wanted.parsed);
 }
 
+std::unique_ptr<Device> open_hosted(const Wanted& wanted) {
+  return open_plugin(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
+}
+
 /// What follows the colon.
-enum class Follows : std::uint8_t { number, product, host, port };
+enum class Follows : std::uint8_t { number, product, host, port, file };
 struct Scheme {
   std::string_view name;
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 10> schemes{{{"falcon", Follows::number, open_falcon},
+constexpr std::array<Scheme, 11> schemes{{{"falcon", Follows::number, open_falcon},
                                           {"spacemouse", Follows::number, open_spacemouse},
                                           {"hid", Follows::product, open_hid},
                                           {"u6", Follows::number, open_u6},
@@ -104,7 +109,8 @@ constexpr std::array<Scheme, 10> schemes{{{"falcon", Follows::number, open_falco
                                           {"t7", Follows::host, at_place<open_t7>},
                                           {"bota", Follows::port, at_place<open_bota>},
                                           {"optoforce", Follows::port, at_place<open_optoforce>},
-                                          {"ft300", Follows::port, at_place<open_ft300>}}};
+                                          {"ft300", Follows::port, at_place<open_ft300>},
+                                          {"plugin", Follows::file, open_hosted}}};
 
 std::optional<std::size_t> number_in(std::string_view digits) {
   std::size_t number = 0;
@@ -143,9 +149,15 @@ std::unique_ptr<Device> open_attached(std::string_view uri, const Uri& parsed,
     throw DeviceError(std::string(uri) + ": at which port? For example " + std::string(scheme->name) +
                       ":/dev/ttyUSB0; ls /dev/serial/by-id shows those that there are");
   }
+  if (scheme->follows == Follows::file && rest.empty()) {
+    throw DeviceError(std::string(uri) + ": which shared object? For example plugin:./mydevice.so");
+  }
   refuse_surroundings(uri, surroundings);
-  return scheme->open(
-      {.uri = uri, .parsed = parsed, .number = number.value_or(0), .rest = rest, .stop = surroundings.stop});
+  return scheme->open({.uri = uri,
+                       .parsed = parsed,
+                       .number = number.value_or(0),
+                       .rest = rest,
+                       .surroundings = surroundings});
 }
 
 /// "falcon:" and 1 make "falcon:1"; a HID product is its own name, and its others have an option.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "faults.h"
 #include "network/labjack_t7.h"
 #include "network/net_ft.h"
+#include "serial/serial_device.h"
 #include "serial/serial_sensor.h"
 
 namespace kerf::test {
@@ -78,29 +80,40 @@ class RunningT7 {
   std::thread thread_;
 };
 
-/// An emulated force sensor on a pseudo-terminal, while it lives.
-class RunningSerialSensor {
+/// An emulated sensor or device on a pseudo-terminal, while it lives.
+class RunningOnLine {
  public:
-  explicit RunningSerialSensor(const std::string& device, const std::string& faults = "")
-      : name_(drivers::parse_uri(device).name),
-        sensor_(emulators::make_serial_sensor(drivers::parse_uri(device), emulators::parse_faults(faults))),
-        thread_([this] { sensor_->run(stop_, 0.0); }) {}
-  RunningSerialSensor(const RunningSerialSensor&) = delete;
-  RunningSerialSensor& operator=(const RunningSerialSensor&) = delete;
-  ~RunningSerialSensor() {
+  RunningOnLine(std::string name, std::unique_ptr<emulators::EmulatedOnLine> device)
+      : name_(std::move(name)), device_(std::move(device)), thread_([this] { device_->run(stop_, 0.0); }) {}
+  RunningOnLine(const RunningOnLine&) = delete;
+  RunningOnLine& operator=(const RunningOnLine&) = delete;
+  ~RunningOnLine() {
     stop_ = true;
     thread_.join();
   }
 
   /// By which a driver finds it.
-  [[nodiscard]] std::string uri() const { return fmt::format("{}:{}", name_, sensor_->path()); }
-  [[nodiscard]] const std::string& path() const { return sensor_->path(); }
+  [[nodiscard]] std::string uri() const { return fmt::format("{}:{}", name_, device_->path()); }
+  [[nodiscard]] const std::string& path() const { return device_->path(); }
 
  private:
   std::string name_;
-  std::unique_ptr<emulators::EmulatedSerialSensor> sensor_;
+  std::unique_ptr<emulators::EmulatedOnLine> device_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
+};
+
+struct RunningSerialSensor : RunningOnLine {
+  explicit RunningSerialSensor(const std::string& device, const std::string& faults = "")
+      : RunningOnLine(
+            drivers::parse_uri(device).name,
+            emulators::make_serial_sensor(drivers::parse_uri(device), emulators::parse_faults(faults))) {}
+};
+struct RunningSerialDevice : RunningOnLine {
+  explicit RunningSerialDevice(const std::string& device, const std::string& faults = "")
+      : RunningOnLine(
+            drivers::parse_uri(device).name,
+            emulators::make_serial_device(drivers::parse_uri(device), emulators::parse_faults(faults))) {}
 };
 
 }  // namespace kerf::test

@@ -6,8 +6,8 @@
 
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
-#include "own_law/build_law.h"
-#include "own_law/new_law.h"
+#include "own_code/build_law.h"
+#include "own_code/new_law.h"
 #include "program/verbs.h"
 
 namespace kerf::bench {

@@ -40,7 +40,7 @@ struct Group {
 
 std::vector<Group> groups() {
   return {{"start", {add_demo}},
-          {"devices", {add_devices, add_doctor, add_identify, add_calibrate}},
+          {"devices", {add_devices, add_device, add_doctor, add_identify, add_calibrate}},
           {"record", {add_record, add_import, add_repair, add_prepare, add_segment}},
           {"look",
            {add_info, add_inspect, add_validate,
@@ -269,6 +269,7 @@ std::string read_command_line(const std::vector<std::string>& words) { return Pr
 
 int run_program(int argc, char** argv) {
   keep_standard_streams();
+  drivers::tell_waits_to(note);
   const int status = run_caught({argv + 1, argv + argc});
   say_plugin_notes();
   for (const std::string& line : drivers::take_device_notes()) warn(line);

@@ -20,6 +20,7 @@ void add_import(CLI::App& app, Context& context);
 void add_info(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
 void add_law(CLI::App& app, Context& context);
+void add_device(CLI::App& app, Context& context);
 void add_laws(CLI::App& app, Context& context);
 void add_prepare(CLI::App& app, Context& context);
 void add_record(CLI::App& app, Context& context);

@@ -126,8 +126,8 @@ class Run {
     if (recorder) close(*recorder);
     if (result_.report.end == LoopEnd::device_lost) {
       throw drivers::DeviceError(fmt::format(
-          "{}: the device was lost after {} ticks; its force is zero, and what was recorded is kept",
-          devices_in_words(), result_.report.executed));
+          "{}: the device was lost after {} ticks{}; its force is zero, and what was recorded is kept",
+          devices_in_words(), result_.report.executed, trouble_in_words()));
     }
     return std::move(result_);
   }
@@ -182,6 +182,12 @@ class Run {
     }
     surroundings.stop = &stop_;
     return drivers::open_device(options_.device_uri, options_.sensor_uri, std::move(surroundings));
+  }
+
+  /// ": it crashed", or nothing.
+  [[nodiscard]] std::string trouble_in_words() const {
+    const std::string trouble = device_->trouble();
+    return trouble.empty() ? trouble : ": " + trouble;
   }
 
   [[nodiscard]] std::string devices_in_words() const {
@@ -312,7 +318,7 @@ class Run {
     if (report.end == LoopEnd::stopped) {
       recorder.note({.time_s = at, .kind = "stop", .text = "ended by a signal"});
     } else if (report.end == LoopEnd::device_lost) {
-      recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost"});
+      recorder.note({.time_s = at, .kind = "fault", .text = "the device was lost" + trouble_in_words()});
       status = "aborted: the device was lost";
     }
     result_.recording_failure = close_device_recording(recorder, *options_.record, status, figures);

@@ -23,9 +23,10 @@ std::string uri_from_page(const Workspace& workspace, const std::string& uri) {
   drivers::Uri parts = drivers::parse_uri(uri);
   if (drivers::names_a_place(parts.name)) {
     throw RequestError(
-        400, fmt::format("{}: from a page no machine of the network and no port can be named; give the URI "
-                         "to kerf studio with --device",
-                         parts.name));
+        400,
+        fmt::format("{}: from a page no machine of the network, no port and no plug-in can be named; give "
+                    "the URI to kerf studio with --device",
+                    parts.name));
   }
   bool names_a_file = false;
   for (auto& [option, value] : parts.options) {

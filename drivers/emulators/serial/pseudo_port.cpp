@@ -1,8 +1,11 @@
 #include "serial/pseudo_port.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -37,7 +40,11 @@ PseudoPort::PseudoPort(std::string link)
 
 PseudoPort::~PseudoPort() {
   pull_out();
-  if (!link_.empty()) unlink(link_.c_str());
+  // Another one may have taken the name meanwhile.
+  std::array<char, 64> points_to{};
+  const ssize_t size = link_.empty() ? -1 : readlink(link_.c_str(), points_to.data(), points_to.size());
+  if (size > 0 && std::string_view(points_to.data(), static_cast<std::size_t>(size)) == path_)
+    unlink(link_.c_str());
 }
 
 bool PseudoPort::is_open() const noexcept {
@@ -55,6 +62,20 @@ void PseudoPort::send(std::span<const std::uint8_t> bytes) const noexcept {
 
 void PseudoPort::pull_out() noexcept {
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
+}
+
+void PacedLine::say(Bytes bytes, std::int64_t now_ns) {
+  constexpr double bits_of_a_byte = 10.0;
+  const double seconds = bits_of_a_byte * static_cast<double>(bytes.size()) / baud_;
+  free_ns_ = std::max(free_ns_, now_ns) + std::llround(1e9 * seconds);
+  on_the_way_.push_back({.due_ns = free_ns_, .bytes = std::move(bytes)});
+}
+
+void PacedLine::send_due(const PseudoPort& port, std::int64_t now_ns) {
+  while (!on_the_way_.empty() && on_the_way_.front().due_ns <= now_ns) {
+    port.send(on_the_way_.front().bytes);
+    on_the_way_.pop_front();
+  }
 }
 
 }  // namespace kerf::emulators

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <string>
+
+#include "emulated_device.h"
 
 namespace kerf::emulators {
 
@@ -33,6 +37,44 @@ class PseudoPort {
   int descriptor_ = -1;
   std::string path_;
   std::string link_;
+};
+
+/// What a device says on a serial line, at the pace of its speed: ten bits a byte.
+class PacedLine {
+ public:
+  explicit PacedLine(double baud) noexcept : baud_(baud) {}
+
+  void say(Bytes bytes, std::int64_t now_ns);
+  /// What has passed the line by now is at the other end.
+  void send_due(const PseudoPort& port, std::int64_t now_ns);
+  /// When something of it is due; nothing waits: `otherwise`.
+  [[nodiscard]] std::int64_t next_ns(std::int64_t otherwise) const noexcept {
+    return on_the_way_.empty() ? otherwise : on_the_way_.front().due_ns;
+  }
+  void clear() noexcept { on_the_way_.clear(); }
+
+ private:
+  struct OnTheWay {
+    std::int64_t due_ns;
+    Bytes bytes;
+  };
+  double baud_;
+  std::deque<OnTheWay> on_the_way_;
+  std::int64_t free_ns_ = 0;  ///< when the line is
+};
+
+/// Something that is played on a pseudo-terminal.
+class EmulatedOnLine {
+ public:
+  EmulatedOnLine() = default;
+  EmulatedOnLine(const EmulatedOnLine&) = delete;
+  EmulatedOnLine& operator=(const EmulatedOnLine&) = delete;
+  virtual ~EmulatedOnLine() = default;
+
+  [[nodiscard]] virtual const std::string& path() const noexcept = 0;
+  /// Until `stop`, its `unplug`, or so many seconds (0: never).
+  virtual void run(const std::atomic<bool>& stop, double seconds) = 0;
+  [[nodiscard]] virtual std::string tell() const = 0;
 };
 
 }  // namespace kerf::emulators

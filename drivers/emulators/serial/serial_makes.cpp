@@ -255,24 +255,46 @@ class EmulatedFt300 final : public EmulatedSerialSensor {
   int stops_ = 0;
 };
 
+/// The toy of docs/own-device.md: three strain gauges on a board that prints lines, "COUNT fx fy fz\n" in N,
+/// 300 a second at 115200 baud.
+class EmulatedGauge final : public EmulatedSerialSensor {
+ public:
+  EmulatedGauge(const Options& options, std::vector<Fault> faults)
+      : EmulatedSerialSensor(options, std::move(faults), 115200.0) {
+    stream(300.0);
+  }
+  static std::unique_ptr<EmulatedSerialSensor> make(drivers::UriOptions given, std::vector<Fault> faults) {
+    const Options options = parse_common(given);
+    given.refuse_others();
+    return std::make_unique<EmulatedGauge>(options, std::move(faults));
+  }
+
+ private:
+  void hear(std::span<const std::uint8_t>) override {}
+  void begin_anew() override { stream(300.0); }
+  [[nodiscard]] Bytes frame(const Measured& measured) override {
+    const auto& w = measured.wrench;
+    const std::string line = fmt::format("{} {:.4f} {:.4f} {:.4f}\n", measured.number, w[0], w[1], w[2]);
+    return {line.begin(), line.end()};
+  }
+};
+
 struct Make {
   const char* name;
   std::unique_ptr<EmulatedSerialSensor> (*make)(drivers::UriOptions, std::vector<Fault>);
 };
-constexpr std::array<Make, 3> makes{
-    {{"bota", EmulatedBota::make}, {"optoforce", EmulatedOptoforce::make}, {"ft300", EmulatedFt300::make}}};
+constexpr std::array<Make, 4> makes{{{"bota", EmulatedBota::make},
+                                     {"optoforce", EmulatedOptoforce::make},
+                                     {"ft300", EmulatedFt300::make},
+                                     {"gauge", EmulatedGauge::make}}};
 
 }  // namespace
 
-bool is_serial_sensor(const std::string& name) noexcept {
-  return std::ranges::any_of(makes, [&](const Make& make) { return name == make.name; });
-}
-
-std::unique_ptr<EmulatedSerialSensor> make_serial_sensor(drivers::Uri uri, std::vector<Fault> faults) {
+std::unique_ptr<EmulatedOnLine> make_serial_sensor(drivers::Uri uri, std::vector<Fault> faults) {
   for (const Make& make : makes) {
     if (uri.name == make.name) return make.make(drivers::UriOptions(std::move(uri)), std::move(faults));
   }
-  throw drivers::DeviceError("no emulator of '" + uri.name + "'");
+  return nullptr;
 }
 
 }  // namespace kerf::emulators

@@ -15,7 +15,6 @@ namespace {
 
 using drivers::usb::now_ns;
 
-constexpr double bits_of_a_byte = 10.0;
 constexpr std::int64_t end_of_burst_ns = 3'000'000;
 constexpr std::int64_t between_looks_ns = 1'000'000;
 constexpr double torque_share = 0.05;
@@ -28,7 +27,7 @@ EmulatedSerialSensor::Options EmulatedSerialSensor::parse_common(drivers::UriOpt
   options.wrench.force_n = given.number("force", {"N", options.wrench.force_n, 0.0, 1e4});
   options.wrench.torque_n_m = given.number("torque", {"Nm", options.wrench.torque_n_m, 0.0, 1e3});
   options.noise_n = given.number("noise", {"N", 0.0, 0.0, 1e3});
-  options.drift_ppm = given.number("drift", {"ppm", 0.0, -500.0, 500.0});
+  options.drift_ppm = given.number("drift", {"ppm", 0.0, -3e4, 3e4});
   options.loss = given.number("loss", {"1", 0.0, 0.0, 1.0});
   options.seed = given.count("seed", 1);
   options.trace = given.text("trace").value_or("");
@@ -38,8 +37,8 @@ EmulatedSerialSensor::Options EmulatedSerialSensor::parse_common(drivers::UriOpt
 EmulatedSerialSensor::EmulatedSerialSensor(const Options& options, std::vector<Fault> faults, double baud)
     : options_(options),
       faults_(std::move(faults)),
-      baud_(baud),
       port_(options.link),
+      line_(baud),
       noise_(options.seed),
       losses_(options.seed),
       began_ns_(now_ns()) {
@@ -63,11 +62,7 @@ void EmulatedSerialSensor::stream(double rate_hz) {
   measured_of_stream_ = 0;
 }
 
-void EmulatedSerialSensor::say(const Bytes& bytes) {
-  const double seconds = bits_of_a_byte * static_cast<double>(bytes.size()) / baud_;
-  line_free_ns_ = std::max(line_free_ns_, now_ns()) + std::llround(1e9 * seconds);
-  on_the_way_.push_back({.due_ns = line_free_ns_, .bytes = bytes});
-}
+void EmulatedSerialSensor::say(const Bytes& bytes) { line_.say(bytes, now_ns()); }
 
 void EmulatedSerialSensor::say(const std::string& text) { say(Bytes(text.begin(), text.end())); }
 
@@ -89,9 +84,8 @@ void EmulatedSerialSensor::run(const std::atomic<bool>& stop, double seconds) {
     was_open_ = is_open;
     if (has_power_ && is_open) listen(now);
     if (has_power_) send_due(now);
-    send_on_the_way(now);
-    std::int64_t next = now + between_looks_ns;
-    if (!on_the_way_.empty()) next = std::min(next, on_the_way_.front().due_ns);
+    line_.send_due(port_, now);
+    std::int64_t next = std::min(now + between_looks_ns, line_.next_ns(now + between_looks_ns));
     if (streams()) next = std::min(next, frame_ns(measured_of_stream_ + 1));
     const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, next - now_ns())};
     nanosleep(&wait, nullptr);
@@ -101,7 +95,7 @@ void EmulatedSerialSensor::run(const std::atomic<bool>& stop, double seconds) {
 void EmulatedSerialSensor::set_power(bool on, std::int64_t at_ns) {
   if (on == has_power_) return;
   has_power_ = on;
-  on_the_way_.clear();
+  line_.clear();
   if (!on) {
     stop_stream();
     return;
@@ -151,13 +145,6 @@ void EmulatedSerialSensor::measure(std::int64_t taken_ns) {
   }
   say(bytes);
   if (faults_.duplicates(measured.time_s)) say(bytes);
-}
-
-void EmulatedSerialSensor::send_on_the_way(std::int64_t at_ns) {
-  while (!on_the_way_.empty() && on_the_way_.front().due_ns <= at_ns) {
-    port_.send(on_the_way_.front().bytes);
-    on_the_way_.pop_front();
-  }
 }
 
 std::string EmulatedSerialSensor::tell() const {

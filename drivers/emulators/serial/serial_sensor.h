@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -28,7 +27,7 @@ namespace kerf::emulators {
 /// Options of each: link=PATH, a name for its port; force (8N), torque (0.4Nm), noise (0N); drift (0ppm) of
 /// its clock; loss (0), the share of frames that never leave, drawn by seed (1); trace=FILE.csv: each frame
 /// with its number, the moment of its reading on the host's monotonic clock, its wrench, whether it left.
-class EmulatedSerialSensor {
+class EmulatedSerialSensor : public EmulatedOnLine {
  public:
   struct Options {
     std::string link;
@@ -39,14 +38,9 @@ class EmulatedSerialSensor {
     std::uint64_t seed = 1;
     std::string trace;
   };
-  EmulatedSerialSensor(const EmulatedSerialSensor&) = delete;
-  EmulatedSerialSensor& operator=(const EmulatedSerialSensor&) = delete;
-  virtual ~EmulatedSerialSensor() = default;
-
-  [[nodiscard]] const std::string& path() const noexcept { return port_.path(); }
-  /// Until `stop`, its `unplug`, or so many seconds (0: never).
-  void run(const std::atomic<bool>& stop, double seconds);
-  [[nodiscard]] std::string tell() const;
+  [[nodiscard]] const std::string& path() const noexcept override { return port_.path(); }
+  void run(const std::atomic<bool>& stop, double seconds) override;
+  [[nodiscard]] std::string tell() const override;
 
  protected:
   EmulatedSerialSensor(const Options& options, std::vector<Fault> faults, double baud);
@@ -78,22 +72,17 @@ class EmulatedSerialSensor {
   [[nodiscard]] bool streams() const noexcept { return rate_hz_ > 0.0; }
 
  private:
-  struct OnTheWay {
-    std::int64_t due_ns;
-    Bytes bytes;
-  };
   void listen(std::int64_t now_ns);
   void send_due(std::int64_t now_ns);
   void measure(std::int64_t taken_ns);
-  void send_on_the_way(std::int64_t now_ns);
   void set_power(bool on, std::int64_t now_ns);
   [[nodiscard]] double world_s(std::int64_t at_ns) const noexcept;
   [[nodiscard]] std::int64_t frame_ns(std::uint64_t frame) const noexcept;
 
   Options options_;
   FaultPlan faults_;
-  double baud_;
   PseudoPort port_;
+  PacedLine line_;
   std::ofstream trace_;
   drivers::Gaussian noise_;
   std::mt19937_64 losses_;
@@ -107,16 +96,12 @@ class EmulatedSerialSensor {
   std::int64_t stream_start_ns_ = 0;
   std::uint64_t measured_of_stream_ = 0;
   std::uint64_t number_ = 0;
-  std::deque<OnTheWay> on_the_way_;
-  std::int64_t line_free_ns_ = 0;
   std::uint64_t sent_ = 0;
   std::uint64_t left_out_ = 0;
 };
 
-/// Bota, OptoForce or FT300: `bota`, `optoforce`, `ft300`. @throws drivers::DeviceError for what it does not
-/// know.
-[[nodiscard]] std::unique_ptr<EmulatedSerialSensor> make_serial_sensor(drivers::Uri uri,
-                                                                       std::vector<Fault> faults);
-[[nodiscard]] bool is_serial_sensor(const std::string& name) noexcept;
+/// Bota, OptoForce, FT300 or the toy: `bota`, `optoforce`, `ft300`, `gauge`; nothing for another name.
+/// @throws drivers::DeviceError for an option that there is not.
+[[nodiscard]] std::unique_ptr<EmulatedOnLine> make_serial_sensor(drivers::Uri uri, std::vector<Fault> faults);
 
 }  // namespace kerf::emulators

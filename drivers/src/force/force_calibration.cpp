@@ -230,16 +230,12 @@ class Reader {
     } else {
       component = text(node, axis);
     }
-    const bool minus = component.starts_with('-');
-    const auto* found = std::ranges::find(wrench_names, std::string_view(component).substr(minus ? 1 : 0));
-    if (found == wrench_names.end()) {
+    const auto found = signed_component(component);
+    if (!found) {
       refuse(node, "[axes] '{}' is \"{}\", expected one of {}, perhaps with a minus", axis, component,
              fmt::join(wrench_names, ", "));
     }
-    return {.axis = axis,
-            .component = static_cast<std::size_t>(found - wrench_names.begin()),
-            .sign = minus ? -1.0 : 1.0,
-            .lever_m = lever_m};
+    return {.axis = axis, .component = found->component, .sign = found->sign, .lever_m = lever_m};
   }
 
   void read_axes(std::vector<ForceMount>& mounts) const {
@@ -290,6 +286,14 @@ std::string row_text(const Eigen::Matrix<double, 1, 6>& row) {
 }
 
 }  // namespace
+
+std::optional<SignedComponent> signed_component(std::string_view text) noexcept {
+  const bool minus = text.starts_with('-');
+  const auto* found = std::ranges::find(wrench_names, text.substr(minus ? 1 : 0));
+  if (found == wrench_names.end()) return std::nullopt;
+  return SignedComponent{.component = static_cast<std::size_t>(found - wrench_names.begin()),
+                         .sign = minus ? -1.0 : 1.0};
+}
 
 Axes ForceCalibration::wrench(const Axes& volts) const noexcept {
   const Eigen::Matrix<double, 6, 1> signal =

@@ -4,10 +4,16 @@
 #include <cmath>
 
 namespace kerf::drivers {
+namespace {
+
+constexpr double most_drift =
+    0.03;  // a rate is told by a name or a setting, and sensors are off by up to 2 %
+
+}  // namespace
 
 void ForceIntake::begin(double rate_hz) noexcept {
   rate_hz_ = rate_hz;
-  clock_.emplace(1.0 / rate_hz);
+  clock_.emplace(1.0 / rate_hz, most_drift);
 }
 
 void ForceIntake::take_wrong() noexcept {

@@ -6,10 +6,15 @@
 namespace kerf::drivers {
 namespace {
 
-constexpr double steepest = 500e-6;      // no crystal is off by more
+constexpr double block_s = 0.25;
 constexpr std::size_t least_blocks = 4;  // before, a packet that came late would turn the line too far
 
 }  // namespace
+
+ScanClock::ScanClock(double nominal_period_s, double most_drift) noexcept
+    : period_s_(nominal_period_s),
+      most_drift_(most_drift),
+      block_scans_(static_cast<std::uint64_t>(std::max(1.0, std::round(block_s / nominal_period_s)))) {}
 
 ScanClock::Point ScanClock::point_of(std::uint64_t scan, std::int64_t arrived_ns) const noexcept {
   const double nominal_s = static_cast<double>(scan - first_scan_) * period_s_;
@@ -23,7 +28,7 @@ void ScanClock::add(std::uint64_t scan, std::int64_t arrived_ns) noexcept {
     first_ns_ = arrived_ns;
     block_ = 0;
   }
-  const std::uint64_t block = (scan - first_scan_) / block_scans;
+  const std::uint64_t block = (scan - first_scan_) / block_scans_;
   if (block != block_) end_block();
   block_ = block;
   const Point point = point_of(scan, arrived_ns);
@@ -76,7 +81,7 @@ void ScanClock::fit_line() noexcept {
   while (edge + 2 < corners && hull[edge + 1].nominal_s < mean_s) ++edge;
   const Point& from = hull[edge];
   const Point& to = hull[edge + 1];
-  slope_ = std::clamp((to.late_s - from.late_s) / (to.nominal_s - from.nominal_s), -steepest, steepest);
+  slope_ = std::clamp((to.late_s - from.late_s) / (to.nominal_s - from.nominal_s), -most_drift_, most_drift_);
   offset_s_ = from.late_s - slope_ * from.nominal_s;
   for (std::size_t at = 0; at < block_count_; ++at) offset_s_ += std::min(0.0, above_line(kept(at)));
   std::array<double, max_blocks> above{};

@@ -99,6 +99,11 @@ std::vector<Figure> SensedDevice::figures() const {
   return all;
 }
 
+std::string SensedDevice::trouble() const {
+  const std::string own = device_->trouble();
+  return own.empty() ? sensor_->trouble() : own;
+}
+
 std::unique_ptr<Device> open_device(std::string_view uri, std::string_view sensor_uri,
                                     Surroundings surroundings) {
   const bool alone = uri == "none";

@@ -21,6 +21,7 @@ constexpr std::int64_t rate_window_ns = 300'000'000;
 constexpr int rate_windows = 5;
 constexpr double rate_tolerance = 0.02;  // of the rate told, by what arrives in that window
 constexpr double least_steps = 10.0;     // with fewer it cannot be told
+constexpr double rate_error = 0.005;     // of what arrives in that window, at most
 constexpr std::uint64_t wrong_frames_of_a_storm = 10;
 
 double rate_of(double frames, std::int64_t span_ns) noexcept {
@@ -44,20 +45,17 @@ std::vector<ForceMount> parse_mounts(std::string_view text) {
     const auto colon = one.find(':');
     if (colon == std::string_view::npos || colon == 0) refuse(one);
     ForceMount mount{.axis = std::string(one.substr(0, colon))};
-    std::string_view component = one.substr(colon + 1);
-    if (component.starts_with('-')) {
-      mount.sign = -1.0;
-      component.remove_prefix(1);
-    }
+    const std::string_view component = one.substr(colon + 1);
     const auto slash = std::min(component.find('/'), component.size());
     if (slash < component.size()) {
       const Uri lever{.name = "force sensor",
                       .options = {{"lever", std::string(component.substr(slash + 1))}}};
       mount.lever_m = UriOptions(lever).number("lever", {"m", 0.0, 1e-4, 10.0});
     }
-    const auto* found = std::ranges::find(wrench_names, component.substr(0, slash));
-    if (found == wrench_names.end()) refuse(one);
-    mount.component = static_cast<std::size_t>(found - wrench_names.begin());
+    const auto found = signed_component(component.substr(0, slash));
+    if (!found) refuse(one);
+    mount.component = found->component;
+    mount.sign = found->sign;
     mounts.push_back(std::move(mount));
   }
   return mounts;
@@ -90,6 +88,10 @@ StreamingForceSensor::StreamingForceSensor(std::string_view uri, std::unique_ptr
 StreamingForceSensor::~StreamingForceSensor() {
   thread_.stop();
   source_->end();
+}
+
+std::string StreamingForceSensor::trouble() const {
+  return intake_.ended() ? source_->silence(intake_.wrong_in_a_row()) : std::string();
 }
 
 void StreamingForceSensor::refuse(const std::string& why) const {
@@ -128,7 +130,8 @@ double StreamingForceSensor::find_rate() {
     for (std::int64_t now = usb::now_ns(); now < until; now = usb::now_ns()) wait_and_take(until - now);
     found = rate_of(arrived() - before_window, intake_.last_ns() - begin);
     is_known = arrived() - before_window >= least_steps;
-    if (const auto told = source_->told_rate_hz(); fits(told)) return *told;
+    if (const auto told = source_->told_rate_hz(); fits(told))
+      return is_known && std::abs(found / *told - 1.0) > rate_error ? found : *told;
   }
   found = rate_of(arrived() - before, intake_.last_ns() - start);
   if (const auto near = source_->rate_near(found); is_known && fits(near)) return *near;

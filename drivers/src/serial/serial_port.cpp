@@ -51,7 +51,7 @@ std::string reason(const std::string& path, int error) {
     case EWOULDBLOCK:
       return fmt::format(
           "another program has {} open; if it is ModemManager, which takes serial ports for modems, "
-          "'sudo systemctl stop ModemManager' or the udev rules of docs/devices.md",
+          "'sudo systemctl stop ModemManager' or the line that 'kerf doctor' gives",
           path);
     case ENOTTY:
       return fmt::format("{} is no serial port", path);

@@ -31,8 +31,8 @@ using Words = std::vector<std::string>;
 // The words of commands: INPUT and OUTPUT stand for what is wrong, FOLDER/ for a folder of good files.
 
 // Verbs that read no file: what they need is in the program, or on the USB.
-const std::set<Words> without_input{{"devices"},    {"doctor"},    {"laws"},
-                                    {"law", "new"}, {"reproduce"}, {"session", "key"}};
+const std::set<Words> without_input{{"devices"},       {"doctor"},    {"laws"},          {"law", "new"},
+                                    {"device", "new"}, {"reproduce"}, {"session", "key"}};
 // Verbs that write no file, or one only where it was named as their input.
 const std::set<Words> without_output{{"devices"},
                                      {"doctor"},
@@ -70,6 +70,7 @@ const std::vector<Words> with_input{
     {"calibrate", "INPUT"},
     {"calibrate", "sim:sensor", "--loads", "INPUT", "-o", "FOLDER/out.calibration.toml"},
     {"law", "build", "INPUT", "-o", "FOLDER/out.so"},
+    {"device", "build", "INPUT", "-o", "FOLDER/out.so"},
     {"fit", "INPUT", "-o", "FOLDER/out"},
     {"fit", "FOLDER/r.h5", "--plugin", "INPUT", "-o", "FOLDER/out"},
     {"fit", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out"},
@@ -135,6 +136,8 @@ const std::vector<Words> with_output{
     {"calibrate", KERF_SOURCE_DIR "/examples/calibration/cell.csv", "--map", "signal_1=3,fz=2[N],time=1[s]",
      "-o", "OUTPUT"},
     {"law", "new", "mylaw", "-o", "BELOW"},
+    {"device", "new", "mydevice", "-o", "BELOW"},
+    {"device", "build", KERF_SOURCE_DIR "/tests/drivers/hosted/moody.c", "-o", "BELOW.so"},
     {"law", "build", KERF_SOURCE_DIR "/tests/models/plugins/coulomb_spring.h", "-o", "BELOW.so"},
     {"fit", "FOLDER/r.h5", "-o", "BELOW"},
     {"blade", "FOLDER/blade.h5", "--shape", KERF_SOURCE_DIR "/examples/blade.law.toml", "-o", "BELOW"},

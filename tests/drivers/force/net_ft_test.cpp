@@ -3,11 +3,9 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -44,15 +42,9 @@ std::unique_ptr<Device> open_at_once(const std::string& uri) {
 /// The wrenches of its last read-out by the number of the record, and behind each whether it left.
 std::map<std::uint64_t, std::vector<double>> trace_of(const std::filesystem::path& trace) {
   std::map<std::uint64_t, std::vector<double>> all;
-  std::ifstream lines(trace);
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    std::istringstream cells(line);
-    std::vector<double> numbers;
-    for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
-    if (numbers[0] == 1.0) all.clear();
-    all[static_cast<std::uint64_t>(numbers[0])].assign(numbers.begin() + 3, numbers.end());
+  for (const auto& row : rows_of(trace)) {
+    if (row[0] == 1.0) all.clear();
+    all[static_cast<std::uint64_t>(row[0])].assign(row.begin() + 3, row.end());
   }
   return all;
 }

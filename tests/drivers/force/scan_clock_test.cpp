@@ -84,6 +84,19 @@ TEST(ScanClock, FollowsAClockThatChangesWithin64Seconds) {
   EXPECT_NEAR(clock.drift_ppm(), 20.0, 0.01);
 }
 
+TEST(ScanClock, FollowsARateThatWasToldWrongWhereItMay) {
+  constexpr double drift_ppm = 20'000.0;
+  ScanClock clock(0.01, 0.03);
+  const auto taken = [&](std::uint64_t scan) {
+    return 5'000'000'000 + std::llround(1e7 * (1.0 + 1e-6 * drift_ppm) * static_cast<double>(scan));
+  };
+  for (std::uint64_t scan = 0; scan < 1'000; ++scan) {
+    clock.add(scan, taken(scan));
+    if (scan >= 150) ASSERT_NEAR(static_cast<double>(clock.time_ns(scan) - taken(scan)), 0.0, 100.0) << scan;
+  }
+  EXPECT_NEAR(clock.drift_ppm(), drift_ppm, 0.01);
+}
+
 TEST(ScanClock, KeepsItsDriftWhenTheScansBeginAnew) {
   ScanClock clock(period_s);
   for (std::uint64_t scan = 0; scan < 5'000; ++scan) clock.add(scan, taken_ns(scan, 80.0));

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -118,6 +120,19 @@ TEST(SerialForce, APortThatIsPulledOutIsLost) {
     Sample sample;
     EXPECT_EQ(opened->read(10.0, sample), Status::lost) << device;
   }
+}
+
+// An FT300 that sends 98.5 Hz where its data sheet says 100.
+TEST(SerialForce, ASensorThatIsSlowerThanItSaysKeepsItsTimes) {
+  const RunningSerialSensor running("ft300?drift=15000ppm");
+  const auto device = open_device(running.uri());
+  const auto seen = watch(*device, ticks(4000));
+  // Between frames an age is a period at most, and the rest is what held the frame up.
+  const auto old =
+      std::ranges::count_if(seen, [](const Seen& one) { return !(one.sample.channels[0] < 0.018); });
+  EXPECT_LT(old, static_cast<std::ptrdiff_t>(seen.size() / 10));
+  EXPECT_EQ(figure(*device, "frames_lost"), 0.0);
+  EXPECT_NEAR(figure(*device, "frame_rate"), 100.0 / 1.015, 0.5);
 }
 
 TEST(SerialForce, GoesOnAfterAMomentWithoutPower) {

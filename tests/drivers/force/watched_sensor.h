@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -75,8 +76,8 @@ inline std::string refusal_to_open(const std::string& uri) {
   return "";
 }
 
-/// The wrenches that an emulator measured, in their order.
-inline std::vector<std::vector<double>> measured_in(const std::filesystem::path& trace) {
+/// What an emulator wrote of what it did: the numbers of each line, number and time first.
+inline std::vector<std::vector<double>> rows_of(const std::filesystem::path& trace) {
   std::vector<std::vector<double>> all;
   std::ifstream lines(trace);
   std::string line;
@@ -85,8 +86,15 @@ inline std::vector<std::vector<double>> measured_in(const std::filesystem::path&
     std::istringstream cells(line);
     std::vector<double> numbers;
     for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
-    all.emplace_back(numbers.begin() + 2, numbers.begin() + 8);
+    all.push_back(std::move(numbers));
   }
+  return all;
+}
+
+/// The wrenches that an emulator measured, in their order.
+inline std::vector<std::vector<double>> measured_in(const std::filesystem::path& trace) {
+  std::vector<std::vector<double>> all;
+  for (const auto& row : rows_of(trace)) all.emplace_back(row.begin() + 2, row.begin() + 8);
   return all;
 }
 

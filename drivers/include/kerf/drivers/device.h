@@ -131,6 +131,10 @@ class Device {
 
   /// What it counted so far: rates, losses, drift. Not for the tick.
   [[nodiscard]] virtual std::vector<Figure> figures() const { return {}; }
+
+  /// What became of it, for a person, where it was lost: "mydevice.so crashed: SIGSEGV in read()"; empty: it
+  /// knows of nothing. Not for the tick.
+  [[nodiscard]] virtual std::string trouble() const { return {}; }
 };
 
 /// What a simulated tool meets: the force that tissue exerts along one axis, positive where it pushes the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,10 @@ void note_device(std::string line);
 
 /// What has been noted since this was last asked, the first first.
 [[nodiscard]] std::vector<std::string> take_device_notes();
+
+/// Who is told at once what the opening of a device waits for, where that is longer than a person expects.
+/// The program says it once, before anything is opened.
+void tell_waits_to(std::function<void(const std::string&)> told);
+void tell_wait(const std::string& line);
 
 }  // namespace kerf::drivers

@@ -42,6 +42,8 @@ class FaultyDevice final : public Device {
   [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
   [[nodiscard]] Status write(const Axes& force) noexcept override;
   void release(double at_s) noexcept override { device_->release(at_s); }
+  [[nodiscard]] std::vector<Figure> figures() const override { return device_->figures(); }
+  [[nodiscard]] std::string trouble() const override { return device_->trouble(); }
 
  private:
   struct Pending {

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -40,6 +42,13 @@ struct ForceCalibration {
 
 /// The components, in their order.
 inline constexpr std::array<const char*, max_axes> wrench_names{"fx", "fy", "fz", "tx", "ty", "tz"};
+
+/// "-tz": the index of a component and its sign; nothing of what is none.
+struct SignedComponent {
+  std::size_t component = 0;
+  double sign = 1.0;
+};
+[[nodiscard]] std::optional<SignedComponent> signed_component(std::string_view text) noexcept;
 
 /// Reads a calibration from TOML:
 ///

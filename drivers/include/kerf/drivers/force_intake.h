@@ -47,6 +47,8 @@ class ForceIntake {
   void take_wrong() noexcept;
 
   [[nodiscard]] StreamedForce& force() noexcept { return force_; }
+  /// Nothing will come any more.
+  [[nodiscard]] bool ended() const noexcept { return force_.lost(); }
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
   [[nodiscard]] std::uint64_t wrong_in_a_row() const noexcept { return wrong_in_a_row_; }

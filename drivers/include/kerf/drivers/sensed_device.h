@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,7 @@ class SensedDevice final : public Device {
   void release(double at_s) noexcept override { device_->release(at_s); }
   /// Those of both.
   [[nodiscard]] std::vector<Figure> figures() const override;
+  [[nodiscard]] std::string trouble() const override;
 
  private:
   /// Where the force of an axis comes from; factor 0: from nowhere.

@@ -51,8 +51,8 @@ class ForceSource {
 ///
 /// Channels: `force_age` [s] and `force_scan` as StreamedForce says, `force_lost`, how many frames were lost
 /// so far, then those of the source: counts and status words of its own, as they come. The time of a frame is
-/// that of the line of ScanClock over its number: what all frames take alike, the sensor's filter among it,
-/// is not in `force_age`.
+/// that of the line of ScanClock over its number, which follows a rate up to 2 % from what was told: what all
+/// frames take alike, the sensor's filter among it, is not in `force_age`.
 ///
 /// After 100 ms without a frame it is asked again, every 100 ms; after a second it is lost, and so it is
 /// where what comes is never a frame.
@@ -79,6 +79,7 @@ class StreamingForceSensor final : public Device {
   [[nodiscard]] Status write(const Axes& force) noexcept override { return intake_.force().write(force); }
   void release(double) noexcept override {}
   [[nodiscard]] std::vector<Figure> figures() const override { return intake_.figures(); }
+  [[nodiscard]] std::string trouble() const override;
 
  private:
   [[noreturn]] void refuse(const std::string& why) const;

@@ -283,7 +283,7 @@ TEST_F(StudioUnderAttack, LetsNoDriverOpenAFileOutsideOfTheFolder) {
 // A page of the lab's network is not to be asked by whoever has a page of the studio.
 TEST_F(StudioUnderAttack, LetsNoDriverOpenAMachineOrAPort) {
   for (const char* const uri : {"net-ft:192.168.1.1", "onrobot:localhost", "net-ft:127.0.0.1?http=22",
-                                "bota:/dev/tty", "ft300:fifo"}) {
+                                "bota:/dev/tty", "ft300:fifo", "plugin:./mine.so"}) {
     for (const char* const field : {"device", "sensor"}) {
       const std::string answer =
           post("/api/live/start", fmt::format(R"({{"session": "0", "{}": "{}"}})", field, uri));

@@ -1,6 +1,5 @@
-#include "own_law/new_law.h"
+#include "own_code/new_law.h"
 
-#include <algorithm>
 #include <cctype>
 #include <stdexcept>
 
@@ -8,7 +7,8 @@
 
 #include <kerf/models/law.h>
 
-#include "own_law/build_law.h"
+#include "own_code/build_law.h"
+#include "own_code/compiler.h"
 
 namespace kerf::bench {
 namespace {
@@ -129,28 +129,14 @@ std::string type_of(std::string_view name) {
   return type;
 }
 
-std::string with_names(std::string_view text, std::string_view name, std::string_view include) {
-  std::string result(text);
-  const auto replace = [&](std::string_view from, std::string_view to) {
-    for (auto at = result.find(from); at != std::string::npos; at = result.find(from, at + to.size()))
-      result.replace(at, from.size(), to);
-  };
-  replace("%INCLUDE%", include);
-  replace("%TYPE%", type_of(name));
-  replace("%NAME%", name);
-  return result;
+std::string with_names(std::string_view text, std::string_view name, const std::string& include) {
+  return filled_in(text, {{"INCLUDE", include}, {"TYPE", type_of(name)}, {"NAME", std::string(name)}});
 }
 
 }  // namespace
 
 NewLaw new_law(std::string_view name) {
-  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
-  const bool is_name =
-      !name.empty() && name.size() <= 60 && is_letter(name.front()) &&
-      std::ranges::all_of(name, [&](char c) { return is_letter(c) || c == '_' || (c >= '0' && c <= '9'); });
-  if (!is_name)
-    throw std::invalid_argument(
-        fmt::format("'{}' is no name for a law; expected a to z, 0 to 9 and _, first a letter", name));
+  require_name(name, "a law");
   for (const models::LawInfo& law : models::registry()) {
     if (law.name == name)
       throw std::invalid_argument(fmt::format("'{}' is a law of Kerf's own; give yours another name", name));

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <kerf/device.h>
+
+#include "hosted/host_page.h"
+
+namespace kerf::host {
+
+/// A device that has been opened.
+struct Opened {
+  const kerf_device_v1& description;
+  void* device;
+  kerf_device_facts_v1 facts;  ///< its own copy: the plug-in can write anywhere
+};
+
+[[nodiscard]] std::int64_t now_ns() noexcept;
+/// Whether it has closed its end of the connection, or died.
+[[nodiscard]] bool program_is_gone() noexcept;
+
+/// Says where this process is in the plug-in, while it is there.
+class AtStage {
+ public:
+  AtStage(drivers::hosted::Page& page, drivers::hosted::Stage stage) noexcept
+      : page_(page), before_(page.stage.load(std::memory_order_relaxed)) {
+    enter(stage);
+  }
+  AtStage(const AtStage&) = delete;
+  AtStage& operator=(const AtStage&) = delete;
+  ~AtStage() { enter(before_); }
+
+ private:
+  void enter(drivers::hosted::Stage stage) noexcept {
+    page_.stage_since_ns.store(now_ns(), std::memory_order_relaxed);
+    page_.stage.store(stage, std::memory_order_release);
+  }
+  drivers::hosted::Page& page_;
+  drivers::hosted::Stage before_;
+};
+
+/// Reads and writes until the program is gone or the device is lost; then the device is let go.
+void work(const Opened& opened, drivers::hosted::Page& page);
+
+}  // namespace kerf::host

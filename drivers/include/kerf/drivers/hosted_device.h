@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <kerf/drivers/device.h>
+#include <kerf/drivers/report_velocity.h>
+#include <kerf/drivers/uri.h>
+
+namespace kerf::drivers {
+
+namespace hosted {
+class DeviceHost;
+}
+
+/// A device of somebody else, a shared object of <kerf/device.h>, that runs in a process of its own:
+/// kerf-device-host. The tick reads and writes memory that both see, and waits for nothing.
+///
+/// That process hands over each force once, drops one that is older than 50 ms, and lets the device go when
+/// this one is gone; a copy of it does so where the plug-in has crashed, or holds a force and gives no sign
+/// of life for 30 ms. A plug-in that has ended or hung for a second is Status::lost, and trouble() says in
+/// what.
+///
+/// Channels: those of the plug-in, then `report_age` [s]. The velocity is its own, or that of ReportVelocity.
+/// A reading that is doubted, older than 20 ms (three periods of a slower device), or no number is
+/// Status::fault.
+class HostedDevice final : public Device {
+ public:
+  /// @param identity of the plug-in, as TOML, for the configuration
+  /// @throws DeviceError if what it says of itself makes no device
+  HostedDevice(std::string_view uri, std::unique_ptr<hosted::DeviceHost> host, const std::string& identity);
+  HostedDevice(const HostedDevice&) = delete;
+  HostedDevice& operator=(const HostedDevice&) = delete;
+  ~HostedDevice() override;
+
+  [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+  [[nodiscard]] Status read(double now_s, Sample& sample) noexcept override;
+  [[nodiscard]] Status write(const Axes& force) noexcept override;
+  void release(double at_s) noexcept override;
+  /// report_rate, reports, reports_missing and reports_repeated (by its own count), forces_not_taken,
+  /// let_go_instead (by the copy of its process).
+  [[nodiscard]] std::vector<Figure> figures() const override;
+  [[nodiscard]] std::string trouble() const override;
+
+ private:
+  void take_newest() noexcept;
+  void wait_for_first();
+  [[nodiscard]] bool lost(std::int64_t now_ns) const noexcept;
+
+  std::unique_ptr<hosted::DeviceHost> host_;
+  DeviceInfo info_;
+  bool has_write_ = false;
+  bool tells_velocity_ = false;
+  bool writes_any_time_ = false;
+  std::int64_t oldest_ns_ = 0;  ///< reading that is not yet a fault
+  std::size_t own_channels_ = 0;
+  std::int64_t opened_ns_ = 0;
+  std::uint64_t seen_ = 0;  ///< number of the newest reading
+  std::int64_t taken_ns_ = 0;
+  std::int64_t arrived_ns_ = 0;
+  bool is_doubted_ = false;
+  Sample last_;
+  ReportVelocity velocity_;
+};
+
+/// What a plug-in says of itself; nothing is opened.
+struct PluginDevice {
+  std::string name;
+  std::string about;
+  std::vector<std::string> options;  ///< that its URI takes
+};
+/// @throws DeviceError with what is wrong with it
+[[nodiscard]] PluginDevice look_at_plugin(const std::string& file);
+
+/// `plugin:FILE?OPTION=VALUE...`: HostedDevice, or a StreamingForceSensor where the plug-in is a force
+/// sensor, which then takes `resample`, `delay` and `axes` too. Its file and the SHA-256 of that stand in the
+/// configuration. @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_plugin(std::string_view uri, std::string_view file,
+                                                  const Uri& parsed, const Surroundings& surroundings);
+
+}  // namespace kerf::drivers

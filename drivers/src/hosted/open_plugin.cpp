@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <unistd.h>
+
+#include "hosted/device_host.h"
+#include "hosted/facts.h"
+#include "kerf/drivers/hosted_device.h"
+#include "kerf/drivers/streaming_force_sensor.h"
+#include "kerf/drivers/toml_text.h"
+
+namespace kerf::drivers {
+namespace {
+
+using hosted::DeviceHost;
+using hosted::Reading;
+
+/// What a StreamingForceSensor takes itself.
+constexpr std::array own_options{"resample", "delay", "axes"};
+
+/// Of a file's content, in hexadecimal digits.
+std::string sha256_of(const std::string& file) {
+  std::ifstream content(file, std::ios::binary);
+  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> state(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  bool worked = state != nullptr && EVP_DigestInit_ex(state.get(), EVP_sha256(), nullptr) == 1;
+  std::array<char, 65536> block{};
+  while (worked && (content.read(block.data(), block.size()) || content.gcount() > 0)) {
+    worked = EVP_DigestUpdate(state.get(), block.data(), static_cast<std::size_t>(content.gcount())) == 1;
+  }
+  std::array<unsigned char, 32> digest{};
+  if (!worked || EVP_DigestFinal_ex(state.get(), digest.data(), nullptr) != 1)
+    throw DeviceError(fmt::format("{}: its SHA-256 cannot be taken", file));
+  std::string digits;
+  for (const unsigned char byte : digest) digits += fmt::format("{:02x}", byte);
+  return digits;
+}
+
+std::string identity_of(const std::string& file) {
+  return fmt::format("plugin = {}\nsha256 = \"{}\"\n", toml_text(file), sha256_of(file));
+}
+
+/// A plug-in that is a force sensor.
+class HostedSource final : public ForceSource {
+ public:
+  HostedSource(std::string uri, std::unique_ptr<DeviceHost> host, DeviceInfo info)
+      : uri_(std::move(uri)), host_(std::move(host)), info_(std::move(info)) {
+    const double rate_hz = host_->page().facts.rate_hz;
+    if (rate_hz > 0.0) rate_hz_ = rate_hz;
+  }
+
+  [[nodiscard]] int descriptor() const noexcept override { return host_->readings_descriptor(); }
+  void ask() noexcept override {}
+  void end() noexcept override {}
+
+  void take(ForceIntake& intake) noexcept override {
+    std::uint64_t wakes = 0;
+    [[maybe_unused]] const auto woken = ::read(descriptor(), &wakes, sizeof wakes);
+    const auto& readings = host_->page().readings;
+    const std::uint64_t newest = readings.count();
+    while (seen_ < newest) {
+      Reading reading;
+      if (!readings.get(++seen_, reading)) {
+        ++skipped_;  // this thread was held up until they had been overwritten
+        continue;
+      }
+      intake.take(frame_of(reading));
+    }
+    const auto& page = host_->page();
+    if (page.lost.load() != 0 || page.host_ended.load() != 0) intake.force().lose();
+  }
+
+  [[nodiscard]] std::optional<double> told_rate_hz() const override { return rate_hz_; }
+  [[nodiscard]] std::optional<double> rate_near(double measured_hz) const override {
+    return rate_hz_ ? std::nullopt : std::optional(measured_hz);
+  }
+  [[nodiscard]] std::string silence(std::uint64_t) const override {
+    const std::string why = host_->trouble();
+    return why.empty() ? "its read() finds no reading; look at cable, port and speed" : why;
+  }
+  [[nodiscard]] DeviceInfo describe() const override { return info_; }
+  [[nodiscard]] std::string trouble() const override {
+    if (const std::string why = host_->trouble(); !why.empty()) return why;
+    return is_overloaded_ ? "it is overloaded" : "it doubts its readings";
+  }
+
+ private:
+  ForceFrame frame_of(const Reading& reading) noexcept {
+    const kerf_device_reading_v1& told = reading.told;
+    const bool sound = std::ranges::all_of(told.force, [](double one) { return !std::isinf(one); });
+    is_overloaded_ = (told.flags & KERF_OVERLOADED) != 0;
+    ForceFrame frame{.arrived_ns = told.taken_ns,
+                     .step = reading.step + std::exchange(skipped_, 0),
+                     .health = is_overloaded_                               ? ForceHealth::overload
+                               : (told.flags & KERF_DOUBTED) != 0 || !sound ? ForceHealth::doubted
+                                                                            : ForceHealth::sound};
+    frame.wrench.fill(std::numeric_limits<double>::quiet_NaN());
+    if ((told.flags & KERF_NO_FORCE) == 0) std::ranges::copy(told.force, frame.wrench.begin());
+    std::ranges::copy(told.channels, frame.extras.begin());
+    return frame;
+  }
+
+  std::string uri_;
+  std::unique_ptr<DeviceHost> host_;
+  DeviceInfo info_;
+  std::optional<double> rate_hz_;
+  std::uint64_t seen_ = 0;
+  std::int64_t skipped_ = 0;
+  bool is_overloaded_ = false;
+};
+
+}  // namespace
+
+PluginDevice look_at_plugin(const std::string& file) {
+  hosted::Look look = DeviceHost::look(file);
+  return {.name = std::move(look.name), .about = std::move(look.about), .options = std::move(look.options)};
+}
+
+std::unique_ptr<Device> open_plugin(std::string_view uri, std::string_view file, const Uri& parsed,
+                                    const Surroundings& surroundings) {
+  DeviceHost::Question question{.uri = std::string(uri),
+                                .plugin = std::string(file),
+                                .options = parsed.options,
+                                .stop = surroundings.stop};
+  Uri ours{.name = parsed.name, .options = {}};
+  for (const char* const name : own_options) {
+    const auto found = question.options.find(name);
+    if (found == question.options.end()) continue;
+    ours.options.insert(*found);
+    question.options.erase(found);
+  }
+  UriOptions given(ours);
+  const auto common = StreamingForceSensor::parse_options(given);
+  auto host = std::make_unique<DeviceHost>(question);
+  const std::string identity = identity_of(question.plugin.string());
+  if ((host->page().facts.flags & KERF_FORCE_SENSOR) == 0) {
+    if (!ours.options.empty()) {
+      throw DeviceError(fmt::format("{}: {} is of a force sensor alone, and this is none", uri,
+                                    ours.options.begin()->first));
+    }
+    return std::make_unique<HostedDevice>(uri, std::move(host), identity);
+  }
+  DeviceInfo info = hosted::info_of(host->page().facts, host->page().has_write.load() != 0, uri);
+  info.configuration = identity + info.configuration;
+  return std::make_unique<StreamingForceSensor>(
+      uri, std::make_unique<HostedSource>(std::string(uri), std::move(host), std::move(info)), common);
+}
+
+}  // namespace kerf::drivers
