@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "built_in.h"
 #include "plugin.h"
 #include "stand_by.h"
 #include "work.h"
@@ -44,6 +45,7 @@ std::vector<std::string> question(char& kind) {
 }
 
 const kerf_device_v1& load_at_stage(const std::string& path, Page& page) {
+  if (const kerf_device_v1* const own = built_in(path)) return *own;
   const AtStage stage(page, Stage::loading);
   return load(path);
 }

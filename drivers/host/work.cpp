@@ -118,13 +118,17 @@ class Reader {
                                                                     : 0),
         next_ns_(now_ns()) {}
 
+  /// Waits until it is time to read one that answers at once. @returns whether it is one
+  bool wait() noexcept {
+    if (period_ns_ == 0) return false;
+    // After a long wait the next one counts from now.
+    next_ns_ = std::max(next_ns_ + period_ns_, now_ns() - period_ns_);
+    sleep_until(next_ns_);
+    return true;
+  }
+
   /// False where the device is lost.
   bool read() {
-    if (period_ns_ > 0) {
-      // After a long wait the next one counts from now.
-      next_ns_ = std::max(next_ns_ + period_ns_, now_ns() - period_ns_);
-      sleep_until(next_ns_);
-    }
     Reading reading;
     const std::int64_t before = now_ns();
     int said = 0;
@@ -192,11 +196,14 @@ void work(const Opened& opened, Page& page) {
   if (beside) writer = std::jthread([&](const std::stop_token& stop) { write_beside(stop, hands); });
   Reader reader(opened, page);
   for (std::int64_t looked_ns = now_ns(); page.lost.load(std::memory_order_relaxed) == 0;) {
+    // So that a force goes out with the reading that is asked for, or right behind the one that has come.
+    const bool asks = reader.wait();
+    if (asks && !beside) hands.act();
     if (!reader.read()) {
       page.lost.store(1, std::memory_order_release);
       break;
     }
-    if (!beside) hands.act();
+    if (!asks && !beside) hands.act();
     if (now_ns() - looked_ns < look_ns) continue;
     looked_ns = now_ns();
     if (program_is_gone()) break;

@@ -93,6 +93,10 @@ std::unique_ptr<Device> open_hosted(const Wanted& wanted) {
   return open_plugin(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
 }
 
+std::unique_ptr<Device> open_v4(const Wanted& wanted) {
+  return open_woody_v4(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
+}
+
 /// What follows the colon.
 enum class Follows : std::uint8_t { number, product, host, port, file };
 struct Scheme {
@@ -100,7 +104,7 @@ struct Scheme {
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 11> schemes{{{"falcon", Follows::number, open_falcon},
+constexpr std::array<Scheme, 12> schemes{{{"falcon", Follows::number, open_falcon},
                                           {"spacemouse", Follows::number, open_spacemouse},
                                           {"hid", Follows::product, open_hid},
                                           {"u6", Follows::number, open_u6},
@@ -110,6 +114,7 @@ constexpr std::array<Scheme, 11> schemes{{{"falcon", Follows::number, open_falco
                                           {"bota", Follows::port, at_place<open_bota>},
                                           {"optoforce", Follows::port, at_place<open_optoforce>},
                                           {"ft300", Follows::port, at_place<open_ft300>},
+                                          {"woody-v4", Follows::port, open_v4},
                                           {"plugin", Follows::file, open_hosted}}};
 
 std::optional<std::size_t> number_in(std::string_view digits) {

@@ -11,6 +11,7 @@
 
 #include <kerf/drivers/usb/io_thread.h>
 
+#include "serial/woody_v4.h"
 #include "trace.h"
 
 namespace kerf::emulators {
@@ -60,10 +61,13 @@ void EmulatedSerialDevice::push(const Eigen::Vector3d& force_n, std::string_view
   // So that the trace has it: without a delay it acts now.
   tip_.run_until(world_s());
   note(event);
+  // Whoever looks at it while it runs looks for this.
+  if (force_n.isZero()) trace_.flush();
 }
 
-void EmulatedSerialDevice::say(Bytes bytes) {
+void EmulatedSerialDevice::say(Bytes bytes, double later_s) {
   const double time_s = world_s();
+  const std::int64_t from_ns = now_ns_ + std::llround(1e9 * later_s);
   const Disturbance due = faults_.due(time_s);
   if (due != Disturbance::none) faults_.done(due, time_s);
   const bool leaves = due != Disturbance::drop && !faults_.is_silent(time_s);
@@ -72,8 +76,8 @@ void EmulatedSerialDevice::say(Bytes bytes) {
   if (due == Disturbance::corrupt && !bytes.empty()) bytes[bytes.size() / 2] ^= 0x10U;
   if (due == Disturbance::split) bytes.resize(bytes.size() / 2);
   const bool twice = faults_.duplicates(time_s);
-  if (twice) line_.say(bytes, now_ns_);
-  line_.say(std::move(bytes), now_ns_);
+  if (twice) line_.say(bytes, from_ns);
+  line_.say(std::move(bytes), from_ns);
 }
 
 void EmulatedSerialDevice::set_power(bool on) {
@@ -121,11 +125,13 @@ void EmulatedSerialDevice::run(const std::atomic<bool>& stop, double seconds) {
       }
       set_power(!faults_.is_without_power(world_s()));
       tip_.run_until(world_s());
+      if (has_power_) moved();
       if (has_power_ && is_open) listen();
       if (has_power_) send_due_frames();
       const bool is_late = watchdog_s_ > 0.0 && now_ns_ - fed_ns_ > std::llround(1e9 * watchdog_s_);
       if (is_late && !tip_.force().isZero()) {
         ++trips_;
+        let_go_by_watchdog();
         push(Eigen::Vector3d::Zero(), "watchdog");
       }
     }
@@ -203,6 +209,8 @@ class EmulatedSlider final : public EmulatedSerialDevice {
 }  // namespace
 
 std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector<Fault> faults) {
+  if (uri.name == "woody-v4")
+    return EmulatedWoodyV4::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   if (uri.name == "slider")
     return EmulatedSlider::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   return nullptr;

@@ -49,6 +49,10 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   virtual void hear(std::span<const std::uint8_t> bytes) = 0;
   /// A frame that it sends by itself; nothing of one that only answers.
   [[nodiscard]] virtual Bytes frame() { return {}; }
+  /// Time has passed, and the tip has moved.
+  virtual void moved() {}
+  /// Nothing has fed its watchdog for too long: the force is zero now.
+  virtual void let_go_by_watchdog() {}
   /// It has power again.
   virtual void begin_anew() = 0;
 
@@ -57,11 +61,13 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   /// After so long without feed_watchdog() the force is zero; 0: it is held for ever.
   void set_watchdog(double seconds) noexcept { watchdog_s_ = seconds; }
   void feed_watchdog() noexcept { fed_ns_ = now_ns_; }
+  /// The force of the motors, from now on; as it changes with the pose, and no event.
+  void adjust(const Eigen::Vector3d& force_n) { tip_.push(force_n); }
   /// The force of the motors, from now on.
   void push(const Eigen::Vector3d& force_n, std::string_view event = "force");
   [[nodiscard]] Eigen::Vector3d position() const noexcept { return tip_.position(); }
-  /// Through what goes wrong on the way, and the line.
-  void say(Bytes bytes);
+  /// Through what goes wrong on the way, and the line; so much later.
+  void say(Bytes bytes, double later_s = 0.0);
   [[nodiscard]] double world_s() const noexcept {
     return world_start_ns_ ? 1e-9 * static_cast<double>(now_ns_ - *world_start_ns_) : 0.0;
   }
@@ -92,7 +98,7 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   std::uint64_t trips_ = 0;  ///< of the watchdog
 };
 
-/// A haptic device of that name: `slider`; nothing for another name.
+/// A haptic device of that name: `slider`, `woody-v4`; nothing for another name.
 /// @throws drivers::DeviceError for an option that there is not.
 [[nodiscard]] std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector<Fault> faults);
 

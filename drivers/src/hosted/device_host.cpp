@@ -33,7 +33,9 @@ constexpr int end_ms = 500;
 constexpr std::int64_t hangs_ns = 200'000'000;
 
 std::string texts_of(char kind, const DeviceHost::Question& question) {
-  std::string texts = kind + std::filesystem::absolute(question.plugin).string() + '\0';
+  const bool is_own = !question.built_in.empty();
+  std::string texts =
+      kind + (is_own ? question.built_in : std::filesystem::absolute(question.plugin).string()) + '\0';
   for (const auto& [name, value] : question.options) {
     texts += name + '\0';
     texts += value + '\0';
@@ -48,12 +50,7 @@ std::string signal_name(int number) {
 
 }  // namespace
 
-DeviceHost::DeviceHost(std::string uri, const std::filesystem::path& plugin) : uri_(std::move(uri)) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(plugin, error))
-    throw DeviceError(
-        fmt::format("{}: there is no file {}; expected a shared object that 'kerf device build' made", uri_,
-                    plugin.string()));
+DeviceHost::DeviceHost(std::string uri) : uri_(std::move(uri)) {
   const std::string host = processes::helper_program("kerf-device-host");
   const auto refuse_start = [&](int number) {
     throw DeviceError(fmt::format("{}: {}, in which it runs, does not start ({}): install or build it there",
@@ -103,6 +100,10 @@ void DeviceHost::end() noexcept {
 }
 
 void DeviceHost::ask(char kind, const Question& question) {
+  std::error_code error;
+  if (question.built_in.empty() && !std::filesystem::is_regular_file(question.plugin, error))
+    refuse(fmt::format("there is no file {}; expected a shared object that 'kerf device build' made",
+                       question.plugin.string()));
   const std::string texts = texts_of(kind, question);
   if (texts.size() > longest_message) refuse("its options are longer than 8 kB");
   (void)send(socket_.number(), texts.data(), texts.size(), MSG_NOSIGNAL);
@@ -142,7 +143,7 @@ void DeviceHost::refuse(Answer answer, const std::string& text) const {
 }
 
 Look DeviceHost::look(const std::filesystem::path& plugin) {
-  DeviceHost host(plugin.string(), plugin);
+  DeviceHost host(plugin.string());
   host.ask(ask_to_look, {.uri = plugin.string(), .plugin = plugin, .options = {}});
   std::string text;
   if (const Answer answer = host.answer(load_ms, nullptr, text); answer != Answer::look)
@@ -157,7 +158,7 @@ Look DeviceHost::look(const std::filesystem::path& plugin) {
   return {.name = texts[0], .about = texts[1], .options = {texts.begin() + 2, texts.end()}};
 }
 
-DeviceHost::DeviceHost(const Question& question) : DeviceHost(question.uri, question.plugin) {
+DeviceHost::DeviceHost(const Question& question) : DeviceHost(question.uri) {
   ask(ask_to_open, question);
   std::string text;
   Answer said = answer(load_ms, question.stop, text);

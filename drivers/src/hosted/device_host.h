@@ -29,7 +29,8 @@ class DeviceHost {
 
   struct Question {
     std::string uri;
-    std::filesystem::path plugin;
+    std::filesystem::path plugin;  ///< a shared object; or with none
+    std::string built_in{};        ///< a device of Kerf's own that lives there too, "woody-v4"
     std::map<std::string, std::string> options;
     const std::atomic<bool>* stop = nullptr;  ///< nobody waits any more
   };
@@ -50,7 +51,7 @@ class DeviceHost {
 
  private:
   enum class Answer { look, opening, ready, refused, silent, ended };
-  DeviceHost(std::string uri, const std::filesystem::path& plugin);
+  explicit DeviceHost(std::string uri);
   void ask(char kind, const Question& question);
   [[nodiscard]] Answer answer(int patience_ms, const std::atomic<bool>* stop, std::string& text);
   [[noreturn]] void refuse(const std::string& why) const;

@@ -156,4 +156,16 @@ std::unique_ptr<Device> open_plugin(std::string_view uri, std::string_view file,
       uri, std::make_unique<HostedSource>(std::string(uri), std::move(host), std::move(info)), common);
 }
 
+std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view port, const Uri& parsed,
+                                      const Surroundings& surroundings) {
+  DeviceHost::Question question{.uri = std::string(uri),
+                                .plugin = {},
+                                .built_in = "woody-v4",
+                                .options = parsed.options,
+                                .stop = surroundings.stop};
+  if (!question.options.emplace("port", port).second)
+    throw DeviceError(fmt::format("{}: its port stands behind the colon", uri));
+  return std::make_unique<HostedDevice>(uri, std::make_unique<DeviceHost>(question), "");
+}
+
 }  // namespace kerf::drivers

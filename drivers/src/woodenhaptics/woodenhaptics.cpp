@@ -12,13 +12,13 @@
 #include "interruption.h"
 #include "kerf/drivers/usb/hid_device.h"
 #include "kerf/drivers/woodenhaptics_signs.h"
+#include "woodenhaptics/woodenhaptics_axes.h"
 #include "woodenhaptics/woodenhaptics_link.h"
 
 namespace kerf::drivers {
 namespace {
 
-using woodenhaptics::Generation;
-using woodenhaptics::Report;
+using namespace woodenhaptics;
 using Configuration = mechanisms::WoodenHaptics::Configuration;
 using Vector = mechanisms::WoodenHaptics::Vector;
 
@@ -26,10 +26,6 @@ constexpr int report_wait_ms = 10;
 // Usage page FFAB: what a Teensy of another project, or its interface for debugging, does not have.
 constexpr std::array<std::uint8_t, 3> usage_page{0x06, 0xAB, 0xFF};
 constexpr int max_preset_error = 200;  // counts: a hand holds the tip
-constexpr double workspace_m = 0.1;
-constexpr double speed_limit_m_s = 5.0;
-constexpr double slew_limit_n_s = 2000.0;
-constexpr double acceleration_limit_m_s2 = 200.0;
 
 constexpr std::array<WoodenHaptics::Product, 2> known{
     {{0x1234, 0x0006, "hid:1234:0006", "WoodenHaptics", "WoodenHaptics, 3 axes with force; 1 kHz",
@@ -39,13 +35,6 @@ constexpr std::array<WoodenHaptics::Product, 2> known{
 
 std::string_view name_of(Generation generation) {
   return generation == Generation::v1 ? "V1" : generation == Generation::v2 ? "V2" : "V3";
-}
-
-/// How far the tip moves along each axis for one count of each encoder, in the middle [m].
-mechanisms::WoodenHaptics::Matrix steps_in_the_middle(const mechanisms::WoodenHaptics& mechanism) {
-  const Vector middle = *mechanism.angles_of(mechanism.configuration().centre_m);
-  const Vector count = (mechanism.angles({1, 1, 1}) - mechanism.angles({0, 0, 0})).cwiseAbs();
-  return mechanism.jacobian(middle).cwiseAbs() * count.asDiagonal();
 }
 
 AxisInfo axis(std::string name, double middle, double resolution, double force_limit) {

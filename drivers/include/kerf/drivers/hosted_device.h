@@ -82,4 +82,13 @@ struct PluginDevice {
 [[nodiscard]] std::unique_ptr<Device> open_plugin(std::string_view uri, std::string_view file,
                                                   const Uri& parsed, const Surroundings& surroundings);
 
+/// `woody-v4:PORT`: a WoodenHaptics of the fourth generation (2022 on), as text over a Teensy's serial port,
+/// in the same process as a plug-in: HostedDevice says what holds of it too. One message, one answer, 1000 a
+/// second; a force goes out with the next message. Channels: `current_a` to `current_c` [A], as sent, and
+/// `error_bits` of the firmware. Options: most_current (3A, to 6A), calibrate (on: the tip is held at home
+/// while it is opened).
+/// @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view port,
+                                                    const Uri& parsed, const Surroundings& surroundings);
+
 }  // namespace kerf::drivers
