@@ -21,6 +21,7 @@
 #include "attach.h"
 #include "faults.h"
 #include "make_device.h"
+#include "network/inverse3.h"
 #include "network/labjack_t7.h"
 #include "network/net_ft.h"
 #include "serial/serial_device.h"
@@ -88,6 +89,13 @@ int run_in_network(const Arguments& arguments, kerf::drivers::Uri uri) {
     std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), t7.tell().c_str());
     return 0;
   }
+  if (uri.name == "inverse3") {
+    EmulatedInverse3 service(EmulatedInverse3::parse_options(std::move(uri)), std::move(faults));
+    std::fprintf(stderr, "kerf-emulate: %s serves at port %u\n", arguments.device.c_str(), service.port());
+    service.run(stop, arguments.seconds);
+    std::fprintf(stderr, "kerf-emulate: %s: %s\n", arguments.device.c_str(), service.tell().c_str());
+    return 0;
+  }
   EmulatedNetFt box(EmulatedNetFt::parse_options(std::move(uri)), std::move(faults));
   std::fprintf(
       stderr, "kerf-emulate: %s listens at UDP port %u%s\n", arguments.device.c_str(), box.port(),
@@ -115,7 +123,7 @@ int run_on_a_line(const Arguments& arguments, EmulatedOnLine& device) {
 
 int run(const Arguments& arguments) {
   kerf::drivers::Uri uri = kerf::drivers::parse_uri(arguments.device);
-  if (uri.name == "net-ft" || uri.name == "onrobot" || uri.name == "t7")
+  if (uri.name == "net-ft" || uri.name == "onrobot" || uri.name == "t7" || uri.name == "inverse3")
     return run_in_network(arguments, std::move(uri));
   std::vector<Fault> faults = parse_faults(arguments.faults);
   if (const auto device = make_on_line(uri, faults)) return run_on_a_line(arguments, *device);
@@ -157,7 +165,8 @@ int main(int count, char** texts) {
       "sensor "
       "in the\n"
       "network, on loopback, or a sensor or device on a serial line, on a pseudo-terminal.\n\n"
-      "Devices: falcon, woody, u6, spacemouse; net-ft, onrobot, t7; bota, optoforce, ft300, woody-v4, and "
+      "Devices: falcon, woody, u6, spacemouse; net-ft, onrobot, t7, inverse3; bota, optoforce, ft300, "
+      "woody-v4, and "
       "the toys "
       "gauge, slider; options "
       "stand behind\n"

@@ -6,7 +6,15 @@
 
 namespace kerf::host {
 
-/// Kerf's own devices that live in this process, as their URI names them: "woody-v4"; else nothing.
-[[nodiscard]] const kerf_device_v1* built_in(std::string_view name) noexcept;
+extern const kerf_device_v1 inverse3_device;
+extern const kerf_device_v1 woody_v4_device;
+
+/// Kerf's own devices that live in this process, by their name: "inverse3", "woody-v4"; else nothing.
+[[nodiscard]] inline const kerf_device_v1* built_in(std::string_view name) noexcept {
+  for (const kerf_device_v1* const one : {&inverse3_device, &woody_v4_device}) {
+    if (name == one->name) return one;
+  }
+  return nullptr;
+}
 
 }  // namespace kerf::host

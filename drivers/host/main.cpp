@@ -87,6 +87,10 @@ void serve(const std::vector<std::string>& texts, Page& page) {
   prctl(PR_SET_PDEATHSIG, 0);
   say(says_ready);
   work(opened, page);
+  if (page.lost.load() != 0 && description.trouble != nullptr) {
+    const char* const why = description.trouble(opened.device);
+    say(says_lost, one_line(why == nullptr ? "" : why));
+  }
   {
     const AtStage stage(page, Stage::closing);
     description.close(opened.device);

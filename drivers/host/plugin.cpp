@@ -70,6 +70,12 @@ const kerf_device_v1& load(const std::string& path) {
   return *description;
 }
 
+std::string one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  return text;
+}
+
 void* open_device(const kerf_device_v1& description, const Options& given) {
   const auto names = option_names(description);
   std::vector<const char*> values(names.size() + 1, nullptr);
@@ -82,9 +88,7 @@ void* open_device(const kerf_device_v1& description, const Options& given) {
   void* const device = description.open(values.data(), why.data(), why.size());
   if (device != nullptr) return device;
   why.back() = '\0';
-  std::string said = why.data();
-  std::ranges::replace_if(
-      said, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+  const std::string said = one_line(why.data());
   throw Refusal(said.empty() ? "its open() fails, and does not say why" : said);
 }
 

@@ -23,6 +23,9 @@ struct Refusal : std::runtime_error {
 /// Loads a shared object and checks what it says of itself. @throws Refusal
 [[nodiscard]] const kerf_device_v1& load(const std::string& path);
 
+/// What a plug-in said, without line ends and the like.
+[[nodiscard]] std::string one_line(std::string text);
+
 using Options = std::vector<std::pair<std::string, std::string>>;
 
 /// Opens the device. @throws Refusal with its own reason, or for an option that it has not

@@ -188,8 +188,8 @@ class WoodyV4 {
       on_the_way_ = false;
       if (!is_there) continue;
       // What was asked before may be answered later still.
-      while (now_ns() < until && answer_within(again_ms)) wrong = "its answers come too late";
-      if (!send()) break;
+      while (now_ns() < until && answer_within(2 * again_ms)) wrong = "its answers come too late";
+      if (now_ns() >= until || !send()) break;
       const auto text = answer_within(2 * answer_ms);
       on_the_way_ = false;
       const auto answer = text ? woody_v4::parse(*text) : std::nullopt;
@@ -242,7 +242,9 @@ void* open_woody(const char* const* values, char* why, std::size_t why_size) {
 
 constexpr std::array<const char*, 4> options{"port", "most_current", "calibrate", nullptr};
 
-const kerf_device_v1 woody{
+}  // namespace
+
+const kerf_device_v1 woody_v4_device{
     .abi = KERF_DEVICE_ABI,
     .size = sizeof(kerf_device_v1),
     .name = "woody-v4",
@@ -256,12 +258,7 @@ const kerf_device_v1 woody{
     .release = [](void* device) { self(device).release(); },
     .close =
         [](void* device) { delete static_cast<WoodyV4*>(device); },  // NOLINT(*-owning-memory): of open()
+    .trouble = [](void*) { return "its port is gone"; },
 };
-
-}  // namespace
-
-const kerf_device_v1* built_in(std::string_view name) noexcept {
-  return name == "woody-v4" ? &woody : nullptr;
-}
 
 }  // namespace kerf::host

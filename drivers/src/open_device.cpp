@@ -89,12 +89,11 @@ std::unique_ptr<Device> at_place(const Wanted& wanted) {
   return open(wanted.uri, wanted.rest, wanted.parsed);
 }
 
-std::unique_ptr<Device> open_hosted(const Wanted& wanted) {
-  return open_plugin(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
-}
-
-std::unique_ptr<Device> open_v4(const Wanted& wanted) {
-  return open_woody_v4(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
+using OpenInHost = std::unique_ptr<Device> (*)(std::string_view, std::string_view, const Uri&,
+                                               const Surroundings&);
+template <OpenInHost open>
+std::unique_ptr<Device> in_host(const Wanted& wanted) {
+  return open(wanted.uri, wanted.rest, wanted.parsed, wanted.surroundings);
 }
 
 /// What follows the colon.
@@ -104,7 +103,7 @@ struct Scheme {
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 12> schemes{{{"falcon", Follows::number, open_falcon},
+constexpr std::array<Scheme, 13> schemes{{{"falcon", Follows::number, open_falcon},
                                           {"spacemouse", Follows::number, open_spacemouse},
                                           {"hid", Follows::product, open_hid},
                                           {"u6", Follows::number, open_u6},
@@ -114,8 +113,9 @@ constexpr std::array<Scheme, 12> schemes{{{"falcon", Follows::number, open_falco
                                           {"bota", Follows::port, at_place<open_bota>},
                                           {"optoforce", Follows::port, at_place<open_optoforce>},
                                           {"ft300", Follows::port, at_place<open_ft300>},
-                                          {"woody-v4", Follows::port, open_v4},
-                                          {"plugin", Follows::file, open_hosted}}};
+                                          {"woody-v4", Follows::port, in_host<open_woody_v4>},
+                                          {"inverse3", Follows::host, in_host<open_inverse3>},
+                                          {"plugin", Follows::file, in_host<open_plugin>}}};
 
 std::optional<std::size_t> number_in(std::string_view digits) {
   std::size_t number = 0;

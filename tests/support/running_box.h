@@ -12,6 +12,7 @@
 #include <kerf/drivers/uri.h>
 
 #include "faults.h"
+#include "network/inverse3.h"
 #include "network/labjack_t7.h"
 #include "network/net_ft.h"
 #include "serial/serial_device.h"
@@ -76,6 +77,34 @@ class RunningT7 {
   }
 
   emulators::EmulatedT7 t7_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+/// An emulated service of Haply at a free port of loopback, while it lives.
+class RunningInverse3 {
+ public:
+  explicit RunningInverse3(const std::string& device = "inverse3", const std::string& faults = "")
+      : service_(options_of(device), emulators::parse_faults(faults)),
+        thread_([this] { service_.run(stop_, 0.0); }) {}
+  RunningInverse3(const RunningInverse3&) = delete;
+  RunningInverse3& operator=(const RunningInverse3&) = delete;
+  ~RunningInverse3() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  /// By which a driver finds it.
+  [[nodiscard]] std::string uri() const { return fmt::format("inverse3:127.0.0.1?port={}", service_.port()); }
+
+ private:
+  static emulators::EmulatedInverse3::Options options_of(const std::string& device) {
+    auto options = emulators::EmulatedInverse3::parse_options(drivers::parse_uri(device));
+    options.port = 0;
+    return options;
+  }
+
+  emulators::EmulatedInverse3 service_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -114,6 +114,9 @@ typedef struct kerf_device_v1 {
      read() and write() have left it. NULL only without write(). */
   void (*release)(void* device);
   void (*close)(void* device);
+  /* Why the last read() or write() said -1, in one line; NULL: it is said that the device is lost, and no
+   * more. */
+  const char* (*trouble)(void* device);
 } kerf_device_v1;
 
 #define KERF_DEVICE_EXPORT __attribute__((visibility("default")))

@@ -179,13 +179,17 @@ void DeviceHost::wake() const noexcept {
 
 std::string DeviceHost::trouble() const {
   const std::string where = in_words(page_->stage.load());
+  const auto said = [&](char kind) -> std::string {
+    std::array<char, longest_message> bytes{};
+    const auto size = recv(socket_.number(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
+    return size > 1 && bytes[0] == kind ? std::string(bytes.data() + 1, static_cast<std::size_t>(size - 1))
+                                        : std::string();
+  };
+  if (const std::string why = said(says_lost); !why.empty()) return why;
   siginfo_t info{};
   if (waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
       info.si_pid != 0) {
-    std::array<char, longest_message> bytes{};
-    const auto size = recv(socket_.number(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
-    if (size > 1 && bytes[0] == says_refused)
-      return std::string(bytes.data() + 1, static_cast<std::size_t>(size - 1)) + " " + where;
+    if (const std::string why = said(says_refused); !why.empty()) return why + " " + where;
     if (info.si_code != CLD_EXITED)
       return fmt::format("it crashed: {} {}", signal_name(info.si_status), where);
     if (page_->lost.load() != 0) return "it says that the device is lost";

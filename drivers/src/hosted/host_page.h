@@ -135,6 +135,7 @@ inline constexpr char says_look = 'l';  ///< name, about, options, each with a z
 inline constexpr char says_opening = 'o';  ///< open() takes at most so many milliseconds, in digits
 inline constexpr char says_ready = 'r';
 inline constexpr char says_refused = 'x';  ///< and why
+inline constexpr char says_lost = 'g';     ///< and why the device is
 inline constexpr std::size_t longest_message = 8192;
 
 /// The first byte of what it is asked, before the path and then names and values of options, each with a zero

@@ -119,6 +119,25 @@ class HostedSource final : public ForceSource {
   bool is_overloaded_ = false;
 };
 
+/// A device of Kerf's own in the host, and what stands behind the colon of its URI.
+struct BuiltIn {
+  std::string_view name;
+  std::string_view option;
+  std::string_view place;
+};
+
+std::unique_ptr<Device> open_built_in(std::string_view uri, const BuiltIn& wanted, const Uri& parsed,
+                                      const Surroundings& surroundings) {
+  DeviceHost::Question question{.uri = std::string(uri),
+                                .plugin = {},
+                                .built_in = std::string(wanted.name),
+                                .options = parsed.options,
+                                .stop = surroundings.stop};
+  if (!question.options.emplace(wanted.option, wanted.place).second)
+    throw DeviceError(fmt::format("{}: its {} stands behind the colon", uri, wanted.option));
+  return std::make_unique<HostedDevice>(uri, std::make_unique<DeviceHost>(question), "");
+}
+
 }  // namespace
 
 PluginDevice look_at_plugin(const std::string& file) {
@@ -158,14 +177,12 @@ std::unique_ptr<Device> open_plugin(std::string_view uri, std::string_view file,
 
 std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view port, const Uri& parsed,
                                       const Surroundings& surroundings) {
-  DeviceHost::Question question{.uri = std::string(uri),
-                                .plugin = {},
-                                .built_in = "woody-v4",
-                                .options = parsed.options,
-                                .stop = surroundings.stop};
-  if (!question.options.emplace("port", port).second)
-    throw DeviceError(fmt::format("{}: its port stands behind the colon", uri));
-  return std::make_unique<HostedDevice>(uri, std::make_unique<DeviceHost>(question), "");
+  return open_built_in(uri, {"woody-v4", "port", port}, parsed, surroundings);
+}
+
+std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host, const Uri& parsed,
+                                      const Surroundings& surroundings) {
+  return open_built_in(uri, {"inverse3", "address", host}, parsed, surroundings);
 }
 
 }  // namespace kerf::drivers

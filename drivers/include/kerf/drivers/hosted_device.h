@@ -91,4 +91,13 @@ struct PluginDevice {
 [[nodiscard]] std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view port,
                                                     const Uri& parsed, const Surroundings& surroundings);
 
+/// `inverse3:HOST`: a Haply Inverse3 behind its maker's service (3.1 on), by WebSocket, in the same process
+/// too: one message, one state, 1000 a second. Channels: `told_force_x` to `told_force_z` [N], what the
+/// service says to exert; `unchanged_for` [s], how long its position has been the same to the last bit: a
+/// state has no count, so that a service that stalls looks like a hand that is still; `button` of its grip.
+/// Options: port (10001), device (its device_id; the first), message (values or vector, how a force is named;
+/// by the service's version), most_force (3N, to 5N: the maker states none). @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host,
+                                                    const Uri& parsed, const Surroundings& surroundings);
+
 }  // namespace kerf::drivers

@@ -1,0 +1,358 @@
+#include "kerf/drivers/protocols/inverse3.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "built_in.h"
+#include "kerf/drivers/device.h"
+#include "kerf/drivers/uri.h"
+#include "network/http_get.h"
+#include "work.h"
+
+namespace kerf::host {
+namespace {
+
+using namespace drivers;
+using inverse3::State;
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = boost::beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds connect_patience{1000};
+constexpr milliseconds inventory_patience{700};
+constexpr milliseconds answer_patience{10};
+constexpr std::int64_t ask_again_ns = 100'000'000;
+constexpr std::int64_t absent_ns = 500'000'000;
+constexpr double usual_force_n = 3.0;
+constexpr double most_force_n = 5.0;
+constexpr double reach_m = 0.2;
+
+/// A connection to a service, each step of which a clock can end.
+class Connection {
+ public:
+  Connection(const std::string& address, std::uint16_t port) : stream_(io_) {
+    const tcp::endpoint there(asio::ip::make_address(address), port);
+    bool done = false;
+    error_code failed = asio::error::timed_out;
+    beast::get_lowest_layer(stream_).async_connect(there, [&](error_code error) {
+      failed = error;
+      if (error) return void(done = true);
+      beast::get_lowest_layer(stream_).expires_never();
+      beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true), failed);
+      stream_.read_message_max(inverse3::longest_message);
+      stream_.async_handshake(fmt::format("{}:{}", address, port), "/", [&](error_code shaken) {
+        failed = shaken;
+        done = true;
+      });
+    });
+    run_until(connect_patience, done);
+    if (!done) failed = asio::error::timed_out;
+    if (failed) {
+      close_socket();
+      io_.poll();  // what it had begun ends with it
+      throw std::runtime_error(failed.message());
+    }
+    read();
+  }
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() {
+    close_socket();
+    io_.restart();
+    io_.poll();
+  }
+
+  /// False where it is gone, or has not taken it in time.
+  bool send(std::string text) {
+    outgoing_ = std::move(text);
+    bool done = false;
+    stream_.text(true);
+    stream_.async_write(asio::buffer(outgoing_), [&](error_code error, std::size_t) {
+      done = true;
+      if (error) gone_ = error;
+    });
+    run_until(answer_patience, done);
+    if (!done) {
+      gone_ = asio::error::timed_out;
+      close_socket();
+      run_until(answer_patience, done);
+    }
+    return !gone_;
+  }
+
+  /// The next message, if it comes in time.
+  std::optional<std::string> receive(milliseconds patience) {
+    run_until(patience, has_message_);
+    if (!has_message_ || gone_) return std::nullopt;
+    std::string text = beast::buffers_to_string(incoming_.data());
+    incoming_.clear();
+    has_message_ = false;
+    read();
+    return text;
+  }
+
+  [[nodiscard]] const error_code& gone() const noexcept { return gone_; }
+  /// The service hears of it whoever has the connection too.
+  void cut() noexcept {
+    (void)::shutdown(beast::get_lowest_layer(stream_).socket().native_handle(), SHUT_RDWR);
+  }
+
+ private:
+  void read() {
+    stream_.async_read(incoming_, [this](error_code error, std::size_t) {
+      has_message_ = true;
+      if (error) gone_ = error;
+    });
+  }
+  void run_until(milliseconds patience, const bool& done) {
+    const auto until = steady_clock::now() + patience;
+    io_.restart();
+    io_.poll();
+    while (!done && steady_clock::now() < until) {
+      io_.restart();
+      io_.run_one_until(until);
+    }
+  }
+  void close_socket() noexcept {
+    error_code ignored;
+    beast::get_lowest_layer(stream_).socket().close(ignored);
+  }
+
+  asio::io_context io_{1};
+  websocket::stream<beast::tcp_stream> stream_;
+  beast::flat_buffer incoming_;
+  std::string outgoing_;
+  bool has_message_ = false;
+  error_code gone_;
+};
+
+struct Place {
+  std::string address;
+  std::uint16_t port = inverse3::port;
+};
+
+/// An Inverse3 behind the service of its maker: one message, one state.
+class Inverse3 {
+ public:
+  Inverse3(const Place& place, std::string device, std::optional<inverse3::Naming> naming, double most_n)
+      : device_(std::move(device)), most_n_(most_n) {
+    try {
+      connection_ = std::make_unique<Connection>(place.address, place.port);
+    } catch (const std::exception& error) {
+      throw std::runtime_error(
+          fmt::format("no Inverse Service answers at {}:{} ({}); 'systemctl status haply-inverse-service' "
+                      "says whether it runs",
+                      place.address, place.port, error.what()));
+    }
+    const auto inventory = connection_->receive(inventory_patience);
+    if (!inventory)
+      throw std::runtime_error("the service says nothing of its devices; is it an Inverse Service?");
+    const auto state = inverse3::parse(*inventory, device_);
+    if (!state) {
+      throw std::runtime_error(device_.empty() ? "the service has no Inverse3; plug it in and switch it on"
+                                               : fmt::format("the service has no Inverse3 '{}'", device_));
+    }
+    if (state->in_use.value_or(false))
+      throw std::runtime_error(fmt::format("another program has the Inverse3 {}", state->device));
+    if (!state->calibrated.value_or(true))
+      throw std::runtime_error(
+          fmt::format("the Inverse3 {} is not calibrated; do that with the maker's program", state->device));
+    device_ = state->device;
+    told_ = *state;
+    naming_ = naming.value_or(version(place));
+  }
+
+  void describe(kerf_device_facts_v1& facts) const {
+    const auto copy = [](char* to, std::size_t size, std::string_view text) {
+      std::snprintf(to, size, "%.*s", static_cast<int>(text.size()), text.data());
+    };
+    facts.flags = KERF_ANSWERS_AT_ONCE | KERF_TELLS_VELOCITY;
+    facts.rate_hz = 1000.0;
+    facts.jitter_s = 1e-3;
+    copy(facts.model, sizeof facts.model,
+         fmt::format("Haply {}", told_.type.empty() ? std::string("inverse3") : told_.type));
+    copy(facts.about, sizeof facts.about, "Haply Inverse3 behind its service, 3 axes with force; 1 kHz");
+    copy(facts.serial, sizeof facts.serial, device_);
+    facts.axis_count = 3;
+    for (std::size_t i = 0; i < 3; ++i) {
+      kerf_device_axis_v1& axis = facts.axes[i];
+      copy(axis.name, sizeof axis.name, std::string_view("xyz").substr(i, 1));
+      copy(axis.position_unit, sizeof axis.position_unit, "m");
+      copy(axis.force_unit, sizeof axis.force_unit, "N");
+      axis.lower = -reach_m;
+      axis.upper = reach_m;
+      axis.force_limit = most_n_;
+      axis.slew_limit = 2000.0;
+      axis.speed_limit = 5.0;
+      axis.acceleration_limit = 200.0;
+    }
+    facts.channel_count = 5;
+    for (std::size_t i = 0; i < 3; ++i) {
+      copy(facts.channels[i].name, sizeof facts.channels[i].name, fmt::format("told_force_{}", "xyz"[i]));
+      copy(facts.channels[i].unit, sizeof facts.channels[i].unit, "N");
+    }
+    copy(facts.channels[3].name, sizeof facts.channels[3].name, "unchanged_for");
+    copy(facts.channels[3].unit, sizeof facts.channels[3].unit, "s");
+    copy(facts.channels[4].name, sizeof facts.channels[4].name, "button");
+    facts.channels[4].flags = KERF_CHANNEL_BUTTON;
+    const auto flag = [](std::optional<bool> one) { return !one ? "\"unknown\"" : *one ? "true" : "false"; };
+    copy(facts.settings, sizeof facts.settings,
+         fmt::format("device_id = \"{}\"\nmessage = \"{}\"\ngravity_compensation = {}\n", device_,
+                     naming_ == inverse3::Naming::values ? "values" : "vector",
+                     flag(told_.gravity_compensation)));
+  }
+
+  int read(kerf_device_reading_v1& reading) {
+    if (!asked_ns_) {
+      if (!send()) return -1;
+      asked_ns_ = now_ns();
+    }
+    auto text = connection_->receive(answer_patience);
+    const std::int64_t now = now_ns();
+    if (connection_->gone()) return -1;
+    if (!text) {
+      // It answers each message. One that it has not answered by now it has lost.
+      if (now - *asked_ns_ > ask_again_ns) asked_ns_.reset();
+      return 0;
+    }
+    asked_ns_.reset();
+    while (auto later = connection_->receive(milliseconds(0))) text = std::move(later);
+    const auto state = inverse3::parse(*text, device_);
+    if (state) {
+      // The state has no count: a service that stalls looks like a hand that is still.
+      if (state->position_m != told_.position_m || changed_ns_ == 0) changed_ns_ = now;
+      told_ = *state;
+      told_ns_ = now;
+    } else {
+      reading.flags |= KERF_DOUBTED;
+      is_absent_ = now - told_ns_ > absent_ns;
+      if (is_absent_) return -1;
+    }
+    std::copy(told_.position_m.begin(), told_.position_m.end(), reading.position);
+    std::copy(told_.velocity_m_s.begin(), told_.velocity_m_s.end(), reading.velocity);
+    for (std::size_t i = 0; i < 3; ++i)
+      reading.channels[i] = told_.force_n ? told_.force_n->at(i) : std::nan("");
+    reading.channels[3] = 1e-9 * static_cast<double>(now - changed_ns_);
+    reading.channels[4] = told_.button ? 1.0 : 0.0;
+    return 1;
+  }
+
+  [[nodiscard]] const char* trouble() {
+    trouble_ = is_absent_
+                   ? fmt::format("the service tells nothing of the Inverse3 {} any more", device_)
+                   : fmt::format("the service closed its connection ({})", connection_->gone().message());
+    return trouble_.c_str();
+  }
+
+  int write(const double* force) noexcept {
+    std::copy_n(force, 3, force_n_.begin());
+    return 0;
+  }
+
+  void release() {
+    force_n_ = {};
+    // In the copy of the process the connection is somebody else's to write to; without it the service lets
+    // go.
+    if (getpid() != opened_by_) return connection_->cut();
+    if (send()) asked_ns_ = now_ns();
+  }
+
+ private:
+  bool send() { return connection_->send(inverse3::order(device_, force_n_, naming_)); }
+
+  [[nodiscard]] static inverse3::Naming version(const Place& place) {
+    // Before 3.5 nothing answers there.
+    try {
+      const std::string told = http_get({.address = place.address,
+                                         .port = place.port,
+                                         .target = "/version",
+                                         .most_bytes = 4096,
+                                         .patience = milliseconds(300)});
+      return inverse3::naming_of(told).value_or(inverse3::Naming::values);
+    } catch (const std::exception&) {
+      return inverse3::Naming::values;
+    }
+  }
+
+  std::string device_;
+  double most_n_;
+  inverse3::Naming naming_ = inverse3::Naming::values;
+  std::unique_ptr<Connection> connection_;
+  State told_;
+  std::array<double, 3> force_n_{};
+  std::optional<std::int64_t> asked_ns_;  ///< while an answer is awaited
+  std::int64_t told_ns_ = now_ns();
+  std::int64_t changed_ns_ = 0;
+  bool is_absent_ = false;
+  std::string trouble_;
+  pid_t opened_by_ = getpid();
+};
+
+Inverse3& self(void* device) { return *static_cast<Inverse3*>(device); }
+
+constexpr std::array<const char*, 6> options{"address", "port", "device", "message", "most_force", nullptr};
+
+void* open_inverse3(const char* const* values, char* why, std::size_t why_size) {
+  try {
+    Uri given{.name = "inverse3", .options = {}};
+    for (std::size_t i = 0; i + 1 < options.size(); ++i) {
+      if (values[i] != nullptr) given.options[options.at(i)] = values[i];
+    }
+    UriOptions wanted(given);
+    Place place{.address = wanted.text("address").value_or("localhost")};
+    if (place.address == "localhost") place.address = "127.0.0.1";
+    place.port = static_cast<std::uint16_t>(wanted.number("port", {"1", inverse3::port, 1.0, 65535.0}));
+    std::optional<inverse3::Naming> naming;
+    if (const auto message = wanted.text("message")) {
+      if (*message != "values" && *message != "vector")
+        throw std::runtime_error(fmt::format("message={}: expected values or vector", *message));
+      naming = *message == "values" ? inverse3::Naming::values : inverse3::Naming::vector;
+    }
+    const double most = wanted.number("most_force", {"N", usual_force_n, 0.1, most_force_n});
+    return std::make_unique<Inverse3>(place, wanted.text("device").value_or(""), naming, most).release();
+  } catch (const std::exception& error) {
+    std::snprintf(why, why_size, "%s", error.what());
+    return nullptr;
+  }
+}
+
+}  // namespace
+
+const kerf_device_v1 inverse3_device{
+    .abi = KERF_DEVICE_ABI,
+    .size = sizeof(kerf_device_v1),
+    .name = "inverse3",
+    .about = "Haply Inverse3 behind its service",
+    .options = options.data(),
+    .open_s = 0.0,
+    .open = open_inverse3,
+    .describe = [](void* device, kerf_device_facts_v1* facts) { self(device).describe(*facts); },
+    .read = [](void* device, kerf_device_reading_v1* reading) { return self(device).read(*reading); },
+    .write = [](void* device, const double* force) { return self(device).write(force); },
+    .release = [](void* device) { self(device).release(); },
+    .close =
+        [](void* device) { delete static_cast<Inverse3*>(device); },  // NOLINT(*-owning-memory): of open()
+    .trouble = [](void* device) { return self(device).trouble(); },
+};
+
+}  // namespace kerf::host
