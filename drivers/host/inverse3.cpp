@@ -41,11 +41,14 @@ using std::chrono::steady_clock;
 constexpr milliseconds connect_patience{1000};
 constexpr milliseconds inventory_patience{700};
 constexpr milliseconds answer_patience{10};
+constexpr milliseconds goodbye_patience{50};
 constexpr std::int64_t ask_again_ns = 100'000'000;
 constexpr std::int64_t absent_ns = 500'000'000;
 constexpr double usual_force_n = 3.0;
 constexpr double most_force_n = 5.0;
-constexpr double reach_m = 0.2;
+/// The maker's tutorials draw spheres of that radius in the workspace.
+constexpr double reach_m = 0.1;
+constexpr double reach_of_minverse_m = 0.04;
 
 /// A connection to a service, each step of which a clock can end.
 class Connection {
@@ -77,6 +80,13 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() {
+    if (!gone_) {
+      bool done = false;
+      stream_.async_close(websocket::close_code::normal, [&](error_code) { done = true; });
+      run_until(goodbye_patience, done);
+      close_socket();
+      run_until(goodbye_patience, done);
+    }
     close_socket();
     io_.restart();
     io_.poll();
@@ -199,8 +209,9 @@ class Inverse3 {
       copy(axis.name, sizeof axis.name, std::string_view("xyz").substr(i, 1));
       copy(axis.position_unit, sizeof axis.position_unit, "m");
       copy(axis.force_unit, sizeof axis.force_unit, "N");
-      axis.lower = -reach_m;
-      axis.upper = reach_m;
+      const double reach = told_.type == "minverse" ? reach_of_minverse_m : reach_m;
+      axis.lower = told_.position_m.at(i) - reach;
+      axis.upper = told_.position_m.at(i) + reach;
       axis.force_limit = most_n_;
       axis.slew_limit = 2000.0;
       axis.speed_limit = 5.0;

@@ -83,10 +83,10 @@ void serve(const std::vector<std::string>& texts, Page& page) {
     throw Refusal("it answers at once, and its 'rate_hz' is " + std::to_string(opened.facts.rate_hz) +
                   ", expected 1 to 100000");
   }
-  stand_by(opened, page);
+  const pid_t copy = stand_by(opened, page);
   prctl(PR_SET_PDEATHSIG, 0);
   say(says_ready);
-  work(opened, page);
+  work(opened, page, copy);
   if (page.lost.load() != 0 && description.trouble != nullptr) {
     const char* const why = description.trouble(opened.device);
     say(says_lost, one_line(why == nullptr ? "" : why));
@@ -109,19 +109,19 @@ int main() {
   char kind = 0;
   const auto texts = question(kind);
   if (texts.empty()) return 1;
+  int status = 1;
   try {
     if (kind == ask_to_look) {
       look(load_at_stage(texts.front(), page));
     } else {
       serve(texts, page);
     }
+    status = 0;
   } catch (const std::exception& error) {
-    say(says_refused, error.what());
-    return 1;
+    say(says_refused, one_line(error.what()));
   } catch (...) {
     say(says_refused, "it throws what is no std::exception");
-    return 1;
   }
   // Its own destructors may hang: nothing of it is wanted any more.
-  _exit(0);
+  _exit(status);
 }

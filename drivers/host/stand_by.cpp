@@ -66,7 +66,7 @@ void let_go(const Opened& opened, Page& page) noexcept {
 
 }  // namespace
 
-void stand_by(const Opened& opened, Page& page) {
+pid_t stand_by(const Opened& opened, Page& page) {
   std::array<int, 2> life{};  // its end is the host's
   if (pipe2(life.data(), O_CLOEXEC) != 0) throw Refusal(std::string("a pipe: ") + std::strerror(errno));
   const pid_t host = getpid();
@@ -76,7 +76,7 @@ void stand_by(const Opened& opened, Page& page) {
   }
   if (copy > 0) {
     close(life[0]);
-    return;  // life[1] stays open as long as this process lives
+    return copy;  // life[1] stays open as long as this process lives
   }
   close(life[1]);
   sigset_t alarms;

@@ -9,6 +9,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -65,7 +66,8 @@ class Hands {
     const bool is_there = page_.commands.get(number, command);
     const std::int64_t now = now_ns();
     if (number != 0 && !is_there) return;  // another one is just being given: the next time
-    const bool counts = is_there && command.at_ns > page_.let_go_ns.load(std::memory_order_acquire) &&
+    const bool counts = is_there && page_.unguarded.load(std::memory_order_acquire) == 0 &&
+                        command.at_ns > page_.let_go_ns.load(std::memory_order_acquire) &&
                         now - command.at_ns <= drivers::max_command_age_ns;
     if (!counts) {
       if (held_) let_go();
@@ -188,7 +190,7 @@ void write_beside(const std::stop_token& stop, Hands& hands) {
 
 }  // namespace
 
-void work(const Opened& opened, Page& page) {
+void work(const Opened& opened, Page& page, pid_t copy) {
   drivers::become_urgent("kerf-device-in");
   Hands hands(opened, page);
   std::jthread writer;
@@ -207,6 +209,10 @@ void work(const Opened& opened, Page& page) {
     if (now_ns() - looked_ns < look_ns) continue;
     looked_ns = now_ns();
     if (program_is_gone()) break;
+    if (copy > 0 && waitpid(copy, nullptr, WNOHANG) == copy) {
+      copy = 0;
+      page.unguarded.store(1, std::memory_order_release);
+    }
   }
   if (writer.joinable()) {
     writer.request_stop();

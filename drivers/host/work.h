@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <exception>
+
+#include <sys/types.h>
+
 #include <kerf/device.h>
 
 #include "hosted/host_page.h"
@@ -26,7 +31,10 @@ class AtStage {
   }
   AtStage(const AtStage&) = delete;
   AtStage& operator=(const AtStage&) = delete;
-  ~AtStage() { enter(before_); }
+  /// What is thrown leaves it where it was thrown.
+  ~AtStage() {
+    if (std::uncaught_exceptions() == 0) enter(before_);
+  }
 
  private:
   void enter(drivers::hosted::Stage stage) noexcept {
@@ -38,6 +46,7 @@ class AtStage {
 };
 
 /// Reads and writes until the program is gone or the device is lost; then the device is let go.
-void work(const Opened& opened, drivers::hosted::Page& page);
+/// @param copy the process that stands by: without it no force is given
+void work(const Opened& opened, drivers::hosted::Page& page, pid_t copy);
 
 }  // namespace kerf::host

@@ -196,6 +196,8 @@ std::string DeviceHost::trouble() const {
     return fmt::format("it called exit({}) {}", info.si_status, where);
   }
   if (page_->lost.load() != 0) return "it says that the device is lost";
+  if (page_->unguarded.load() != 0)
+    return "the process that would let it go has ended: it gives no force any more";
   if (page_->stage.load() != Stage::elsewhere && usb::now_ns() - page_->stage_since_ns.load() > hangs_ns)
     return "it does not come back " + where;
   return {};

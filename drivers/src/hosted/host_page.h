@@ -114,6 +114,7 @@ struct Page {
   std::atomic<std::uint64_t> missing{0};    ///< readings, by its own count
   std::atomic<std::uint64_t> repeated{0};   ///< likewise, that came twice or late
   std::atomic<std::uint64_t> not_taken{0};  ///< forces
+  std::atomic<std::uint32_t> unguarded{0};   ///< nobody stands by any more: no force is given
   /// When the stand-by lets the device go unless a later time stands here by then; 0: nothing is held.
   std::atomic<std::int64_t> until_ns{0};
   std::atomic<std::uint32_t> standby_may_go{0};

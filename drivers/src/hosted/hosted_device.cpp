@@ -126,7 +126,7 @@ Status HostedDevice::write(const Axes& force) noexcept {
   host_->page().commands.put(command);
   if (writes_any_time_) host_->wake();
   if (lost(now)) return Status::lost;
-  return finite ? Status::ok : Status::fault;
+  return finite && host_->page().unguarded.load(std::memory_order_relaxed) == 0 ? Status::ok : Status::fault;
 }
 
 void HostedDevice::release(double) noexcept {

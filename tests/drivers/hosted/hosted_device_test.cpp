@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -295,6 +296,23 @@ TEST_F(Hosted, IsLookedAtWithoutBeingOpened) {
   EXPECT_EQ(plugin.name, "moody");
   EXPECT_EQ(plugin.about, "for tests");
   EXPECT_THAT(plugin.options, testing::ElementsAre("mood", "log"));
+}
+
+TEST_F(Hosted, GivesNoForceWhereNobodyStandsBy) {
+  const auto device = open();
+  Sample sample;
+  EXPECT_TRUE(becomes([&] {
+    (void)device->write({1.0});
+    (void)device->read(0.0, sample);
+    return sample.force_measured[0] == -1.0;
+  }));
+  const int host = log_in(log_).front().process;
+  std::ifstream children(fmt::format("/proc/{}/task/{}/children", host, host));
+  pid_t copy = 0;
+  ASSERT_TRUE(children >> copy) << "the kernel does not tell children";
+  ASSERT_EQ(kill(copy, SIGKILL), 0);
+  EXPECT_TRUE(becomes([&] { return device->write({1.0}) == Status::fault && is_logged("release"); }));
+  EXPECT_THAT(device->trouble(), HasSubstr("no force any more"));
 }
 
 TEST_F(Hosted, LeavesNoProcessBehind) {

@@ -96,7 +96,8 @@ struct PluginDevice {
 /// service says to exert; `unchanged_for` [s], how long its position has been the same to the last bit: a
 /// state has no count, so that a service that stalls looks like a hand that is still; `button` of its grip.
 /// Options: port (10001), device (its device_id; the first), message (values or vector, how a force is named;
-/// by the service's version), most_force (3N, to 5N: the maker states none). @throws DeviceError
+/// by the service's version), most_force (3N, to 5N: the maker states none). Its range is that about where it
+/// is opened. @throws DeviceError
 [[nodiscard]] std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host,
                                                     const Uri& parsed, const Surroundings& surroundings);
 
