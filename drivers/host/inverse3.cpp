@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,9 +19,9 @@
 #include <unistd.h>
 
 #include "built_in.h"
-#include "kerf/drivers/device.h"
 #include "kerf/drivers/uri.h"
 #include "network/http_get.h"
+#include "own_device.h"
 #include "work.h"
 
 namespace kerf::host {
@@ -80,16 +79,10 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() {
-    if (!gone_) {
-      bool done = false;
-      stream_.async_close(websocket::close_code::normal, [&](error_code) { done = true; });
-      run_until(goodbye_patience, done);
-      close_socket();
-      run_until(goodbye_patience, done);
+    try {
+      say_goodbye();
+    } catch (const std::exception&) {  // there is nobody to be told
     }
-    close_socket();
-    io_.restart();
-    io_.poll();
   }
 
   /// False where it is gone, or has not taken it in time.
@@ -128,6 +121,18 @@ class Connection {
   }
 
  private:
+  void say_goodbye() {
+    if (!gone_) {
+      bool done = false;
+      stream_.async_close(websocket::close_code::normal, [&](error_code) { done = true; });
+      run_until(goodbye_patience, done);
+      close_socket();
+      run_until(goodbye_patience, done);
+    }
+    close_socket();
+    io_.restart();
+    io_.poll();
+  }
   void read() {
     stream_.async_read(incoming_, [this](error_code error, std::size_t) {
       has_message_ = true;
@@ -164,6 +169,23 @@ struct Place {
 /// An Inverse3 behind the service of its maker: one message, one state.
 class Inverse3 {
  public:
+  static constexpr const char* name = "inverse3";
+  static constexpr std::array<const char*, 6> options{"address", "port",       "device",
+                                                      "message", "most_force", nullptr};
+  static std::unique_ptr<Inverse3> open(UriOptions& given) {
+    Place place{.address = given.text("address").value_or("localhost")};
+    if (place.address == "localhost") place.address = "127.0.0.1";
+    place.port = static_cast<std::uint16_t>(given.number("port", {"1", inverse3::port, 1.0, 65535.0}));
+    std::optional<inverse3::Naming> naming;
+    if (const auto message = given.text("message")) {
+      if (*message != "values" && *message != "vector")
+        throw std::runtime_error(fmt::format("message={}: expected values or vector", *message));
+      naming = *message == "values" ? inverse3::Naming::values : inverse3::Naming::vector;
+    }
+    const double most = given.number("most_force", {"N", usual_force_n, 0.1, most_force_n});
+    return std::make_unique<Inverse3>(place, given.text("device").value_or(""), naming, most);
+  }
+
   Inverse3(const Place& place, std::string device, std::optional<inverse3::Naming> naming, double most_n)
       : device_(std::move(device)), most_n_(most_n) {
     try {
@@ -193,44 +215,25 @@ class Inverse3 {
   }
 
   void describe(kerf_device_facts_v1& facts) const {
-    const auto copy = [](char* to, std::size_t size, std::string_view text) {
-      std::snprintf(to, size, "%.*s", static_cast<int>(text.size()), text.data());
-    };
     facts.flags = KERF_ANSWERS_AT_ONCE | KERF_TELLS_VELOCITY;
     facts.rate_hz = 1000.0;
     facts.jitter_s = 1e-3;
-    copy(facts.model, sizeof facts.model,
-         fmt::format("Haply {}", told_.type.empty() ? std::string("inverse3") : told_.type));
-    copy(facts.about, sizeof facts.about, "Haply Inverse3 behind its service, 3 axes with force; 1 kHz");
-    copy(facts.serial, sizeof facts.serial, device_);
-    facts.axis_count = 3;
+    tell(facts.model, fmt::format("Haply {}", told_.type.empty() ? std::string("inverse3") : told_.type));
+    tell(facts.about, "Haply Inverse3 behind its service, 3 axes with force; 1 kHz");
+    tell(facts.serial, device_);
+    const double reach = told_.type == "minverse" ? reach_of_minverse_m : reach_m;
     for (std::size_t i = 0; i < 3; ++i) {
-      kerf_device_axis_v1& axis = facts.axes[i];
-      copy(axis.name, sizeof axis.name, std::string_view("xyz").substr(i, 1));
-      copy(axis.position_unit, sizeof axis.position_unit, "m");
-      copy(axis.force_unit, sizeof axis.force_unit, "N");
-      const double reach = told_.type == "minverse" ? reach_of_minverse_m : reach_m;
-      axis.lower = told_.position_m.at(i) - reach;
-      axis.upper = told_.position_m.at(i) + reach;
-      axis.force_limit = most_n_;
-      axis.slew_limit = 2000.0;
-      axis.speed_limit = 5.0;
-      axis.acceleration_limit = 200.0;
+      const double here = told_.position_m.at(i);
+      add_axis(facts, {std::string_view("xyz").substr(i, 1), 0.0, here - reach, here + reach, most_n_});
     }
-    facts.channel_count = 5;
-    for (std::size_t i = 0; i < 3; ++i) {
-      copy(facts.channels[i].name, sizeof facts.channels[i].name, fmt::format("told_force_{}", "xyz"[i]));
-      copy(facts.channels[i].unit, sizeof facts.channels[i].unit, "N");
-    }
-    copy(facts.channels[3].name, sizeof facts.channels[3].name, "unchanged_for");
-    copy(facts.channels[3].unit, sizeof facts.channels[3].unit, "s");
-    copy(facts.channels[4].name, sizeof facts.channels[4].name, "button");
-    facts.channels[4].flags = KERF_CHANNEL_BUTTON;
+    for (const char* const force : {"told_force_x", "told_force_y", "told_force_z"})
+      add_channel(facts, force, "N");
+    add_channel(facts, "unchanged_for", "s");
+    add_channel(facts, "button", "1", KERF_CHANNEL_BUTTON);
     const auto flag = [](std::optional<bool> one) { return !one ? "\"unknown\"" : *one ? "true" : "false"; };
-    copy(facts.settings, sizeof facts.settings,
-         fmt::format("device_id = \"{}\"\nmessage = \"{}\"\ngravity_compensation = {}\n", device_,
-                     naming_ == inverse3::Naming::values ? "values" : "vector",
-                     flag(told_.gravity_compensation)));
+    tell(facts.settings, fmt::format("device_id = \"{}\"\nmessage = \"{}\"\ngravity_compensation = {}\n",
+                                     device_, naming_ == inverse3::Naming::values ? "values" : "vector",
+                                     flag(told_.gravity_compensation)));
   }
 
   int read(kerf_device_reading_v1& reading) {
@@ -319,51 +322,8 @@ class Inverse3 {
   pid_t opened_by_ = getpid();
 };
 
-Inverse3& self(void* device) { return *static_cast<Inverse3*>(device); }
-
-constexpr std::array<const char*, 6> options{"address", "port", "device", "message", "most_force", nullptr};
-
-void* open_inverse3(const char* const* values, char* why, std::size_t why_size) {
-  try {
-    Uri given{.name = "inverse3", .options = {}};
-    for (std::size_t i = 0; i + 1 < options.size(); ++i) {
-      if (values[i] != nullptr) given.options[options.at(i)] = values[i];
-    }
-    UriOptions wanted(given);
-    Place place{.address = wanted.text("address").value_or("localhost")};
-    if (place.address == "localhost") place.address = "127.0.0.1";
-    place.port = static_cast<std::uint16_t>(wanted.number("port", {"1", inverse3::port, 1.0, 65535.0}));
-    std::optional<inverse3::Naming> naming;
-    if (const auto message = wanted.text("message")) {
-      if (*message != "values" && *message != "vector")
-        throw std::runtime_error(fmt::format("message={}: expected values or vector", *message));
-      naming = *message == "values" ? inverse3::Naming::values : inverse3::Naming::vector;
-    }
-    const double most = wanted.number("most_force", {"N", usual_force_n, 0.1, most_force_n});
-    return std::make_unique<Inverse3>(place, wanted.text("device").value_or(""), naming, most).release();
-  } catch (const std::exception& error) {
-    std::snprintf(why, why_size, "%s", error.what());
-    return nullptr;
-  }
-}
-
 }  // namespace
 
-const kerf_device_v1 inverse3_device{
-    .abi = KERF_DEVICE_ABI,
-    .size = sizeof(kerf_device_v1),
-    .name = "inverse3",
-    .about = "Haply Inverse3 behind its service",
-    .options = options.data(),
-    .open_s = 0.0,
-    .open = open_inverse3,
-    .describe = [](void* device, kerf_device_facts_v1* facts) { self(device).describe(*facts); },
-    .read = [](void* device, kerf_device_reading_v1* reading) { return self(device).read(*reading); },
-    .write = [](void* device, const double* force) { return self(device).write(force); },
-    .release = [](void* device) { self(device).release(); },
-    .close =
-        [](void* device) { delete static_cast<Inverse3*>(device); },  // NOLINT(*-owning-memory): of open()
-    .trouble = [](void* device) { return self(device).trouble(); },
-};
+const kerf_device_v1 inverse3_device = as_plugin<Inverse3>("Haply Inverse3 behind its service");
 
 }  // namespace kerf::host

@@ -46,7 +46,7 @@ std::vector<std::string> question(char& kind) {
 
 const kerf_device_v1& load_at_stage(const std::string& path, Page& page) {
   if (const kerf_device_v1* const own = built_in(path)) return *own;
-  const AtStage stage(page, Stage::loading);
+  const AtStage stage(page.reader, Stage::loading);
   return load(path);
 }
 
@@ -64,10 +64,10 @@ Opened open_at_stage(const kerf_device_v1& description, const std::vector<std::s
   for (std::size_t at = 1; at + 1 < texts.size(); at += 2) given.emplace_back(texts[at], texts[at + 1]);
   void* device = nullptr;
   {
-    const AtStage stage(page, Stage::opening);
+    const AtStage stage(page.reader, Stage::opening);
     device = open_device(description, given);
   }
-  const AtStage stage(page, Stage::describing);
+  const AtStage stage(page.reader, Stage::describing);
   description.describe(device, &page.facts);
   return {.description = description, .device = device, .facts = page.facts};
 }
@@ -92,7 +92,7 @@ void serve(const std::vector<std::string>& texts, Page& page) {
     say(says_lost, one_line(why == nullptr ? "" : why));
   }
   {
-    const AtStage stage(page, Stage::closing);
+    const AtStage stage(page.reader, Stage::closing);
     description.close(opened.device);
   }
   page.standby_may_go.store(1, std::memory_order_release);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,8 +14,8 @@
 #include <kerf/mechanisms/woodenhaptics.h>
 
 #include "built_in.h"
-#include "kerf/drivers/device.h"
 #include "kerf/drivers/uri.h"
+#include "own_device.h"
 #include "serial/serial_port.h"
 #include "woodenhaptics/woodenhaptics_axes.h"
 #include "work.h"
@@ -48,6 +46,14 @@ mechanisms::WoodenHaptics::Configuration made_with(double most_current_a) {
 /// A WoodenHaptics of the fourth generation: one message, one answer, never two messages on the way.
 class WoodyV4 {
  public:
+  static constexpr const char* name = "woody-v4";
+  static constexpr std::array<const char*, 4> options{"port", "most_current", "calibrate", nullptr};
+  static std::unique_ptr<WoodyV4> open(UriOptions& given) {
+    const double most = given.number("most_current", {"A", 3.0, 0.0, 1e-3 * woody_v4::most_current_ma});
+    const bool calibrate = given.flag("calibrate", false);
+    return std::make_unique<WoodyV4>(given.text("port").value_or(""), most, calibrate);
+  }
+
   WoodyV4(const std::string& path, double most_current_a, bool calibrate)
       : port_(path, 115200), mechanism_(made_with(most_current_a), signs) {
     const Answer first = handshake(path);
@@ -70,38 +76,22 @@ class WoodyV4 {
   }
 
   void describe(kerf_device_facts_v1& facts) const {
-    const auto copy = [](char* to, std::size_t size, std::string_view text) {
-      std::snprintf(to, size, "%.*s", static_cast<int>(text.size()), text.data());
-    };
     const auto& made = mechanism_.configuration();
     facts.flags = KERF_ANSWERS_AT_ONCE;
     facts.rate_hz = 1000.0;
     facts.jitter_s = 1e-3;
-    copy(facts.model, sizeof facts.model, "WoodenHaptics (V4)");
-    copy(facts.about, sizeof facts.about, "WoodenHaptics of 2022 on, 3 axes with force; 1 kHz");
+    tell(facts.model, "WoodenHaptics (V4)");
+    tell(facts.about, "WoodenHaptics of 2022 on, 3 axes with force; 1 kHz");
     const Vector step = steps_in_the_middle(mechanism_).rowwise().maxCoeff();
-    facts.axis_count = 3;
-    for (std::size_t i = 0; i < 3; ++i) {
-      kerf_device_axis_v1& axis = facts.axes[i];
-      const double middle = made.centre_m[static_cast<Eigen::Index>(i)];
-      copy(axis.name, sizeof axis.name, std::string_view("xyz").substr(i, 1));
-      copy(axis.position_unit, sizeof axis.position_unit, "m");
-      copy(axis.force_unit, sizeof axis.force_unit, "N");
-      axis.resolution = step[static_cast<Eigen::Index>(i)];
-      axis.lower = middle - workspace_m;
-      axis.upper = middle + workspace_m;
-      axis.force_limit = made.max_force_n;
-      axis.slew_limit = slew_limit_n_s;
-      axis.speed_limit = speed_limit_m_s;
-      axis.acceleration_limit = acceleration_limit_m_s2;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const double middle = made.centre_m[i];
+      add_axis(facts, {std::string_view("xyz").substr(static_cast<std::size_t>(i), 1), step[i],
+                       middle - workspace_m, middle + workspace_m, made.max_force_n});
     }
-    facts.channel_count = 4;
-    for (std::size_t i = 0; i < 3; ++i) {
-      copy(facts.channels[i].name, sizeof facts.channels[i].name, fmt::format("current_{}", "abc"[i]));
-      copy(facts.channels[i].unit, sizeof facts.channels[i].unit, "A");
-    }
-    copy(facts.channels[3].name, sizeof facts.channels[3].name, "error_bits");
-    copy(facts.settings, sizeof facts.settings,
+    for (const char* const current : {"current_a", "current_b", "current_c"})
+      add_channel(facts, current, "A");
+    add_channel(facts, "error_bits", "1");
+    tell(facts.settings,
          fmt::format("home_counts = [{}, {}, {}]\nmost_current = {{ value = {}, unit = \"A\" }}\n"
                      "provenance = \"hfabapi, not measured on this device\"\n",
                      home_[0], home_[1], home_[2], made.max_current_a));
@@ -151,6 +141,8 @@ class WoodyV4 {
       if (answer && (answer->error & woody_v4::not_taken) == 0) return;
     }
   }
+
+  [[nodiscard]] static const char* trouble() noexcept { return "its port is gone"; }
 
  private:
   bool send() {
@@ -223,42 +215,8 @@ class WoodyV4 {
   bool gone_ = false;
 };
 
-WoodyV4& self(void* device) { return *static_cast<WoodyV4*>(device); }
-
-void* open_woody(const char* const* values, char* why, std::size_t why_size) {
-  try {
-    Uri given{.name = "woody-v4", .options = {}};
-    if (values[1] != nullptr) given.options["most_current"] = values[1];
-    if (values[2] != nullptr) given.options["calibrate"] = values[2];
-    UriOptions options(given);
-    const double most = options.number("most_current", {"A", 3.0, 0.0, 1e-3 * woody_v4::most_current_ma});
-    const bool calibrate = options.flag("calibrate", false);
-    return std::make_unique<WoodyV4>(values[0] == nullptr ? "" : values[0], most, calibrate).release();
-  } catch (const std::exception& error) {
-    std::snprintf(why, why_size, "%s", error.what());
-    return nullptr;
-  }
-}
-
-constexpr std::array<const char*, 4> options{"port", "most_current", "calibrate", nullptr};
-
 }  // namespace
 
-const kerf_device_v1 woody_v4_device{
-    .abi = KERF_DEVICE_ABI,
-    .size = sizeof(kerf_device_v1),
-    .name = "woody-v4",
-    .about = "WoodenHaptics of the fourth generation",
-    .options = options.data(),
-    .open_s = 0.0,
-    .open = open_woody,
-    .describe = [](void* device, kerf_device_facts_v1* facts) { self(device).describe(*facts); },
-    .read = [](void* device, kerf_device_reading_v1* reading) { return self(device).read(*reading); },
-    .write = [](void* device, const double* force) { return self(device).write(force); },
-    .release = [](void* device) { self(device).release(); },
-    .close =
-        [](void* device) { delete static_cast<WoodyV4*>(device); },  // NOLINT(*-owning-memory): of open()
-    .trouble = [](void*) { return "its port is gone"; },
-};
+const kerf_device_v1 woody_v4_device = as_plugin<WoodyV4>("WoodenHaptics of the fourth generation");
 
 }  // namespace kerf::host

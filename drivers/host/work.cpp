@@ -56,7 +56,8 @@ std::int64_t count_step(std::uint64_t from, std::uint64_t to, std::uint64_t modu
 /// Hands forces over. One thread's.
 class Hands {
  public:
-  Hands(const Opened& opened, Page& page) : opened_(opened), page_(page) {}
+  Hands(const Opened& opened, Page& page, Whereabouts& thread)
+      : opened_(opened), page_(page), thread_(thread) {}
 
   /// Hands over the newest command, once; lets go where there is none that still counts.
   void act() {
@@ -77,7 +78,7 @@ class Hands {
     if (number != written_) {
       // Before it is on its way: it is held from then on.
       if (is_force) hold(now, command.at_ns);
-      const AtStage stage(page_, Stage::writing);
+      const AtStage stage(thread_, Stage::writing);
       const int said = opened_.description.write(opened_.device, command.force.data());
       if (said < 0) page_.lost.store(1, std::memory_order_release);
       if (said > 0) page_.not_taken.fetch_add(1, std::memory_order_relaxed);
@@ -94,7 +95,7 @@ class Hands {
 
   void let_go() {
     if (opened_.description.release == nullptr) return;
-    const AtStage stage(page_, Stage::releasing);
+    const AtStage stage(thread_, Stage::releasing);
     opened_.description.release(opened_.device);
     held_ = false;
     page_.until_ns.store(0, std::memory_order_release);
@@ -107,6 +108,7 @@ class Hands {
 
   const Opened& opened_;
   Page& page_;
+  Whereabouts& thread_;
   std::uint64_t written_ = 0;
   bool held_ = false;
 };
@@ -135,7 +137,7 @@ class Reader {
     const std::int64_t before = now_ns();
     int said = 0;
     {
-      const AtStage stage(page_, Stage::reading);
+      const AtStage stage(page_.reader, Stage::reading);
       said = opened_.description.read(opened_.device, &reading.told);
     }
     reading.arrived_ns = now_ns();
@@ -192,9 +194,9 @@ void write_beside(const std::stop_token& stop, Hands& hands) {
 
 void work(const Opened& opened, Page& page, pid_t copy) {
   drivers::become_urgent("kerf-device-in");
-  Hands hands(opened, page);
-  std::jthread writer;
   const bool beside = (opened.facts.flags & KERF_WRITES_ANY_TIME) != 0;
+  Hands hands(opened, page, beside ? page.writer : page.reader);
+  std::jthread writer;
   if (beside) writer = std::jthread([&](const std::stop_token& stop) { write_beside(stop, hands); });
   Reader reader(opened, page);
   for (std::int64_t looked_ns = now_ns(); page.lost.load(std::memory_order_relaxed) == 0;) {

@@ -22,11 +22,11 @@ struct Opened {
 /// Whether it has closed its end of the connection, or died.
 [[nodiscard]] bool program_is_gone() noexcept;
 
-/// Says where this process is in the plug-in, while it is there.
+/// Says where a thread is in the plug-in, while it is there.
 class AtStage {
  public:
-  AtStage(drivers::hosted::Page& page, drivers::hosted::Stage stage) noexcept
-      : page_(page), before_(page.stage.load(std::memory_order_relaxed)) {
+  AtStage(drivers::hosted::Whereabouts& thread, drivers::hosted::Stage stage) noexcept
+      : thread_(thread), before_(thread.stage.load(std::memory_order_relaxed)) {
     enter(stage);
   }
   AtStage(const AtStage&) = delete;
@@ -38,10 +38,10 @@ class AtStage {
 
  private:
   void enter(drivers::hosted::Stage stage) noexcept {
-    page_.stage_since_ns.store(now_ns(), std::memory_order_relaxed);
-    page_.stage.store(stage, std::memory_order_release);
+    thread_.since_ns.store(now_ns(), std::memory_order_relaxed);
+    thread_.stage.store(stage, std::memory_order_release);
   }
-  drivers::hosted::Page& page_;
+  drivers::hosted::Whereabouts& thread_;
   drivers::hosted::Stage before_;
 };
 

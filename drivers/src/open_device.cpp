@@ -103,7 +103,7 @@ struct Scheme {
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 13> schemes{{{"falcon", Follows::number, open_falcon},
+constexpr std::array<Scheme, 14> schemes{{{"falcon", Follows::number, open_falcon},
                                           {"spacemouse", Follows::number, open_spacemouse},
                                           {"hid", Follows::product, open_hid},
                                           {"u6", Follows::number, open_u6},
@@ -114,6 +114,7 @@ constexpr std::array<Scheme, 13> schemes{{{"falcon", Follows::number, open_falco
                                           {"optoforce", Follows::port, at_place<open_optoforce>},
                                           {"ft300", Follows::port, at_place<open_ft300>},
                                           {"woody-v4", Follows::port, in_host<open_woody_v4>},
+                                          {"2diy", Follows::port, in_host<open_two_diy>},
                                           {"inverse3", Follows::host, in_host<open_inverse3>},
                                           {"plugin", Follows::file, in_host<open_plugin>}}};
 

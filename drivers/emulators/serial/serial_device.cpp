@@ -11,6 +11,7 @@
 
 #include <kerf/drivers/usb/io_thread.h>
 
+#include "serial/two_diy.h"
 #include "serial/woody_v4.h"
 #include "trace.h"
 
@@ -44,7 +45,7 @@ EmulatedSerialDevice::EmulatedSerialDevice(const Options& options, HeldTip::Opti
       faults_(std::move(faults)),
       port_(options.link),
       line_(baud),
-      tip_(with_hand(tip, options)),
+      tip_(with_hand(std::move(tip), options)),
       trace_(open_trace(options.trace, "t_s,host_ns,event,fx,fy,fz,x,y,z")),
       began_ns_(now_ns()) {}
 
@@ -209,6 +210,7 @@ class EmulatedSlider final : public EmulatedSerialDevice {
 }  // namespace
 
 std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector<Fault> faults) {
+  if (uri.name == "2diy") return EmulatedTwoDiy::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   if (uri.name == "woody-v4")
     return EmulatedWoodyV4::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   if (uri.name == "slider")

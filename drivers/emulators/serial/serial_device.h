@@ -61,6 +61,8 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   /// After so long without feed_watchdog() the force is zero; 0: it is held for ever.
   void set_watchdog(double seconds) noexcept { watchdog_s_ = seconds; }
   void feed_watchdog() noexcept { fed_ns_ = now_ns_; }
+  /// Where the hand wants to be, beside its sway, from where the tip began.
+  void lead(const Eigen::Vector3d& offset_m) noexcept { tip_.lead(offset_m); }
   /// The force of the motors, from now on; as it changes with the pose, and no event.
   void adjust(const Eigen::Vector3d& force_n) { tip_.push(force_n); }
   /// The force of the motors, from now on.
@@ -98,7 +100,7 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   std::uint64_t trips_ = 0;  ///< of the watchdog
 };
 
-/// A haptic device of that name: `slider`, `woody-v4`; nothing for another name.
+/// A haptic device of that name: `slider`, `woody-v4`, `2diy`; nothing for another name.
 /// @throws drivers::DeviceError for an option that there is not.
 [[nodiscard]] std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector<Fault> faults);
 

@@ -43,6 +43,15 @@ std::string texts_of(char kind, const DeviceHost::Question& question) {
   return texts;
 }
 
+/// Of both threads, where both are in the plug-in: one of them it was.
+std::string whereabouts(const Page& page) {
+  const Stage reader = page.reader.stage.load();
+  const Stage writer = page.writer.stage.load();
+  if (writer == Stage::elsewhere) return in_words(reader);
+  if (reader == Stage::elsewhere) return in_words(writer);
+  return std::string(in_words(reader)) + " or " + in_words(writer);
+}
+
 std::string signal_name(int number) {
   const char* const name = sigabbrev_np(number);
   return std::string("SIG") + (name == nullptr ? "?" : name);
@@ -135,7 +144,7 @@ void DeviceHost::refuse(const std::string& why) const { throw DeviceError(fmt::f
 void DeviceHost::refuse(Answer answer, const std::string& text) const {
   if (answer == Answer::refused) refuse(text);
   if (answer == Answer::silent)
-    refuse(fmt::format("it gives no sign of life {}; it was ended", in_words(page_->stage.load())));
+    refuse(fmt::format("it gives no sign of life {}; it was ended", in_words(page_->reader.stage.load())));
   // It is about to be over.
   for (int round = 0; round < 20 && trouble().empty(); ++round) usleep(10'000);
   const std::string how = trouble();
@@ -178,7 +187,7 @@ void DeviceHost::wake() const noexcept {
 }
 
 std::string DeviceHost::trouble() const {
-  const std::string where = in_words(page_->stage.load());
+  const std::string where = whereabouts(*page_);
   const auto said = [&](char kind) -> std::string {
     std::array<char, longest_message> bytes{};
     const auto size = recv(socket_.number(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_PEEK);
@@ -198,8 +207,11 @@ std::string DeviceHost::trouble() const {
   if (page_->lost.load() != 0) return "it says that the device is lost";
   if (page_->unguarded.load() != 0)
     return "the process that would let it go has ended: it gives no force any more";
-  if (page_->stage.load() != Stage::elsewhere && usb::now_ns() - page_->stage_since_ns.load() > hangs_ns)
-    return "it does not come back " + where;
+  for (const Whereabouts* const thread : {&page_->writer, &page_->reader}) {
+    const Stage stage = thread->stage.load();
+    if (stage != Stage::elsewhere && usb::now_ns() - thread->since_ns.load() > hangs_ns)
+      return std::string("it does not come back ") + in_words(stage);
+  }
   return {};
 }
 

@@ -97,6 +97,12 @@ constexpr const char* in_words(Stage stage) noexcept {
   return "somewhere";
 }
 
+/// Where a thread of the host is in the plug-in, and since when.
+struct Whereabouts {
+  std::atomic<Stage> stage{Stage::elsewhere};
+  std::atomic<std::int64_t> since_ns{0};
+};
+
 /// The page that program, host and stand-by see. What the plug-in's process wrote is looked at as a
 /// stranger's.
 struct Page {
@@ -108,13 +114,13 @@ struct Page {
   kerf_device_facts_v1 facts{};  ///< once it has said that it is ready
   SharedRing<Reading, 512> readings;
   std::atomic<std::uint32_t> has_write{0};
-  std::atomic<Stage> stage{Stage::elsewhere};
-  std::atomic<std::int64_t> stage_since_ns{0};
+  Whereabouts reader;                       ///< of the thread that sets up, reads, and closes
+  Whereabouts writer;                       ///< of the one beside it, with KERF_WRITES_ANY_TIME
   std::atomic<std::uint32_t> lost{0};       ///< the plug-in said so
   std::atomic<std::uint64_t> missing{0};    ///< readings, by its own count
   std::atomic<std::uint64_t> repeated{0};   ///< likewise, that came twice or late
   std::atomic<std::uint64_t> not_taken{0};  ///< forces
-  std::atomic<std::uint32_t> unguarded{0};   ///< nobody stands by any more: no force is given
+  std::atomic<std::uint32_t> unguarded{0};  ///< nobody stands by any more: no force is given
   /// When the stand-by lets the device go unless a later time stands here by then; 0: nothing is held.
   std::atomic<std::int64_t> until_ns{0};
   std::atomic<std::uint32_t> standby_may_go{0};

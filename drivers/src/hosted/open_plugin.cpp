@@ -180,6 +180,11 @@ std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view por
   return open_built_in(uri, {"woody-v4", "port", port}, parsed, surroundings);
 }
 
+std::unique_ptr<Device> open_two_diy(std::string_view uri, std::string_view port, const Uri& parsed,
+                                     const Surroundings& surroundings) {
+  return open_built_in(uri, {"2diy", "port", port}, parsed, surroundings);
+}
+
 std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host, const Uri& parsed,
                                       const Surroundings& surroundings) {
   return open_built_in(uri, {"inverse3", "address", host}, parsed, surroundings);

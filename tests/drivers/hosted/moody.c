@@ -67,7 +67,7 @@ static void describe(void* self, kerf_device_facts_v1* facts) {
   snprintf(facts->serial, sizeof facts->serial, "M1");
   snprintf(facts->settings, sizeof facts->settings, "%s", is(device, "no_toml") ? "gain = " : "gain = 2");
   facts->flags = KERF_MEASURES_FORCE | KERF_COUNTS_READINGS;
-  if (is(device, "any_time")) facts->flags |= KERF_WRITES_ANY_TIME;
+  if (is(device, "any_time") || is(device, "hang_write_any_time")) facts->flags |= KERF_WRITES_ANY_TIME;
   if (is(device, "at_once")) facts->flags |= KERF_ANSWERS_AT_ONCE;
   if (is(device, "unpaced")) facts->flags |= KERF_ANSWERS_AT_ONCE;
   facts->rate_hz = is(device, "unpaced") ? 0.0 : 1000.0;
@@ -117,6 +117,7 @@ static int write_device(void* self, const double* force) {
   struct device* const device = self;
   note(device, "write", force[0]);
   if (force[0] != 0.0) misbehave(device, "write");
+  if (force[0] != 0.0) misbehave(device, "write_any_time");
   if (is(device, "takes_none")) return 1;
   device->force = force[0];
   return 0;

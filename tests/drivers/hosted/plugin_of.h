@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -24,6 +28,27 @@ inline std::vector<Logged> log_in(const std::string& file) {
   std::vector<Logged> all;
   for (Logged one; lines >> one.process >> one.what >> one.number;) all.push_back(one);
   return all;
+}
+
+/// The force of an emulated device's motors [N] at each event of its trace, those of them that are written.
+inline std::vector<double> forces_of(const std::filesystem::path& trace) {
+  std::ifstream lines(trace);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<double> all;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<std::string> texts;
+    for (std::string cell; std::getline(cells, cell, ',');) texts.push_back(cell);
+    if (texts.size() < 9) break;
+    all.push_back(std::hypot(std::stod(texts[3]), std::stod(texts[4]), std::stod(texts[5])));
+  }
+  return all;
+}
+
+/// Whether a force as large as that was there, and none is left.
+inline bool is_let_go(const std::vector<double>& forces, double held) {
+  return !forces.empty() && forces.back() == 0.0 && *std::max_element(forces.begin(), forces.end()) > held;
 }
 
 /// Until it is so, or for ten seconds. @returns whether it is

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,25 +59,6 @@ class WoodyV4 : public testing::Test {
       (void)device.write(force);
       return device.read(0.0, sample) == Status::ok && condition(sample);
     });
-  }
-  /// What it did, and the force of its motors then [N].
-  struct Event {
-    std::string what;
-    double force = 0.0;
-  };
-  [[nodiscard]] std::vector<Event> trace() const {
-    std::ifstream lines(folder_ / "trace.csv");
-    std::string line;
-    std::getline(lines, line);
-    std::vector<Event> all;
-    while (std::getline(lines, line)) {
-      std::istringstream cells(line);
-      std::vector<std::string> texts;
-      for (std::string cell; std::getline(cells, cell, ',');) texts.push_back(cell);
-      if (texts.size() < 6) break;  // it is being written
-      all.push_back({texts[2], std::hypot(std::stod(texts[3]), std::stod(texts[4]), std::stod(texts[5]))});
-    }
-    return all;
   }
   [[nodiscard]] std::string traced() const { return "&trace=" + (folder_ / "trace.csv").string(); }
 
@@ -162,11 +140,7 @@ TEST_F(WoodyV4, IsLetGoWhenItsProgramIsKilled) {
   int status = 0;
   ASSERT_EQ(waitpid(program, &status, 0), program);
   ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_TRUE(becomes([&] {
-    const auto all = trace();
-    const bool was_held = std::ranges::any_of(all, [](const Event& one) { return one.force > 0.9; });
-    return was_held && all.back().force == 0.0;
-  }));
+  EXPECT_TRUE(becomes([&] { return is_let_go(forces_of(folder_ / "trace.csv"), 0.9); }));
 }
 
 TEST_F(WoodyV4, KnowsItsPlaceByTheButtonOrByCalibration) {

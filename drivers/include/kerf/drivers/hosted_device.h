@@ -91,6 +91,13 @@ struct PluginDevice {
 [[nodiscard]] std::unique_ptr<Device> open_woody_v4(std::string_view uri, std::string_view port,
                                                     const Uri& parsed, const Surroundings& surroundings);
 
+/// `2diy:PORT`: a Haply 2DIY, in the same process too: two axes, an answer to each torque, 1000 a second. It
+/// has no watchdog and holds its last torque for ever: that process lets it go. Its arms have to rest while
+/// it is opened, which declares that pose. Channels: `angle_1`, `angle_2` [rad], `torque_1`, `torque_2`
+/// [N·m], as sent. Options: version (original, v2, v3, v3.1). @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_two_diy(std::string_view uri, std::string_view port,
+                                                   const Uri& parsed, const Surroundings& surroundings);
+
 /// `inverse3:HOST`: a Haply Inverse3 behind its maker's service (3.1 on), by WebSocket, in the same process
 /// too: one message, one state, 1000 a second. Channels: `told_force_x` to `told_force_z` [N], what the
 /// service says to exert; `unchanged_for` [s], how long its position has been the same to the last bit: a
