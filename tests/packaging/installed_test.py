@@ -54,7 +54,7 @@ class Installed(unittest.TestCase):
 
     def test_keeps_its_helpers_where_nobody_types_their_names(self):
         helpers = {path.name for path in (self.prefix / "libexec/kerf").iterdir()}
-        self.assertEqual(helpers, {"kerf-guard", "kerf-law-trial", "kerf-reader"})
+        self.assertEqual(helpers, {"kerf-device-host", "kerf-guard", "kerf-law-trial", "kerf-reader"})
         self.assertEqual({path.name for path in (self.prefix / "bin").iterdir()}, {"kerf", "kerf-emulate"})
 
     def test_takes_no_reader_from_elsewhere(self):
