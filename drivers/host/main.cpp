@@ -51,8 +51,10 @@ const kerf_device_v1& load_at_stage(const std::string& path, Page& page) {
 }
 
 void look(const kerf_device_v1& description) {
-  std::string told = description.name + std::string(1, '\0');
-  told += (description.about == nullptr ? std::string() : std::string(description.about)) + '\0';
+  std::string about = description.about == nullptr ? "" : description.about;
+  if (&description == &open_haptics_device) about = look_for_open_haptics();
+  if (&description == &force_dimension_device) about = look_for_force_dimension();
+  std::string told = description.name + std::string(1, '\0') + about + '\0';
   for (const std::string_view name : option_names(description)) told += std::string(name) + '\0';
   say(says_look, told);
 }

@@ -65,16 +65,16 @@ inline void add_channel(kerf_device_facts_v1& facts, std::string_view name, std:
 }
 
 /// Of a class with describe(facts), read(reading), write(force), release(), trouble(), its name, the options
-/// of its URI, and open(UriOptions&), which throws what is in the way.
+/// of its URI, and open(UriOptions&), which throws what is in the way and takes `open_s` at most.
 template <typename Own>
-constexpr kerf_device_v1 as_plugin(const char* about) noexcept {
+constexpr kerf_device_v1 as_plugin(const char* about, double open_s = 0.0) noexcept {
   return {
       .abi = KERF_DEVICE_ABI,
       .size = sizeof(kerf_device_v1),
       .name = Own::name,
       .about = about,
       .options = Own::options.data(),
-      .open_s = 0.0,
+      .open_s = open_s,
       .open = [](const char* const* values, char* why, std::size_t why_size) -> void* {
         try {
           drivers::UriOptions given = options_of(Own::name, Own::options, values);

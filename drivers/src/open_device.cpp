@@ -97,13 +97,13 @@ std::unique_ptr<Device> in_host(const Wanted& wanted) {
 }
 
 /// What follows the colon.
-enum class Follows : std::uint8_t { number, product, host, port, file };
+enum class Follows : std::uint8_t { number, product, host, port, file, name };
 struct Scheme {
   std::string_view name;
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 14> schemes{{{"falcon", Follows::number, open_falcon},
+constexpr std::array<Scheme, 16> schemes{{{"falcon", Follows::number, open_falcon},
                                           {"spacemouse", Follows::number, open_spacemouse},
                                           {"hid", Follows::product, open_hid},
                                           {"u6", Follows::number, open_u6},
@@ -116,6 +116,8 @@ constexpr std::array<Scheme, 14> schemes{{{"falcon", Follows::number, open_falco
                                           {"woody-v4", Follows::port, in_host<open_woody_v4>},
                                           {"2diy", Follows::port, in_host<open_two_diy>},
                                           {"inverse3", Follows::host, in_host<open_inverse3>},
+                                          {"openhaptics", Follows::name, in_host<open_openhaptics>},
+                                          {"dhd", Follows::number, in_host<open_dhd>},
                                           {"plugin", Follows::file, in_host<open_plugin>}}};
 
 std::optional<std::size_t> number_in(std::string_view digits) {

@@ -37,8 +37,8 @@ bool names_a_file(std::string_view device, std::string_view option) noexcept {
 }
 
 bool names_a_place(std::string_view device) noexcept {
-  constexpr std::array schemes{"net-ft:", "onrobot:",  "t7:",   "bota:",     "optoforce:",
-                               "ft300:",  "woody-v4:", "2diy:", "inverse3:", "plugin:"};
+  constexpr std::array schemes{"net-ft:",   "onrobot:", "t7:",       "bota:",        "optoforce:", "ft300:",
+                               "woody-v4:", "2diy:",    "inverse3:", "openhaptics:", "dhd:",       "plugin:"};
   return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
 }
 

@@ -29,6 +29,7 @@ constexpr int load_ms = 2000;
 constexpr int beyond_ms = 500;  // what open() said that it takes
 constexpr int usual_open_ms = 2000;
 constexpr int look_ms = 50;
+constexpr int reason_ms = 300;
 constexpr int end_ms = 500;
 constexpr std::int64_t hangs_ns = 200'000'000;
 
@@ -152,8 +153,16 @@ void DeviceHost::refuse(Answer answer, const std::string& text) const {
 }
 
 Look DeviceHost::look(const std::filesystem::path& plugin) {
-  DeviceHost host(plugin.string());
-  host.ask(ask_to_look, {.uri = plugin.string(), .plugin = plugin, .options = {}});
+  return look(Question{.uri = plugin.string(), .plugin = plugin, .options = {}});
+}
+
+Look DeviceHost::look_for_library(const std::string& built_in) {
+  return look(Question{.uri = built_in, .plugin = {}, .built_in = built_in, .options = {}});
+}
+
+Look DeviceHost::look(const Question& question) {
+  DeviceHost host(question.uri);
+  host.ask(ask_to_look, question);
   std::string text;
   if (const Answer answer = host.answer(load_ms, nullptr, text); answer != Answer::look)
     host.refuse(answer, text);
@@ -185,6 +194,8 @@ void DeviceHost::wake() const noexcept {
   constexpr std::uint64_t one = 1;
   [[maybe_unused]] const auto written = ::write(wakes_.number(), &one, sizeof one);
 }
+
+void DeviceHost::wait_for_reason() const { (void)processes::becomes_readable(socket_.number(), reason_ms); }
 
 std::string DeviceHost::trouble() const {
   const std::string where = whereabouts(*page_);

@@ -26,6 +26,9 @@ class DeviceHost {
  public:
   /// Loads it, and asks no more. @throws DeviceError for what is no device
   [[nodiscard]] static Look look(const std::filesystem::path& plugin);
+  /// Of a device of Kerf's own that needs a library of its maker ("openhaptics", "dhd"): `about` is where
+  /// that is. @throws DeviceError where it is not
+  [[nodiscard]] static Look look_for_library(const std::string& built_in);
 
   struct Question {
     std::string uri;
@@ -48,10 +51,14 @@ class DeviceHost {
   void wake() const noexcept;
   /// What became of it, for a person: how it ended, or in what it hangs; empty: nothing is wrong.
   [[nodiscard]] std::string trouble() const;
+  /// Waits for the reason of a plug-in that has said that its device is lost, which it says once it has let
+  /// go.
+  void wait_for_reason() const;
 
  private:
   enum class Answer { look, opening, ready, refused, silent, ended };
   explicit DeviceHost(std::string uri);
+  [[nodiscard]] static Look look(const Question& question);
   void ask(char kind, const Question& question);
   [[nodiscard]] Answer answer(int patience_ms, const std::atomic<bool>* stop, std::string& text);
   [[noreturn]] void refuse(const std::string& why) const;

@@ -59,8 +59,9 @@ void HostedDevice::wait_for_first() {
   constexpr timespec pause{.tv_sec = 0, .tv_nsec = 1'000'000};
   while (host_->page().readings.count() == 0) {
     const bool over = usb::now_ns() > until_ns;
-    if (const std::string why = over || host_->page().lost.load() != 0 ? host_->trouble() : std::string();
-        over || !why.empty()) {
+    const bool is_lost = host_->page().lost.load() != 0;
+    if (is_lost) host_->wait_for_reason();
+    if (const std::string why = over || is_lost ? host_->trouble() : std::string(); over || !why.empty()) {
       throw DeviceError(fmt::format(
           "{}: it was opened, and no reading has come: {}", info_.uri,
           why.empty() ? std::string("its read() finds none; look at cable, port and speed") : why));

@@ -185,6 +185,16 @@ std::unique_ptr<Device> open_two_diy(std::string_view uri, std::string_view port
   return open_built_in(uri, {"2diy", "port", port}, parsed, surroundings);
 }
 
+std::unique_ptr<Device> open_openhaptics(std::string_view uri, std::string_view name, const Uri& parsed,
+                                         const Surroundings& surroundings) {
+  return open_built_in(uri, {"openhaptics", "device", name}, parsed, surroundings);
+}
+
+std::unique_ptr<Device> open_dhd(std::string_view uri, std::string_view number, const Uri& parsed,
+                                 const Surroundings& surroundings) {
+  return open_built_in(uri, {"dhd", "number", number}, parsed, surroundings);
+}
+
 std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host, const Uri& parsed,
                                       const Surroundings& surroundings) {
   return open_built_in(uri, {"inverse3", "address", host}, parsed, surroundings);

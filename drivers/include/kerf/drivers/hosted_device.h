@@ -108,4 +108,22 @@ struct PluginDevice {
 [[nodiscard]] std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view host,
                                                     const Uri& parsed, const Surroundings& surroundings);
 
+/// A Touch, Omni, Desktop or Premium of 3D Systems by OpenHaptics (libHD.so), which is loaded there where it
+/// is installed. Its servo loop reads and writes, 1000 a second; frame: x right, y up, z towards the user.
+/// Channels: `buttons` (bits), `gimbal_1` to `gimbal_3` [rad], `motor_temperature` (largest, 0 to 1),
+/// `write_delay` [s] from the newest force to the end of the frame that carried it first, `error`
+/// (its code). Options: library, most_force (what it bears for long, as it tells). @param name as it was set
+/// up with the maker's program; empty or "default": the default device. @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_openhaptics(std::string_view uri, std::string_view name,
+                                                       const Uri& parsed, const Surroundings& surroundings);
+
+/// A device of Force Dimension, or a Falcon, by the maker's DHD and DRD (libdrd.so), which are loaded there
+/// where they are installed. Frame: x towards the user, y right, z up. Channels: `buttons` (bits),
+/// `saturated` (1 where the last force was less than was asked), `read_took`, `write_took` [s]. Its forces
+/// are put on with the first; where the device puts them off itself the run ends. Options: library,
+/// most_force, rate (1000Hz), brakes (on), gravity (on: compensation), calibrate (off; on: it moves by
+/// itself). @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_dhd(std::string_view uri, std::string_view number,
+                                               const Uri& parsed, const Surroundings& surroundings);
+
 }  // namespace kerf::drivers

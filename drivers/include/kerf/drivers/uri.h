@@ -20,8 +20,8 @@ struct Uri {
 /// `firmware` of any, `model` of sim:axis. Whoever takes a URI from outside has to look at these.
 [[nodiscard]] bool names_a_file(std::string_view device, std::string_view option) noexcept;
 
-/// Whether a device is named by a machine of the network, a port of this one or a plug-in, which whoever
-/// names it makes the driver open, or run.
+/// Whether a device is named by a machine of the network, a port of this one, a plug-in or a library of its
+/// maker, which whoever names it makes the driver open, or run.
 [[nodiscard]] bool names_a_place(std::string_view device) noexcept;
 
 /// @throws DeviceError if an option has no '=' or stands twice.
