@@ -253,6 +253,7 @@ void run_loop(Clock& clock, drivers::Device& device, Rendering& rendering, Recor
       safety.release(command);
       (void)device.write({});
     }
+    if (sample.sensor_fault) command.flags |= schema::flag_sensor_fault;
     evidence.end(clock, Stage::write, computed_ns, times.mark(Stage::write, clock.now_ns()));
 
     recorder.push(row_of(tick, time_s, sample, command, times));

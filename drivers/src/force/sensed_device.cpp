@@ -90,6 +90,7 @@ Status SensedDevice::read(double now_s, Sample& sample) noexcept {
   for (std::size_t channel = own_channels_; channel < info_.channels.size(); ++channel) {
     sample.channels[channel] = sensed_.channels[channel - own_channels_];
   }
+  sample.sensor_fault = sensed == Status::fault;
   return sensed == Status::lost ? Status::lost : status;
 }
 

@@ -119,11 +119,13 @@ TEST(SensedDevice, TakesAPauseOfTheSensorForAGapAndNotForAFault) {
   pair.cell->status = Status::fault;
   EXPECT_EQ(pair.device->read(0.0, pair.sample), Status::ok);
   EXPECT_TRUE(std::isnan(pair.sample.force_measured[0]));
+  EXPECT_TRUE(pair.sample.sensor_fault);
   pair.cell->status = Status::lost;
   EXPECT_EQ(pair.device->read(0.0, pair.sample), Status::lost);
   pair.cell->status = Status::ok;
   pair.tool->status = Status::fault;
   EXPECT_EQ(pair.device->read(0.0, pair.sample), Status::fault);
+  EXPECT_FALSE(pair.sample.sensor_fault);
 }
 
 TEST(SensedDevice, HandsForcesAndReleasesToTheDevice) {

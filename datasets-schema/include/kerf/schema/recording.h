@@ -66,6 +66,7 @@ enum Flag : std::uint32_t {
   flag_soft_switch = 1U << 10U,
   flag_passivity_control = 1U << 11U,
   flag_zero_held = 1U << 12U,
+  flag_sensor_fault = 1U << 13U,
 };
 
 /// What a flag is called in the file, and what it says of its row.
@@ -77,7 +78,7 @@ struct FlagInfo {
 
 /// Every flag, in the order of its bit. New ones come at the end: a file of an earlier version has the first
 /// of them, first_flags or more.
-inline constexpr std::array<FlagInfo, 13> flag_table{{
+inline constexpr std::array<FlagInfo, 14> flag_table{{
     {flag_missed_deadline, "missed_deadline", "deadlines were missed before this tick"},
     {flag_force_limited, "force_limited", "the force was cut to what the device may exert"},
     {flag_slew_limited, "slew_limited", "the force changed more slowly than was asked for"},
@@ -91,6 +92,8 @@ inline constexpr std::array<FlagInfo, 13> flag_table{{
     {flag_soft_switch, "soft_switch", "two laws are blended"},
     {flag_passivity_control, "passivity_control", "damping was added to keep the rendering passive"},
     {flag_zero_held, "zero_held", "the position had jumped, and nobody has confirmed it: zero force"},
+    {flag_sensor_fault, "sensor_fault",
+     "the force sensor was overloaded, doubted itself or was silent: no measured force"},
 }};
 
 inline constexpr std::size_t first_flags = 12;

@@ -92,6 +92,8 @@ struct Sample {
   Axes position{};
   Axes velocity{};
   Axes force_measured{};  ///< NaN where a sensor has nothing to say now; never a reason to render nothing
+  bool sensor_fault =
+      false;  ///< a force sensor beside the device is overloaded, doubts itself, or is silent for 20 ms
   std::array<double, max_channels> channels{};  ///< in the order of DeviceInfo::channels
   std::uint32_t faults = 0;
   double age_s = 0.0;  ///< how long before the read the position was true, by the arrival of its report

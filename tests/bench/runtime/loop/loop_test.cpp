@@ -182,6 +182,19 @@ TEST(Loop, GivesZeroForceWhileTheDeviceFaults) {
   EXPECT_EQ(report.end, LoopEnd::completed);
 }
 
+TEST(Loop, RecordsAFaultOfTheSensorAndGoesOnRendering) {
+  Bench bench;
+  bench.force = [](auto) { return 1.0; };
+  bench.device.answer = [](std::uint64_t tick, drivers::Sample& sample) {
+    sample.sensor_fault = tick == 2;
+    return Status::ok;
+  };
+  const LoopReport report = bench.run(4);
+  EXPECT_THAT(bench.device.written, ElementsAre(0.0, 1.0, 1.0, 1.0, 1.0, 0.0));
+  EXPECT_EQ(report.ticks_with(schema::flag_sensor_fault), 1U);
+  EXPECT_EQ(bench.recorder.rows[2].flags, schema::flag_sensor_fault);
+}
+
 TEST(Loop, TakesANumberThatIsNotFiniteForAFaultOfTheDevice) {
   Bench bench;
   bench.force = [](auto) { return 1.0; };
