@@ -298,7 +298,7 @@ class ForceDimension {
   bool is_assumed_ = false;
   bool is_on_ = false;
   bool is_saturated_ = false;
-  double write_took_s_ = std::nan("");
+  double write_took_s_ = 0.0;  ///< of the last force; 0 before the first
   int readings_ = 0;
   std::string trouble_;
   pid_t opened_by_ = getpid();
