@@ -12,6 +12,7 @@
 #include "kerf/drivers/device_model.h"
 #include "kerf/drivers/toml_text.h"
 #include "small_file.h"
+#include "toml_reader.h"
 
 namespace kerf::drivers {
 namespace {
@@ -32,9 +33,9 @@ bool is_utc_date(std::string_view text) {
 }
 
 /// Reads one file and says in it what is wrong where.
-class ModelReader {
+class ModelReader : TomlReader {
  public:
-  ModelReader(const toml::table& root, const std::string& name) : root_(root), name_(name) {}
+  ModelReader(const toml::table& root, const std::string& name) : TomlReader(root, name) {}
 
   DeviceModel read() const {
     require_format();
@@ -58,14 +59,6 @@ class ModelReader {
   }
 
  private:
-  template <typename... Arguments>
-  [[noreturn]] void refuse(const toml::node& node, fmt::format_string<Arguments...> format,
-                           Arguments&&... arguments) const {
-    const auto line = std::max<toml::source_index>(node.source().begin.line, 1);
-    throw DeviceError(
-        fmt::format("{}:{}: {}", name_, line, fmt::format(format, std::forward<Arguments>(arguments)...)));
-  }
-
   /// First of all: a later format may have any keys.
   void require_format() const {
     const toml::node& node = required(root_, "format", fmt::format("{}", DeviceModel::format));
@@ -207,51 +200,6 @@ class ModelReader {
     return validation;
   }
 
-  template <typename Keys>
-  void allow_only_these(const toml::table& table, const Keys& keys, std::string_view where) const {
-    for (const auto& [key, node] : table) {
-      if (std::find(keys.begin(), keys.end(), key.str()) != keys.end()) continue;
-      refuse(node, "unknown key '{}' in {}; known are {}", key.str(), where,
-             fmt::join(keys.begin(), keys.end(), ", "));
-    }
-  }
-  void allow_only(const toml::table& table, std::initializer_list<std::string_view> keys,
-                  std::string_view where) const {
-    allow_only_these(table, keys, where);
-  }
-  void allow_only(const toml::table& table, const std::vector<std::string_view>& keys,
-                  std::string_view where) const {
-    allow_only_these(table, keys, where);
-  }
-
-  const toml::node& required(const toml::table& table, std::string_view key,
-                             std::string_view expected) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) refuse(table, "'{}' is missing; expected {}", key, expected);
-    return *node;
-  }
-  const toml::table& table(const toml::node& node, std::string_view expected) const {
-    if (!node.is_table()) refuse(node, "{}", expected);
-    return *node.as_table();
-  }
-  std::string text(const toml::node& node, std::string_view key) const {
-    if (!node.is_string()) refuse(node, "'{}' must be a text in quotes", key);
-    return **node.as_string();
-  }
-  std::string optional_text(const toml::table& table, std::string_view key) const {
-    const toml::node* node = table.get(key);
-    return node == nullptr ? std::string() : text(*node, key);
-  }
-  bool flag(const toml::node& node, std::string_view key) const {
-    if (!node.is_boolean()) refuse(node, "'{}' must be true or false", key);
-    return **node.as_boolean();
-  }
-  double number(const toml::node& node, std::string_view what, bool may_be_infinite = false) const {
-    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-    if (!value || std::isnan(*value) || (std::isinf(*value) && !may_be_infinite))
-      refuse(node, "{} must be a {}number", what, may_be_infinite ? "" : "finite ");
-    return *value;
-  }
   double positive(const toml::node& node, std::string_view what) const {
     const double value = number(node, what);
     if (!(value > 0.0)) refuse(node, "{} is {}, expected more than 0", what, value);
@@ -273,9 +221,6 @@ class ModelReader {
       refuse(node, "'{}' is \"{}\", expected {}", key, given, fmt::join(known, " or "));
     return given;
   }
-
-  const toml::table& root_;
-  const std::string& name_;
 };
 
 std::string numbers_text(const std::vector<double>& values) {
