@@ -20,6 +20,7 @@
 #include "kerf/drivers/uri.h"
 #include "kerf/drivers/usb/usb_device.h"
 #include "kerf/drivers/woodenhaptics.h"
+#include "open_uri.h"
 
 namespace kerf::drivers {
 
@@ -176,7 +177,7 @@ std::string uri_of(std::string_view scheme, std::size_t number) {
 
 }  // namespace
 
-std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings) {
+std::unique_ptr<Device> open_uri(std::string_view uri, Surroundings surroundings) {
   Uri parsed = parse_uri(uri);
   if (!parsed.name.starts_with("sim:")) return open_attached(uri, parsed, surroundings);
   std::vector<Fault> faults;
@@ -187,11 +188,6 @@ std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundi
   auto device = open_simulated(uri, std::move(parsed), std::move(surroundings));
   if (faults.empty()) return device;
   return std::make_unique<FaultyDevice>(std::move(device), std::move(faults), std::move(pass_time));
-}
-
-std::unique_ptr<Device> open_device(std::string_view uri) {
-  Surroundings nothing;
-  return open_device(uri, std::move(nothing));
 }
 
 std::vector<DeviceInfo> list_devices() {

@@ -36,6 +36,20 @@ bool names_a_file(std::string_view device, std::string_view option) noexcept {
   return option == "calibration" || option == "firmware" || (option == "model" && device == "sim:axis");
 }
 
+std::string to_text(const Uri& uri) {
+  std::string text = uri.name;
+  for (const auto& [name, value] : uri.options) {
+    text += text.size() == uri.name.size() ? '?' : '&';
+    text.append(name).append("=").append(value);
+  }
+  return text;
+}
+
+bool names_a_path(std::string_view device) noexcept {
+  constexpr std::array schemes{"bota:", "optoforce:", "ft300:", "woody-v4:", "2diy:", "plugin:"};
+  return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
+}
+
 bool names_a_place(std::string_view device) noexcept {
   constexpr std::array schemes{"net-ft:",   "onrobot:", "t7:",       "bota:",        "optoforce:", "ft300:",
                                "woody-v4:", "2diy:",    "inverse3:", "openhaptics:", "dhd:",       "plugin:"};

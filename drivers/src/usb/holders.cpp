@@ -42,9 +42,9 @@ std::vector<std::string> hidraw_nodes_of(const std::string& sys_folder) {
   return nodes;
 }
 
-std::optional<pid_t> process_that_holds(const std::string& file) {
+std::optional<pid_t> process_that_holds(const std::string& file, const std::string& processes) {
   std::optional<pid_t> holder;
-  for_each_in("/proc", [&](const fs::directory_entry& process) {
+  for_each_in(processes, [&](const fs::directory_entry& process) {
     const std::string name = process.path().filename().string();
     if (holder || !is_number(name) || name == std::to_string(getpid())) return;
     for_each_in(process.path() / "fd", [&](const fs::directory_entry& descriptor) {

@@ -13,6 +13,7 @@ namespace kerf::drivers::usb {
 
 /// Another process that has a file open; nothing if none is found. Processes of other users do not show what
 /// they have open.
-[[nodiscard]] std::optional<pid_t> process_that_holds(const std::string& file);
+[[nodiscard]] std::optional<pid_t> process_that_holds(const std::string& file,
+                                                      const std::string& processes = "/proc");
 
 }  // namespace kerf::drivers::usb

@@ -158,7 +158,8 @@ struct Surroundings {
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// Opens a device by URI, for example "sim:scissors?seed=3&noise=off".
+/// Opens a device by URI, for example "sim:scissors?seed=3&noise=off", or by its name in the bench file
+/// (bench_file.h).
 /// @throws DeviceError with a sentence that says what is missing and how to mend it.
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri, Surroundings surroundings);
 [[nodiscard]] std::unique_ptr<Device> open_device(std::string_view uri);

@@ -24,8 +24,13 @@ struct Uri {
 /// maker, which whoever names it makes the driver open, or run.
 [[nodiscard]] bool names_a_place(std::string_view device) noexcept;
 
+/// Whether a device is named by the path of a serial port or of a plug-in's file.
+[[nodiscard]] bool names_a_path(std::string_view device) noexcept;
+
 /// @throws DeviceError if an option has no '=' or stands twice.
 [[nodiscard]] Uri parse_uri(std::string_view text);
+/// The same back: options in the order of their names.
+[[nodiscard]] std::string to_text(const Uri& uri);
 
 /// Takes the options out of a URI one by one, and refuses those that nobody asked for.
 class UriOptions {
