@@ -15,6 +15,7 @@
 
 #include <fmt/core.h>
 
+#include <kerf/drivers/bench_file.h>
 #include <kerf/drivers/uri.h>
 
 #include "calibrate/live_holds.h"
@@ -50,6 +51,16 @@ struct CalibrateArguments {
   std::string output;
   bool force = false;
 };
+
+/// The sensor that a name of the bench file stands for, without its frame: signals are calibrated, not what
+/// is made of them. A table that there is comes before a name.
+std::string sensor_of(const std::string& text) {
+  std::error_code error;
+  const std::string name = text.substr(0, text.find('?'));
+  if (name.find_first_of(":/.") != std::string::npos || fs::exists(text, error)) return text;
+  const auto file = drivers::find_bench_file();
+  return file && file->find(name) != nullptr ? drivers::without_bench_name(drivers::named_uri(text)) : text;
+}
 
 bool is_sensor(const std::string& text) {
   return text.starts_with("sim:") || text.starts_with("u6:") || text.starts_with("hid:") ||
@@ -236,10 +247,14 @@ void add_calibrate(CLI::App& app, Context& context) {
       "that\n"
       "contradict the others are refused in a line (2). Stopped by Ctrl-C it keeps what was measured (1).\n"
       "docs/calibrating.md says how it is done and what the numbers mean.",
-      [arguments, &context] { Calibrating(*arguments, context).run(); });
+      [arguments, &context] {
+        arguments->sensor = sensor_of(arguments->sensor);
+        Calibrating(*arguments, context).run();
+      });
   CalibrateArguments& given = *arguments;
   verb.add_option("SENSOR", given.sensor,
-                  "Sensor (u6:0, t7:HOST, sim:sensor), or a table or recording of signals and loads")
+                  "Sensor (u6:0, t7:HOST, sim:sensor, or its name in bench.toml), or a table or recording of "
+                  "signals and loads")
       .required();
   verb.add_option("--loads", given.loads, "Script of the loads (TOML)");
   verb.add_option("--map", given.map, "Columns of a table: 'signal_1=U1[V],fx=2[N],time=t[s]'");

@@ -5,10 +5,12 @@
 
 #include <fmt/core.h>
 
+#include <kerf/drivers/attached_ports.h>
 #include <kerf/drivers/device.h>
 #include <kerf/schema/recording.h>
 
 #include "device_model/model_in_use.h"
+#include "devices/listed_lab.h"
 #include "probe/kept_probes.h"
 #include "probe/probe.h"
 #include "program/confirm_on_enter.h"
@@ -46,8 +48,7 @@ nlohmann::ordered_json to_json(const drivers::AttachedDevice& device) {
           {"emulated", device.emulated}, {"node", device.node},   {"problem", device.problem}};
 }
 
-void list_attached(Context& context) {
-  const auto attached = drivers::list_attached();
+void list_attached(const std::vector<drivers::AttachedDevice>& attached, Context& context) {
   for (const drivers::AttachedDevice& device : attached) {
     context.result["devices"].push_back(to_json(device));
     context.say(fmt::format("{}  {}; {}{}", device.uri, device.about, device.node,
@@ -136,7 +137,11 @@ void run_devices(Context& context) {
                               axis.force_limit, axis.force_unit));
     }
   }
-  list_attached(context);
+  auto attached = drivers::list_attached();
+  if (auto inverse3 = drivers::find_inverse3()) attached.push_back(std::move(*inverse3));
+  list_attached(attached, context);
+  list_ports(drivers::list_serial_ports(), context);
+  list_bench(attached, context);
   list_models(context);
 }
 
@@ -145,7 +150,7 @@ void run_devices(Context& context) {
 void add_devices(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<ProbeArguments>();
   Verb verb = add_verb(
-      app, context, "devices", "List the devices that can be opened, simulated or on the USB",
+      app, context, "devices", "List the devices that can be opened, and those of the bench file",
       "kerf devices --probe falcon:0\n\n"
       "--probe finds out by small pushes whether a device pushes the way that it should, which nobody has\n"
       "seen of yours: a wrong sign makes a wall pull. It ends with 1 unless every axis is right. The result\n"
@@ -158,11 +163,12 @@ void add_devices(CLI::App& app, Context& context) {
       "  u6:N, t7:HOST     LabJack U6, T7 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
       "  net-ft:HOST, onrobot:HOST, bota:PORT, optoforce:PORT, ft300:PORT   force sensors, by --sensor\n"
       "  spacemouse:N      3Dconnexion, a source of trajectories\n"
+      "  NAME              of a bench file, with options and frames: docs/bench-file.md\n"
       "Options, permissions and what was verified: docs/devices.md.",
       [arguments, &context] {
         arguments->uri.empty() ? run_devices(context) : run_probe(*arguments, context);
       });
-  verb.add_option("--probe", arguments->uri, "URI of a device to push, a little, along each axis");
+  verb.add_uri("--probe", arguments->uri, "URI or name of a device to push, a little, along each axis");
   verb.add_flag("--yes", arguments->yes, "With --probe: do not wait for Enter; somebody holds the handle");
 }
 

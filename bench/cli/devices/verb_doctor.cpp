@@ -31,8 +31,9 @@ void add_doctor(CLI::App& app, Context& context) {
       "for up to 10 s. Ctrl-C ends it early and says what was seen so far.\n"
       "Exit status 0 if the rate is held, 1 if it is not or cannot be said. docs/doctor.md says more.",
       [options, &context] { run_doctor(*options, context); });
-  verb.add_option("URI", options->uri,
-                  "A device to time as well; 'kerf devices' lists them (default: none is opened)");
+  verb.add_uri(
+      "URI", options->uri,
+      "A device to time as well, by URI or name; 'kerf devices' lists them (default: none is opened)");
   verb.add_option("--seconds", options->watch.seconds, "Duration of the empty loop [s]")
       .within(0.1, 86400.0)
       .with_default();

@@ -230,7 +230,7 @@ void add_identify(CLI::App& app, Context& context) {
       "to its end, or no model of mass and friction fits it.\n"
       "docs/device-identification.md has method, equations and limits.",
       [arguments, &context] { run_identify(*arguments, context); });
-  verb.add_option("URI", arguments->uri, "Device, as 'kerf devices' lists them");
+  verb.add_uri("URI", arguments->uri, "Device, as 'kerf devices' lists them, or its name in bench.toml");
   verb.add_option("--from", arguments->from, "Folder of an earlier run whose recordings are estimated anew");
   verb.add_option("--axis", arguments->axis, "One axis alone (default: each that has a force)");
   verb.add_flag("--free", arguments->free, "Nobody holds the handle (default)");

@@ -209,8 +209,8 @@ void add_session_new(CLI::App& session, Context& context) {
                   "Of an experiment: a session in the order of this participant, who was dropped");
   verb.add_option("--device-model", arguments->device_model,
                   "NAME.device.toml: the device as measured, for its checks (default: what is kept of it)");
-  verb.add_option("--device", arguments->device,
-                  "Check the laws on this simulated device (default: the protocol's)");
+  verb.add_uri("--device", arguments->device,
+               "Check the laws on this simulated device (default: the protocol's)");
   add_key_options(verb, arguments->key);
   verb.add_flag("--no-check", arguments->no_check, "Do not check the laws on a simulated device");
   verb.add_flag("--force", arguments->replace, "Replace existing sessions, with all their answers");

@@ -12,6 +12,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <kerf/drivers/bench_file.h>
+
 #include "experiment/key_arguments.h"
 #include "experiment/session_log.h"
 #include "experiment/verb_session.h"
@@ -146,7 +148,7 @@ class NoteLines {
 };
 
 std::string uri_of(const SessionRunVerbArguments& arguments, const Protocol& protocol) {
-  std::string uri = arguments.device.empty() ? protocol.device_uri : arguments.device;
+  std::string uri = drivers::named_uri(arguments.device.empty() ? protocol.device_uri : arguments.device);
   if (uri.empty()) throw std::invalid_argument("the protocol names no device; give one with --device");
   if (arguments.rehearse && !uri.starts_with("sim:"))
     throw std::invalid_argument(
@@ -158,6 +160,7 @@ SessionRunOptions run_options_of(const SessionRunVerbArguments& arguments, const
                                  ButtonSubject* buttons) {
   SessionRunOptions options{.loop = arguments.loop};
   options.loop.device_uri = uri_of(arguments, protocol);
+  options.loop.sensor_uri = drivers::sensor_beside(options.loop.device_uri, options.loop.sensor_uri);
   options.loop.virtual_time = arguments.rehearse;
   if (arguments.rehearse) options.loop.device_uri = led_hand(options.loop.device_uri, protocol);
   options.loop.warn = warn;
@@ -345,12 +348,13 @@ void add_session_run(CLI::App& session, Context& context) {
   verb.add_option("FILE", arguments->file, "The session, or an experiment (with --subject)").required();
   verb.add_option("--subject", arguments->participant, "Whose session of the experiment it is");
   verb.add_option("--visit", arguments->visit, "Which visit (default: the first that is not finished)");
-  verb.add_option("--device", arguments->device, "Device URI (default: the protocol's)");
+  verb.add_uri("--device", arguments->device,
+               "Device URI, or its name in bench.toml (default: the protocol's)");
   verb.add_option(
       "--device-model", arguments->loop.device_model,
       "NAME.device.toml: the device as measured, for its checks and --passivity-control (default: what is "
       "kept of it)");
-  verb.add_option("--sensor", arguments->loop.sensor_uri, "URI of a force sensor beside the device");
+  verb.add_uri("--sensor", arguments->loop.sensor_uri, "URI or name of a force sensor beside the device");
   add_key_options(verb, arguments->key);
   verb.add_flag("--page", arguments->page,
                 "The subject answers on a page in a browser of this machine; a line typed here is a note, "

@@ -231,8 +231,8 @@ void add_session_simulate(CLI::App& session, Context& context) {
   verb.add_option("--trials", arguments->trials, "Trials, in place of the protocol's");
   verb.add_option("--power", arguments->simulation.power, "Power for which the number of trials is found")
       .with_default();
-  verb.add_option("--device", arguments->simulation.sensation.felt.device_uri,
-                  "Simulated device that the laws are felt on (default: the protocol's)");
+  verb.add_uri("--device", arguments->simulation.sensation.felt.device_uri,
+               "Simulated device that the laws are felt on (default: the protocol's)");
   verb.add_option("--seconds", arguments->simulation.sensation.felt.seconds,
                   "Duration of a rendering (default: the protocol's [motion])");
   verb.add_option("--renderings", arguments->simulation.sensation.felt.renderings,

@@ -212,9 +212,9 @@ void add_choose(CLI::App& app, Context& context) {
                   "Folder for choose.json, choose.csv, choose.html and the law file");
   verb.add_option("--axis", arguments->axis, "Axis (default: that of the cycles, or the first)");
   add_contact_options(verb, arguments->contact, "from the recording");
-  verb.add_option("--device", arguments->loop.device_uri,
-                  "Device for the closed loop (default: that of the recording if it was simulated, else the "
-                  "first simulated one with such an axis)");
+  verb.add_uri("--device", arguments->loop.device_uri,
+               "Device for the closed loop (default: that of the recording if it was simulated, else the "
+               "first simulated one with such an axis)");
   verb.add_option(
       "--device-model", arguments->loop.device_model,
       "NAME.device.toml: the device as measured, for its stability (default: what is kept of it)");

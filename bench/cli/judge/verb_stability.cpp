@@ -155,7 +155,7 @@ void add_stability(CLI::App& app, Context& context) {
   verb.add_flag("--cases", arguments->all_cases,
                 "Run every failure that the papers met, without and with its remedy");
   verb.add_option("--case", arguments->cases, "Run one of them by name; may be repeated").one_value_each();
-  verb.add_option("--device", on.device_uri, "Device whose axis it is, as far as its driver knows it")
+  verb.add_uri("--device", on.device_uri, "Device whose axis it is, as far as its driver knows it")
       .with_default();
   verb.add_option(
       "--device-model", on.device_model,

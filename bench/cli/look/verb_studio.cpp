@@ -68,8 +68,8 @@ void add_studio(CLI::App& app, Context& context) {
       [arguments, &context] { run_studio(*arguments, context); });
   verb.takes_laws(context);
   verb.add_option("DIR", arguments->folder, "The folder to work in").with_default();
-  verb.add_option("--device", arguments->device,
-                  "Device URI to offer (default: sim:scissors); it is opened from the page");
+  verb.add_uri("--device", arguments->device,
+               "Device URI to offer (default: sim:scissors); it is opened from the page");
   verb.add_option("--key-file", arguments->key_file,
                   "Key file of whoever keeps the blinding, to run sessions that were sealed with one");
   verb.add_option("--port", arguments->port, "Port (default: any that is free)").within(0.0, 65535.0);

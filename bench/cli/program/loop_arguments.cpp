@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <kerf/drivers/bench_file.h>
+
 #include "program/app.h"
 #include "program/progress.h"
 #include "program/standard_streams.h"
@@ -47,13 +49,14 @@ void take_scene(const LoopArguments& arguments, RunOptions& options) {
 
 void add_loop_options(Verb& verb, LoopArguments& arguments, const std::string& scene_is) {
   RunOptions& options = arguments.options;
-  verb.add_option(
+  verb.add_uri(
       "--device", arguments.device,
-      "Device URI; 'kerf devices' lists them (default: the scene's, else " + options.device_uri + ")");
+      "Device URI, or its name in bench.toml; 'kerf devices' lists them (default: the scene's, else " +
+          options.device_uri + ")");
   verb.add_option("--scene", arguments.scene, scene_is);
-  verb.add_option("--sensor", options.sensor_uri,
-                  "URI of a force sensor beside the device, or alone with --device none: "
-                  "u6:0?calibration=FILE.toml, net-ft:HOST");
+  verb.add_uri("--sensor", options.sensor_uri,
+               "URI or name of a force sensor beside the device, or alone with --device none: "
+               "u6:0?calibration=FILE.toml, net-ft:HOST");
   verb.add_option("--seconds", arguments.seconds,
                   fmt::format("Duration [s] (default: the scene's, else {:g})", options.seconds))
       .within(0.01, 1e6);
@@ -77,6 +80,7 @@ RunOptions run_options(const LoopArguments& arguments) {
   RunOptions options = arguments.options;
   if (!arguments.device.empty()) options.device_uri = arguments.device;
   if (!arguments.scene.empty()) take_scene(arguments, options);
+  options.sensor_uri = drivers::sensor_beside(options.device_uri, options.sensor_uri);
   if (arguments.seconds) options.seconds = *arguments.seconds;
   for (const std::string& change : arguments.changes) options.changes.push_back(parse_change(change));
   options.warn = warn;

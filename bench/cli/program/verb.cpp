@@ -7,6 +7,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include <kerf/drivers/bench_file.h>
+
 #include "laws/plugin_laws.h"
 #include "program/app.h"
 #include "program/import_on_the_way.h"
@@ -92,6 +94,11 @@ template Option Verb::add_option(const std::string&, std::size_t&, const std::st
 template Option Verb::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 template Option Verb::add_option(const std::string&, std::vector<double>&, const std::string&);
 template Option Verb::add_option(const std::string&, std::optional<double>&, const std::string&);
+
+Option Verb::add_uri(const std::string& name, std::string& variable, const std::string& description) {
+  before_->push_back([&variable] { variable = drivers::named_uri(variable); });
+  return add_option(name, variable, description);
+}
 
 Option Verb::add_flag(const std::string& name, bool& variable, const std::string& description) {
   return Option(*verb_.add_flag(name, variable, description));

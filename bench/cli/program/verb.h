@@ -52,6 +52,9 @@ class Verb {
   /// The variable has to live until the verb has run.
   template <typename Value>
   Option add_option(const std::string& name, Value& variable, const std::string& description);
+  /// An option that names a device or a sensor by URI, or by its name in the bench file, in whose place its
+  /// URI is put before the verb's action runs.
+  Option add_uri(const std::string& name, std::string& variable, const std::string& description);
   Option add_flag(const std::string& name, bool& variable, const std::string& description);
   /// Adds --plugin: laws of shared objects, which are loaded before the verb's action runs.
   Verb& takes_laws(Context& context);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <kerf/drivers/bench_file.h>
+
 #include "host/realtime.h"
 #include "laws/placement.h"
 #include "laws/plugin_mention.h"
@@ -18,7 +20,6 @@ constexpr std::chrono::microseconds drain_period(16'667);
 
 RunOptions run_options(const LiveOptions& options) {
   RunOptions run;
-  run.sensor_uri = options.sensor_uri;
   run.seconds = longest_s;
   run.rate_hz = options.rate_hz;
   run.ramp_s = options.ramp_s;
@@ -29,6 +30,7 @@ RunOptions run_options(const LiveOptions& options) {
   } else if (options.scene) {
     run.device_uri = device_of(*options.scene);
   }
+  run.sensor_uri = drivers::sensor_beside(run.device_uri, options.sensor_uri);
   if (!run.scene && run.device_uri.starts_with("sim:scissors")) run.scene = default_scene();
   return run;
 }

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <kerf/drivers/bench_file.h>
+
 #include "http/routes.h"
 #include "loop/without_signals.h"
 #include "protocol/protocol.h"
@@ -150,7 +152,7 @@ void SessionHost::run(Running& running) {
     record_apparatus(running.store_, running.confirmed_);
     SessionRunOptions options;
     options.loop.device_uri = running.order_.device_uri;
-    options.loop.sensor_uri = running.order_.sensor_uri;
+    options.loop.sensor_uri = drivers::sensor_beside(running.order_.device_uri, running.order_.sensor_uri);
     options.loop.warn = [this](std::string_view line) {
       const std::lock_guard lock(mutex_);
       progress_.warnings.emplace_back(line);

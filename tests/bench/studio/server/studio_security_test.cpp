@@ -293,6 +293,30 @@ TEST_F(StudioUnderAttack, LetsNoDriverOpenAMachineOrAPort) {
   }
 }
 
+// What a name of the bench file leads to is treated as if the page had named it, and so is the sensor beside
+// it.
+TEST_F(StudioUnderAttack, LetsNoNameOfTheBenchLeadToAMachineAPortOrAFile) {
+  const std::string file = (folder_ / "bench.toml").string();
+  test::write_text(file,
+                   "[device.arm]\nuri = 'woody-v4:/dev/tty'\n[device.mine]\nuri = 'plugin:mine.so'\n"
+                   "[device.hand]\nuri = 'sim:pose6'\nsensor = 'wrist'\n[device.plain]\nuri = 'sim:pose6'\n"
+                   "[sensor.wrist]\nuri = 'net-ft:192.168.1.1'\n[sensor.cell]\nuri = 'u6:0'\n"
+                   "options = { calibration = '/etc/passwd' }\n");
+  setenv("KERF_BENCH", file.c_str(), 1);
+  for (const char* const name : {"arm", "mine", "hand", "wrist", "cell", "arm?calibrate=on"}) {
+    for (const char* const field : {"device", "sensor"}) {
+      const std::string answer = post("/api/live/start", fmt::format(R"({{"{}": "{}"}})", field, name));
+      EXPECT_EQ(status_of(answer), "400") << name;
+      EXPECT_THAT(body_of(answer), HasSubstr("in the bench file it leads to")) << name;
+    }
+  }
+  // Nor by what stands for a name within a URI: the sensor of `hand` is not opened.
+  EXPECT_EQ(status_of(post("/api/live/start", R"({"device": "sim:pose6?bench.toml=hand"})")), "200");
+  EXPECT_EQ(status_of(post("/api/live/stop", "{}")), "200");
+  EXPECT_EQ(status_of(post("/api/live/start", R"({"device": "plain"})")), "200");
+  unsetenv("KERF_BENCH");
+}
+
 TEST_F(StudioUnderAttack, RefusesABodyOfAGigabyteBeforeItComes) {
   start_the_loop();
   expect_the_loop_goes_on();  // its memory is locked by then, which counts as in use
