@@ -8,6 +8,8 @@
 namespace kerf::host {
 
 extern const kerf_device_v1 force_dimension_device;
+extern const kerf_device_v1 hapkit_device;
+extern const kerf_device_v1 hapkit_stream_device;
 extern const kerf_device_v1 inverse3_device;
 extern const kerf_device_v1 open_haptics_device;
 extern const kerf_device_v1 two_diy_device;
@@ -22,7 +24,8 @@ extern const kerf_device_v1 woody_v4_device;
 /// Kerf's own devices that live in this process, by their name: "2diy", "dhd", "inverse3", ...; else nothing.
 [[nodiscard]] inline const kerf_device_v1* built_in(std::string_view name) noexcept {
   for (const kerf_device_v1* const one :
-       {&force_dimension_device, &inverse3_device, &open_haptics_device, &two_diy_device, &woody_v4_device}) {
+       {&force_dimension_device, &hapkit_device, &hapkit_stream_device, &inverse3_device,
+        &open_haptics_device, &two_diy_device, &woody_v4_device}) {
     if (name == one->name) return one;
   }
   return nullptr;

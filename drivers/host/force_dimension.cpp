@@ -75,6 +75,7 @@ struct ForceDimensionOptions {
 class ForceDimension {
  public:
   static constexpr const char* name = "dhd";
+  static constexpr double open_s = 30.0;  // it may have to find its stops
   static constexpr std::array<const char*, 8> options{"number", "library", "most_force", "rate",
                                                       "brakes", "gravity", "calibrate",  nullptr};
   static std::unique_ptr<ForceDimension> open(UriOptions& given) {
@@ -313,6 +314,6 @@ std::string look_for_force_dimension() {
 }
 
 const kerf_device_v1 force_dimension_device =
-    as_plugin<ForceDimension>("Force Dimension's devices and Falcon by DHD", 30.0);
+    as_plugin<ForceDimension>("Force Dimension's devices and Falcon by DHD");
 
 }  // namespace kerf::host

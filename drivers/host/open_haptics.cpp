@@ -60,6 +60,7 @@ struct Given {
 class OpenHaptics {
  public:
   static constexpr const char* name = "openhaptics";
+  static constexpr double open_s = 10.0;
   static constexpr std::array<const char*, 4> options{"device", "library", "most_force", nullptr};
   static std::unique_ptr<OpenHaptics> open(UriOptions& given) {
     VendorLibrary library = find(given.text("library").value_or("libHD.so"));
@@ -391,6 +392,6 @@ std::string look_for_open_haptics() {
 }
 
 const kerf_device_v1 open_haptics_device =
-    as_plugin<OpenHaptics>("Touch, Omni, Desktop, Premium by OpenHaptics", 10.0);
+    as_plugin<OpenHaptics>("Touch, Omni, Desktop, Premium by OpenHaptics");
 
 }  // namespace kerf::host

@@ -64,17 +64,44 @@ inline void add_channel(kerf_device_facts_v1& facts, std::string_view name, std:
   return drivers::UriOptions(std::move(given));
 }
 
-/// Of a class with describe(facts), read(reading), write(force), release(), trouble(), its name, the options
-/// of its URI, and open(UriOptions&), which throws what is in the way and takes `open_s` at most.
 template <typename Own>
-constexpr kerf_device_v1 as_plugin(const char* about, double open_s = 0.0) noexcept {
+concept TakesForce = requires(Own& own, const double* force) {
+  own.write(force);
+  own.release();
+};
+
+template <typename Own>
+constexpr double open_s_of() noexcept {
+  if constexpr (requires { Own::open_s; }) return Own::open_s;
+  return 0.0;
+}
+template <typename Own>
+constexpr decltype(kerf_device_v1::write) write_of() noexcept {
+  if constexpr (!TakesForce<Own>)
+    return nullptr;
+  else
+    return [](void* device, const double* force) { return static_cast<Own*>(device)->write(force); };
+}
+template <typename Own>
+constexpr decltype(kerf_device_v1::release) release_of() noexcept {
+  if constexpr (!TakesForce<Own>)
+    return nullptr;
+  else
+    return [](void* device) { static_cast<Own*>(device)->release(); };
+}
+
+/// Of a class with describe(facts), read(reading), trouble(), its name, the options of its URI, and
+/// open(UriOptions&), which throws what is in the way; write(force) and release() where it takes a force;
+/// open_s, the longest time of open(), where that is above 2 s.
+template <typename Own>
+constexpr kerf_device_v1 as_plugin(const char* about) noexcept {
   return {
       .abi = KERF_DEVICE_ABI,
       .size = sizeof(kerf_device_v1),
       .name = Own::name,
       .about = about,
       .options = Own::options.data(),
-      .open_s = open_s,
+      .open_s = open_s_of<Own>(),
       .open = [](const char* const* values, char* why, std::size_t why_size) -> void* {
         try {
           drivers::UriOptions given = options_of(Own::name, Own::options, values);
@@ -91,8 +118,8 @@ constexpr kerf_device_v1 as_plugin(const char* about, double open_s = 0.0) noexc
                      kerf_device_facts_v1* facts) { static_cast<Own*>(device)->describe(*facts); },
       .read = [](void* device,
                  kerf_device_reading_v1* reading) { return static_cast<Own*>(device)->read(*reading); },
-      .write = [](void* device, const double* force) { return static_cast<Own*>(device)->write(force); },
-      .release = [](void* device) { static_cast<Own*>(device)->release(); },
+      .write = write_of<Own>(),
+      .release = release_of<Own>(),
       .close = [](void* device) { delete static_cast<Own*>(device); },  // NOLINT(*-owning-memory): of open()
       .trouble = [](void* device) { return static_cast<Own*>(device)->trouble(); }};
 }

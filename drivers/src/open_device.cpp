@@ -104,22 +104,23 @@ struct Scheme {
   Follows follows;
   std::unique_ptr<Device> (*open)(const Wanted&);
 };
-constexpr std::array<Scheme, 16> schemes{{{"falcon", Follows::number, open_falcon},
-                                          {"spacemouse", Follows::number, open_spacemouse},
-                                          {"hid", Follows::product, open_hid},
-                                          {"u6", Follows::number, open_u6},
-                                          {"net-ft", Follows::host, open_box<net_ft::Box::ati>},
-                                          {"onrobot", Follows::host, open_box<net_ft::Box::onrobot>},
-                                          {"t7", Follows::host, at_place<open_t7>},
-                                          {"bota", Follows::port, at_place<open_bota>},
-                                          {"optoforce", Follows::port, at_place<open_optoforce>},
-                                          {"ft300", Follows::port, at_place<open_ft300>},
-                                          {"woody-v4", Follows::port, in_host<open_woody_v4>},
-                                          {"2diy", Follows::port, in_host<open_two_diy>},
-                                          {"inverse3", Follows::host, in_host<open_inverse3>},
-                                          {"openhaptics", Follows::name, in_host<open_openhaptics>},
-                                          {"dhd", Follows::number, in_host<open_dhd>},
-                                          {"plugin", Follows::file, in_host<open_plugin>}}};
+constexpr auto schemes = std::to_array<Scheme>({{"falcon", Follows::number, open_falcon},
+                                                {"spacemouse", Follows::number, open_spacemouse},
+                                                {"hid", Follows::product, open_hid},
+                                                {"u6", Follows::number, open_u6},
+                                                {"net-ft", Follows::host, open_box<net_ft::Box::ati>},
+                                                {"onrobot", Follows::host, open_box<net_ft::Box::onrobot>},
+                                                {"t7", Follows::host, at_place<open_t7>},
+                                                {"bota", Follows::port, at_place<open_bota>},
+                                                {"optoforce", Follows::port, at_place<open_optoforce>},
+                                                {"ft300", Follows::port, at_place<open_ft300>},
+                                                {"woody-v4", Follows::port, in_host<open_woody_v4>},
+                                                {"2diy", Follows::port, in_host<open_two_diy>},
+                                                {"inverse3", Follows::host, in_host<open_inverse3>},
+                                                {"openhaptics", Follows::name, in_host<open_openhaptics>},
+                                                {"dhd", Follows::number, in_host<open_dhd>},
+                                                {"hapkit", Follows::port, in_host<open_hapkit>},
+                                                {"plugin", Follows::file, in_host<open_plugin>}});
 
 std::optional<std::size_t> number_in(std::string_view digits) {
   std::size_t number = 0;

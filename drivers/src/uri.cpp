@@ -33,7 +33,8 @@ Uri parse_uri(std::string_view text) {
 }
 
 bool names_a_file(std::string_view device, std::string_view option) noexcept {
-  return option == "calibration" || option == "firmware" || (option == "model" && device == "sim:axis");
+  if (option == "firmware") return !device.starts_with("hapkit:");
+  return option == "calibration" || (option == "model" && device == "sim:axis");
 }
 
 std::string to_text(const Uri& uri) {
@@ -46,13 +47,14 @@ std::string to_text(const Uri& uri) {
 }
 
 bool names_a_path(std::string_view device) noexcept {
-  constexpr std::array schemes{"bota:", "optoforce:", "ft300:", "woody-v4:", "2diy:", "plugin:"};
+  constexpr std::array schemes{"bota:", "optoforce:", "ft300:", "woody-v4:", "2diy:", "hapkit:", "plugin:"};
   return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
 }
 
 bool names_a_place(std::string_view device) noexcept {
-  constexpr std::array schemes{"net-ft:",   "onrobot:", "t7:",       "bota:",        "optoforce:", "ft300:",
-                               "woody-v4:", "2diy:",    "inverse3:", "openhaptics:", "dhd:",       "plugin:"};
+  constexpr std::array schemes{
+      "net-ft:", "onrobot:",  "t7:",     "bota:",        "optoforce:", "ft300:", "woody-v4:",
+      "2diy:",   "inverse3:", "hapkit:", "openhaptics:", "dhd:",       "plugin:"};
   return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
 }
 

@@ -11,6 +11,7 @@
 
 #include <kerf/drivers/usb/io_thread.h>
 
+#include "serial/hapkit.h"
 #include "serial/two_diy.h"
 #include "serial/woody_v4.h"
 #include "trace.h"
@@ -89,7 +90,7 @@ void EmulatedSerialDevice::set_power(bool on) {
     push(Eigen::Vector3d::Zero(), "no power");
     return;
   }
-  stream_start_ns_ = now_ns_;
+  power_ns_ = now_ns_;
   frames_ = 0;
   begin_anew();
 }
@@ -97,13 +98,14 @@ void EmulatedSerialDevice::set_power(bool on) {
 void EmulatedSerialDevice::listen() {
   std::array<std::uint8_t, 512> bytes{};
   const std::ptrdiff_t size = port_.receive(bytes);
-  if (size > 0) hear(std::span(bytes).first(static_cast<std::size_t>(size)));
+  if (size > 0 && now_ns_ >= power_ns_ + boot_ns_)
+    hear(std::span(bytes).first(static_cast<std::size_t>(size)));
 }
 
 void EmulatedSerialDevice::send_due_frames() {
   if (rate_hz_ <= 0.0) return;
   const auto due = [&] {
-    return stream_start_ns_ + std::llround(1e9 * static_cast<double>(frames_ + 1) / rate_hz_);
+    return power_ns_ + boot_ns_ + std::llround(1e9 * static_cast<double>(frames_ + 1) / rate_hz_);
   };
   while (due() <= now_ns_) {
     ++frames_;
@@ -118,7 +120,7 @@ void EmulatedSerialDevice::run(const std::atomic<bool>& stop, double seconds) {
     now_ns_ = now_ns();
     if (seconds > 0.0 && 1e-9 * static_cast<double>(now_ns_ - began_ns_) >= seconds) return;
     const bool is_open = port_.is_open();
-    if (is_open && !world_start_ns_) world_start_ns_ = stream_start_ns_ = fed_ns_ = now_ns_;
+    if (is_open && !world_start_ns_) world_start_ns_ = power_ns_ = fed_ns_ = now_ns_;
     if (world_start_ns_) {
       if (unplugged_at_s && world_s() >= *unplugged_at_s) {
         port_.pull_out();
@@ -213,6 +215,8 @@ std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector
   if (uri.name == "2diy") return EmulatedTwoDiy::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   if (uri.name == "woody-v4")
     return EmulatedWoodyV4::make(drivers::UriOptions(std::move(uri)), std::move(faults));
+  if (uri.name == "hapkit")
+    return EmulatedHapkit::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   if (uri.name == "slider")
     return EmulatedSlider::make(drivers::UriOptions(std::move(uri)), std::move(faults));
   return nullptr;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -56,6 +57,8 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   /// It has power again.
   virtual void begin_anew() = 0;
 
+  /// Whenever it gets power it says and hears nothing for so long.
+  void boot_for(double seconds) noexcept { boot_ns_ = std::llround(1e9 * seconds); }
   /// Of frames that it sends by itself.
   void stream(double rate_hz) noexcept { rate_hz_ = rate_hz; }
   /// After so long without feed_watchdog() the force is zero; 0: it is held for ever.
@@ -91,7 +94,8 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   std::optional<std::int64_t> world_start_ns_;  ///< its first opening
   bool has_power_ = true;
   double rate_hz_ = 0.0;
-  std::int64_t stream_start_ns_ = 0;
+  std::int64_t boot_ns_ = 0;
+  std::int64_t power_ns_ = 0;  ///< since when it has power
   std::uint64_t frames_ = 0;
   double watchdog_s_ = 0.0;
   std::int64_t fed_ns_ = 0;
@@ -100,7 +104,7 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   std::uint64_t trips_ = 0;  ///< of the watchdog
 };
 
-/// A haptic device of that name: `slider`, `woody-v4`, `2diy`; nothing for another name.
+/// A haptic device of that name: `slider`, `woody-v4`, `2diy`, `hapkit`; nothing for another name.
 /// @throws drivers::DeviceError for an option that there is not.
 [[nodiscard]] std::unique_ptr<EmulatedOnLine> make_serial_device(drivers::Uri uri, std::vector<Fault> faults);
 

@@ -200,4 +200,15 @@ std::unique_ptr<Device> open_inverse3(std::string_view uri, std::string_view hos
   return open_built_in(uri, {"inverse3", "address", host}, parsed, surroundings);
 }
 
+std::unique_ptr<Device> open_hapkit(std::string_view uri, std::string_view port, const Uri& parsed,
+                                    const Surroundings& surroundings) {
+  Uri others = parsed;
+  const auto given = others.options.extract("firmware");
+  const std::string firmware = given ? given.mapped() : "kerf";
+  if (firmware != "kerf" && firmware != "stream")
+    throw DeviceError(fmt::format("{}: firmware={}: expected kerf or stream", uri, firmware));
+  return open_built_in(uri, {firmware == "kerf" ? "hapkit" : "hapkit-stream", "port", port}, others,
+                       surroundings);
+}
+
 }  // namespace kerf::drivers

@@ -126,4 +126,14 @@ struct PluginDevice {
 [[nodiscard]] std::unique_ptr<Device> open_dhd(std::string_view uri, std::string_view number,
                                                const Uri& parsed, const Surroundings& surroundings);
 
+/// `hapkit:PORT`: a Hapkit, in the same process too, one axis `x` along the arc of its handle. With
+/// firmware=kerf (the default) Kerf's own sketch, firmware/hapkit: 1000 frames a second, a force 20 ms after
+/// which the board lets go by itself. x is 0 where it is opened. Channels: `sensor` and `flips` (counts and
+/// half turns of the sensor), `duty` of the motor, `board_status`. Options, as published sketches have them:
+/// handle, pulley, sector (radii), torque (0.03Nm, at full duty), per_count (0.0148deg), flip (923), motor (1
+/// or -1). With firmware=stream the 'Prm' lines of bgromov/Hapkit3.0, 33 a second, which take no force;
+/// channels `acceleration` [m/s²], `button`. @throws DeviceError
+[[nodiscard]] std::unique_ptr<Device> open_hapkit(std::string_view uri, std::string_view port,
+                                                  const Uri& parsed, const Surroundings& surroundings);
+
 }  // namespace kerf::drivers

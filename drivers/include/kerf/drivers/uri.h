@@ -17,7 +17,8 @@ struct Uri {
 };
 
 /// Whether the value of an option is the path of a file that the driver of a device opens: `calibration` and
-/// `firmware` of any, `model` of sim:axis. Whoever takes a URI from outside has to look at these.
+/// `firmware` of any (but of hapkit:, where it is a word), `model` of sim:axis. Whoever takes a URI from
+/// outside has to look at these.
 [[nodiscard]] bool names_a_file(std::string_view device, std::string_view option) noexcept;
 
 /// Whether a device is named by a machine of the network, a port of this one, a plug-in or a library of its
@@ -38,8 +39,8 @@ class UriOptions {
   explicit UriOptions(Uri uri) : uri_(std::move(uri)) {}
 
   /// A number with its unit behind it ("40deg", "1.2s"), in SI; `standard` if it is not given.
-  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/s", "N/m", "Ns/m", "Hz", "ticks", "A", "1"; what is
-  /// asked for in m, s or N may also stand in mm, ms or mN.
+  /// `unit` is one of "deg", "m", "s", "kg", "N", "N/s", "N/m", "Ns/m", "Nm", "Hz", "ticks", "A", "1"; what
+  /// is asked for in m, s or N may also stand in mm, ms or mN.
   /// @throws DeviceError if it is not such a number or not in [lower, upper], both in SI.
   struct Quantity {
     std::string_view unit;
