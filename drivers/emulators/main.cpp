@@ -166,7 +166,7 @@ int main(int count, char** texts) {
       "in the\n"
       "network, on loopback, or a sensor or device on a serial line, on a pseudo-terminal.\n\n"
       "Devices: falcon, woody, u6, spacemouse; net-ft, onrobot, t7, inverse3; bota, optoforce, ft300,\n"
-      "woody-v4, 2diy, and the toys gauge, slider; options stand behind a question mark, as in\n"
+      "woody-v4, 2diy, hapkit, and the toys gauge, slider; options stand behind a question mark, as in\n"
       "docs/devices.md.\n"
       "Example, as root: modprobe vhci-hcd && kerf-emulate falcon --attach");
   app.add_option("device", arguments.device, "Device, with its options: 'woody?generation=v1'")->required();

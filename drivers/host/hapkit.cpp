@@ -77,7 +77,8 @@ class Hapkit {
     facts.count_modulus = 65536;
     facts.rate_hz = 1000.0;
     facts.jitter_s = 1e-3;
-    tell(facts.model, "Hapkit (Kerf's sketch)");
+    // Part of it, so that no probe of one is taken for one of the other.
+    tell(facts.model, made_.motor > 0.0 ? "Hapkit (Kerf's sketch)" : "Hapkit (Kerf's sketch, motor -1)");
     tell(facts.about, "Hapkit with Kerf's own sketch, 1 axis with force; 1 kHz");
     const double reach_m = reach_rad * made_.handle_m;
     add_axis(facts, {"x", made_.step_m(), -reach_m, reach_m, margin * made_.full_force_n()});

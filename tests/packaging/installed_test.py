@@ -79,7 +79,7 @@ class Installed(unittest.TestCase):
         for name in ["man/man1/kerf.1.gz", "man/man1/kerf-session-new.1.gz", "man/man1/kerf-emulate.1.gz",
                      "bash-completion/completions/kerf", "zsh/site-functions/_kerf", "fish/vendor_completions.d/kerf.fish"]:
             self.assertTrue((self.prefix / "share" / name).is_file(), name)
-        for name in ["docs/devices.md", "docs/charts.md", "drivers/README.md", "examples/blade.law.toml", "README.md"]:
+        for name in ["docs/devices.md", "docs/charts.md", "drivers/README.md", "firmware/hapkit/hapkit.ino", "examples/blade.law.toml", "README.md"]:
             self.assertTrue((documents / name).is_file(), name)
         self.assertTrue((self.prefix / "lib/udev/rules.d/70-kerf.rules").is_file())
 
