@@ -129,7 +129,7 @@ void EmulatedSerialDevice::run(const std::atomic<bool>& stop, double seconds) {
       set_power(!faults_.is_without_power(world_s()));
       tip_.run_until(world_s());
       if (has_power_) moved();
-      if (has_power_ && is_open) listen();
+      if (has_power_) listen();  // a host may have closed since it wrote
       if (has_power_) send_due_frames();
       const bool is_late = watchdog_s_ > 0.0 && now_ns_ - fed_ns_ > std::llround(1e9 * watchdog_s_);
       if (is_late && !tip_.force().isZero()) {

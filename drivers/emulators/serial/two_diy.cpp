@@ -75,6 +75,10 @@ void EmulatedTwoDiy::moved() {
 
 void EmulatedTwoDiy::begin_anew() {
   heard_.clear();
+  forget();
+}
+
+void EmulatedTwoDiy::forget() {
   torque_n_m_ = {};
   is_set_up_ = false;
 }
@@ -94,8 +98,8 @@ bool EmulatedTwoDiy::take_message() {
   };
   switch (heard_[0]) {
     case 0:
-      begin_anew();
-      return false;
+      forget();  // what stands behind it is the next order
+      return done(2);
     case 1: {
       constexpr std::size_t size = 2 + 3 + 3 + 2 + 16;  // both motors, both encoders, no pins
       if (heard_.size() < size) return false;

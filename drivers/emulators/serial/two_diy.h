@@ -35,6 +35,7 @@ class EmulatedTwoDiy final : public EmulatedSerialDevice {
   void hear(std::span<const std::uint8_t> bytes) override;
   void moved() override;
   void begin_anew() override;
+  void forget();
   [[nodiscard]] bool take_message();
   void answer();
   [[nodiscard]] Eigen::Vector2d angles_deg() const;

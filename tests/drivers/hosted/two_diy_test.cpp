@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -69,6 +70,22 @@ bool feels(Device& device, const Axes& force, const Condition& condition) {
     (void)device.write(force);
     return device.read(0.0, sample) == Status::ok && condition(sample);
   });
+}
+
+// The firmware takes byte by byte, however many have come at once.
+TEST(TwoDiyBoard, TakesWhatStandsBehindItsReset) {
+  const RunningSerialDevice running("2diy?sway=0mm");
+  const auto& version = *two_diy::find("v3.1");
+  std::vector<std::uint8_t> orders;
+  for (const auto& order : {two_diy::reset(), two_diy::set_up(version), two_diy::torques(version, {})})
+    std::ranges::copy(order, std::back_inserter(orders));
+  const int port = open(running.path().c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+  ASSERT_EQ(write(port, orders.data(), orders.size()), static_cast<ssize_t>(orders.size()));
+  std::array<std::uint8_t, 64> answer{};
+  ssize_t size = 0;
+  EXPECT_TRUE(becomes([&] { return (size = read(port, answer.data(), answer.size())) > 0; }));
+  close(port);
+  EXPECT_EQ(size, 9);
 }
 
 TEST(TwoDiy, AForceMovesTheHandleItsOwnWay) {
