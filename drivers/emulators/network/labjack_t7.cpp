@@ -32,6 +32,9 @@ constexpr unsigned flash_from = 61812;
 constexpr std::uint32_t constants_at = 0x003C4000;
 constexpr std::uint16_t said_recovered = 2941;
 constexpr std::int64_t longest_pause_ns = 2'000'000;
+constexpr unsigned registers_of_inputs = 24;  // AIN0 to AIN11
+constexpr std::uint8_t illegal_function = 1;  // of Modbus
+constexpr std::uint8_t device_failure = 4;
 
 int listen_at(const std::string& address, std::uint16_t port) {
   const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
@@ -63,6 +66,11 @@ void put16(Bytes& bytes, unsigned value) {
 
 unsigned get16(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<unsigned>(bytes[at] << 8 | bytes[at + 1]);
+}
+
+/// Of a number in two registers: the upper half at the even address.
+std::uint16_t half_of(std::uint32_t number, unsigned address) {
+  return static_cast<std::uint16_t>(address % 2 == 0 ? number >> 16U : number);
 }
 
 }  // namespace
@@ -148,14 +156,34 @@ void EmulatedT7::set_number(unsigned address, float value) {
   set_word(address, std::bit_cast<std::uint32_t>(value));
 }
 
-std::uint16_t EmulatedT7::read_register(unsigned address) {
+std::uint16_t EmulatedT7::read_register(unsigned address) const {
+  if (address < registers_of_inputs) {
+    const float volts = address / 2 % 2 == 0 ? input_v_.at(address / 4) : 0.0F;
+    return half_of(std::bit_cast<std::uint32_t>(volts), address);
+  }
   if (address >= flash_from && address < flash_from + 64) {
     const std::size_t at = (word(flash_at) - constants_at) / 4 + (address - flash_from) / 2;
-    const auto bits = std::bit_cast<std::uint32_t>(at < 4 ? static_cast<float>(constants_.at(at)) : 0.0F);
-    return static_cast<std::uint16_t>((address - flash_from) % 2 == 0 ? bits >> 16U : bits);
+    return half_of(std::bit_cast<std::uint32_t>(at < 4 ? static_cast<float>(constants_.at(at)) : 0.0F),
+                   address - flash_from);
   }
   const auto found = registers_.find(address);
   return found == registers_.end() ? std::uint16_t{0} : found->second;
+}
+
+bool EmulatedT7::read_registers(unsigned first, unsigned count, Bytes& into) const {
+  // A stream has the inputs for itself; the rest can be asked for meanwhile.
+  if (streaming_ && first < registers_of_inputs) return false;
+  for (unsigned i = 0; i < count; ++i) put16(into, read_register(first + i));
+  return true;
+}
+
+bool EmulatedT7::write_registers(unsigned first, std::span<const std::uint8_t> values) {
+  bool taken = true;
+  for (std::size_t i = 0; 2 * i < values.size(); ++i) {
+    const auto value = static_cast<std::uint16_t>(get16(values, 2 * i));
+    taken = write_register(first + static_cast<unsigned>(i), value) && taken;
+  }
+  return taken;
 }
 
 bool EmulatedT7::write_register(unsigned address, std::uint16_t value) {
@@ -212,52 +240,48 @@ void EmulatedT7::listen_to(Client& client) {
 Bytes EmulatedT7::reply_to(std::span<const std::uint8_t> request) {
   const std::uint8_t function = request[7];
   const auto asked = request.subspan(8);
+  const unsigned first = asked.size() >= 4 ? get16(asked, 0) : 0;
+  const unsigned second = asked.size() >= 4 ? get16(asked, 2) : 0;
+  measure_inputs();
   Bytes data;
-  bool taken = true;
-  if (function == 3 && asked.size() >= 4) {
-    const unsigned count = get16(asked, 2);
-    data.push_back(static_cast<std::uint8_t>(2 * count));
-    for (unsigned i = 0; i < count; ++i) put16(data, read_register(get16(asked, 0) + i));
-  } else if (function == 16 && asked.size() >= 5 && asked.size() >= 5 + 2 * get16(asked, 2)) {
-    for (unsigned i = 0; i < get16(asked, 2); ++i) {
-      const auto value = static_cast<std::uint16_t>(get16(asked, 5 + 2 * std::size_t{i}));
-      taken = write_register(get16(asked, 0) + i, value) && taken;
-    }
+  std::uint8_t error = 0;
+  if ((function == 3 || function == 4) && asked.size() >= 4) {  // to a T7 the same
+    data.push_back(static_cast<std::uint8_t>(2 * second));
+    if (!read_registers(first, second, data)) error = device_failure;
+  } else if (function == 6 && asked.size() >= 4) {
+    if (!write_register(first, static_cast<std::uint16_t>(second))) error = device_failure;
+    data.assign(asked.begin(), asked.begin() + 4);
+  } else if (function == 16 && asked.size() >= 5 && asked.size() >= 5 + 2 * std::size_t{second}) {
+    if (!write_registers(first, asked.subspan(5, 2 * std::size_t{second}))) error = device_failure;
     data.assign(asked.begin(), asked.begin() + 4);
   } else if (function == 76) {
-    data = feedback(asked);
+    if (!feedback(asked, data)) error = device_failure;
   } else {
-    taken = false;
+    error = illegal_function;
   }
-  if (!taken) data = {4};
+  if (error != 0) data = {error};
   Bytes reply(request.begin(), request.begin() + 4);
   put16(reply, static_cast<unsigned>(2 + data.size()));
   reply.push_back(request[6]);
-  reply.push_back(taken ? function : static_cast<std::uint8_t>(function | 0x80U));
+  reply.push_back(error == 0 ? function : static_cast<std::uint8_t>(function | 0x80U));
   reply.insert(reply.end(), data.begin(), data.end());
   return reply;
 }
 
 /// Several accesses at once: 0 reads, 1 writes; address, how many registers.
-Bytes EmulatedT7::feedback(std::span<const std::uint8_t> accesses) {
-  Bytes data;
+bool EmulatedT7::feedback(std::span<const std::uint8_t> accesses, Bytes& data) {
   while (accesses.size() >= 4) {
     const bool writes = accesses[0] == 1;
-    const unsigned address = get16(accesses, 1);
-    const std::size_t count = accesses[3];
+    const unsigned first = get16(accesses, 1);
+    const unsigned count = accesses[3];
+    const std::size_t size = writes ? 2 * std::size_t{count} : 0;
     accesses = accesses.subspan(4);
-    if (writes && accesses.size() < 2 * count) break;
-    for (std::size_t i = 0; i < count; ++i) {
-      const unsigned one = address + static_cast<unsigned>(i);
-      if (writes) {
-        (void)write_register(one, static_cast<std::uint16_t>(get16(accesses, 2 * i)));
-      } else {
-        put16(data, read_register(one));
-      }
-    }
-    if (writes) accesses = accesses.subspan(2 * count);
+    if (accesses.size() < size) return false;
+    if (!(writes ? write_registers(first, accesses.first(size)) : read_registers(first, count, data)))
+      return false;
+    accesses = accesses.subspan(size);
   }
-  return data;
+  return true;
 }
 
 double EmulatedT7::world_s(std::int64_t at_ns) const noexcept {
@@ -298,6 +322,15 @@ void EmulatedT7::run(const std::atomic<bool>& stop, double seconds) {
   }
 }
 
+EmulatedT7::Vector EmulatedT7::volts_of(const std::array<double, 6>& wrench) const {
+  return to_volts_ * Eigen::Map<const Vector>(wrench.data()) + example_transducer().bias_v;
+}
+
+void EmulatedT7::measure_inputs() {
+  const Vector volts = volts_of(options_.wrench.at(world_s(now_ns())));
+  std::ranges::transform(volts, input_v_.begin(), [](double one) { return static_cast<float>(one); });
+}
+
 void EmulatedT7::send_due(std::int64_t at_ns) {
   while (streaming_ && scan_ns(scans_of_stream_ + 1) <= at_ns) send_scan(scan_ns(++scans_of_stream_));
 }
@@ -316,8 +349,7 @@ void EmulatedT7::send_scan(std::int64_t taken_ns) {
     ++left_out_;
     return;
   }
-  const Eigen::Matrix<double, 6, 1> volts =
-      to_volts_ * Eigen::Map<const Eigen::Matrix<double, 6, 1>>(acting.data()) + example_transducer().bias_v;
+  const Vector volts = volts_of(acting);
   Bytes packet;
   put16(packet, ++transaction_);
   put16(packet, 0);

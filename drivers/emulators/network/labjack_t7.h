@@ -23,8 +23,9 @@
 namespace kerf::emulators {
 
 /// A LabJack T7 with the transducer of EmulatedU6 on AIN0/1 to AIN10/11, on which a SwayingWrench acts from
-/// the first start of a stream on. It has registers by Modbus TCP (functions 3, 16 and 76) and a stream at a
-/// port of its own.
+/// the first start of a stream on. It has registers by Modbus TCP (functions 3, 4, 6, 16 and 76) and a stream
+/// at a port of its own. Where no stream runs, AIN0, AIN2 to AIN10 are the volts of the transducer, finer
+/// than a stream's codes and without noise; while one runs they are refused, as its maker says.
 ///
 /// Options: port (502), stream_port (702), address (127.0.0.1); force (8N), torque (0.4Nm), noise (0, codes);
 /// trim (0ppm): by how much its constants differ from the nominal ones; drift (0ppm); serial; trace=FILE.csv:
@@ -59,6 +60,7 @@ class EmulatedT7 {
   [[nodiscard]] std::string tell() const;
 
  private:
+  using Vector = Eigen::Matrix<double, 6, 1>;
   struct Client {
     int descriptor = -1;
     Bytes heard;
@@ -67,10 +69,14 @@ class EmulatedT7 {
   void listen_to(Client& client);
   void drop_clients() noexcept;
   [[nodiscard]] Bytes reply_to(std::span<const std::uint8_t> request);
-  [[nodiscard]] Bytes feedback(std::span<const std::uint8_t> accesses);
-  [[nodiscard]] std::uint16_t read_register(unsigned address);
-  /// False for a value that it does not take.
+  // False for what it refuses.
+  [[nodiscard]] bool feedback(std::span<const std::uint8_t> accesses, Bytes& data);
+  [[nodiscard]] bool read_registers(unsigned first, unsigned count, Bytes& into) const;
+  [[nodiscard]] bool write_registers(unsigned first, std::span<const std::uint8_t> values);
   [[nodiscard]] bool write_register(unsigned address, std::uint16_t value);
+  [[nodiscard]] std::uint16_t read_register(unsigned address) const;
+  [[nodiscard]] Vector volts_of(const std::array<double, 6>& wrench) const;
+  void measure_inputs();
   [[nodiscard]] std::uint32_t word(unsigned address) const;
   [[nodiscard]] float number(unsigned address) const;
   void set_word(unsigned address, std::uint32_t value);
@@ -92,6 +98,7 @@ class EmulatedT7 {
   std::map<unsigned, std::uint16_t> registers_;
   Eigen::Matrix<double, 6, 6> to_volts_;
   std::array<double, 4> constants_{};  ///< of the range of 10 V
+  std::array<float, 6> input_v_{};     ///< AIN0/1 to AIN10/11, as last asked for one by one
   drivers::Gaussian noise_;
   std::ofstream trace_;
   std::int64_t began_ns_;

@@ -184,8 +184,9 @@ class EmulatedOptoforce final : public EmulatedSerialSensor {
   std::array<double, 6> zero_{};
 };
 
-/// An FT300: Modbus slave 9 until its stream is switched on, then frames until 50 bytes FF; `streaming=on`:
-/// as a client that has died has left it.
+/// An FT300: Modbus slave 9, which is asked for a wrench, until its stream is switched on, then frames until
+/// 50 bytes FF; `streaming=on`: as a client that has died has left it. Its accelerations, of which no source
+/// tells the unit, are 0.
 class EmulatedFt300 final : public EmulatedSerialSensor {
  public:
   EmulatedFt300(const Options& options, bool streaming, std::vector<Fault> faults)
@@ -225,7 +226,9 @@ class EmulatedFt300 final : public EmulatedSerialSensor {
     const unsigned count = static_cast<unsigned>(request[4] << 8 | request[5]);
     if (request[1] == 3 && count > 0 && count <= 125) {
       Bytes reply{9, 3, static_cast<std::uint8_t>(2 * count)};
-      for (unsigned i = 0; i < count; ++i) append_big(reply, value_of(first + i));
+      const bool asks_for_it = first < 186 && first + count > 180;
+      const auto wrench = asks_for_it ? read_out().wrench : std::array<double, 6>{};
+      for (unsigned i = 0; i < count; ++i) append_big(reply, value_of(first + i, wrench));
       say(summed(std::move(reply)));
     } else if (request[1] == 16) {
       say(summed(Bytes(request.begin(), request.begin() + 6)));
@@ -234,20 +237,26 @@ class EmulatedFt300 final : public EmulatedSerialSensor {
       say(summed({9, static_cast<std::uint8_t>(request[1] | 0x80U), 1}));
     }
   }
-  [[nodiscard]] static unsigned value_of(unsigned address) {
+  [[nodiscard]] static unsigned component_of(const std::array<double, 6>& wrench, std::size_t i) {
+    return counts_of(wrench.at(i), i < 3 ? 100.0 : 1000.0);
+  }
+  [[nodiscard]] static unsigned value_of(unsigned address, const std::array<double, 6>& wrench) {
+    constexpr unsigned year = 2020;
     constexpr const char* firmware = "FTS-0000";
     constexpr const char* serial = "EMU00001";
     const auto letters = [&](const char* text, unsigned from) {
       return static_cast<unsigned>(text[2 * (address - from)] << 8 | text[2 * (address - from) + 1]);
     };
+    if (address >= 180 && address < 186) return component_of(wrench, address - 180);
     if (address >= 500 && address < 504) return letters(firmware, 500);
     if (address >= 510 && address < 514) return letters(serial, 510);
+    if (address == 514) return year;
     return 0;
   }
   [[nodiscard]] Bytes frame(const Measured& measured) override {
     Bytes bytes{0x20, 0x4E};
     for (std::size_t i = 0; i < measured.wrench.size(); ++i)
-      append_little(bytes, counts_of(measured.wrench[i], i < 3 ? 100.0 : 1000.0), 2);
+      append_little(bytes, component_of(measured.wrench, i), 2);
     return summed(std::move(bytes));
   }
 

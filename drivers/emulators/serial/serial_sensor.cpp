@@ -82,7 +82,7 @@ void EmulatedSerialSensor::run(const std::atomic<bool>& stop, double seconds) {
       opened();
     }
     was_open_ = is_open;
-    if (has_power_ && is_open) listen(now);
+    if (has_power_) listen(now);  // a host may have closed since it wrote
     if (has_power_) send_due(now);
     line_.send_due(port_, now);
     std::int64_t next = std::min(now + between_looks_ns, line_.next_ns(now + between_looks_ns));
@@ -121,22 +121,39 @@ void EmulatedSerialSensor::send_due(std::int64_t at_ns) {
   while (streams() && frame_ns(measured_of_stream_ + 1) <= at_ns) measure(frame_ns(++measured_of_stream_));
 }
 
-void EmulatedSerialSensor::measure(std::int64_t taken_ns) {
+EmulatedSerialSensor::Measured EmulatedSerialSensor::measured_at(std::int64_t taken_ns) {
   Measured measured{.time_s = world_s(taken_ns),
                     .powered_s = 1e-9 * static_cast<double>(taken_ns - powered_ns_),
                     .number = ++number_,
                     .wrench = options_.wrench.at(world_s(taken_ns)),
                     .overloaded = faults_.is_overloaded(world_s(taken_ns))};
-  const auto acting = measured.wrench;
   for (std::size_t i = 0; i < measured.wrench.size(); ++i)
     measured.wrench[i] += options_.noise_n * (i < 3 ? 1.0 : torque_share) * noise_();
+  return measured;
+}
+
+/// The truth, without its noise.
+void EmulatedSerialSensor::note(const Measured& measured, std::int64_t taken_ns, bool leaves) {
+  if (!trace_.is_open()) return;
+  trace_ << fmt::format("{},{},{},{}\n", measured.number, taken_ns,
+                        fmt::join(options_.wrench.at(measured.time_s), ","), leaves ? 1 : 0);
+}
+
+EmulatedSerialSensor::Measured EmulatedSerialSensor::read_out() {
+  const std::int64_t taken_ns = now_ns();
+  const Measured measured = measured_at(taken_ns);
+  note(measured, taken_ns, true);
+  return measured;
+}
+
+void EmulatedSerialSensor::measure(std::int64_t taken_ns) {
+  const Measured measured = measured_at(taken_ns);
   Bytes bytes = frame(measured);
   const bool drawn = static_cast<double>(losses_() >> 11U) * 0x1p-53 < options_.loss;
   const bool dropped = faults_.due(measured.time_s) == Disturbance::drop;
   if (dropped) faults_.done(Disturbance::drop, measured.time_s);
   const bool leaves = !drawn && !dropped && !faults_.is_silent(measured.time_s);
-  if (trace_.is_open())
-    trace_ << fmt::format("{},{},{},{}\n", number_, taken_ns, fmt::join(acting, ","), leaves ? 1 : 0);
+  note(measured, taken_ns, leaves);
   ++(leaves ? sent_ : left_out_);
   if (!leaves) return;
   if (faults_.due(measured.time_s) == Disturbance::corrupt) {

@@ -47,7 +47,7 @@ class EmulatedSerialSensor : public EmulatedOnLine {
   /// Takes those of every sensor out.
   static Options parse_common(drivers::UriOptions& given);
 
-  /// What is measured in one frame.
+  /// What is measured in one frame, or one answer.
   struct Measured {
     double time_s = 0.0;     ///< from the first opening on
     double powered_s = 0.0;  ///< since it has power
@@ -65,6 +65,8 @@ class EmulatedSerialSensor : public EmulatedOnLine {
   /// It has power again.
   virtual void begin_anew() {}
 
+  /// A reading that is asked for, outside of a stream; traced as one that left.
+  [[nodiscard]] Measured read_out();
   void say(const Bytes& bytes);
   void say(const std::string& text);
   void stream(double rate_hz);
@@ -75,6 +77,8 @@ class EmulatedSerialSensor : public EmulatedOnLine {
   void listen(std::int64_t now_ns);
   void send_due(std::int64_t now_ns);
   void measure(std::int64_t taken_ns);
+  [[nodiscard]] Measured measured_at(std::int64_t taken_ns);
+  void note(const Measured& measured, std::int64_t taken_ns, bool leaves);
   void set_power(bool on, std::int64_t now_ns);
   [[nodiscard]] double world_s(std::int64_t at_ns) const noexcept;
   [[nodiscard]] std::int64_t frame_ns(std::uint64_t frame) const noexcept;
