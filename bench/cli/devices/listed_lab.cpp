@@ -40,6 +40,17 @@ void list_ports(const std::vector<drivers::AttachedPort>& ports, Context& contex
   context.say(fmt::format("    {}", modems.mend));
 }
 
+void list_libraries(const std::vector<drivers::MakerLibrary>& libraries, Context& context) {
+  context.result["libraries"] = nlohmann::ordered_json::array();
+  context.say("By libraries of their makers:");
+  for (const drivers::MakerLibrary& one : libraries) {
+    context.result["libraries"].push_back(
+        {{"uri", one.uri}, {"about", one.about}, {"found", one.found}, {"problem", one.problem}});
+    context.say(fmt::format("  {}  {}", one.uri, one.about));
+    context.say(fmt::format("    {}", one.problem.empty() ? one.found : one.problem));
+  }
+}
+
 void list_bench(const std::vector<drivers::AttachedDevice>& attached, Context& context) {
   context.result["bench"] = nullptr;
   std::optional<drivers::BenchFile> file;

@@ -13,6 +13,10 @@ struct Context;
 /// `serial_ports` and `modem_manager` of the result.
 void list_ports(const std::vector<drivers::AttachedPort>& ports, Context& context);
 
+/// Says which libraries of makers are installed, and what devices wait for them; as `libraries` of the
+/// result.
+void list_libraries(const std::vector<drivers::MakerLibrary>& libraries, Context& context);
+
 /// Says each entry of the bench file with its state, as `bench` of the result: null without a file. A file
 /// that is wrong is said, and ends nothing.
 void list_bench(const std::vector<drivers::AttachedDevice>& attached, Context& context);

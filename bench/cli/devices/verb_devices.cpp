@@ -141,6 +141,7 @@ void run_devices(Context& context) {
   if (auto inverse3 = drivers::find_inverse3()) attached.push_back(std::move(*inverse3));
   list_attached(attached, context);
   list_ports(drivers::list_serial_ports(), context);
+  list_libraries(drivers::find_maker_libraries(), context);
   list_bench(attached, context);
   list_models(context);
 }
@@ -162,6 +163,7 @@ void add_devices(CLI::App& app, Context& context) {
       "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
       "  u6:N, t7:HOST     LabJack U6, T7 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
       "  net-ft:HOST, onrobot:HOST, bota:PORT, optoforce:PORT, ft300:PORT   force sensors, by --sensor\n"
+      "  openhaptics:NAME, dhd:N   3D Systems, Force Dimension: by their makers' libraries, if installed\n"
       "  spacemouse:N      3Dconnexion, a source of trajectories\n"
       "  NAME              of a bench file, with options and frames: docs/bench-file.md\n"
       "Options, permissions and what was verified: docs/devices.md.",

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
+#include "kerf/drivers/attached_ports.h"
 #include "makers/fake_device.h"
 #include "plugin_of.h"
 #include "support/program.h"
@@ -171,6 +172,22 @@ TEST_F(ForceDimension, IsFoundWhereItsFolderIsNamed) {
   (void)unsetenv("FDSDK");  // NOLINT(concurrency-mt-unsafe)
   EXPECT_THAT(device->info().configuration, HasSubstr(place.string()));
   EXPECT_EQ(device->info().serial, "1234");
+}
+
+TEST_F(Makers, AreListedByTheirLibrariesWhichAreThereOrNot) {
+  std::filesystem::create_directories(folder_ / ".local/lib");
+  std::filesystem::copy_file(KERF_TEST_DEVICES "/libdrd.so", folder_ / ".local/lib/libdrd.so.3");
+  const char* const before = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): one thread
+  const std::string home = before == nullptr ? "/" : before;
+  set("HOME", folder_.path().string());
+  const auto libraries = find_maker_libraries();
+  set("HOME", home);
+  ASSERT_EQ(libraries.size(), 2U);
+  EXPECT_EQ(libraries[0].found, "");
+  EXPECT_THAT(libraries[0].problem, testing::StartsWith("3D Systems' OpenHaptics is not installed"));
+  EXPECT_THAT(libraries[1].found, testing::EndsWith("/.local/lib/libdrd.so.3; devices: 1"));
+  EXPECT_EQ(libraries[1].problem, "");
+  EXPECT_EQ(state_->opened, 0);
 }
 
 TEST_F(OpenHaptics, TellsWhatTheDeviceSays) {

@@ -37,6 +37,16 @@ struct AttachedPort {
     const std::string& host = "localhost", std::uint16_t port = 10001,
     std::chrono::milliseconds patience = std::chrono::milliseconds(300));
 
+/// A library of a maker, by which its devices are driven.
+struct MakerLibrary {
+  std::string uri{};    ///< "openhaptics:", "dhd:0"
+  std::string about{};  ///< what devices
+  std::string found{};  ///< where it is, and what it tells before a device is opened; empty: it is not usable
+  std::string problem{};  ///< why not, and what mends it
+};
+/// Each is loaded, in a process of its own; no device is opened.
+[[nodiscard]] std::vector<MakerLibrary> find_maker_libraries();
+
 /// What is seen of an entry of the bench file without opening it.
 struct EntryState {
   std::string state{};    ///< "there", "simulated", "not there", "no answer", "cannot be opened", "not asked"

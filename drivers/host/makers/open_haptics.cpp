@@ -15,12 +15,12 @@
 
 #include "age_limits.h"
 #include "built_in.h"
-#include "hd.h"
 #include "hosted/host_page.h"
 #include "kerf/drivers/toml_text.h"
 #include "kerf/drivers/uri.h"
+#include "makers/hd.h"
+#include "makers/vendor_library.h"
 #include "own_device.h"
-#include "vendor_library.h"
 #include "work.h"
 
 namespace kerf::host {

@@ -15,11 +15,11 @@
 #include <unistd.h>
 
 #include "built_in.h"
-#include "dhd.h"
 #include "kerf/drivers/toml_text.h"
 #include "kerf/drivers/uri.h"
+#include "makers/dhd.h"
+#include "makers/vendor_library.h"
 #include "own_device.h"
-#include "vendor_library.h"
 #include "work.h"
 
 namespace kerf::host {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "vendor_library.h"
+#include "makers/vendor_library.h"
 
 /// What is used of Force Dimension's DHD and DRD, declared from public programs that call it; nothing of the
 /// maker's is in here.

@@ -1,4 +1,4 @@
-#include "vendor_library.h"
+#include "makers/vendor_library.h"
 
 #include <stdexcept>
 

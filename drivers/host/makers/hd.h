@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "vendor_library.h"
+#include "makers/vendor_library.h"
 
 /// What is used of 3D Systems' OpenHaptics HDAPI, declared from public programs that call it; nothing of the
 /// maker's is in here.
