@@ -90,6 +90,15 @@ TEST_F(BenchNames, AreDevicesToEveryVerb) {
   EXPECT_EQ(result({"devices", "--probe", "blade"}).at("device"), "sim:scissors?seed=3");
 }
 
+// A frame is of forces, and what is calibrated are signals.
+TEST_F(BenchNames, CalibrateASensorWithoutItsFrame) {
+  const std::string loads = KERF_SOURCE_DIR "/examples/calibration/loads.toml";
+  const test::Outcome outcome = test::run_kerf({"calibrate", "wrist", "--loads", loads, "--hands-free", "1",
+                                                "--gravity", "9.81", "-o", at("found.calibration.toml")});
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
+  EXPECT_THAT(test::read_text(at("found.json")), HasSubstr("sim:sensor?calibration="));
+}
+
 TEST_F(BenchNames, ThatAreNotThereEndWithThree) {
   const test::Outcome outcome = test::run_kerf({"record", "--virtual", "--device", "leg", "-o", at("r.h5")});
   EXPECT_EQ(outcome.exit_status, 3);
