@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds short_patience{300};
-
 std::string option_of(const Uri& uri, const std::string& name, const std::string& standard) {
   const auto found = uri.options.find(name);
   return found == uri.options.end() ? standard : found->second;
@@ -63,10 +61,11 @@ EntryState at_path(std::string_view scheme, const std::string& path, const fs::p
   return {.state = is_there ? "cannot be opened" : "not there", .problem = problem};
 }
 
-EntryState in_network(std::string_view scheme, const std::string& host, const Uri& uri) {
+EntryState in_network(std::string_view scheme, const std::string& host, const Uri& uri,
+                      std::chrono::milliseconds patience) {
   try {
     if (scheme == "inverse3") {
-      const auto found = find_inverse3(host, port_option(uri, "port", 10001), short_patience);
+      const auto found = find_inverse3(host, port_option(uri, "port", 10001), patience);
       if (found) return {.state = found->problem.empty() ? "there" : "no answer", .problem = found->problem};
       return {.state = "no answer",
               .problem = fmt::format("nothing listens at port {} of {}; does its service run there? "
@@ -74,14 +73,14 @@ EntryState in_network(std::string_view scheme, const std::string& host, const Ur
                                      port_option(uri, "port", 10001), host)};
     }
     if (scheme == "t7") {
-      const ByteStream stream(address_of(host), port_option(uri, "port", 502), short_patience);
+      const ByteStream stream(address_of(host), port_option(uri, "port", 502), patience);
       return {.state = "there", .problem = {}};
     }
     if (scheme == "net-ft" && option_of(uri, "page", "on") == "on") {
       (void)http_get({.address = address_of(host),
                       .port = port_option(uri, "http", 80),
                       .target = "/netftapi2.xml",
-                      .patience = short_patience});
+                      .patience = patience});
       return {.state = "there", .problem = {}};
     }
   } catch (const std::exception& error) {
@@ -119,8 +118,8 @@ std::optional<AttachedDevice> find_inverse3(const std::string& host, std::uint16
   return found;
 }
 
-EntryState look_at(const BenchEntry& entry, const std::vector<AttachedDevice>& attached,
-                   const fs::path& root) {
+EntryState look_at(const BenchEntry& entry, const std::vector<AttachedDevice>& attached, const fs::path& root,
+                   std::chrono::milliseconds patience) {
   const Uri uri = parse_uri(entry.uri);
   const auto colon = uri.name.find(':');
   const std::string scheme = uri.name.substr(0, colon);
@@ -130,7 +129,7 @@ EntryState look_at(const BenchEntry& entry, const std::vector<AttachedDevice>& a
   for (const std::string_view usb : {"falcon", "spacemouse", "hid", "u6"}) {
     if (scheme == usb) return on_usb(uri, attached);
   }
-  return in_network(scheme, place, uri);
+  return in_network(scheme, place, uri, patience);
 }
 
 }  // namespace kerf::drivers

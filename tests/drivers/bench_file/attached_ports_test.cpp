@@ -1,5 +1,7 @@
 #include "kerf/drivers/attached_ports.h"
 
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -107,7 +109,8 @@ std::string state_of(const std::string& uri, const fs::path& root = "/nowhere") 
   const AttachedDevice falcon{.uri = "falcon:0", .about = {}, .node = {}, .problem = {}};
   const AttachedDevice forbidden{
       .uri = "hid:1234:0006?index=1", .about = {}, .node = {}, .problem = "no permission"};
-  const EntryState seen = look_at({.name = "a", .uri = uri, .sensor = {}}, {falcon, forbidden}, root);
+  const EntryState seen =
+      look_at({.name = "a", .uri = uri, .sensor = {}}, {falcon, forbidden}, root, std::chrono::seconds(10));
   return seen.state + (seen.problem.empty() ? "" : ": " + seen.problem);
 }
 
@@ -129,16 +132,27 @@ TEST_F(FakeMachine, SeesWhatOfABenchIsThere) {
   EXPECT_EQ(state_of("onrobot:127.0.0.1"), "not asked");
 }
 
+std::uint16_t port_in(const std::string& uri) {
+  return static_cast<std::uint16_t>(std::stoi(uri.substr(uri.find("port=") + 5)));
+}
+
 TEST(AttachedPorts, AsksABoxForItsPageAndAServiceForItsVersion) {
   std::string closed;
   {
     const test::RunningBox box("net-ft");
+    const test::RunningT7 t7;
+    const test::RunningInverse3 service("inverse3?version=3.5");
     EXPECT_EQ(state_of(box.uri()), "there");
+    EXPECT_EQ(state_of(t7.uri()), "there");
+    EXPECT_EQ(state_of(service.uri()), "there");
     closed = box.uri();
   }
   EXPECT_THAT(state_of(closed), HasSubstr("no answer: "));
   EXPECT_THAT(state_of("inverse3:127.0.0.1?port=1"), HasSubstr("no answer: nothing listens at port 1"));
   EXPECT_FALSE(find_inverse3("127.0.0.1", 1).has_value());
+  const test::RunningInverse3 old_service("inverse3?version=3.2");
+  EXPECT_THAT(find_inverse3("127.0.0.1", port_in(old_service.uri()), std::chrono::seconds(10)).value().about,
+              HasSubstr("3.1 to 3.4 do not tell"));
 }
 
 }  // namespace

@@ -32,10 +32,13 @@ struct AttachedPort {
 /// In the order of their names.
 [[nodiscard]] std::vector<AttachedPort> list_serial_ports(const std::filesystem::path& root = "/");
 
-/// The service of an Inverse3 at an address, if anything listens there within `patience`.
+/// How long the network is waited for: for a connection, and then for an answer.
+inline constexpr std::chrono::milliseconds network_patience{300};
+
+/// The service of an Inverse3 at an address, if anything listens there.
 [[nodiscard]] std::optional<AttachedDevice> find_inverse3(
     const std::string& host = "localhost", std::uint16_t port = 10001,
-    std::chrono::milliseconds patience = std::chrono::milliseconds(300));
+    std::chrono::milliseconds patience = network_patience);
 
 /// A library of a maker, by which its devices are driven.
 struct MakerLibrary {
@@ -52,9 +55,10 @@ struct EntryState {
   std::string state{};    ///< "there", "simulated", "not there", "no answer", "cannot be opened", "not asked"
   std::string problem{};  ///< why, and what mends it; empty: nothing is wrong
 };
-/// `attached`: of list_attached(). A machine of the network is waited for 300 ms.
+/// `attached`: of list_attached().
 [[nodiscard]] EntryState look_at(const BenchEntry& entry, const std::vector<AttachedDevice>& attached,
-                                 const std::filesystem::path& root = "/");
+                                 const std::filesystem::path& root = "/",
+                                 std::chrono::milliseconds patience = network_patience);
 
 /// Why a port cannot be opened, and how to mend that; empty: it can, as far as is seen.
 [[nodiscard]] std::string problem_of_port(const std::filesystem::path& port,
