@@ -8,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -85,17 +84,6 @@ bool imports(int socket, const Description& device) {
 
 }  // namespace
 
-Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
-  if (this == &other) return *this;
-  if (number_ >= 0) close(number_);
-  number_ = other.release();
-  return *this;
-}
-Descriptor::~Descriptor() {
-  if (number_ >= 0) close(number_);
-}
-int Descriptor::release() noexcept { return std::exchange(number_, -1); }
-
 Descriptor attach_here(const Description& device) {
   const int port = free_port();
   std::array<int, 2> ends{};
@@ -110,22 +98,6 @@ Descriptor attach_here(const Description& device) {
     fail("the kernel did not take the device at " + std::string(vhci) + "attach");
   }
   return here;
-}
-
-Descriptor listen_on(std::uint16_t port) {
-  Descriptor listening(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (listening.number() < 0) fail("socket");
-  const int yes = 1;
-  setsockopt(listening.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (bind(listening.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
-      listen(listening.number(), 4) != 0) {
-    fail("port " + std::to_string(port) + " on loopback; another --port may be free");
-  }
-  return listening;
 }
 
 Descriptor accept_import(const Descriptor& listening, const Description& device, int timeout_ms) {

@@ -24,6 +24,7 @@
 #include "network/inverse3.h"
 #include "network/labjack_t7.h"
 #include "network/net_ft.h"
+#include "network/own_port.h"
 #include "serial/serial_device.h"
 #include "serial/serial_sensor.h"
 #include "session.h"
@@ -131,7 +132,8 @@ int run(const Arguments& arguments) {
   const FaultPlan plan(std::move(faults));
   Descriptor listening;
   if (!arguments.attach) {
-    listening = listen_on(arguments.port);
+    listening =
+        open_port(Transport::connections, "127.0.0.1", arguments.port, "; another --port may be free").socket;
     std::fprintf(stderr,
                  "kerf-emulate: %s waits on 127.0.0.1:%u; attach it with 'usbip attach -r 127.0.0.1 -b %s'\n",
                  arguments.device.c_str(), arguments.port, usbip::bus_id);

@@ -18,6 +18,7 @@
 #include <kerf/drivers/usb/io_thread.h>
 
 #include "devices/held_tip.h"
+#include "network/own_port.h"
 #include "trace.h"
 
 namespace kerf::emulators {
@@ -62,7 +63,8 @@ class EmulatedInverse3::Service {
   Service(const Options& options, std::vector<Fault> faults)
       : options_(options),
         faults_(std::move(faults)),
-        acceptor_(io_, tcp::endpoint(asio::ip::make_address(options.address), options.port)),
+        acceptor_(io_, tcp::v4(),
+                  open_port(Transport::connections, options.address, options.port).socket.release()),
         tip_(tip_of(options)),
         trace_(open_trace(options.trace, "t_s,host_ns,event,fx,fy,fz,x,y,z")),
         began_ns_(now_ns()) {

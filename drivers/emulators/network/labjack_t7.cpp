@@ -4,18 +4,15 @@
 #include <bit>
 #include <cerrno>
 #include <cmath>
-#include <system_error>
 #include <utility>
 
 #include <Eigen/LU>
-#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <kerf/drivers/usb/io_thread.h>
 
@@ -35,29 +32,6 @@ constexpr std::int64_t longest_pause_ns = 2'000'000;
 constexpr unsigned registers_of_inputs = 24;  // AIN0 to AIN11
 constexpr std::uint8_t illegal_function = 1;  // of Modbus
 constexpr std::uint8_t device_failure = 4;
-
-int listen_at(const std::string& address, std::uint16_t port) {
-  const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  constexpr int on = 1;
-  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in own{};
-  own.sin_family = AF_INET;
-  own.sin_port = htons(port);
-  inet_pton(AF_INET, address.c_str(), &own.sin_addr);
-  // NOLINTNEXTLINE(*-reinterpret-cast): how sockets are asked
-  const bool bound = bind(descriptor, reinterpret_cast<const sockaddr*>(&own), sizeof own) == 0;
-  if (bound && listen(descriptor, 4) == 0) return descriptor;
-  const int error = errno;
-  close(descriptor);
-  throw std::system_error(error, std::generic_category(), fmt::format("port {} of {}", port, address));
-}
-
-std::uint16_t port_of(int descriptor) {
-  sockaddr_in own{};
-  socklen_t size = sizeof own;
-  getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size);  // NOLINT(*-reinterpret-cast)
-  return ntohs(own.sin_port);
-}
 
 void put16(Bytes& bytes, unsigned value) {
   bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
@@ -98,10 +72,8 @@ EmulatedT7::Options EmulatedT7::parse_options(drivers::Uri uri) {
 EmulatedT7::EmulatedT7(const Options& options, std::vector<Fault> faults)
     : options_(options),
       faults_(std::move(faults)),
-      listening_(listen_at(options.address, options.port)),
-      stream_listening_(listen_at(options.address, options.stream_port)),
-      port_(port_of(listening_)),
-      stream_port_(port_of(stream_listening_)),
+      own_(open_port(Transport::connections, options.address, options.port)),
+      own_stream_(open_port(Transport::connections, options.address, options.stream_port)),
       to_volts_(example_transducer().matrix.inverse()),
       noise_(1),
       began_ns_(now_ns()) {
@@ -114,16 +86,9 @@ EmulatedT7::EmulatedT7(const Options& options, std::vector<Fault> faults)
   begin_anew();
 }
 
-EmulatedT7::~EmulatedT7() {
-  drop_clients();
-  close(listening_);
-  close(stream_listening_);
-}
-
 void EmulatedT7::drop_clients() noexcept {
-  for (const Client& client : clients_) close(client.descriptor);
   clients_.clear();
-  if (stream_client_ >= 0) close(std::exchange(stream_client_, -1));
+  stream_client_.reset();
 }
 
 void EmulatedT7::begin_anew() {
@@ -204,35 +169,36 @@ bool EmulatedT7::write_register(unsigned address, std::uint16_t value) {
 }
 
 void EmulatedT7::accept_clients() {
-  for (int client = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); client >= 0;
-       client = accept4(listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK)) {
-    clients_.push_back({.descriptor = client, .heard = {}});
-  }
-  const int stream = accept4(stream_listening_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (stream < 0) return;
+  const auto next_of = [](const OwnPort& own) {
+    return processes::Descriptor(
+        accept4(own.socket.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  };
+  for (processes::Descriptor client = next_of(own_); client.number() >= 0; client = next_of(own_))
+    clients_.push_back({.socket = std::move(client), .heard = {}});
+  processes::Descriptor stream = next_of(own_stream_);
+  if (stream.number() < 0) return;
   constexpr int on = 1;
-  setsockopt(stream, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-  if (stream_client_ >= 0) close(stream_client_);
-  stream_client_ = stream;
+  setsockopt(stream.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  stream_client_ = std::move(stream);
 }
 
 void EmulatedT7::listen_to(Client& client) {
   Bytes bytes(1024);
-  const ssize_t size = recv(client.descriptor, bytes.data(), bytes.size(), 0);
+  const ssize_t size = recv(client.socket.number(), bytes.data(), bytes.size(), 0);
   if (size == 0 || (size < 0 && errno != EAGAIN)) {
-    close(std::exchange(client.descriptor, -1));
+    client.socket.reset();
     return;
   }
   if (size > 0) client.heard.insert(client.heard.end(), bytes.begin(), bytes.begin() + size);
   while (client.heard.size() >= 8) {
     const std::size_t length = 6 + get16(client.heard, 4);
     if (length < 8 || length > 1024) {
-      close(std::exchange(client.descriptor, -1));  // no Modbus
+      client.socket.reset();  // no Modbus
       return;
     }
     if (client.heard.size() < length) return;
     const Bytes reply = reply_to(std::span(client.heard).first(length));
-    (void)::send(client.descriptor, reply.data(), reply.size(), MSG_NOSIGNAL);
+    (void)::send(client.socket.number(), reply.data(), reply.size(), MSG_NOSIGNAL);
     client.heard.erase(client.heard.begin(), client.heard.begin() + static_cast<std::ptrdiff_t>(length));
   }
 }
@@ -308,15 +274,15 @@ void EmulatedT7::run(const std::atomic<bool>& stop, double seconds) {
     if (!without) {
       accept_clients();
       for (Client& client : clients_) listen_to(client);
-      std::erase_if(clients_, [](const Client& client) { return client.descriptor < 0; });
+      std::erase_if(clients_, [](const Client& client) { return client.socket.number() < 0; });
       send_due(now);
     }
     std::int64_t next = now + longest_pause_ns;
     if (streaming_) next = std::min(next, scan_ns(scans_of_stream_ + 1));
     // A request is answered at once, not after the pause.
-    std::vector<pollfd> wanted{{.fd = listening_, .events = POLLIN, .revents = 0}};
+    std::vector<pollfd> wanted{{.fd = own_.socket.number(), .events = POLLIN, .revents = 0}};
     for (const Client& client : clients_)
-      wanted.push_back({.fd = client.descriptor, .events = POLLIN, .revents = 0});
+      wanted.push_back({.fd = client.socket.number(), .events = POLLIN, .revents = 0});
     const timespec wait{.tv_sec = 0, .tv_nsec = std::max<std::int64_t>(0, next - now_ns())};
     ppoll(wanted.data(), without ? 0 : wanted.size(), &wait, nullptr);
   }
@@ -340,7 +306,7 @@ void EmulatedT7::send_scan(std::int64_t taken_ns) {
   const auto acting = options_.wrench.at(time_s);
   const bool dropped = faults_.due(time_s) == Disturbance::drop;
   if (dropped) faults_.done(Disturbance::drop, time_s);
-  const bool leaves = !dropped && !faults_.is_silent(time_s) && stream_client_ >= 0;
+  const bool leaves = !dropped && !faults_.is_silent(time_s) && stream_client_.number() >= 0;
   if (trace_.is_open())
     trace_ << fmt::format("{},{},{},{}\n", scans_of_stream_, taken_ns, fmt::join(acting, ","),
                           leaves ? 1 : 0);
@@ -368,7 +334,7 @@ void EmulatedT7::send_scan(std::int64_t taken_ns) {
     const double code = constants_[2] + above / slope + options_.noise_codes * noise_();
     put16(packet, static_cast<unsigned>(std::lround(std::clamp(code, 0.0, 65535.0))));
   }
-  (void)::send(stream_client_, packet.data(), packet.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  (void)::send(stream_client_.number(), packet.data(), packet.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 std::string EmulatedT7::tell() const { return fmt::format("{} scans sent, {} left out", sent_, lost_); }

@@ -18,6 +18,7 @@
 
 #include "emulated_device.h"
 #include "faults.h"
+#include "network/own_port.h"
 #include "swaying_wrench.h"
 
 namespace kerf::emulators {
@@ -52,17 +53,16 @@ class EmulatedT7 {
   EmulatedT7(const Options& options, std::vector<Fault> faults);
   EmulatedT7(const EmulatedT7&) = delete;
   EmulatedT7& operator=(const EmulatedT7&) = delete;
-  ~EmulatedT7();
 
-  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
-  [[nodiscard]] std::uint16_t stream_port() const noexcept { return stream_port_; }
+  [[nodiscard]] std::uint16_t port() const noexcept { return own_.number; }
+  [[nodiscard]] std::uint16_t stream_port() const noexcept { return own_stream_.number; }
   void run(const std::atomic<bool>& stop, double seconds);
   [[nodiscard]] std::string tell() const;
 
  private:
   using Vector = Eigen::Matrix<double, 6, 1>;
   struct Client {
-    int descriptor = -1;
+    processes::Descriptor socket;
     Bytes heard;
   };
   void accept_clients();
@@ -89,12 +89,10 @@ class EmulatedT7 {
 
   Options options_;
   FaultPlan faults_;
-  int listening_ = -1;
-  int stream_listening_ = -1;
-  std::uint16_t port_ = 0;
-  std::uint16_t stream_port_ = 0;
+  OwnPort own_;
+  OwnPort own_stream_;
   std::vector<Client> clients_;
-  int stream_client_ = -1;
+  processes::Descriptor stream_client_;
   std::map<unsigned, std::uint16_t> registers_;
   Eigen::Matrix<double, 6, 6> to_volts_;
   std::array<double, 4> constants_{};  ///< of the range of 10 V

@@ -1,17 +1,13 @@
 #include "network/net_ft.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <span>
-#include <system_error>
 #include <utility>
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <kerf/drivers/usb/io_thread.h>
 
@@ -35,13 +31,6 @@ double first_rate_hz(const EmulatedNetFt::Options& options) {
 
 void append(Bytes& bytes, std::uint32_t word) {
   for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes.push_back(static_cast<std::uint8_t>(word >> shift));
-}
-
-std::uint16_t free_port_of(int descriptor) {
-  sockaddr_in own{};
-  socklen_t size = sizeof own;
-  getsockname(descriptor, reinterpret_cast<sockaddr*>(&own), &size);  // NOLINT(*-reinterpret-cast)
-  return ntohs(own.sin_port);
 }
 
 /// N, or N·m, of what a unit of its page is; the names that boxes have.
@@ -89,24 +78,12 @@ EmulatedNetFt::Options EmulatedNetFt::parse_options(drivers::Uri uri) {
 EmulatedNetFt::EmulatedNetFt(const Options& options, std::vector<Fault> faults)
     : options_(options),
       faults_(std::move(faults)),
-      socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)),
+      own_(open_port(Transport::datagrams, options.address, options.port)),
       noise_(options.seed),
       losses_(options.seed),
       began_ns_(now_ns()),
       filter_(options.is_ati ? 0 : onrobot_first_filter) {
   options_.rate_hz = first_rate_hz(options_);
-  sockaddr_in own{};
-  own.sin_family = AF_INET;
-  own.sin_port = htons(options_.port);
-  inet_pton(AF_INET, options_.address.c_str(), &own.sin_addr);
-  // NOLINTNEXTLINE(*-reinterpret-cast): how sockets are asked
-  if (socket_ < 0 || bind(socket_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
-    const int error = errno;
-    if (socket_ >= 0) close(socket_);
-    throw std::system_error(error, std::generic_category(),
-                            fmt::format("UDP port {} of {}", options_.port, options_.address));
-  }
-  port_ = free_port_of(socket_);
   if (options_.is_ati) {
     pages_ = std::make_unique<Pages>(options_.address, options_.http_port);
     pages_->serve("/netftapi2.xml", [this] { return page(); });
@@ -119,7 +96,7 @@ EmulatedNetFt::EmulatedNetFt(const Options& options, std::vector<Fault> faults)
   }
 }
 
-EmulatedNetFt::~EmulatedNetFt() { close(socket_); }
+EmulatedNetFt::~EmulatedNetFt() = default;
 
 std::uint16_t EmulatedNetFt::http_port() const noexcept { return pages_ ? pages_->port() : std::uint16_t{0}; }
 
@@ -157,7 +134,8 @@ void EmulatedNetFt::run(const std::atomic<bool>& stop, double seconds) {
       if (pages_) pages_->look_after();
     }
     const std::int64_t left = std::max<std::int64_t>(0, next_event_ns(now) - now_ns());
-    pollfd wanted{.fd = socket_, .events = static_cast<short>(without ? 0 : POLLIN), .revents = 0};
+    pollfd wanted{
+        .fd = own_.socket.number(), .events = static_cast<short>(without ? 0 : POLLIN), .revents = 0};
     const timespec most{.tv_sec = 0, .tv_nsec = left};
     ppoll(&wanted, 1, &most, nullptr);
   }
@@ -172,7 +150,7 @@ void EmulatedNetFt::lose_power() {
   offsets_ = {};
   // What was asked meanwhile finds nobody.
   Bytes unread(64);
-  while (recv(socket_, unread.data(), unread.size(), 0) >= 0) {
+  while (recv(own_.socket.number(), unread.data(), unread.size(), 0) >= 0) {
   }
 }
 
@@ -181,8 +159,9 @@ void EmulatedNetFt::take_requests(std::int64_t now_ns) {
   while (true) {
     sockaddr_in from{};
     socklen_t length = sizeof from;
-    const ssize_t size = recvfrom(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&from),
-                                  &length);  // NOLINT(*-reinterpret-cast)
+    const ssize_t size =
+        recvfrom(own_.socket.number(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&from),
+                 &length);  // NOLINT(*-reinterpret-cast)
     if (size < 0) return;
     const bool marked = size == 8 && bytes[0] == 0x12 && bytes[1] == 0x34;
     if (!marked) {
@@ -327,7 +306,8 @@ void EmulatedNetFt::send_late(std::int64_t now_ns) {
   while (!late_.empty() && late_.front().due_ns <= now_ns) {
     const Bytes& bytes = late_.front().bytes;
     // Who no longer listens is not known to a box.
-    (void)sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&host_),
+    (void)sendto(own_.socket.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL,
+                 reinterpret_cast<const sockaddr*>(&host_),
                  sizeof host_);  // NOLINT(*-reinterpret-cast)
     late_.pop_front();
   }

@@ -19,6 +19,7 @@
 
 #include "emulated_device.h"
 #include "faults.h"
+#include "network/own_port.h"
 #include "swaying_wrench.h"
 
 namespace kerf::emulators {
@@ -66,7 +67,7 @@ class EmulatedNetFt {
   EmulatedNetFt& operator=(const EmulatedNetFt&) = delete;
   ~EmulatedNetFt();
 
-  [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  [[nodiscard]] std::uint16_t port() const noexcept { return own_.number; }
   [[nodiscard]] std::uint16_t http_port() const noexcept;
   /// Until `stop`, its `unplug`, or so many seconds (0: never).
   void run(const std::atomic<bool>& stop, double seconds);
@@ -105,8 +106,7 @@ class EmulatedNetFt {
 
   Options options_;
   FaultPlan faults_;
-  int socket_ = -1;
-  std::uint16_t port_ = 0;
+  OwnPort own_;
   std::unique_ptr<Pages> pages_;
   std::ofstream trace_;
   drivers::Gaussian noise_;

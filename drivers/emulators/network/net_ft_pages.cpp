@@ -1,14 +1,14 @@
 #include "network/net_ft_pages.h"
 
 #include <chrono>
-#include <system_error>
 #include <utility>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <fmt/format.h>
+
+#include "network/own_port.h"
 
 namespace kerf::emulators {
 namespace {
@@ -28,17 +28,9 @@ constexpr std::chrono::seconds patience{2};
 class EmulatedNetFt::Pages::State {
  public:
   State(const std::string& address, std::uint16_t port) : acceptor_(io_) {
-    const tcp::endpoint own(asio::ip::make_address(address), port);
-    error_code error;
-    acceptor_.open(own.protocol(), error);
-    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor_.bind(own, error);
-    if (!error) acceptor_.listen(tcp::acceptor::max_listen_connections, error);
-    if (error) {
-      throw std::system_error(error.value(), std::generic_category(),
-                              fmt::format("port {} of {} for its page; another by http=", port, address));
-    }
-    port_ = acceptor_.local_endpoint().port();
+    OwnPort own = open_port(Transport::connections, address, port, " for its page; another by http=");
+    port_ = own.number;
+    acceptor_.assign(tcp::v4(), own.socket.release());
     accept();
   }
 

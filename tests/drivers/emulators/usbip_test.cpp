@@ -18,6 +18,7 @@
 #include "attach.h"
 #include "faults.h"
 #include "make_device.h"
+#include "network/own_port.h"
 #include "session.h"
 
 namespace kerf::emulators {
@@ -294,8 +295,8 @@ TEST(Session, NoticesWhenTheHostLeavesAndUnplugsItself) {
 
 TEST(UsbIp, ServesAClientOverLoopback) {
   const auto device = make_device("spacemouse");
-  const Descriptor listening = listen_on(0);
-  EXPECT_LT(accept_import(listening, device->description(), 1).number(), 0) << "nobody came";
+  const OwnPort own = open_port(Transport::connections, "127.0.0.1", 0);
+  EXPECT_LT(accept_import(own.socket, device->description(), 1).number(), 0) << "nobody came";
   EXPECT_EQ(usbip::list_reply(device->description()).size(), 8U + 4 + 312 + 4);
   const auto granted = usbip::import_reply(device->description(), true);
   ASSERT_EQ(granted.size(), 8U + 312);
