@@ -163,7 +163,9 @@ void add_devices(CLI::App& app, Context& context) {
       "  hid:1234:0006, hid:16c0:0486   WoodenHaptics and Polhem\n"
       "  u6:N, t7:HOST     LabJack U6, T7 as a force sensor: --sensor 'u6:0?calibration=FILE'\n"
       "  net-ft:HOST, onrobot:HOST, bota:PORT, optoforce:PORT, ft300:PORT   force sensors, by --sensor\n"
+      "  woody-v4:PORT, 2diy:PORT, hapkit:PORT, inverse3:HOST   on a serial port, behind a service\n"
       "  openhaptics:NAME, dhd:N   3D Systems, Force Dimension: by their makers' libraries, if installed\n"
+      "  plugin:FILE.so    one of your own: 'kerf device new'\n"
       "  spacemouse:N      3Dconnexion, a source of trajectories\n"
       "  NAME              of a bench file, with options and frames: docs/bench-file.md\n"
       "Options, permissions and what was verified: docs/devices.md.",
