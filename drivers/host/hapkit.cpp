@@ -28,8 +28,8 @@ using hapkit::Made;
 
 constexpr int wait_ms = 10;
 constexpr int order_ms = 20;  // the first one, until it is said again
-constexpr std::int64_t boot_ns =
-    4'000'000'000;  // opening the port resets an Arduino, whose boot loader waits
+/// Opening the port resets an Arduino, whose boot loader waits.
+constexpr std::int64_t boot_ns = 4'000'000'000;
 constexpr std::int64_t stranger_ns = 1'000'000'000;  // of bytes that are no frames
 constexpr std::int64_t agree_ns = 1'000'000'000;     // until it takes orders
 constexpr std::uint64_t frames_for_clock = 50;
@@ -44,7 +44,7 @@ constexpr double reach_rad = 45.0 * std::numbers::pi / 180.0;
 class Hapkit {
  public:
   static constexpr const char* name = "hapkit";
-  static constexpr double open_s = 6.0;
+  static constexpr double open_s = 7.0;
   static constexpr std::array<const char*, 9> options{"port",  "handle",    "pulley", "sector", "torque",
                                                       "motor", "per_count", "flip",   nullptr};
   static std::unique_ptr<Hapkit> open(UriOptions& given) {

@@ -133,21 +133,22 @@ TEST_F(HapkitSketch, CountsTheHalfTurnsOfItsSensor) {
   }
 }
 
-/// The board at the pace of the clock on the wall, at the other end of a pseudo-terminal.
+/// The board at the other end of a pseudo-terminal, at the pace of the clock on the wall; on a machine that
+/// is too busy, slower.
 class RunningBoard {
  public:
   RunningBoard()
       : thread_([this] {
-          const auto start = std::chrono::steady_clock::now();
-          while (!stop_) {
-            std::this_thread::sleep_for(std::chrono::microseconds(250));
+          for (double board_s = 0.0; !stop_; board_s += 5e-4) {
+            const auto began = std::chrono::steady_clock::now();
             board_.set_sensor(sensor_);
-            board_.run_until(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+            board_.run_until(board_s);
             motor_ = board_.motor();
             std::array<std::uint8_t, 256> bytes{};
             if (const auto size = port_.receive(bytes); size > 0)
               board_.say(std::span(bytes).first(static_cast<std::size_t>(size)));
             for (const auto& heard : board_.take_heard()) port_.send(std::array{heard.byte});
+            std::this_thread::sleep_until(began + std::chrono::microseconds(450));
           }
         }) {}
   RunningBoard(const RunningBoard&) = delete;
@@ -177,7 +178,8 @@ TEST(HapkitSketchAndDriver, UnderstandEachOther) {
     for (int tick = 0; tick < 10'000; ++tick) {
       drivers::Sample sample;
       (void)device->write({force_n});
-      if (device->read(0.0, sample) == drivers::Status::ok && condition(sample)) return true;
+      // Of a board that is too slow every reading is too old, and what it says is true all the same.
+      if (device->read(0.0, sample) != drivers::Status::lost && condition(sample)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     return false;

@@ -26,7 +26,7 @@ constexpr double stop_m = handle_radius_m * std::numbers::pi / 4.0;
 
 constexpr double frames_per_s = 1000.0;
 constexpr double lines_per_s = 1000.0 / 30.0;
-constexpr double converts_s = 104e-6;  ///< ten bits
+constexpr double makes_frame_s = 210e-6;  ///< from the sensor's value to the first byte
 constexpr double held_s = 0.02;
 constexpr double speed_corner_hz = 5.0;
 
@@ -64,7 +64,7 @@ EmulatedHapkit::EmulatedHapkit(const Options& options, const Own& own, std::vect
     : EmulatedSerialDevice(options, {.max_travel_m = stop_m}, std::move(faults), own.prints ? 2e6 : 5e5),
       own_(own) {
   boot_for(own.boot_s);
-  stream(own.prints ? lines_per_s : frames_per_s);
+  stream(own.prints ? lines_per_s : frames_per_s, own.prints ? 0.0 : makes_frame_s);
   set_watchdog(held_s);
 }
 

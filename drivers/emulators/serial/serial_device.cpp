@@ -109,7 +109,7 @@ void EmulatedSerialDevice::send_due_frames() {
   };
   while (due() <= now_ns_) {
     ++frames_;
-    say(frame());
+    say(frame(), later_s_);
     note("frame");
   }
 }

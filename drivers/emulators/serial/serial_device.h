@@ -59,8 +59,11 @@ class EmulatedSerialDevice : public EmulatedOnLine {
 
   /// Whenever it gets power it says and hears nothing for so long.
   void boot_for(double seconds) noexcept { boot_ns_ = std::llround(1e9 * seconds); }
-  /// Of frames that it sends by itself.
-  void stream(double rate_hz) noexcept { rate_hz_ = rate_hz; }
+  /// Of frames that it sends by itself, each so much later than it was measured.
+  void stream(double rate_hz, double later_s = 0.0) noexcept {
+    rate_hz_ = rate_hz;
+    later_s_ = later_s;
+  }
   /// After so long without feed_watchdog() the force is zero; 0: it is held for ever.
   void set_watchdog(double seconds) noexcept { watchdog_s_ = seconds; }
   void feed_watchdog() noexcept { fed_ns_ = now_ns_; }
@@ -94,6 +97,7 @@ class EmulatedSerialDevice : public EmulatedOnLine {
   std::optional<std::int64_t> world_start_ns_;  ///< its first opening
   bool has_power_ = true;
   double rate_hz_ = 0.0;
+  double later_s_ = 0.0;
   std::int64_t boot_ns_ = 0;
   std::int64_t power_ns_ = 0;  ///< since when it has power
   std::uint64_t frames_ = 0;
