@@ -107,11 +107,17 @@ void EmulatedSerialDevice::send_due_frames() {
   const auto due = [&] {
     return power_ns_ + boot_ns_ + std::llround(1e9 * static_cast<double>(frames_ + 1) / rate_hz_);
   };
-  while (due() <= now_ns_) {
+  // Each as it was in its moment, also where this program was held up.
+  const std::int64_t now = now_ns_;
+  while (due() <= now) {
+    now_ns_ = due();
     ++frames_;
+    tip_.run_until(world_s());
+    moved();
     say(frame(), later_s_);
     note("frame");
   }
+  now_ns_ = now;
 }
 
 void EmulatedSerialDevice::run(const std::atomic<bool>& stop, double seconds) {
@@ -127,10 +133,10 @@ void EmulatedSerialDevice::run(const std::atomic<bool>& stop, double seconds) {
         return;
       }
       set_power(!faults_.is_without_power(world_s()));
+      if (has_power_) send_due_frames();
       tip_.run_until(world_s());
       if (has_power_) moved();
       if (has_power_) listen();  // a host may have closed since it wrote
-      if (has_power_) send_due_frames();
       const bool is_late = watchdog_s_ > 0.0 && now_ns_ - fed_ns_ > std::llround(1e9 * watchdog_s_);
       if (is_late && !tip_.force().isZero()) {
         ++trips_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -43,7 +42,8 @@ class Hapkit : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// The hand has 300 N/m. Where the sensor is in its half turn when it is opened makes no difference.
+// The hand has 300 N/m, and goes twice as far at most. Where the sensor is in its half turn when it is opened
+// makes no difference: one that is miscounted is 21 mm.
 TEST_F(Hapkit, AForceMovesTheHandleItsOwnWay) {
   for (const char* const begins : {"100", "850"}) {
     const RunningSerialDevice running(still + std::string("&begins=") + begins);
@@ -52,11 +52,17 @@ TEST_F(Hapkit, AForceMovesTheHandleItsOwnWay) {
     EXPECT_EQ(device->info().axes[0].position_unit, "m");
     EXPECT_NEAR(device->info().axes[0].force_limit, 0.9 * 4.9333, 1e-3);
     EXPECT_THAT(device->info().configuration, HasSubstr("published sketches, not measured on this device"));
-    for (const double force_n : {3.0, -3.0, 0.0}) {
-      EXPECT_TRUE(
-          feels(*device, force_n,
-                [&](const Sample& now) { return std::abs(now.position[0] - force_n / 300.0) < 0.2e-3; }))
-          << begins << " " << force_n;
+    for (const double way : {1.0, -1.0}) {
+      double farthest_m = 0.0;
+      EXPECT_TRUE(feels(*device, 2.4 * way,
+                        [&](const Sample& now) {
+                          farthest_m = std::max(farthest_m, std::abs(now.position[0]));
+                          return way * now.position[0] > 2e-3;
+                        }))
+          << begins << " " << way;
+      EXPECT_LT(farthest_m, 17e-3);
+      // Friction of 0.1 N holds it up to 0.33 mm off.
+      EXPECT_TRUE(feels(*device, 0.0, [](const Sample& now) { return std::abs(now.position[0]) < 5e-4; }));
     }
   }
 }
@@ -85,7 +91,7 @@ TEST_F(Hapkit, WhoseMotorIsWiredTheOtherWayIsToldSo) {
   {
     const auto device = open_device(running.uri());
     EXPECT_TRUE(feels(*device, 2.0, [](const Sample& now) { return now.position[0] < -5e-3; }));
-    EXPECT_TRUE(feels(*device, 0.0, [](const Sample& now) { return std::abs(now.position[0]) < 2e-4; }));
+    EXPECT_TRUE(feels(*device, 0.0, [](const Sample& now) { return std::abs(now.position[0]) < 5e-4; }));
   }
   const auto device = open_device(running.uri() + "?motor=-1");
   EXPECT_TRUE(feels(*device, 2.0, [](const Sample& now) { return now.position[0] > 5e-3; }));
@@ -103,28 +109,23 @@ TEST_F(Hapkit, LosesWhatTheLineLosesAndCountsIt) {
     const auto device = open_device(running.uri());
     const auto seen = watch(*device, ticks(500));
     ASSERT_EQ(seen.size(), 500U) << one.fault;
-    EXPECT_EQ(seen.back().status, Status::ok) << one.fault;
+    EXPECT_TRUE(feels(*device, 0.0, [](const Sample&) { return true; })) << one.fault;
     EXPECT_EQ(figure(*device, "reports_missing"), one.missing) << one.fault;
     EXPECT_EQ(figure(*device, "reports_repeated"), one.repeated) << one.fault;
     for (const Seen& now : seen) ASSERT_LT(std::abs(now.sample.position[0]), 1e-4) << one.fault;
   }
 }
 
+// The board is first: the process of the device waits for 50 ms. On a busy machine not at once.
 TEST_F(Hapkit, IsLetGoByItsBoardWhereNoForceComes) {
   const RunningSerialDevice running(still + traced());
   const auto device = open_device(running.uri());
-  EXPECT_TRUE(feels(*device, 1.0, [](const Sample& now) { return now.channels[2] > 0.4; }));
-  // The board is first: the process of the device waits for 50 ms.
-  Sample sample;
   EXPECT_TRUE(becomes([&] {
-    return device->read(0.0, sample) == Status::ok && sample.channels[2] == 0.0 &&
-           sample.channels[3] == hapkit::let_go;
-  }));
-  EXPECT_TRUE(becomes([&] {
-    std::ifstream lines(trace());
-    for (std::string line; std::getline(lines, line);)
-      if (line.find(",watchdog,0,") != std::string::npos) return true;
-    return false;
+    EXPECT_TRUE(feels(*device, 1.0, [](const Sample& now) { return now.channels[2] > 0.4; }));
+    Sample sample;
+    return becomes([&] { return device->read(0.0, sample) == Status::ok && sample.channels[2] == 0.0; }) &&
+           sample.channels[3] == hapkit::let_go &&
+           test::read_text(trace()).find(",watchdog,0,") != std::string::npos;
   }));
   EXPECT_TRUE(feels(*device, 1.0, [](const Sample& now) { return now.channels[2] > 0.4; }));
 }
@@ -166,8 +167,7 @@ TEST_F(Hapkit, ThatIsUnpluggedSilentOrBeginsAnewIsLostAndSaysSo) {
 
 TEST_F(Hapkit, WaitsForTheBootLoaderOfItsBoard) {
   const RunningSerialDevice running("hapkit?boot=0.5s&sway=0mm");
-  Sample sample;
-  EXPECT_EQ(open_device(running.uri())->read(0.0, sample), Status::ok);
+  EXPECT_TRUE(feels(*open_device(running.uri()), 0.0, [](const Sample&) { return true; }));
 }
 
 TEST_F(Hapkit, IsRefusedWithWhatIsWrong) {
@@ -200,10 +200,10 @@ TEST_F(Hapkit, ThatPrintsIsReadAndTakesNoForce) {
   EXPECT_EQ(seen.back().sample.channels[1], 1.0);
   const auto place = [](const Seen& one) { return one.sample.position[0]; };
   EXPECT_GT(std::ranges::max(seen, {}, place).sample.position[0], 5e-3);
-  // It moves as fast as it says, but for the lag of a pole at 5 Hz.
-  double moved_m = 0.0;
-  for (const Seen& one : seen) moved_m += 1e-3 * one.sample.velocity[0];
-  EXPECT_NEAR(moved_m, place(seen.back()) - place(seen.front()), 5e-3);
+  // As fast as a hand that sways by 30 mm at 0.31 Hz: 58 mm/s.
+  const auto fastest = std::ranges::max(seen, {}, [](const Seen& one) { return one.sample.velocity[0]; });
+  EXPECT_GT(fastest.sample.velocity[0], 0.02);
+  EXPECT_LT(fastest.sample.velocity[0], 0.08);
   EXPECT_EQ(device->write({1.0}), Status::ok);
 }
 
