@@ -27,12 +27,13 @@ using hapkit::Frame;
 using hapkit::Made;
 
 constexpr int wait_ms = 10;
-constexpr int order_ms = 20;  // the first one, until it is said again
 /// Opening the port resets an Arduino, whose boot loader waits.
-constexpr std::int64_t boot_ns = 4'000'000'000;
+constexpr std::int64_t boot_ns = 5'000'000'000;
 constexpr std::int64_t stranger_ns = 1'000'000'000;  // of bytes that are no frames
-constexpr std::int64_t agree_ns = 1'000'000'000;     // until it takes orders
-constexpr std::uint64_t frames_for_clock = 50;
+constexpr std::int64_t order_ns = 20'000'000;        // the first one, until it is said again
+/// As many in a row are no rest of what a board said before it was reset; by then one has come in time, too.
+constexpr std::uint64_t enough_frames = 50;
+constexpr int silent_rounds = 5;
 /// Frames come late, by the bus and the system, and never early: the times of two are as far apart as their
 /// counts, until one comes earlier than that. A board's resonator is off by 0.5 % at most.
 constexpr std::int64_t longest_tick_ns = 1'005'000;
@@ -44,7 +45,7 @@ constexpr double reach_rad = 45.0 * std::numbers::pi / 180.0;
 class Hapkit {
  public:
   static constexpr const char* name = "hapkit";
-  static constexpr double open_s = 7.0;
+  static constexpr double open_s = 6.0;
   static constexpr std::array<const char*, 9> options{"port",  "handle",    "pulley", "sector", "torque",
                                                       "motor", "per_count", "flip",   nullptr};
   static std::unique_ptr<Hapkit> open(UriOptions& given) {
@@ -64,11 +65,8 @@ class Hapkit {
   }
 
   Hapkit(const std::string& path, const Made& made) : port_(path, hapkit::baud), made_(made) {
-    origin_ = made_.counts(first_frame(path));
-    agree(path);
-    // Its first frames may all have come late; what tells the time of a frame has to have seen some.
-    for (const std::int64_t until = now_ns() + agree_ns; frames_ < frames_for_clock && now_ns() < until;)
-      listen();
+    settle(path);
+    origin_ = made_.counts(waiting_.back().frame);
     waiting_.clear();
   }
 
@@ -148,54 +146,63 @@ class Hapkit {
 
   void take(const Frame& frame) {
     const auto passed = static_cast<std::uint16_t>(frame.count - count_);
-    const bool is_new = frames_ == 0 || (passed > 0 && passed < 0x8000);
+    const bool is_new = !has_time_ || (passed > 0 && passed < 0x8000);
     count_ = frame.count;
     is_fresh_ = (frame.status & hapkit::fresh) != 0;
     if (is_fresh_ && agrees_) began_anew_ = true;
     if (is_new) {
       const std::int64_t latest_ns = now_ns() - hapkit::frame_takes_ns;
       const std::int64_t next_ns = taken_ns_ + passed * longest_tick_ns;
-      taken_ns_ = frames_ == 0 ? latest_ns : std::min(next_ns, latest_ns);
+      taken_ns_ = has_time_ ? std::min(next_ns, latest_ns) : latest_ns;
+      has_time_ = true;
       ++frames_;
     }
     waiting_.push_back({.frame = frame, .taken_ns = taken_ns_});
   }
 
-  Frame first_frame(const std::string& path) {
-    std::int64_t until = now_ns() + boot_ns;
-    for (bool has_heard = false; waiting_.empty() && !gone_ && now_ns() < until; listen()) {
-      if (!std::exchange(has_heard, heard_ > 0) && heard_ > 0) until = now_ns() + stranger_ns;
+  /// Until frames come without a break from a board that has taken an order: so that one that begins anew is
+  /// told from one that has not.
+  void settle(const std::string& path) {
+    const std::int64_t until = now_ns() + boot_ns;
+    std::int64_t strange_until = until;
+    std::int64_t say_ns = 0;
+    std::uint64_t in_a_row = 0;
+    for (int silent = 0; in_a_row < enough_frames || is_fresh_;) {
+      const std::uint64_t before = frames_;
+      if (frames_ > 0 && is_fresh_ && now_ns() >= say_ns) {
+        release();
+        say_ns = now_ns() + order_ns;
+      }
+      if (heard_ == 0) strange_until = now_ns() + stranger_ns;
+      listen();
+      in_a_row += frames_ - before;
+      silent = frames_ == before ? silent + 1 : 0;
+      if (silent >= silent_rounds) {
+        in_a_row = 0;
+        has_time_ = false;
+      }
+      if (gone_ || now_ns() > until || (frames_ == 0 && now_ns() > strange_until)) refuse(path);
     }
-    if (!waiting_.empty()) return waiting_.back().frame;
-    const std::string what = heard_ == 0
-                                 ? "nothing came within 4 s"
-                                 : fmt::format("{} bytes came, and no frame of Kerf's sketch", heard_);
+    agrees_ = true;
+  }
+
+  [[noreturn]] void refuse(const std::string& path) const {
+    std::string what = "its frames do not go on";
+    if (is_fresh_) what = "it sends frames and takes no order";
+    if (frames_ == 0) what = fmt::format("{} bytes came, and no frame of Kerf's sketch", heard_);
+    if (heard_ == 0) what = "nothing came within 5 s";
+    if (gone_) what = "its port is gone";
     throw std::runtime_error(fmt::format(
         "{}: {}; look whether it is its port, and the sketch firmware/hapkit on its board; one that prints "
         "'Prm' lines is opened with firmware=stream",
         path, what));
   }
 
-  /// So that a board that begins anew is told from one that has not.
-  void agree(const std::string& path) {
-    std::int64_t say_ns = 0;
-    for (const std::int64_t until = now_ns() + agree_ns; is_fresh_ && !gone_ && now_ns() < until;) {
-      if (now_ns() >= say_ns) {
-        release();
-        say_ns = now_ns() + std::int64_t{order_ms} * 1'000'000;
-      }
-      listen();
-    }
-    if (is_fresh_)
-      throw std::runtime_error(
-          fmt::format("{}: it sends frames and takes no order; look at the line to the board", path));
-    agrees_ = true;
-  }
-
   SerialPort port_;
   Made made_;
   FrameReader<hapkit::FrameBytes> reader_;
   std::int64_t taken_ns_ = 0;  ///< its newest frame
+  bool has_time_ = false;
   std::deque<Waiting> waiting_;
   std::uint64_t heard_ = 0;  ///< bytes
   std::uint64_t frames_ = 0;

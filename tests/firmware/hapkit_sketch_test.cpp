@@ -111,7 +111,9 @@ TEST_F(HapkitSketch, LetsGoTwentyMillisecondsAfterTheLastOrder) {
   }
   EXPECT_GT(let_go_s, 0.05 + 18.9e-3);
   EXPECT_LT(let_go_s, 0.05 + 20.5e-3);
-  EXPECT_EQ(frames_until(0.11).back().status, drivers::hapkit::let_go);
+  const auto frames = frames_until(0.11);
+  ASSERT_FALSE(frames.empty());
+  EXPECT_EQ(frames.back().status, drivers::hapkit::let_go);
   // And what is no order feeds nothing.
   auto turned = drivers::hapkit::order(2, 100);
   turned[4] ^= 1U;

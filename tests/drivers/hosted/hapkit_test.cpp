@@ -165,9 +165,16 @@ TEST_F(Hapkit, ThatIsUnpluggedSilentOrBeginsAnewIsLostAndSaysSo) {
   }
 }
 
+// Opening its port resets a board, perhaps after some frames of what it said before.
 TEST_F(Hapkit, WaitsForTheBootLoaderOfItsBoard) {
-  const RunningSerialDevice running("hapkit?boot=0.5s&sway=0mm");
-  EXPECT_TRUE(feels(*open_device(running.uri()), 0.0, [](const Sample&) { return true; }));
+  for (const char* const fault : {"", "restart@0.02:0.3s"}) {
+    const RunningSerialDevice running("hapkit?boot=0.3s&sway=0mm", fault);
+    const RunningSerialDevice at_once(still, fault);
+    for (const auto* const board : {&running, &at_once}) {
+      const auto device = open_device(board->uri());
+      EXPECT_TRUE(feels(*device, 1.0, [](const Sample& now) { return now.channels[2] > 0.4; })) << fault;
+    }
+  }
 }
 
 TEST_F(Hapkit, IsRefusedWithWhatIsWrong) {
