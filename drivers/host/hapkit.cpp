@@ -35,7 +35,7 @@ constexpr std::int64_t order_ns = 20'000'000;        // the first one, until it 
 constexpr std::uint64_t enough_frames = 50;
 constexpr int silent_rounds = 5;
 /// Frames come late, by the bus and the system, and never early: the times of two are as far apart as their
-/// counts, until one comes earlier than that. A board's resonator is off by 0.5 % at most.
+/// counts, until one comes earlier than that. That a board's resonator is off by 0.5 % at most is assumed.
 constexpr std::int64_t longest_tick_ns = 1'005'000;
 constexpr double margin = 0.9;  // of the force at full duty: what its constants say is not measured
 constexpr double reach_rad = 45.0 * std::numbers::pi / 180.0;
