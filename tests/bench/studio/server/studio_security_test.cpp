@@ -15,6 +15,7 @@
 #include "server/studio.h"
 #include "support/plain_client.h"
 #include "support/program.h"
+#include "workspace/page_uri.h"
 
 namespace kerf::bench {
 namespace {
@@ -311,8 +312,7 @@ TEST_F(StudioUnderAttack, LetsNoNameOfTheBenchLeadToAMachineAPortOrAFile) {
     }
   }
   // Nor by what stands for a name within a URI: the sensor of `hand` is not opened.
-  EXPECT_EQ(status_of(post("/api/live/start", R"({"device": "sim:pose6?bench.toml=hand"})")), "200");
-  EXPECT_EQ(status_of(post("/api/live/stop", "{}")), "200");
+  EXPECT_EQ(uri_from_page(Workspace(folder_.path()), "sim:pose6?bench.toml=hand&seed=2"), "sim:pose6?seed=2");
   EXPECT_EQ(status_of(post("/api/live/start", R"({"device": "plain"})")), "200");
   unsetenv("KERF_BENCH");
 }
