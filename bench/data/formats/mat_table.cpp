@@ -101,6 +101,20 @@ bool fits_doubles(const matvar_t& variable, std::size_t count) {
   return true;
 }
 
+/// A text of one line, as far as it is ASCII, which names of units are; empty if it is none.
+std::string text_of(const matvar_t& variable) {
+  if (variable.class_type != MAT_C_CHAR || variable.data == nullptr) return {};
+  const bool is_wide = variable.data_type == MAT_T_UINT16 || variable.data_type == MAT_T_UTF16;
+  std::string text;
+  for (std::size_t i = 0; i < variable.nbytes / (is_wide ? 2 : 1); ++i) {
+    const unsigned c = is_wide ? static_cast<const std::uint16_t*>(variable.data)[i]
+                               : static_cast<const unsigned char*>(variable.data)[i];
+    if (c < 32) return {};  // a tab or a line would break the table
+    text += c < 128 ? static_cast<char>(c) : '?';
+  }
+  return text;
+}
+
 void append_any(const matvar_t& variable, std::size_t first, std::size_t count, std::vector<double>& values) {
   switch (variable.class_type) {
     case MAT_C_DOUBLE:
@@ -130,8 +144,10 @@ void append_any(const matvar_t& variable, std::size_t first, std::size_t count, 
 class Columns {
  public:
   void add(const std::string& name, const matvar_t& variable, std::size_t depth = 0) {
-    if (variable.class_type == MAT_C_STRUCT && variable.nbytes > 0 && depth < most_depth)
+    if (variable.class_type == MAT_C_STRUCT && variable.nbytes > 0 && depth < most_depth) {
+      if (depth == 0 && name == "units" && add_units(variable)) return;
       return add_fields(name, variable, depth);
+    }
     if (variable.class_type == MAT_C_OPAQUE || variable.class_type == MAT_C_OBJECT ||
         variable.class_type == MAT_C_FUNCTION) {
       objects.push_back(name);
@@ -162,11 +178,26 @@ class Columns {
   std::vector<MatColumn> all;
   std::vector<std::string> objects;
   std::vector<std::string> passed_over;
-  std::vector<std::string> too_large;  ///< whole numbers that no double holds
+  std::vector<std::string> too_large;        ///< whole numbers that no double holds
+  std::map<std::string, std::string> units;  ///< by the column's name, of a struct `units` of texts
 
  private:
   static constexpr std::size_t most_columns = 1000;
   static constexpr std::size_t most_depth = 16;
+
+  /// Whether it is what kerf convert writes: a text by the name of each variable.
+  bool add_units(const matvar_t& variable) {
+    std::map<std::string, std::string> found;
+    char* const* fields = Mat_VarGetStructFieldnames(&variable);
+    const unsigned count = Mat_VarGetNumberOfFields(const_cast<matvar_t*>(&variable));  // it is read only
+    for (unsigned i = 0; fields != nullptr && i < count; ++i) {
+      const matvar_t* field = Mat_VarGetStructFieldByIndex(const_cast<matvar_t*>(&variable), i, 0);
+      if (field == nullptr || text_of(*field).empty()) return false;
+      found[fields[i]] = text_of(*field);
+    }
+    units.merge(found);
+    return true;
+  }
 
   void add_fields(const std::string& name, const matvar_t& variable, std::size_t depth) {
     if (variable.rank != 2 || variable.dims[0] * variable.dims[1] != 1) {
@@ -316,7 +347,11 @@ MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLi
         name, name, name));
   for (const std::string& name : columns.passed_over)
     table.notes.push_back(fmt::format("{} is no vector or matrix of real numbers and is left out", name));
-  for (std::size_t i = 0; i < taken.size(); ++i) table.text += (i > 0 ? "\t" : "") + taken[i]->name;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    const auto unit = columns.units.find(taken[i]->name);
+    table.text += (i > 0 ? "\t" : "") + taken[i]->name +
+                  (unit == columns.units.end() ? "" : fmt::format(" [{}]", unit->second));
+  }
   table.text += '\n';
   for (std::size_t row = 0; row < length; ++row) {
     for (std::size_t i = 0; i < taken.size(); ++i)

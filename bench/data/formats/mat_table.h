@@ -37,8 +37,9 @@ class MatCopy {
 [[nodiscard]] bool is_mat(std::string_view bytes) noexcept;
 
 /// The numeric vectors of the length that holds most numbers, each a column; the columns of a matrix with as
-/// many rows as NAME[1], NAME[2], ...; fields of a struct as NAME.FIELD. Numbers lose nothing. What has
-/// another length, is no number, or a whole one beyond 2^53, which no double holds, is named in the notes.
+/// many rows as NAME[1], NAME[2], ...; fields of a struct as NAME.FIELD. A struct `units` of texts has the
+/// unit of each column by its name. Numbers lose nothing. What has another length, is no number, or a whole
+/// one beyond 2^53, which no double holds, is named in the notes.
 /// @throws std::invalid_argument for a file that is damaged or has no two such columns;
 ///         tables, timetables and other objects are named with how to save what they hold.
 [[nodiscard]] MatTable mat_table(std::string_view bytes, const MatCopy& copy, const UnpackedLimits& limits);

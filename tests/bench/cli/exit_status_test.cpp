@@ -118,6 +118,7 @@ const std::vector<Words> with_input{
     {"study", "report", "INPUT"},
     {"study", "verify", "FOLDER/nowhere"},
     {"report", "INPUT", "-o", "FOLDER/out.html"},
+    {"convert", "INPUT", "-o", "FOLDER/out.csv"},
     {"report", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--fits", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--check", "INPUT", "-o", "FOLDER/out.html"},
@@ -166,6 +167,9 @@ const std::vector<Words> with_output{
     {"session", "simulate", "FOLDER/p.protocol.toml", "-o", "BELOW"},
     {"study", "new", KERF_SOURCE_DIR "/examples/data", "-o", "BELOW"},
     {"report", "FOLDER/r.h5", "-o", "OUTPUT"},
+    {"convert", "FOLDER/r.h5", "-o", "OUTPUT.csv"},
+    {"convert", "FOLDER/r.h5", "-o", "OUTPUT.mat"},
+    {"convert", "FOLDER/r.h5", "-o", "OUTPUT.mcap"},
 };
 
 constexpr const char* law_along_z = R"(model = "kelvin"
@@ -278,6 +282,12 @@ TEST_F(ExitStatus, AnOutputThatCannotBeWrittenIsAFailureToWrite) {
 TEST_F(ExitStatus, AnOutputThatExistsIsBadInput) {
   expect_failure(filled_in({"prepare", "FOLDER/r.h5", "--from", "1", "-o", "FOLDER/t.txt"}, {}), 2,
                  "--force");
+  test::write_text(folder_ / "t.dictionary.csv", "mine\n");
+  expect_failure(filled_in({"convert", "FOLDER/r.h5", "-o", "FOLDER/t.csv"}, {}), 2, "t.dictionary.csv");
+}
+
+TEST_F(ExitStatus, AnOutputOfAnUnknownFormatIsBadInput) {
+  expect_failure(filled_in({"convert", "FOLDER/r.h5", "-o", "FOLDER/out.xlsx"}, {}), 2, "'.xlsx'");
 }
 
 TEST_F(ExitStatus, ADeviceThatIsNotThereIsADeviceError) {

@@ -65,7 +65,8 @@ TEST_F(TextsOnTheWay, AreTakenByEveryVerbThatReadsARecording) {
       {"chart", text(), "--no-folds", "--cold-ticks", "1000", "--laws", "kelvin"},
       {"report", text(), "-o", out()},
       {"replay", text(), "--through", law()},
-      {"prepare", text(), "--bias", "--onset", "-o", out()}};
+      {"prepare", text(), "--bias", "--onset", "-o", out()},
+      {"convert", text(), "-o", (folder_ / "out.mcap").string()}};
   for (const auto& words : verbs) {
     const Outcome outcome = with_map(words);
     ASSERT_THAT(outcome.exit_status, testing::AnyOf(0, 1)) << words[0] << ": " << outcome.errors;
