@@ -23,6 +23,7 @@ def costs(kerf: Path, folder: Path, rows: int) -> dict[str, float]:
     found = {"record": run(record_command(kerf, "r.h5", rows), folder).mebibytes}
     for verb, arguments in looks("r.h5").items():
         found[verb] = run([kerf, *arguments], folder).mebibytes
+    found["convert"] = run([kerf, "convert", "r.h5", "-o", "r.mcap"], folder).mebibytes
     found["repair"] = repair(kerf, rows, folder).mebibytes
     return found
 

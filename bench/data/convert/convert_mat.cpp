@@ -106,7 +106,7 @@ MatVariable mat_table_of_texts(const char* name, const std::vector<TextRow>& row
   return MatVariable(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, size.data(), cells.data(), 0));
 }
 
-/// Octave reads no letters beyond ASCII in texts, and `kerf import` takes a product written so.
+/// Octave cuts the end off texts with letters beyond ASCII; `kerf import` takes a product written so, too.
 std::string ascii_unit(std::string unit) {
   constexpr std::string_view dot = "·";
   for (std::size_t at = 0; (at = unit.find(dot, at)) != std::string::npos;) unit.replace(at, dot.size(), "*");

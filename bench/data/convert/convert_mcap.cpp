@@ -84,6 +84,7 @@ class McapTopic {
              McapMessage message) {
     message.channel = channel_;
     text_.clear();
+    text_.push_back('{');
     std::string_view open;  // the quantity whose axes are being written
     for (std::size_t k = 0; k < numbers_.size(); ++k) {
       const RecordingColumn& column = columns_[numbers_[k]];
@@ -98,13 +99,12 @@ class McapTopic {
       append_number(text_, column, of, row);
     }
     if (!open.empty()) text_.push_back('}');
-    writer.write(message, fmt::format("{{{}}}", std::string_view(text_.data(), text_.size())));
+    text_.push_back('}');
+    writer.write(message, {text_.data(), text_.size()});
   }
 
  private:
-  [[nodiscard]] std::string_view comma() const {
-    return text_.size() == 0 || text_[text_.size() - 1] == '{' ? "" : ",";
-  }
+  [[nodiscard]] std::string_view comma() const { return text_[text_.size() - 1] == '{' ? "" : ","; }
 
   [[nodiscard]] std::string schema_text() const {
     Json properties = Json::object();

@@ -38,8 +38,10 @@ constexpr int compression_level = 1;
 
 template <typename Number>
 void put_number(std::string& to, Number number) {
-  for (std::size_t byte = 0; byte < sizeof number; ++byte)
-    to += static_cast<char>(static_cast<std::uint64_t>(number) >> (8 * byte) & 0xFFU);
+  std::array<char, sizeof(Number)> bytes{};
+  for (std::size_t byte = 0; byte < bytes.size(); ++byte)
+    bytes[byte] = static_cast<char>(static_cast<std::uint64_t>(number) >> (8 * byte) & 0xFFU);
+  to.append(bytes.data(), bytes.size());
 }
 void put_u16(std::string& to, std::uint16_t number) { put_number(to, number); }
 void put_u32(std::string& to, std::uint32_t number) { put_number(to, number); }

@@ -28,7 +28,7 @@ std::string unit_of_axis(const schema::Axis& axis, schema::Column column) {
 }  // namespace
 
 RecordingColumns::RecordingColumns(const schema::RecordedRows& rows) : rows_(&rows) {
-  const auto single = [](std::string name, std::string unit, std::string meaning, Group group,
+  const auto single = [](const std::string& name, std::string unit, std::string meaning, Group group,
                          Number number) {
     return RecordingColumn{.quantity = name,
                            .part = {},
