@@ -90,6 +90,10 @@ VERBS = [
     Verb("choose", "choose {in}/short.h5 --no-loop --folds 2 --most-segments 1 -o choice", ("choice",), (), 0.4),
     Verb("reproduce", "reproduce Okamura2003 -o okamura", ("okamura",), (), 3.0),
     Verb("demo", "demo --seconds 0.1 -o demo", ("demo",), (), 6.0),
+    Verb("convert to CSV", "convert {in}/short.h5 -o r.csv", ("r.csv", "r.dictionary.csv", "r.events.csv")),
+    Verb("convert to MAT", "convert {in}/short.h5 -o r.mat", ("r.mat",)),
+    Verb("convert to MCAP", "convert {in}/short.h5 -o r.mcap", ("r.mcap",)),
+    # New ones here: the faults of those above stay the ones that a seed draws.
 ]  # fmt: skip
 
 

@@ -2,8 +2,10 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -14,6 +16,7 @@
 
 #include <fmt/format.h>
 #include <matio.h>
+#include <zlib.h>
 
 #include <kerf/version.h>
 
@@ -33,7 +36,19 @@ struct FreeMatVariable {
 };
 using MatVariable = std::unique_ptr<matvar_t, FreeMatVariable>;
 
-/// A MAT-file that is written. matio does not say whether a disk took what it wrote, so it is looked at.
+/// Of the numbers and letters of a variable and of all in it.
+std::uint32_t checksum(const matvar_t& variable, std::uint32_t before) {
+  if (variable.data == nullptr) return before;
+  if (variable.class_type != MAT_C_CELL && variable.class_type != MAT_C_STRUCT)
+    return static_cast<std::uint32_t>(
+        ::crc32_z(before, static_cast<const unsigned char*>(variable.data), variable.nbytes));
+  const auto* const parts = static_cast<matvar_t* const*>(variable.data);
+  for (std::size_t i = 0; i < variable.nbytes / sizeof(matvar_t*); ++i)
+    before = parts[i] == nullptr ? before : checksum(*parts[i], before);
+  return before;
+}
+
+/// A MAT-file that is written. matio does not look whether the disk took what it wrote, so all is read back.
 class MatOutput {
  public:
   explicit MatOutput(const std::filesystem::path& name) : file_(name) {
@@ -48,34 +63,32 @@ class MatOutput {
   }
 
   void write(const MatVariable& variable) {
+    if (!variable) throw std::bad_alloc();
     errno = 0;
-    if (!variable || Mat_VarWrite(mat_, variable.get(), MAT_COMPRESSION_NONE) != 0) file_.fail(errno);
-    least_bytes_ += variable->nbytes;
+    if (Mat_VarWrite(mat_, variable.get(), MAT_COMPRESSION_NONE) != 0) file_.fail(errno);
+    checksums_.push_back(checksum(*variable, 0));
   }
-  /// Ends the file by a variable that is read back: then what lies before it was taken, too.
-  void commit(double last, schema::Existing existing) {
-    std::array<std::size_t, 2> one{1, 1};
-    write(MatVariable(Mat_VarCreate("rows", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, one.data(), &last, 0)));
+  void commit(schema::Existing existing) {
     errno = 0;
-    if (Mat_Close(std::exchange(mat_, nullptr)) != 0) file_.fail(errno);
-    if (std::filesystem::file_size(file_.path()) < least_bytes_ || read_back() != last) file_.fail(ENOSPC);
+    if (Mat_Close(std::exchange(mat_, nullptr)) != 0 || !is_as_written()) file_.fail(errno);
     file_.commit(existing);
   }
 
  private:
-  [[nodiscard]] double read_back() const {
-    mat_t* const mat = Mat_Open(file_.path().c_str(), MAT_ACC_RDONLY);
-    if (mat == nullptr) return -1.0;
-    const MatVariable rows(Mat_VarRead(mat, "rows"));
-    const bool is_there = rows && rows->data != nullptr && rows->class_type == MAT_C_DOUBLE;
-    const double value = is_there ? *static_cast<const double*>(rows->data) : -1.0;
-    Mat_Close(mat);
-    return value;
+  [[nodiscard]] bool is_as_written() {
+    mat_ = Mat_Open(file_.path().c_str(), MAT_ACC_RDONLY);
+    std::vector<std::uint32_t> found;
+    while (mat_ != nullptr && found.size() < checksums_.size()) {
+      const MatVariable variable(Mat_VarReadNext(mat_));
+      if (!variable) break;
+      found.push_back(checksum(*variable, 0));
+    }
+    return found == checksums_;
   }
 
   UnfinishedFile file_;
   mat_t* mat_ = nullptr;
-  std::uint64_t least_bytes_ = 0;
+  std::vector<std::uint32_t> checksums_;
 };
 
 /// Characters as MATLAB counts them: units of UTF-16.
@@ -215,7 +228,10 @@ void convert_to_mat(const RecordingColumns& recording, const ConversionTarget& t
     write_any_column(output, recording, i, names[i]);
     *target.rows_done = static_cast<std::size_t>(recording.rows() * (i + 1) / columns.size());
   }
-  output.commit(static_cast<double>(recording.rows()), target.existing);
+  auto rows = static_cast<double>(recording.rows());
+  std::array<std::size_t, 2> one{1, 1};
+  output.write(MatVariable(Mat_VarCreate("rows", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, one.data(), &rows, 0)));
+  output.commit(target.existing);
 }
 
 }  // namespace kerf::bench
