@@ -33,7 +33,7 @@ class Makers : public testing::Test {
     set("FAKE_MOOD", "");
   }
   ~Makers() override {
-    (void)munmap(state_, sizeof(fake_state));
+    (void)munmap(state_, sizeof(FakeState));
     (void)unsetenv("FAKE_STATE");  // NOLINT(concurrency-mt-unsafe)
     (void)unsetenv("FAKE_MOOD");   // NOLINT(concurrency-mt-unsafe)
   }
@@ -88,18 +88,18 @@ class Makers : public testing::Test {
   static void set(const char* name, const std::string& value) {
     (void)setenv(name, value.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before a host is started
   }
-  fake_state* map() const {
+  FakeState* map() const {
     const int number = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    EXPECT_EQ(ftruncate(number, sizeof(fake_state)), 0);
-    void* const mapped = mmap(nullptr, sizeof(fake_state), PROT_READ | PROT_WRITE, MAP_SHARED, number, 0);
+    EXPECT_EQ(ftruncate(number, sizeof(FakeState)), 0);
+    void* const mapped = mmap(nullptr, sizeof(FakeState), PROT_READ | PROT_WRITE, MAP_SHARED, number, 0);
     EXPECT_NE(mapped, MAP_FAILED);
     ::close(number);
-    return static_cast<fake_state*>(mapped);
+    return static_cast<FakeState*>(mapped);
   }
 
   test::TemporaryFolder folder_;
   std::string file_ = (folder_ / "state").string();
-  fake_state* state_ = nullptr;
+  FakeState* state_ = nullptr;
 };
 using OpenHaptics = Makers;
 using ForceDimension = Makers;

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-struct fake_state {
+struct FakeState {
   double position_m[3];
   double force_n[3];   /* of its motors, now */
   double largest_n[3]; /* that was ever there */
@@ -34,8 +34,8 @@ struct fake_state {
 
 enum { fake_well = 300 };
 
-static struct fake_state* fake_at(void) {
-  static struct fake_state* state;
+static struct FakeState* fake_at(void) {
+  static struct FakeState* state;
   if (state != NULL) return state;
   const char* const file = getenv("FAKE_STATE");
   const int number = open(file != NULL ? file : "/dev/null", O_RDWR | O_CREAT | O_CLOEXEC, 0600);
@@ -59,7 +59,7 @@ static void fake_pause_ms(long ms) {
 }
 
 static void fake_push(const double* force_n) {
-  struct fake_state* const state = fake_at();
+  struct FakeState* const state = fake_at();
   for (int i = 0; i < 3; ++i) {
     state->force_n[i] = force_n[i];
     state->largest_n[i] = fmax(state->largest_n[i], fabs(force_n[i]));
@@ -68,7 +68,7 @@ static void fake_push(const double* force_n) {
 
 /* A millisecond of the hand. */
 static void fake_move(void) {
-  struct fake_state* const state = fake_at();
+  struct FakeState* const state = fake_at();
   for (int i = 0; i < 3; ++i) {
     const double force_n = state->is_on ? state->force_n[i] : 0.0;
     state->position_m[i] += 0.05 * (force_n / 300.0 - state->position_m[i]);

@@ -79,7 +79,7 @@ FAKE_EXPORT unsigned dhdGetButtonMask(signed char id) {
 }
 
 FAKE_EXPORT int dhdGetStatus(int* status, signed char id) {
-  const struct fake_state* const state = fake_at();
+  const struct FakeState* const state = fake_at();
   (void)id;
   memset(status, 0, 17 * sizeof *status);
   status[0] = !fake_mood("no_power");
@@ -92,7 +92,7 @@ FAKE_EXPORT int dhdGetStatus(int* status, signed char id) {
 }
 
 POSITION_EXPORT int dhdGetPosition(double* x, double* y, double* z, signed char id) {
-  struct fake_state* const state = fake_at();
+  struct FakeState* const state = fake_at();
   (void)id;
   ++state->turns;
   if (fake_mood("late")) fake_pause_ms(4);

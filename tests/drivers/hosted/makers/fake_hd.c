@@ -96,7 +96,7 @@ FAKE_EXPORT void hdGetIntegerv(uint32_t what, int32_t* value) {
   if (what == 0x2555) *value = 4; /* by its inkwell */
 }
 FAKE_EXPORT void hdGetDoublev(uint32_t what, double* value) {
-  const struct fake_state* const state = fake_at();
+  const struct FakeState* const state = fake_at();
   switch (what) {
     case 0x2050:
       needs_frame();
@@ -159,7 +159,7 @@ FAKE_EXPORT void hdUpdateCalibration(uint32_t style) {
 
 static void* serve(void* unused) {
   (void)unused;
-  struct fake_state* const state = fake_at();
+  struct FakeState* const state = fake_at();
   struct timespec next;
   clock_gettime(CLOCK_MONOTONIC, &next);
   while (runs) {
