@@ -1,8 +1,8 @@
 # Read by ctest itself for each test program of a build that runs suites as one test (KERF_TESTS_BY_SUITE): a program takes a twelfth
 # of a second to start, under the sanitizers a third, which for thousands of cases was half of all time.
 #
-# In: kerf_program, kerf_properties (of each test), kerf_left_out (a file of what is not run, or nothing: a line for a suite, "Suite.*", or for cases,
-# a pattern as GoogleTest reads it; # begins a comment). Out: a test for each suite, named as it.
+# In: kerf_program, kerf_properties (of each test), kerf_left_out (a file of what is not run, or nothing: a line for a suite,
+# "Suite.*", or for cases, a pattern as GoogleTest reads it; # begins a comment). Out: a test for each suite, named as it.
 if(NOT EXISTS ${kerf_program})
   add_test(${kerf_program}_NOT_BUILT ${kerf_program}_NOT_BUILT)
   return()

@@ -46,16 +46,30 @@ std::string to_text(const Uri& uri) {
   return text;
 }
 
+namespace {
+
+/// A device that is named by what stands behind its colon.
+struct PlaceScheme {
+  std::string_view scheme;
+  bool is_path;
+};
+constexpr std::array place_schemes{
+    PlaceScheme{"net-ft:", false},   PlaceScheme{"onrobot:", false},     PlaceScheme{"t7:", false},
+    PlaceScheme{"inverse3:", false}, PlaceScheme{"openhaptics:", false}, PlaceScheme{"dhd:", false},
+    PlaceScheme{"bota:", true},      PlaceScheme{"optoforce:", true},    PlaceScheme{"ft300:", true},
+    PlaceScheme{"woody-v4:", true},  PlaceScheme{"2diy:", true},         PlaceScheme{"hapkit:", true},
+    PlaceScheme{"plugin:", true}};
+
+}  // namespace
+
 bool names_a_path(std::string_view device) noexcept {
-  constexpr std::array schemes{"bota:", "optoforce:", "ft300:", "woody-v4:", "2diy:", "hapkit:", "plugin:"};
-  return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
+  return std::ranges::any_of(
+      place_schemes, [&](const PlaceScheme& one) { return one.is_path && device.starts_with(one.scheme); });
 }
 
 bool names_a_place(std::string_view device) noexcept {
-  constexpr std::array schemes{
-      "net-ft:", "onrobot:",  "t7:",     "bota:",        "optoforce:", "ft300:", "woody-v4:",
-      "2diy:",   "inverse3:", "hapkit:", "openhaptics:", "dhd:",       "plugin:"};
-  return std::ranges::any_of(schemes, [&](const char* scheme) { return device.starts_with(scheme); });
+  return std::ranges::any_of(place_schemes,
+                             [&](const PlaceScheme& one) { return device.starts_with(one.scheme); });
 }
 
 double UriOptions::number_from(std::string_view text, const std::string& name,

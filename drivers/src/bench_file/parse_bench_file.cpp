@@ -3,12 +3,12 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include "bench_file/bench_option.h"
 #include "kerf/drivers/bench_file.h"
 #include "kerf/drivers/toml_text.h"
 #include "kerf/drivers/uri.h"
+#include "sha256.h"
 #include "toml_reader.h"
 
 namespace kerf::drivers {
@@ -17,16 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double longest_tool_m = 10.0;
-
-std::string content_sha256(std::string_view text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned size = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw DeviceError("the bench file's SHA-256 cannot be taken");
-  std::string digits;
-  for (unsigned i = 0; i < size; ++i) digits += fmt::format("{:02x}", digest.at(i));
-  return digits;
-}
 
 bool is_bench_name(std::string_view text) {
   constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
@@ -204,7 +194,7 @@ BenchFile parse_bench_file(const std::string& text, const fs::path& file) {
   try {
     const toml::table root = toml::parse(text, name);
     return {.file = file,
-            .sha256 = content_sha256(text),
+            .sha256 = sha256_of(text),
             .entries = BenchFileReader(root, name, fs::absolute(file).parent_path()).read()};
   } catch (const toml::parse_error& error) {
     throw DeviceError(fmt::format("{}:{}: {}", name, error.source().begin.line, error.description()));

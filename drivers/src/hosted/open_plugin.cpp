@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -11,7 +12,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <unistd.h>
 
 #include "hosted/device_host.h"
@@ -19,6 +19,7 @@
 #include "kerf/drivers/hosted_device.h"
 #include "kerf/drivers/streaming_force_sensor.h"
 #include "kerf/drivers/toml_text.h"
+#include "sha256.h"
 
 namespace kerf::drivers {
 namespace {
@@ -29,25 +30,15 @@ using hosted::Reading;
 /// What a StreamingForceSensor takes itself.
 constexpr std::array own_options{"resample", "delay", "axes"};
 
-/// Of a file's content, in hexadecimal digits.
-std::string sha256_of(const std::string& file) {
-  std::ifstream content(file, std::ios::binary);
-  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> state(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-  bool worked = state != nullptr && EVP_DigestInit_ex(state.get(), EVP_sha256(), nullptr) == 1;
-  std::array<char, 65536> block{};
-  while (worked && (content.read(block.data(), block.size()) || content.gcount() > 0)) {
-    worked = EVP_DigestUpdate(state.get(), block.data(), static_cast<std::size_t>(content.gcount())) == 1;
-  }
-  std::array<unsigned char, 32> digest{};
-  if (!worked || EVP_DigestFinal_ex(state.get(), digest.data(), nullptr) != 1)
-    throw DeviceError(fmt::format("{}: its SHA-256 cannot be taken", file));
-  std::string digits;
-  for (const unsigned char byte : digest) digits += fmt::format("{:02x}", byte);
-  return digits;
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw DeviceError(fmt::format("{}: it cannot be read", file));
+  return content;
 }
 
 std::string identity_of(const std::string& file) {
-  return fmt::format("plugin = {}\nsha256 = \"{}\"\n", toml_text(file), sha256_of(file));
+  return fmt::format("plugin = {}\nsha256 = \"{}\"\n", toml_text(file), sha256_of(content_of(file)));
 }
 
 /// A plug-in that is a force sensor.

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
@@ -132,20 +130,7 @@ TEST_F(Hapkit, IsLetGoByItsBoardWhereNoForceComes) {
 
 TEST_F(Hapkit, IsLetGoWhenItsProgramIsKilled) {
   const RunningSerialDevice running(still + traced());
-  const pid_t program = fork();
-  if (program == 0) {
-    const auto device = open_device(running.uri());
-    Sample sample;
-    for (int i = 0; i < 300; ++i) {
-      (void)device->write({1.0});
-      (void)device->read(0.0, sample);
-      usleep(1000);
-    }
-    (void)raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(program, &status, 0), program);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  kill_who_holds(running.uri(), {1.0});
   EXPECT_TRUE(becomes([&] { return is_let_go(forces_of(trace()), 0.9); }));
 }
 

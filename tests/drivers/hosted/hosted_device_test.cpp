@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
@@ -156,20 +155,7 @@ TEST_F(Hosted, ClosesItsDeviceAndLetsItGoBefore) {
 }
 
 TEST_F(Hosted, LetsGoWhenItsProgramIsKilled) {
-  const pid_t program = fork();
-  if (program == 0) {
-    const auto device = open();
-    Sample sample;
-    for (int i = 0; i < 300; ++i) {
-      (void)device->write({1.0});
-      (void)device->read(0.0, sample);
-      usleep(1000);
-    }
-    (void)raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(program, &status, 0), program);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  kill_who_holds(uri("well"), {1.0});
   EXPECT_TRUE(becomes([&] { return is_logged("close"); }));
   EXPECT_TRUE(is_logged("release"));
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -11,7 +10,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
@@ -134,20 +132,7 @@ TEST(Inverse3, IsLetGoWhenItsProgramIsKilled) {
   const std::string trace = (folder / "trace.csv").string();
   // Idle comes late, so that it is the host that lets go.
   const RunningInverse3 running("inverse3?sway=0mm&idle=1000s&trace=" + trace);
-  const pid_t program = fork();
-  if (program == 0) {
-    const auto device = open_device(running.uri());
-    Sample sample;
-    for (int i = 0; i < 300; ++i) {
-      (void)device->write({1.0, 0.0, 0.0});
-      (void)device->read(0.0, sample);
-      usleep(1000);
-    }
-    (void)raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(program, &status, 0), program);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  kill_who_holds(running.uri(), {1.0, 0.0, 0.0});
   EXPECT_TRUE(becomes([&] {
     const std::string text = test::read_text(trace);
     const auto held = text.rfind("force,1,0,0");

@@ -9,7 +9,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
@@ -67,24 +66,6 @@ class Makers : public testing::Test {
   [[nodiscard]] bool is_at_rest() const {
     return state_->force_n[0] == 0.0 && state_->force_n[1] == 0.0 && state_->force_n[2] == 0.0;
   }
-  /// A program that holds a force and is killed.
-  static void kill_who_holds(const std::string& uri) {
-    const pid_t program = fork();
-    if (program == 0) {
-      const auto device = open_device(uri);
-      Sample sample;
-      for (int i = 0; i < 200; ++i) {
-        (void)device->write({0.5, 0.0, 0.0});
-        (void)device->read(0.0, sample);
-        usleep(1000);
-      }
-      (void)raise(SIGKILL);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(program, &status, 0), program);
-    ASSERT_TRUE(WIFSIGNALED(status));
-  }
-
   static void set(const char* name, const std::string& value) {
     (void)setenv(name, value.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before a host is started
   }
@@ -126,7 +107,7 @@ TEST_F(Makers, MoveAHandleTheWayOfTheForceInTheirOwnFrame) {
 TEST_F(Makers, AreLetGoWhenTheirProgramIsKilled) {
   for (const std::string& uri : {touch(), omega()}) {
     begin_anew();
-    kill_who_holds(uri);
+    kill_who_holds(uri, {0.5, 0.0, 0.0});
     EXPECT_TRUE(becomes([&] { return is_at_rest() && state_->opened == 0; })) << uri;
     EXPECT_EQ(state_->largest_n[0], 0.5) << uri;
     EXPECT_EQ(state_->is_on, 0) << uri;

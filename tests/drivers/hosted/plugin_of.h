@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "kerf/drivers/device.h"
 
 namespace kerf::drivers {
 
@@ -49,6 +56,24 @@ inline std::vector<double> forces_of(const std::filesystem::path& trace) {
 /// Whether a force as large as that was there, and none is left.
 inline bool is_let_go(const std::vector<double>& forces, double held) {
   return !forces.empty() && forces.back() == 0.0 && *std::max_element(forces.begin(), forces.end()) > held;
+}
+
+/// A program that holds a force and is killed.
+inline void kill_who_holds(const std::string& uri, const Axes& force) {
+  const pid_t program = fork();
+  if (program == 0) {
+    const auto device = open_device(uri);
+    Sample sample;
+    for (int i = 0; i < 300; ++i) {
+      (void)device->write(force);
+      (void)device->read(0.0, sample);
+      usleep(1000);
+    }
+    (void)raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(program, &status, 0), program);
+  ASSERT_TRUE(WIFSIGNALED(status));
 }
 
 /// Until it is so, or for ten seconds. @returns whether it is

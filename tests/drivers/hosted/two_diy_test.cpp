@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <iterator>
 #include <string>
@@ -12,7 +11,6 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include "../force/watched_sensor.h"
@@ -132,20 +130,7 @@ TEST(TwoDiy, IsLetGoWhenItsProgramIsKilled) {
   const test::TemporaryFolder folder;
   const std::string trace = (folder / "trace.csv").string();
   const RunningSerialDevice running("2diy?sway=0mm&trace=" + trace);
-  const pid_t program = fork();
-  if (program == 0) {
-    const auto device = open_device(running.uri());
-    Sample sample;
-    for (int i = 0; i < 1300; ++i) {
-      (void)device->write({0.0, 0.5, 0.0});
-      (void)device->read(0.0, sample);
-      usleep(1000);
-    }
-    (void)raise(SIGKILL);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(program, &status, 0), program);
-  ASSERT_TRUE(WIFSIGNALED(status));
+  kill_who_holds(running.uri(), {0.0, 0.5, 0.0});
   EXPECT_TRUE(becomes([&] { return is_let_go(forces_of(trace), 0.4); }));
 }
 

@@ -109,6 +109,11 @@ FAKE_EXPORT void hdGetDoublev(uint32_t what, double* value) {
       value[1] = 0.2;
       value[2] = 0.3;
       break;
+    case 0x2052: /* by columns */
+      needs_frame();
+      for (int i = 0; i < 16; ++i) value[i] = i % 5 == 0 ? 1.0 : 0.0;
+      for (int i = 0; i < 3; ++i) value[12 + i] = 1e3 * state->position_m[i];
+      break;
     case 0x2551: {
       const double range[6] = {-160, -120, -70, 160, 120, 70};
       memcpy(value, range, sizeof range);
@@ -141,6 +146,8 @@ FAKE_EXPORT const char* hdGetString(uint32_t what) {
       return "Touch";
     case 0x2502:
       return "2023.1";
+    case 0x2503:
+      return "nobody";
     case 0x2504:
       return "T-17";
     default:
