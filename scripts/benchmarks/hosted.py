@@ -20,10 +20,12 @@ import numpy
 
 from sections import replace_section
 
-DEVICES = [  # what is played, how it is opened, its axis and the column of its position in the trace
-    ("plug-in of `kerf device new`", "slider?link=%s", "plugin:%s?port=%s", "x"),
-    ("WoodenHaptics V4", "woody-v4?link=%s", "woody-v4:%s", "x"),
-    ("Inverse3", "inverse3?port=18090", "inverse3:127.0.0.1?port=18090", "x"),
+DEVICES = [  # what is played, how it is opened
+    ("plug-in of `kerf device new`", "slider?link=%s", "plugin:%s?port=%s"),
+    ("WoodenHaptics V4", "woody-v4?link=%s", "woody-v4:%s"),
+    ("Inverse3", "inverse3?port=18090", "inverse3:127.0.0.1?port=18090"),
+    ("2DIY", "2diy?link=%s", "2diy:%s"),
+    ("Hapkit", "hapkit?link=%s", "hapkit:%s"),
 ]
 LAW = """model = "kelvin"
 axis = "x"
@@ -80,7 +82,7 @@ def main():
         here = pathlib.Path(folder)
         subprocess.run([str(program), "device", "new", "slider", "-o", str(here / "slider")], check=True, capture_output=True)
         subprocess.run([str(program), "device", "build", str(here / "slider/slider.c"), "-o", str(here / "slider.so")], check=True, capture_output=True)
-        for name, played, uri, _ in DEVICES:
+        for name, played, uri in DEVICES:
             link = str(here / "port")
             played = played % link if "%s" in played else played
             device = uri % (here / "slider.so", link) if uri.count("%s") == 2 else uri % link if "%s" in uri else uri

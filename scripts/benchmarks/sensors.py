@@ -18,6 +18,7 @@ import numpy
 from sections import replace_section
 
 LOSS = "loss=0.01"
+NEAR = 3000  # frames that a sensor's first number may be off from that of its trace
 SENSORS = [  # what is played, how it is opened, what it loses
     ("Net F/T, 1 kHz", "net-ft?http=18080&port=18081&%s" % LOSS, "net-ft:127.0.0.1?http=18080&port=18081", ""),
     ("Net F/T, 7 kHz", "net-ft?http=18080&port=18081&rate=7000Hz&%s" % LOSS, "net-ft:127.0.0.1?http=18080&port=18081", ""),
@@ -55,8 +56,14 @@ def judged(rows, trace, seconds):
     known = numpy.isfinite(rows["force_measured"][:, 0]) & numpy.isfinite(rows["force_scan"])
     at = numpy.flatnonzero(known)
     scale = numpy.array([1, 1, 1, 20, 20, 20])
-    offsets = [int(numpy.argmin(numpy.abs((trace["wrench"] - rows["force_measured"][row]) * scale).max(axis=1))) - int(rows["force_scan"][row])
-               for row in at[::max(1, len(at) // 60)]]
+    offsets = []
+    for row in at[::max(1, len(at) // 60)]:
+        scan = int(rows["force_scan"][row])
+        # What acts comes again after some ten seconds: near its number alone.
+        first = max(0, scan - NEAR)
+        near = numpy.abs((trace["wrench"][first:scan + NEAR] - rows["force_measured"][row]) * scale).max(axis=1)
+        if len(near) > 0:
+            offsets.append(first + int(numpy.argmin(near)) - scan)
     offset = max(set(offsets), key=offsets.count)
     index = rows["force_scan"][at].astype(int) + offset
     inside = (index >= 0) & (index < len(trace["left"]))
