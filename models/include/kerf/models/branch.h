@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
 
@@ -28,34 +30,50 @@ struct BranchSelector {
   double ramp_band = 0.0;       ///< |v| below which the force fades to zero [position/s]; 0: no band
   double reversal_scale = 0.0;  ///< k_s [1/position]; 0: the full force at once after a reversal
 
-  struct State {
-    double filtered_penetration = 0.0;
-    double switch_penetration = 0.0;
-    double penetration = -std::numeric_limits<double>::infinity();
+  template <typename Signal>
+  struct StateOf {
+    Signal filtered_penetration = 0.0;
+    Signal switch_penetration = 0.0;
+    Signal penetration = -std::numeric_limits<double>::infinity();
     int direction = 0;  ///< +1 closing, -1 opening, 0 before the first motion
     bool started = false;
+
+    /// What the force goes on from, by name.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("filtered_penetration", filtered_penetration);
+      visit("switch_penetration", switch_penetration);
+      visit("direction", direction);
+      visit("started", started);
+    }
   };
+  using State = StateOf<double>;
+  template <typename Signal>
   struct Branch {
     bool closing = true;
-    double scale = 1.0;
+    Signal scale = 1.0;
   };
 
   /// The options of a law that has a BranchSelector, and how it is made from them.
   static std::vector<OptionInfo> options();
   static BranchSelector make(const OptionReader& reader);
 
-  Branch step(State& state, const Motion& motion, double period_s) const noexcept {
-    const double x = motion.penetration;
+  template <typename Signal>
+  Branch<Signal> step(StateOf<Signal>& state, const std::type_identity_t<MotionOf<Signal>>& motion,
+                      std::type_identity_t<Signal> period_s) const noexcept {
+    using std::abs;
+    using std::expm1;
+    const Signal x = motion.penetration;
     state.penetration = x;
     if (!state.started) {
       state.filtered_penetration = x;
       state.switch_penetration = x;
       state.started = true;
     }
-    double velocity = motion.velocity;
+    Signal velocity = motion.velocity;
     if (velocity_corner > 0.0) {
-      const double change = -std::expm1(-velocity_corner * period_s) * (x - state.filtered_penetration);
-      state.filtered_penetration += change;
+      const Signal change = -expm1(-velocity_corner * period_s) * (x - state.filtered_penetration);
+      state.filtered_penetration = state.filtered_penetration + change;
       velocity = change / period_s;
     }
     const int direction = velocity > 0.0 ? 1 : velocity < 0.0 ? -1 : state.direction;
@@ -63,9 +81,11 @@ struct BranchSelector {
       state.switch_penetration = x;
       state.direction = direction;
     }
-    double scale = 1.0;
-    if (reversal_scale > 0.0) scale = std::min(1.0, reversal_scale * std::abs(x - state.switch_penetration));
-    if (ramp_band > 0.0) scale *= std::min(1.0, std::abs(velocity) / ramp_band);
+    Signal scale = 1.0;
+    const Signal whole = 1.0;
+    if (reversal_scale > 0.0)
+      scale = lesser(whole, Signal(reversal_scale * abs(x - state.switch_penetration)));
+    if (ramp_band > 0.0) scale = scale * lesser(whole, Signal(abs(velocity) / ramp_band));
     return {.closing = direction >= 0, .scale = scale};
   }
 };

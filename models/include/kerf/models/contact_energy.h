@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <type_traits>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/parameter.h>
 
 namespace kerf::models {
 
 /// Displacement of an element that a contact presses on [m]: none before it.
-[[nodiscard]] inline double pressed(double penetration) noexcept {
-  return penetration > 0.0 ? penetration : 0.0;
+template <typename Signal>
+[[nodiscard]] Signal pressed(Signal penetration) noexcept {
+  return chosen(penetration > 0.0, penetration, Signal(0.0));
 }
 
 /// Force of a contact, which never pulls [N].
 template <typename T>
 [[nodiscard]] T pushing(const T& force) noexcept {
-  return force < T(0) ? T(0) : force;
+  return chosen(force < T(0), T(0), force);
 }
 
 /// Work of the force that a contact lets through, never below zero, over a travel along which the force of
@@ -66,9 +68,9 @@ auto drawn_step(const Element& element, typename Element::State& state, double x
 /// The element has bilateral_step(), spring_energy(), held_force() without the part that its dashpots have at
 /// once, and least_force(), which it does not fall below on its way to x; its state has penetration and
 /// reachable. @param x of the contact, >= 0
-template <typename Element>
-auto contact_step(const Element& element, typename Element::State& state, double x,
-                  double period_s) noexcept {
+template <typename Element, typename Signal>
+auto contact_step(const Element& element, typename Element::State& state, Signal x,
+                  Signal period_s) noexcept {
   using T = decltype(element.bilateral_step(state, x, period_s));
   if constexpr (std::is_floating_point_v<T>) {
     const bool drawn = x < state.penetration && element.least_force(state, x, period_s) < T(0);
@@ -87,9 +89,9 @@ auto contact_step(const Element& element, typename Element::State& state, double
 
 /// One tick of a viscoelastic element [N]: of a contact, which is none before it and never pulls, or of the
 /// element itself.
-template <typename Element>
-auto element_step(const Element& element, typename Element::State& state, double penetration,
-                  double period_s) noexcept {
+template <typename Element, typename Signal>
+auto element_step(const Element& element, typename Element::State& state, Signal penetration,
+                  Signal period_s) noexcept {
   using T = decltype(element.bilateral_step(state, penetration, period_s));
   if (element.bilateral) return element.bilateral_step(state, penetration, period_s);
   return pushing(T(contact_step(element, state, pressed(penetration), period_s)));

@@ -55,7 +55,11 @@ struct Exponential {
   T offset{};  ///< F0 [N]
 
   struct State {
-    double penetration = -std::numeric_limits<double>::infinity();
+    Signal<T> penetration = -std::numeric_limits<double>::infinity();
+
+    /// The force goes on from nothing.
+    template <typename Visit>
+    void each(Visit&&) {}
   };
 
   static std::vector<ParameterInfo> parameters(const Options& given) {
@@ -93,7 +97,7 @@ struct Exponential {
   }
 
   /// Elastic part of the force [N].
-  [[nodiscard]] T elastic_force(double penetration) const {
+  [[nodiscard]] T elastic_force(Signal<T> penetration) const {
     using std::exp;
     using std::expm1;
     if (penetration <= 0.0) return T(0);
@@ -124,7 +128,7 @@ struct Exponential {
     return stored_energy(state.penetration);
   }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
     state.penetration = motion.penetration;
     if (motion.penetration <= 0.0) return offset;
     return offset + (elastic_force(motion.penetration) + viscosity * static_cast<Input<T>>(motion.velocity));

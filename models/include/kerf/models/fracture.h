@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
@@ -64,11 +65,18 @@ struct Fracture {
 
   struct State {
     Mode mode = Mode::free;
-    double surface = 0.0;  ///< penetration at which tissue is met [m]
-    T stored{0.0};         ///< U [J]
-    T work{0.0};           ///< sum of dWe, done by the tool [J]
-    T crack_energy{0.0};   ///< sum of dWs, spent on the crack [J]
-    T crack_length{0.0};   ///< a [m]
+    Signal<T> surface = 0.0;  ///< penetration at which tissue is met [m]
+    T stored{0.0};            ///< U [J]
+    T work{0.0};              ///< sum of dWe, done by the tool [J]
+    T crack_energy{0.0};      ///< sum of dWs, spent on the crack [J]
+    T crack_length{0.0};      ///< a [m]
+
+    /// What the force goes on from, by name: the books are kept beside it.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("mode", mode);
+      visit("surface", surface);
+    }
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -106,8 +114,8 @@ struct Fracture {
   /// Elastic energy of the deformation, U [J]: none while a crack grows.
   [[nodiscard]] T stored_energy(const State& state) const noexcept { return state.stored; }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
-    const double x = motion.penetration;
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
+    const Signal<T> x = motion.penetration;
     if (state.mode == Mode::fracture) {
       state.mode = x < state.surface - hysteresis ? Mode::free : Mode::cutting;
     }
@@ -123,12 +131,12 @@ struct Fracture {
 
  private:
   /// Whether a crack that grew may go on growing.
-  [[nodiscard]] bool goes_on(const State& state, const Motion& motion) const noexcept {
+  [[nodiscard]] bool goes_on(const State& state, const MotionOf<Signal<T>>& motion) const noexcept {
     return motion.velocity > 0.0 || (hysteresis > 0.0 && motion.penetration >= state.surface - hysteresis);
   }
-  T deform(State& state, double x) const noexcept {
+  T deform(State& state, Signal<T> x) const noexcept {
     using std::expm1;
-    const double depth = x - state.surface;
+    const Signal<T> depth = x - state.surface;
     if (depth <= 0.0) {
       state.work = state.work - state.stored;
       state.stored = T(0.0);
@@ -147,8 +155,8 @@ struct Fracture {
     state.work = state.work - state.stored;  // grow() enters all of Uy, as crack
     state.stored = T(0.0);
     grow(state, yield_energy);
-    const double yielded = state.surface + value_of(yield_depth());
-    state.surface = std::max(yielded, state.surface + value_of(yield_energy / cutting_force()));
+    const Signal<T> yielded = state.surface + value_of(yield_depth());
+    state.surface = greater(yielded, state.surface + value_of(yield_energy / cutting_force()));
     if (x > state.surface) {
       grow(state, cutting_force() * (x - state.surface));
       state.surface = x;
@@ -161,7 +169,7 @@ struct Fracture {
     state.crack_energy = state.crack_energy + energy;
     state.crack_length = state.crack_length + energy / cutting_force();
   }
-  static double value_of(const T& number) noexcept {
+  static Signal<T> value_of(const T& number) noexcept {
     if constexpr (requires { number.a; }) {
       return number.a;  // a dual number: where the tip stands has no derivative across the fracture
     } else {

@@ -53,8 +53,16 @@ struct Friction {
 
   struct State {
     T slip{0.0};  ///< z
-    double penetration = 0.0;
+    Signal<T> penetration = 0.0;
     bool started = false;
+
+    /// What the force goes on from, by name.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("slip", slip);
+      visit("penetration", penetration);
+      visit("started", started);
+    }
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -88,17 +96,18 @@ struct Friction {
     return friction + 0.5 * spring * spring / stiffness;
   }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
+    using std::abs;
     using std::exp;
     if (!state.started) {
       state.started = true;
       state.penetration = motion.penetration;
     }
-    const double travel = motion.penetration - state.penetration;
+    const Signal<T> travel = motion.penetration - state.penetration;
     state.penetration = motion.penetration;
     if (travel != 0.0) {
       const double sign = travel > 0.0 ? 1.0 : -1.0;
-      state.slip = sign + (state.slip - sign) * exp(-std::abs(travel) / presliding);
+      state.slip = sign + (state.slip - sign) * exp(-abs(travel) / presliding);
     }
     return offset + stiffness * motion.penetration + viscosity * motion.velocity + coulomb * state.slip;
   }

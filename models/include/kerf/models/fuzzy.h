@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/parameter.h>
 
@@ -108,7 +109,7 @@ struct FuzzySurface {
   }
 
   /// Normalised weights of the rules at inputs that are already within the box.
-  void weights(double d, double s, std::span<T> weight) const noexcept {
+  void weights(Signal<T> d, Signal<T> s, std::span<T> weight) const noexcept {
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled below, and zeros would cost the tick
     std::array<T, max_memberships> of_depth;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled below, and zeros would cost the tick
@@ -150,9 +151,9 @@ struct FuzzySurface {
   }
 
   /// Rupture force at a depth [m] and a speed [m/s], >= 0 [N].
-  [[nodiscard]] T operator()(double d, double s) const noexcept {
-    d = std::clamp(d, depth.least, depth.most);
-    s = std::clamp(s, speed.least, speed.most);
+  [[nodiscard]] T operator()(Signal<T> d, Signal<T> s) const noexcept {
+    d = within(depth, d);
+    s = within(speed, s);
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): likewise
     std::array<T, max_memberships * max_memberships> weight;
     weights(d, s, weight);
@@ -160,18 +161,21 @@ struct FuzzySurface {
     for (std::size_t k = 0; k < memberships * memberships; ++k) {
       force += weight[k] * (rule[k].per_depth * d + rule[k].per_speed * s + rule[k].constant);
     }
-    return force < T(0.0) ? T(0.0) : force;
+    return chosen(force < T(0.0), T(0.0), force);
   }
 
  private:
-  void memberships_of(const Input& input, double x,
+  static Signal<T> within(const Input& input, Signal<T> x) noexcept {
+    return lesser(greater(x, Signal<T>(input.least)), Signal<T>(input.most));
+  }
+  void memberships_of(const Input& input, Signal<T> x,
                       std::array<T, max_memberships>& membership) const noexcept {
     using std::exp;
     T least(std::numeric_limits<double>::max());
     for (std::size_t i = 0; i < memberships; ++i) {
       const T distance = (x - input.centre[i]) / input.width[i];
       membership[i] = 0.5 * distance * distance;
-      if (membership[i] < least) least = membership[i];
+      least = lesser(least, membership[i]);
     }
     for (std::size_t i = 0; i < memberships; ++i) membership[i] = exp(least - membership[i]);
   }

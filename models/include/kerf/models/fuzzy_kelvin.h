@@ -48,9 +48,16 @@ struct FuzzyKelvin {
 
   struct State {
     typename Kelvin<T>::State element;
-    double reference = 0.0;  ///< x_r [m]
+    Signal<T> reference = 0.0;  ///< x_r [m]
     std::uint32_t ruptures = 0;
     T rupture_force{0.0};  ///< Kelvin force at the last rupture [N]
+
+    /// What the force goes on from, by name: ruptures are counted beside it.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      element.each(visit);
+      visit("reference", reference);
+    }
   };
 
   static std::vector<OptionInfo> options() {
@@ -75,10 +82,11 @@ struct FuzzyKelvin {
     return element.stored_energy(state.element);
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
+    using std::abs;
     const T force =
         element.step(state.element, {motion.penetration - state.reference, motion.velocity}, period_s);
-    if (!(force > T(0.0)) || force < surface(depth, std::abs(motion.velocity))) return force;
+    if (!(force > T(0.0)) || force < surface(depth, abs(motion.velocity))) return force;
     ++state.ruptures;
     state.rupture_force = force;
     state.reference = motion.penetration;

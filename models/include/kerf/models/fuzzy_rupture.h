@@ -36,7 +36,11 @@ struct FuzzyRupture {
   FuzzySurface<T> surface;
 
   struct State {
-    double penetration = -std::numeric_limits<double>::infinity();
+    Signal<T> penetration = -std::numeric_limits<double>::infinity();
+
+    /// The force goes on from nothing.
+    template <typename Visit>
+    void each(Visit&&) {}
   };
 
   static std::vector<OptionInfo> options() { return FuzzySurface<T>::options(); }
@@ -53,10 +57,11 @@ struct FuzzyRupture {
     return state.penetration > 0.0 ? surface.work_to(state.penetration, 0.0) : T(0.0);
   }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
     state.penetration = motion.penetration;
     if (!(motion.penetration > 0.0)) return T(0.0);
-    return surface(motion.penetration, std::abs(motion.velocity));
+    using std::abs;
+    return surface(motion.penetration, abs(motion.velocity));
   }
 };
 

@@ -45,7 +45,11 @@ struct HuntCrossley {
   double reference_depth = 0.01;  ///< x1 [m or rad], > 0
 
   struct State {
-    double penetration = -std::numeric_limits<double>::infinity();
+    Signal<T> penetration = -std::numeric_limits<double>::infinity();
+
+    /// The force goes on from nothing.
+    template <typename Visit>
+    void each(Visit&&) {}
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -74,7 +78,7 @@ struct HuntCrossley {
     return stored_energy(state.penetration);
   }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
     state.penetration = motion.penetration;
     if (motion.penetration <= 0.0) return T(0);
     const T at_reference = reference_force + reference_damping * static_cast<Input<T>>(motion.velocity);
@@ -83,7 +87,7 @@ struct HuntCrossley {
 
  private:
   /// (x / x1)^n
-  [[nodiscard]] T share(double penetration) const noexcept {
+  [[nodiscard]] T share(Signal<T> penetration) const noexcept {
     using std::pow;
     return pow(static_cast<Input<T>>(penetration / reference_depth), exponent);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/parameter.h>
 
 namespace kerf::models {
@@ -29,10 +30,10 @@ struct ArmTick {
   T loss{0};  ///< share of the force that the dashpot takes [1]
   T gain{0};  ///< force per travel [N/m]
 
-  static ArmTick of(Integrator integrator, const T& stiffness, const T& relaxation_time, double period_s,
-                    double shortest_s) noexcept {
+  static ArmTick of(Integrator integrator, const T& stiffness, const T& relaxation_time, Signal<T> period_s,
+                    Signal<T> shortest_s) noexcept {
     using std::expm1;
-    const T periods = Input<T>(period_s) / relaxation_time;
+    const T periods = static_cast<Input<T>>(period_s) / relaxation_time;
     const Input<T> one(1);
     switch (integrator) {
       case Integrator::semi_implicit: {
@@ -40,7 +41,7 @@ struct ArmTick {
         return {periods * share, stiffness * share};
       }
       case Integrator::euler: {
-        const auto steps = static_cast<std::uint64_t>(std::round(period_s / shortest_s));
+        const auto steps = count_of(period_s / shortest_s);
         if (steps < 2) return {periods, stiffness};
         const T loss = loss_of(periods / Input<T>(static_cast<double>(steps)), steps);
         return {loss, stiffness / periods * loss};

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/contact_energy.h>
 #include <kerf/models/integrator.h>
 #include <kerf/models/law_facts.h>
@@ -57,11 +58,23 @@ struct Kelvin {
   struct State {
     T arm_force{0};
     ArmTick<T> tick;  ///< of `period_s`
-    double penetration = 0.0;
-    double period_s = 0.0;
-    double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
+    Signal<T> penetration = 0.0;
+    Signal<T> period_s = 0.0;
+    Signal<T> shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
     T reachable{-1};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
+
+    /// What the force goes on from, by name.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("arm_force", arm_force);
+      visit("loss", tick.loss);
+      visit("gain", tick.gain);
+      visit("penetration", penetration);
+      visit("period_s", period_s);
+      visit("shortest_s", shortest_s);
+      visit("started", started);
+    }
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -108,19 +121,19 @@ struct Kelvin {
            series_stiffness * static_cast<Input<T>>(x - state.penetration);
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
-  T bilateral_step(State& state, double x, double period_s) const noexcept {
+  T bilateral_step(State& state, Signal<T> x, Signal<T> period_s) const noexcept {
     if (!state.started) {
       state.started = true;
       state.penetration = x;
     }
     if (period_s != state.period_s) {
       state.period_s = period_s;
-      state.shortest_s = std::min(state.shortest_s, period_s);
+      state.shortest_s = lesser(state.shortest_s, period_s);
       state.tick =
           ArmTick<T>::of(integrator, series_stiffness, relaxation_time(), period_s, state.shortest_s);
     }

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/contact_energy.h>
 #include <kerf/models/integrator.h>
 #include <kerf/models/law_facts.h>
@@ -69,11 +70,25 @@ struct Maxwell {
   struct State {
     std::array<T, max_arms> arm_force{};
     std::array<ArmTick<T>, max_arms> tick{};  ///< of `period_s`
-    double penetration = 0.0;
-    double period_s = 0.0;
-    double shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
+    Signal<T> penetration = 0.0;
+    Signal<T> period_s = 0.0;
+    Signal<T> shortest_s = std::numeric_limits<double>::infinity();  ///< of the periods so far
     bool started = false;
     T reachable{-1};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
+
+    /// What the force goes on from, by name.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("arm_force", arm_force);
+      for (std::size_t i = 0; i < max_arms; ++i) {
+        visit("loss_" + std::to_string(i), tick[i].loss);
+        visit("gain_" + std::to_string(i), tick[i].gain);
+      }
+      visit("penetration", penetration);
+      visit("period_s", period_s);
+      visit("shortest_s", shortest_s);
+      visit("started", started);
+    }
   };
 
   static std::vector<OptionInfo> options() {
@@ -153,24 +168,25 @@ struct Maxwell {
     return force;
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
-  T bilateral_step(State& state, double x, double period_s) const noexcept {
+  T bilateral_step(State& state, Signal<T> x, Signal<T> period_s) const noexcept {
     if (!state.started) {
       state.started = true;
       state.penetration = x;
     }
     if (period_s != state.period_s) hold(state, period_s);
+    using std::abs;
     const auto travel = static_cast<Input<T>>(x - state.penetration);
     state.penetration = x;
     T force = parallel_stiffness * static_cast<Input<T>>(x);
     for (std::size_t i = 0; i < arms; ++i) {
       T& arm = state.arm_force[i];
       arm = arm + (state.tick[i].gain * travel - state.tick[i].loss * arm);
-      if (arm < negligible_n && arm > -negligible_n) arm = T(0);
+      arm = chosen(abs(arm) < negligible_n, T(0), arm);
       force = force + arm;
     }
     return force;
@@ -178,14 +194,14 @@ struct Maxwell {
 
  private:
   // What a long hold leaves would soon be denormal, and slow to reckon with.
-  static constexpr Input<T> negligible_n = static_cast<Input<T>>(std::is_same_v<T, float> ? 1e-30 : 1e-100);
+  static constexpr Input<T> negligible_n = static_cast<Input<T>>(Scalars<T>::single ? 1e-30 : 1e-100);
 
   static std::size_t arm_count(const Options& given) {
     return OptionReader(name, options(), given).count("arms", 1, max_arms);
   }
-  void hold(State& state, double period_s) const noexcept {
+  void hold(State& state, Signal<T> period_s) const noexcept {
     state.period_s = period_s;
-    state.shortest_s = std::min(state.shortest_s, period_s);
+    state.shortest_s = lesser(state.shortest_s, period_s);
     for (std::size_t i = 0; i < arms; ++i) {
       state.tick[i] =
           ArmTick<T>::of(integrator, stiffness[i], relaxation_time[i], period_s, state.shortest_s);

@@ -10,10 +10,12 @@ namespace kerf::models {
 /// For a probe or a blade the penetration is a depth [m]; for scissors it is the angle by which they have
 /// closed since they met the tissue [rad]. Both grow into the tissue, so that a resisting force is positive
 /// and force times velocity is the power into the tissue.
-struct Motion {
-  double penetration = 0.0;  ///< x [m or rad]; negative before contact
-  double velocity = 0.0;     ///< v = dx/dt [m/s or rad/s]
+template <typename Signal>
+struct MotionOf {
+  Signal penetration = 0.0;  ///< x [m or rad]; negative before contact
+  Signal velocity = 0.0;     ///< v = dx/dt [m/s or rad/s]
 };
+using Motion = MotionOf<double>;
 
 inline constexpr std::size_t max_law_axes = 6;
 

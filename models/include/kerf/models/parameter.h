@@ -65,10 +65,20 @@ struct OptionInfo {
   std::string meaning;
 };
 
-/// The scalar in which a law of the scalar T reckons with what is no parameter: its inputs, its numbers.
-/// Single precision stays single; a dual number meets doubles.
+/// In which scalars a law of the scalar T reckons with what is no parameter.
 template <typename T>
-using Input = std::conditional_t<std::is_same_v<T, float>, float, double>;
+struct Scalars {
+  using Input = std::conditional_t<std::is_same_v<T, float>, float, double>;
+  using Signal = double;
+  static constexpr bool single = std::is_same_v<T, float>;
+};
+/// Its inputs and its numbers beside parameters: single precision stays single; a dual number meets doubles.
+template <typename T>
+using Input = typename Scalars<T>::Input;
+/// The motion and the time themselves, and what a law remembers of them: doubles, whatever T is, but for a
+/// law that is written out for other programs (kerf/traced/traced.h), which has to see them.
+template <typename T>
+using Signal = typename Scalars<T>::Signal;
 
 /// The option of a law that can be rendered in single precision; its parameters are fitted in double anyhow.
 [[nodiscard]] inline OptionInfo precision_option() {

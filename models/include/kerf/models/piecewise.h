@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/choice.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
@@ -55,7 +56,7 @@ struct Piecewise {
   bool loop = false;
   BranchSelector selector;
 
-  using State = BranchSelector::State;
+  using State = BranchSelector::StateOf<Signal<T>>;
 
   static std::vector<OptionInfo> options() {
     auto all = BranchSelector::options();
@@ -98,13 +99,14 @@ struct Piecewise {
   }
 
   /// Force of one branch at a penetration [N].
-  [[nodiscard]] T branch_force(bool is_closing, double at) const noexcept {
+  [[nodiscard]] T branch_force(bool is_closing, Signal<T> at) const noexcept {
     const auto penetration = static_cast<Input<T>>(at);
     const auto& force = is_closing ? closing : opening;
     if (knot[0] >= penetration) return force[0];
-    std::size_t i = 0;
-    while (i + 2 < knots && knot[i + 1] < penetration) ++i;
-    return force[i] + (force[i + 1] - force[i]) * ((penetration - knot[i]) / (knot[i + 1] - knot[i]));
+    const auto i = segment_of(knot, knots, penetration);
+    const T& at_knot = entry(force, i);
+    const T& from = entry(knot, i);
+    return at_knot + (entry(force, i, 1) - at_knot) * ((penetration - from) / (entry(knot, i, 1) - from));
   }
 
   /// This law with an opening branch made from the closing of empty scissors, by default -1/2 of it: opening
@@ -129,7 +131,7 @@ struct Piecewise {
         [&](bool is_closing, double at) { return branch_force(is_closing, at); });
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     if (!loop) {
       state.penetration = motion.penetration;
       return branch_force(true, motion.penetration);

@@ -39,7 +39,11 @@ struct Precontact {
   bool paper = false;
 
   struct State {
-    double penetration = -std::numeric_limits<double>::infinity();
+    Signal<T> penetration = -std::numeric_limits<double>::infinity();
+
+    /// The force goes on from nothing.
+    template <typename Visit>
+    void each(Visit&&) {}
   };
 
   static std::vector<ParameterInfo> parameters(const Options&) {
@@ -70,7 +74,7 @@ struct Precontact {
     return stored_energy(state.penetration);
   }
 
-  T step(State& state, const Motion& motion, double) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T>) const noexcept {
     state.penetration = motion.penetration;
     const T d = motion.penetration + width;
     if (d <= T(0.0)) return T(0.0);

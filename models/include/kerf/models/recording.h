@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <kerf/models/branch.h>
+#include <kerf/models/choice.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
 #include <kerf/models/parameter.h>
@@ -54,7 +55,7 @@ struct Recording {
   std::vector<T> opening;  ///< empty without `loop`
   BranchSelector selector;
 
-  using State = BranchSelector::State;
+  using State = BranchSelector::StateOf<Signal<T>>;
 
   static std::vector<OptionInfo> options() {
     auto all = BranchSelector::options();
@@ -94,13 +95,15 @@ struct Recording {
   }
 
   /// Force of one branch at a penetration [N].
-  [[nodiscard]] T branch_force(bool is_closing, double penetration) const noexcept {
+  [[nodiscard]] T branch_force(bool is_closing, Signal<T> penetration) const noexcept {
     const auto& table = is_closing || opening.empty() ? closing : opening;
-    const double place = (penetration - first) * (static_cast<double>(table.size() - 1) / (last - first));
+    using std::floor;
+    const Signal<T> place = (penetration - first) * (static_cast<double>(table.size() - 1) / (last - first));
     if (!(place > 0.0)) return table.front();
-    const double cell = std::min(std::floor(place), static_cast<double>(table.size() - 2));
-    const auto i = static_cast<std::size_t>(cell);
-    return table[i] + (table[i + 1] - table[i]) * static_cast<Input<T>>(place - cell);
+    const Signal<T> cell = lesser(floor(place), Signal<T>(static_cast<double>(table.size() - 2)));
+    const auto i = place_of(cell);
+    const T& here = entry(table, i);
+    return here + (entry(table, i, 1) - here) * static_cast<Input<T>>(place - cell);
   }
 
   /// recoverable_energy() between the first point and the last one [J], with what Piecewise says of a loop.
@@ -116,7 +119,7 @@ struct Recording {
         [&](bool is_closing, double at) { return branch_force(is_closing, at); });
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     if (opening.empty()) {
       state.penetration = motion.penetration;
       return branch_force(true, motion.penetration);

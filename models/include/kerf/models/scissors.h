@@ -52,12 +52,15 @@ class CuttingPoint {
         widest_rad_(scissors.widest_angle_rad) {}
 
   /// Whether the blades cut at this angle.
-  [[nodiscard]] bool cuts_at(double theta_rad) const noexcept {
+  template <typename Signal>
+  [[nodiscard]] bool cuts_at(Signal theta_rad) const noexcept {
     return theta_rad >= closing_rad_ && theta_rad <= widest_rad_;
   }
   /// Distance from the pivot [m]; theta within the cutting angles.
-  [[nodiscard]] double operator()(double theta_rad) const noexcept {
-    return scale_m_ / std::sin(0.5 * theta_rad + taper_rad_);
+  template <typename Signal>
+  [[nodiscard]] Signal operator()(Signal theta_rad) const noexcept {
+    using std::sin;
+    return scale_m_ / sin(0.5 * theta_rad + taper_rad_);
   }
   /// Half width of a blade there, t(theta) [m].
   [[nodiscard]] double half_width(double theta_rad) const noexcept {

@@ -44,7 +44,7 @@ struct ScissorsAnalytic {
   CuttingPoint point;
   BranchSelector selector;
 
-  using State = BranchSelector::State;
+  using State = BranchSelector::StateOf<Signal<T>>;
 
   static std::vector<ParameterInfo> parameters(const Options&) {
     return {{"pivot_torque", Quantity::torque, 0.0, 1e3, Scale::linear, "tau_pf, friction at the pivot"},
@@ -73,11 +73,11 @@ struct ScissorsAnalytic {
   /// Friction and cutting hold nothing [N·rad].
   [[nodiscard]] T stored_energy(const State&) const noexcept { return T(0.0); }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     const auto branch = selector.step(state, motion, period_s);
-    const double theta = contact_angle_rad - motion.penetration;
+    const Signal<T> theta = contact_angle_rad - motion.penetration;
     if (!point.cuts_at(theta)) return T(0.0);
-    const double x_c = point(theta);
+    const Signal<T> x_c = point(theta);
     const T friction = pivot_torque + blade_friction * x_c;
     if (!branch.closing) return -branch.scale / lever_m * friction;
     const T cutting = motion.penetration > 0.0 ? T(cutting_force * x_c) : T(0.0);

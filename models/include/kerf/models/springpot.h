@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <kerf/models/choice.h>
 #include <kerf/models/contact_energy.h>
 #include <kerf/models/law_facts.h>
 #include <kerf/models/motion.h>
@@ -74,19 +75,34 @@ struct Springpot {
   T fast{};                        ///< [N·s/m], of what is faster
 
   struct State {
-    std::array<double, decays> displacement{};  ///< of each decay's spring
+    std::array<Signal<T>, decays> displacement{};  ///< of each decay's spring
     /// What a tick of one period does. Two are kept: stamps of whole milliseconds go from one to another.
     struct Tick {
-      double period_s = 0.0;
-      std::array<double, decays> decay{};
-      std::array<double, decays> gain{};  ///< displacement per travel
+      Signal<T> period_s = 0.0;
+      std::array<Signal<T>, decays> decay{};
+      std::array<Signal<T>, decays> gain{};  ///< displacement per travel
     };
     std::array<Tick, 2> tick{};
     std::size_t current = 0;
-    double beginning = 0.0;  ///< penetration of the first tick
-    double penetration = 0.0;
+    Signal<T> beginning = 0.0;  ///< penetration of the first tick
+    Signal<T> penetration = 0.0;
     bool started = false;
     T reachable{-1.0};  ///< of the springs' energy (contact_step()) [J]; below zero: all of it
+
+    /// What the force goes on from, by name.
+    template <typename Visit>
+    void each(Visit&& visit) {
+      visit("displacement", displacement);
+      for (std::size_t i = 0; i < tick.size(); ++i) {
+        visit("period_" + std::to_string(i), tick[i].period_s);
+        visit("decay_" + std::to_string(i), tick[i].decay);
+        visit("gain_" + std::to_string(i), tick[i].gain);
+      }
+      visit("current", current);
+      visit("beginning", beginning);
+      visit("penetration", penetration);
+      visit("started", started);
+    }
   };
 
   static std::vector<OptionInfo> options() {
@@ -158,12 +174,13 @@ struct Springpot {
            ((sum[0] + sum[1]) + (sum[2] + sum[3]));
   }
 
-  T step(State& state, const Motion& motion, double period_s) const noexcept {
+  T step(State& state, const MotionOf<Signal<T>>& motion, Signal<T> period_s) const noexcept {
     return element_step(*this, state, motion.penetration, period_s);
   }
 
   /// Force of the element itself, which pulls as it pushes, at a displacement x [m].
-  T bilateral_step(State& state, double x, double period_s) const noexcept {
+  T bilateral_step(State& state, Signal<T> x, Signal<T> period_s) const noexcept {
+    using std::abs;
     if (!state.started) {
       state.started = true;
       state.beginning = x;
@@ -171,12 +188,12 @@ struct Springpot {
     }
     if (period_s != state.tick[state.current].period_s) hold(state, period_s);
     const typename State::Tick& tick = state.tick[state.current];
-    const double travel = x - state.penetration;
+    const Signal<T> travel = x - state.penetration;
     state.penetration = x;
     for (std::size_t j = 0; j < decays; ++j) {
-      const double next = tick.decay[j] * state.displacement[j] + tick.gain[j] * travel;
+      const Signal<T> next = tick.decay[j] * state.displacement[j] + tick.gain[j] * travel;
       // What a long hold leaves would soon be denormal, and slow to reckon with.
-      state.displacement[j] = std::abs(next) < 1e-100 ? 0.0 : next;
+      state.displacement[j] = chosen(abs(next) < 1e-100, Signal<T>(0.0), next);
     }
     return stiffness * x + slow * (x - state.beginning) + fast * (travel / period_s) + decaying_force(state);
   }
@@ -198,15 +215,17 @@ struct Springpot {
     const T remaining = 1.0 - order;
     fast = scale * exp(-remaining * (log_rate(0) + log_spacing)) / -expm1(-log_spacing * remaining);
   }
-  static void hold(State& state, double period_s) noexcept {
+  static void hold(State& state, Signal<T> period_s) noexcept {
+    using std::exp;
+    using std::expm1;
     state.current = 1 - state.current;
     typename State::Tick& tick = state.tick[state.current];
     if (period_s == tick.period_s) return;
     tick.period_s = period_s;
     for (std::size_t j = 0; j < decays; ++j) {
-      const double relaxation = std::exp(log_rate(j)) * period_s;
-      tick.decay[j] = relaxation < 200.0 ? std::exp(-relaxation) : 0.0;
-      tick.gain[j] = -std::expm1(-relaxation) / relaxation;
+      const Signal<T> relaxation = exp(log_rate(j)) * period_s;
+      tick.decay[j] = chosen(relaxation < 200.0, Signal<T>(exp(-relaxation)), Signal<T>(0.0));
+      tick.gain[j] = -expm1(-relaxation) / relaxation;
     }
   }
   [[nodiscard]] T decaying_force(const State& state) const noexcept {
