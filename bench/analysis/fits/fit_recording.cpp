@@ -42,6 +42,22 @@ struct Sources {
   }
 };
 
+/// Where the rows lie that a law was fitted to.
+std::optional<FittedRange> range_of(const AxisSeries& series) {
+  std::optional<FittedRange> range;
+  for (std::size_t row = 0; row < series.penetration.size(); ++row) {
+    const double x = series.penetration[row];
+    const double speed = std::abs(series.velocity[row]);
+    if ((!series.counts.empty() && series.counts[row] == 0) || !std::isfinite(x) || !std::isfinite(speed))
+      continue;
+    if (!range) range = FittedRange{.least = x, .most = x, .fastest = speed};
+    range->least = std::min(range->least, x);
+    range->most = std::max(range->most, x);
+    range->fastest = std::max(range->fastest, speed);
+  }
+  return range;
+}
+
 LawFile file_of(const fitting::FitResult& result, const Sources& sources, std::size_t at) {
   const FitSource& source = sources.all[at];
   const schema::Axis& axis = source.recording->axes[source.axis];
@@ -65,7 +81,8 @@ LawFile file_of(const fitting::FitResult& result, const Sources& sources, std::s
                   .recording_content = {},
                   .rmse_n = result.rmse,
                   .date = schema::new_header("").created,
-                  .software = software()}};
+                  .software = software(),
+                  .range = range_of(sources.series[at])}};
 }
 
 FittedLaw finished(fitting::FitResult result, const Sources& sources) {

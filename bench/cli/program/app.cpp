@@ -53,7 +53,7 @@ std::vector<Group> groups() {
           {"replay", {add_replay, add_regress, add_compare}},
           {"experiment", {add_session}},
           {"study", {add_study}},
-          {"share", {add_report, add_convert}},
+          {"share", {add_report, add_convert, add_export}},
           {"", {add_pages}}};  // hidden: for the build
 }
 

@@ -12,6 +12,7 @@ void add_check(CLI::App& app, Context& context);
 void add_choose(CLI::App& app, Context& context);
 void add_compare(CLI::App& app, Context& context);
 void add_convert(CLI::App& app, Context& context);
+void add_export(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_devices(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);

@@ -43,8 +43,7 @@ std::string read_all(int file) {
   content.resize(static_cast<std::size_t>(std::max<off_t>(lseek(file, 0, SEEK_END), 0)));
   std::size_t done = 0;
   while (done < content.size()) {
-    const ssize_t count =
-        pread(file, content.data() + done, content.size() - done, static_cast<off_t>(done));
+    const ssize_t count = pread(file, content.data() + done, content.size() - done, static_cast<off_t>(done));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
     done += static_cast<std::size_t>(count);

@@ -64,11 +64,32 @@ models::Contact read_contact(const Place& place, const toml::table& root, const 
   return contact;
 }
 
-FitProvenance read_provenance(const Place& place, const toml::table& root) {
+/// So many numbers in a unit.
+std::vector<double> read_numbers(const Place& place, const toml::table& table, const std::string& key,
+                                 const std::string& unit, std::size_t count) {
+  const toml::node* const node = table.get(key);
+  if (node == nullptr) place.refuse(table, "[fit] has no '{}', which belongs to its range", key);
+  auto values = place.measured(*node, key, unit).values;
+  if (values.size() != count ||
+      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    place.refuse(*node, "'{}' must be {} finite number{}", key, count, count == 1 ? "" : "s");
+  return values;
+}
+
+std::optional<FittedRange> read_range(const Place& place, const toml::table& table,
+                                      const std::string& position_unit) {
+  if (table.get("penetration") == nullptr && table.get("speed") == nullptr) return std::nullopt;
+  const auto depths = read_numbers(place, table, "penetration", position_unit, 2);
+  const auto speed = read_numbers(place, table, "speed", position_unit + "/s", 1);
+  return FittedRange{.least = depths[0], .most = depths[1], .fastest = speed[0]};
+}
+
+FitProvenance read_provenance(const Place& place, const toml::table& root, const std::string& position_unit) {
   FitProvenance fit;
   if (root.get("fit") == nullptr) return fit;
   const toml::table& table = place.table(root, "fit");
-  place.allow_only(table, {"recording", "sha256", "content", "rmse", "date", "software"}, "[fit]");
+  place.allow_only(
+      table, {"recording", "sha256", "content", "rmse", "penetration", "speed", "date", "software"}, "[fit]");
   fit.recording_uuid = place.text(table, "recording", "");
   fit.recording_sha256 = place.text(table, "sha256", "");
   fit.recording_content = place.text(table, "content", "");
@@ -79,6 +100,7 @@ FitProvenance read_provenance(const Place& place, const toml::table& root) {
     if (values.size() != 1) place.refuse(*rmse, "'rmse' must be one number");
     fit.rmse_n = values[0];
   }
+  fit.range = read_range(place, table, position_unit);
   return fit;
 }
 
@@ -256,7 +278,7 @@ LawFile law_from_table(const toml::table& root, const std::string& name,
           .position_unit = position_unit,
           .force_unit = force_unit,
           .std_errors = std::move(parameters.std_errors),
-          .fit = read_provenance(place, root),
+          .fit = read_provenance(place, root, position_unit),
           .name = name};
 }
 
@@ -290,8 +312,13 @@ std::string to_toml(const LawFile& file) {
                         toml_text(file.fit.recording_sha256));
     if (!file.fit.recording_content.empty())
       text += fmt::format("content = {}\n", toml_text(file.fit.recording_content));
-    text += fmt::format("rmse = {{ value = {}, unit = \"N\" }}\ndate = {}\nsoftware = {}\n",
-                        toml_number(file.fit.rmse_n), toml_text(file.fit.date), toml_text(file.fit.software));
+    text += fmt::format("rmse = {{ value = {}, unit = \"N\" }}\n", toml_number(file.fit.rmse_n));
+    if (const auto& range = file.fit.range)
+      text += fmt::format(
+          "penetration = {{ value = [{}, {}], unit = \"{}\" }}\nspeed = {{ value = {}, unit = \"{}/s\" }}\n",
+          toml_number(range->least), toml_number(range->most), file.position_unit,
+          toml_number(range->fastest), file.position_unit);
+    text += fmt::format("date = {}\nsoftware = {}\n", toml_text(file.fit.date), toml_text(file.fit.software));
   }
   return text;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,13 @@
 #include <kerf/schema/final_name.h>
 
 namespace kerf::bench {
+
+/// Where a law was fitted: what it says elsewhere, nobody has seen.
+struct FittedRange {
+  double least = 0.0;    ///< penetration [m or rad]
+  double most = 0.0;     ///< penetration [m or rad]
+  double fastest = 0.0;  ///< speed, >= 0 [m/s or rad/s]
+};
 
 /// How a law came about, kept in its file.
 struct FitProvenance {
@@ -17,6 +25,8 @@ struct FitProvenance {
   double rmse_n = 0.0;
   std::string date;      ///< ISO 8601, UTC
   std::string software;  ///< kerf::software()
+  std::optional<FittedRange>
+      range{};  ///< not known: of laws written by hand, and in files of earlier versions
 };
 
 /// Says which file a law was fitted to, and which samples.

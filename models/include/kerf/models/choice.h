@@ -30,6 +30,12 @@ template <typename T>
   return chosen(a < b, b, a);
 }
 
+/// Takes a number for zero where it is smaller than a bound.
+template <typename T>
+inline void let_go(T& number, const Input<T>& bound) noexcept {
+  if (number < bound && number > -bound) number = T(0);
+}
+
 /// A whole number >= 0 as a place in a table.
 [[nodiscard]] inline std::size_t place_of(double whole) noexcept { return static_cast<std::size_t>(whole); }
 /// What stands in a table at a place, or `further` behind it.

@@ -179,14 +179,13 @@ struct Maxwell {
       state.penetration = x;
     }
     if (period_s != state.period_s) hold(state, period_s);
-    using std::abs;
     const auto travel = static_cast<Input<T>>(x - state.penetration);
     state.penetration = x;
     T force = parallel_stiffness * static_cast<Input<T>>(x);
     for (std::size_t i = 0; i < arms; ++i) {
       T& arm = state.arm_force[i];
       arm = arm + (state.tick[i].gain * travel - state.tick[i].loss * arm);
-      arm = chosen(abs(arm) < negligible_n, T(0), arm);
+      let_go(arm, negligible_n);
       force = force + arm;
     }
     return force;

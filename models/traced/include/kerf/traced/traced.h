@@ -179,6 +179,9 @@ struct Traced {
     result.node = note(Operation::chosen, single, {condition.node, yes.noted(), no.noted()});
     return result;
   }
+  friend void let_go(Traced& number, const Traced& bound) {
+    number = chosen(abs(number) < bound, Traced(), number);
+  }
   friend Place place_of(const Traced& whole) {
     return {note(Operation::place_of, single, {whole.noted(), -1, -1})};
   }
