@@ -8,7 +8,6 @@
 #include "bench/export/exported.h"
 #include "bench/export/host_compilers.h"
 #include "hosts/by_library/host_build.h"
-#include "hosts/by_library/host_texts.h"
 #include "laws/plugin_laws.h"
 
 namespace kerf::bench {
@@ -54,7 +53,7 @@ TEST(Chai3d, TakesTheLawOfAPlugin) {
 TEST(Chai3d, IsAnEffectForWhoeverCompilesItWithoutAWarning) {
   if (!test::hosts_can_load_libkerf) GTEST_SKIP();
   const BuildFolder folder;
-  folder.write("chai3d.h", host_text("chai3d.h.in"));
+  write_chai3d_stubs(folder);
   test::write_files(chai3d_host(), test::exported("wall", std::string(test::wall)), folder.path());
   for (const std::string compiler : {"g++", "clang++"})
     EXPECT_EQ(

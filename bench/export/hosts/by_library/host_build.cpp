@@ -71,6 +71,15 @@ fs::path build_driver(const BuildFolder& build, const fs::path& folder,
   return program;
 }
 
+void write_chai3d_stubs(const BuildFolder& build) { build.write("chai3d.h", host_text("chai3d.h.in")); }
+
+void write_sofa_stubs(const BuildFolder& build) {
+  build.write("sofa_stubs.h", host_text("sofa_stubs.h.in"));
+  for (const char* const header :
+       {"sofa/version.h", "sofa/component/haptics/ForceFeedback.h", "sofa/core/ObjectFactory.h"})
+    build.write(header, "#include \"sofa_stubs.h\"\n");
+}
+
 std::vector<std::string> plugin_argument(const ExportedLaw& law) {
   const models::ForeignLaw* const foreign = models::foreign_law(law.file.law.model());
   if (foreign == nullptr) return {};

@@ -36,6 +36,11 @@ class BuildFolder {
                                                  const std::filesystem::path& folder,
                                                  const std::vector<std::string>& options);
 
+// In place of what is not installed, signatures as CHAI3D and SOFA document them: they say nothing of what
+// the programs themselves do.
+void write_chai3d_stubs(const BuildFolder& build);
+void write_sofa_stubs(const BuildFolder& build);
+
 /// What a driver is started with besides its name: the file of the plug-in, if the law is of one.
 [[nodiscard]] std::vector<std::string> plugin_argument(const ExportedLaw& law);
 

@@ -9,6 +9,7 @@
 
 #include <kerf/version.h>
 
+#include "hosts/by_library/host_texts.h"
 #include "laws/plugin_mention.h"
 
 namespace kerf::bench {
@@ -146,8 +147,17 @@ std::vector<std::pair<std::string_view, std::string>> law_values(const ExportedL
   return {{"NAME", law.name},
           {"TYPE", type_name(law.name)},
           {"SHA256", law.sha256},
+          {"VERSION", std::string(kerf::version())},
           {"TEXT", quoted(law.text, language)},
           {"PROVENANCE", provenance_comment(law)}};
+}
+
+std::vector<std::pair<std::string_view, std::string>> values_in_space(const ExportedLaw& law,
+                                                                      std::string_view host) {
+  std::vector<std::pair<std::string_view, std::string>> values{
+      {"LAW_ON_AXES", std::string(host_text("law_on_axes.in"))}, {"AXES", axes_in_space(law, host)}};
+  for (auto& value : law_values(law, Language::cpp)) values.push_back(std::move(value));
+  return values;
 }
 
 }  // namespace kerf::bench

@@ -31,9 +31,14 @@ enum class Language { cpp, csharp };
 /// @throws std::invalid_argument for a law in space, whose ticks a HostSample does not tell
 void require_one_axis(const ExportedLaw& law, std::string_view host);
 
-/// What the texts of a host are filled in with (filled_in() of own_code/compiler.h): NAME, TYPE, PROVENANCE,
-/// SHA256, TEXT in that language.
+/// What the texts of a host are filled in with (filled_in() of own_code/compiler.h): NAME, TYPE, SHA256,
+/// VERSION, PROVENANCE, and TEXT in that language.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> law_values(const ExportedLaw& law,
                                                                                Language language);
+
+/// The same for a host in C++ that knows the tool's place in space: with LAW_ON_AXES, the class of
+/// law_on_axes.in. @throws std::invalid_argument as axes_in_space() does
+[[nodiscard]] std::vector<std::pair<std::string_view, std::string>> values_in_space(const ExportedLaw& law,
+                                                                                    std::string_view host);
 
 }  // namespace kerf::bench

@@ -11,10 +11,7 @@ namespace kerf::bench {
 namespace {
 
 std::vector<HostFile> chai3d_files(const ExportedLaw& law) {
-  auto values = law_values(law, Language::cpp);
-  // First, since there are keys in it.
-  values.insert(values.begin(), {{"LAW_ON_AXES", std::string(host_text("law_on_axes.in"))},
-                                 {"AXES", axes_in_space(law, "CHAI3D")}});
+  const auto values = values_in_space(law, "CHAI3D");
   return {{law.name + "_chai3d.h", filled_in(host_text("effect.h.in"), values)},
           {"CMakeLists.txt", filled_in(host_text("chai3d.cmake.in"), values)}};
 }
@@ -23,7 +20,7 @@ std::vector<double> chai3d_forces(const ExportedLaw& law, const std::filesystem:
                                   std::span<const HostSample> samples) {
   require_one_axis(law, "CHAI3D");
   const BuildFolder build;
-  build.write("chai3d.h", host_text("chai3d.h.in"));
+  write_chai3d_stubs(build);
   build.write("driver.cpp", filled_in(host_text("chai3d_driver.cpp.in"), {{"NAME", law.name}}));
   std::vector<std::string> words{build_driver(build, folder, {"-std=c++14", "-O1"}).string()};
   for (std::string& argument : plugin_argument(law)) words.push_back(std::move(argument));
