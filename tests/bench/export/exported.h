@@ -75,10 +75,11 @@ inline std::vector<double> forces_of_library(const std::string& text,
   return forces;
 }
 
-/// Bit for bit.
+/// Bit for bit; all that is no number is the same.
 inline std::vector<std::uint64_t> bits_of(const std::vector<double>& numbers) {
   std::vector<std::uint64_t> bits;
-  for (const double number : numbers) bits.push_back(std::bit_cast<std::uint64_t>(number));
+  for (const double number : numbers)
+    bits.push_back(std::bit_cast<std::uint64_t>(std::isnan(number) ? std::nan("") : number));
   return bits;
 }
 

@@ -78,17 +78,6 @@ std::string fit_in_words(const FitProvenance& fit) {
                      fit.recording_sha256, fit.rmse_n, fit.date, fit.software);
 }
 
-/// "my_law" is MyLaw.
-std::string type_name(std::string_view name) {
-  std::string type;
-  bool begins = true;
-  for (const char c : name) {
-    if (c != '_') type += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
-    begins = c == '_';
-  }
-  return type;
-}
-
 }  // namespace
 
 std::string quoted(std::string_view text, Language language) {
@@ -119,21 +108,27 @@ std::string provenance_comment(const ExportedLaw& law) {
   return lines;
 }
 
-std::string axes_in_space(const ExportedLaw& law, std::string_view host) {
+std::string axes_in_space(const ExportedLaw& law) {
   std::vector<std::size_t> indices;
-  const std::vector<AxisInWords> axes = axes_of(law.file);
-  for (const AxisInWords& axis : axes) {
+  for (const AxisInWords& axis : axes_of(law.file)) {
     const std::size_t index =
         axis.name.size() == 1 ? std::string_view("xyz").find(axis.name) : std::string_view::npos;
-    if (axis.position_unit != "m" || axis.force_unit != "N" ||
-        (law.file.law.is_spatial() && index == std::string_view::npos))
-      throw std::invalid_argument(fmt::format(
-          "{} gives a tool's place in m along x, y, z and takes a force in N, and this law's axes "
-          "are {}: such a law goes into an own program ('kerf export --as c', docs/library.md)",
-          host, in_words(axes)));
-    indices.push_back(index == std::string_view::npos ? 2 : index);
+    const bool is_named = index != std::string_view::npos;
+    if (axis.position_unit != "m" || axis.force_unit != "N" || (law.file.law.is_spatial() && !is_named))
+      return "";
+    indices.push_back(is_named ? index : 2);
   }
   return fmt::format("{}", fmt::join(indices, ", "));
+}
+
+std::string type_name(std::string_view name) {
+  std::string type;
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_') type += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = c == '_';
+  }
+  return type;
 }
 
 void require_one_axis(const ExportedLaw& law, std::string_view host) {
@@ -154,8 +149,14 @@ std::vector<std::pair<std::string_view, std::string>> law_values(const ExportedL
 
 std::vector<std::pair<std::string_view, std::string>> values_in_space(const ExportedLaw& law,
                                                                       std::string_view host) {
+  const std::string axes = axes_in_space(law);
+  if (axes.empty())
+    throw std::invalid_argument(fmt::format(
+        "{} gives a tool's place in m along x, y, z and takes a force in N, and this law's axes are "
+        "{}: such a law goes into an own program ('kerf export --as c', docs/library.md)",
+        host, in_words(axes_of(law.file))));
   std::vector<std::pair<std::string_view, std::string>> values{
-      {"LAW_ON_AXES", std::string(host_text("law_on_axes.in"))}, {"AXES", axes_in_space(law, host)}};
+      {"LAW_ON_AXES", std::string(host_text("law_on_axes.in"))}, {"AXES", axes}};
   for (auto& value : law_values(law, Language::cpp)) values.push_back(std::move(value));
   return values;
 }

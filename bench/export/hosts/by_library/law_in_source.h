@@ -25,8 +25,11 @@ enum class Language { cpp, csharp };
 
 /// The axes of a law along x, y and z of a host that knows the tool's position and gives it a force, as their
 /// indices: "0, 1, 2". A law along one axis is on the one of its name, and on z if that is none of them.
-/// @throws std::invalid_argument for a law that takes an angle or a joint or gives a torque, with its axes
-[[nodiscard]] std::string axes_in_space(const ExportedLaw& law, std::string_view host);
+/// Empty for a law that takes an angle or a joint or gives a torque.
+[[nodiscard]] std::string axes_in_space(const ExportedLaw& law);
+
+/// "my_law" is MyLaw.
+[[nodiscard]] std::string type_name(std::string_view name);
 
 /// @throws std::invalid_argument for a law in space, whose ticks a HostSample does not tell
 void require_one_axis(const ExportedLaw& law, std::string_view host);
@@ -37,7 +40,7 @@ void require_one_axis(const ExportedLaw& law, std::string_view host);
                                                                                Language language);
 
 /// The same for a host in C++ that knows the tool's place in space: with LAW_ON_AXES, the class of
-/// law_on_axes.in. @throws std::invalid_argument as axes_in_space() does
+/// law_on_axes.in. @throws std::invalid_argument where axes_in_space() are none, with the axes that it has
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> values_in_space(const ExportedLaw& law,
                                                                                     std::string_view host);
 
