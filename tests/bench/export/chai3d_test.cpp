@@ -23,7 +23,7 @@ std::vector<double> through_chai3d(const ExportedLaw& law, const std::vector<Hos
 
 // The text of this law also holds all that could end a literal or a comment.
 TEST(Chai3d, GivesTheForcesOfTheLibraryToTheLastBit) {
-  if (!test::hosts_can_load_libkerf) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
   std::vector<HostSample> samples = test::pressed(0.01, -1.0, 0.02, 2000);
   samples[1000].elapsed_s = 0.0;
   const auto forces = through_chai3d(test::exported("nasty", test::nasty_law), samples);
@@ -33,7 +33,7 @@ TEST(Chai3d, GivesTheForcesOfTheLibraryToTheLastBit) {
 }
 
 TEST(Chai3d, TakesTheLawOfAPlugin) {
-  if (!test::hosts_can_load_libkerf) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
   const auto plugin = std::filesystem::path(KERF_TEST_PLUGINS) / "coulomb_spring.so";
   kerf_plugin_load(plugin.c_str(), nullptr, nullptr, 0);
   const std::string text = to_toml(law_of_plugin(plugin));
@@ -44,7 +44,7 @@ TEST(Chai3d, TakesTheLawOfAPlugin) {
 
 // programs/chai3d_effect.cpp: tools beside each other, other directions, what is beyond the last tool.
 TEST(Chai3d, IsAnEffectForWhoeverCompilesItWithoutAWarning) {
-  if (!test::hosts_can_load_libkerf) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
   const BuildFolder folder;
   write_chai3d_stubs(folder);
   test::write_files(chai3d_host(), test::exported("wall", std::string(test::wall)), folder.path());

@@ -27,7 +27,7 @@ void write_packages(const BuildFolder& folder) {
 
 // Both in one project, as its programs and plug-ins: a run of CMake takes longer than what it builds.
 TEST(Recipes, BuildWhatTheyStandBeside) {
-  if (!test::hosts_can_load_libkerf) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
   const BuildFolder folder;
   write_packages(folder);
   const ExportedLaw law = test::exported("wall", std::string(test::wall));

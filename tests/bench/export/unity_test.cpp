@@ -15,7 +15,7 @@ bool has_mono() {
 }
 
 TEST(Unity, GivesTheForcesOfTheLibraryToTheLastBit) {
-  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP() << "no Mono, or a sanitizer's library";
   std::vector<HostSample> samples = test::pressed(0.01, -1.0, 0.02, 2000);
   samples[1000].elapsed_s = 0.0;
   const test::TemporaryFolder folder;
@@ -29,7 +29,7 @@ TEST(Unity, GivesTheForcesOfTheLibraryToTheLastBit) {
 
 // programs/UnityScene.cs: in the scene, along other axes, by the clock; what is refused.
 TEST(Unity, IsASourceForWhoeverCompilesItWithoutAWarning) {
-  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP() << "no Mono, or a sanitizer's library";
   const test::TemporaryFolder folder;
   test::write_files(unity_host(), test::exported("wall", std::string(test::wall)), folder.path());
   const ExportedLaw liver = test::exported("liver", test::read_text(test::example_file("fuzzy_kelvin_3d")));
@@ -51,7 +51,7 @@ TEST(Unity, IsASourceForWhoeverCompilesItWithoutAWarning) {
 
 // programs/UnityStubs.cs has what the component uses of Unity.
 TEST(Unity, HasAComponentThatCompilesAgainstDocumentedSignatures) {
-  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP();
+  if (!test::hosts_can_load_libkerf || !has_mono()) GTEST_SKIP() << "no Mono, or a sanitizer's library";
   const test::TemporaryFolder folder;
   test::write_files(unity_host(), test::exported("wall", std::string(test::wall)), folder.path());
   std::filesystem::create_symlink(kerf_library(), folder / "libkerf.so");

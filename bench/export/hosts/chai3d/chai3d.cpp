@@ -34,7 +34,8 @@ Host chai3d_host() {
           .what = "haptic effect of CHAI3D 3, calls libkerf",
           .takes_c = false,
           .files = chai3d_files,
-          .forces = chai3d_forces};
+          .forces = chai3d_forces,
+          .in_its_place = "a stub of the signatures that CHAI3D documents"};
 }
 
 }  // namespace kerf::bench

@@ -34,7 +34,8 @@ Host sofa_host() {
           .what = "ForceFeedback plug-in of SOFA v22.06 to v26.06, calls libkerf",
           .takes_c = false,
           .files = sofa_files,
-          .forces = sofa_forces};
+          .forces = sofa_forces,
+          .in_its_place = "stubs of the signatures that SOFA documents"};
 }
 
 }  // namespace kerf::bench

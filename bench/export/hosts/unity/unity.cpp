@@ -44,7 +44,8 @@ Host unity_host() {
           .what = "script of Unity on Linux, calls libkerf",
           .takes_c = false,
           .files = unity_files,
-          .forces = unity_forces};
+          .forces = unity_forces,
+          .in_its_place = "Mono, without Unity"};
 }
 
 }  // namespace kerf::bench

@@ -56,6 +56,22 @@ static class Scene {
     }
   }
 
+  // Any memory at all, so often, and the collector would have to run.
+  static void Memory() {
+    using (var law = Kerf.Wall.KerfLaw.Open()) {
+      var position = new double[3];
+      var force = new double[3];
+      double along;
+      int before = GC.CollectionCount(0);
+      for (int tick = 0; tick < 300000; ++tick) {
+        position[1] = 1e-7 * tick;
+        law.StepInScene(position, position, 1e-3, force);
+        law.Step(position[1], 0, 1e-3, out along);
+      }
+      Expect(GC.CollectionCount(0) == before, "a step takes no memory");
+    }
+  }
+
   static void Hinge() {
     Expect(!Kerf.Hinge.KerfLaw.HasPlaceInScene, "an angle has no place in a scene");
     using (var law = Kerf.Hinge.KerfLaw.Open()) {
@@ -69,6 +85,7 @@ static class Scene {
     Wall();
     Liver();
     Hinge();
+    Memory();
     return 0;
   }
 }

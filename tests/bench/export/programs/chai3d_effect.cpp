@@ -47,6 +47,11 @@ int main() {
              effect.flags(0) == KERF_LAW_FAULT,
          "a place that is no number is a fault with zero force");
 
+  effect.useVelocity(false);
+  effect.reset(1);
+  expect(effect.computeForce(cVector3d(0, 0.04, 0), cVector3d(0, -0.5, 0), 1, force) && is_near(force.y(), 1),
+         "a velocity that is not believed is not taken");
+
   // As CHAI3D calls it: without a time, through the base.
   kerf_wall::cEffectLaw by_clock(&object);
   chai3d::cGenericEffect& base = by_clock;

@@ -10,6 +10,7 @@ using Vec3 = Component::Vec3;
 namespace {
 
 struct Timed : Component {
+  Timed() { d_activate.setValue(true); }
   double elapsed_s() override { return 1e-3; }
 };
 
@@ -41,6 +42,7 @@ Vec3 wrench_at(Component& component, const Vec3& place, const Vec3& speed) {
 
 bool refuses(void (*set)(Component&)) {
   Component component;
+  component.d_activate.setValue(true);
   set(component);
   component.init();
   return is(at(component, 0.01, 0.01, 9), 0, 0, 0);
@@ -58,6 +60,7 @@ int main() {
   sofa::core::behavior::BaseController* const made = factory->create();
   auto* const component = dynamic_cast<Component*>(made);
 
+  component->d_activate.setValue(true);
   expect(is(at(*component, 0, 0, 0.03), 0, 0, 0), "there is no force before init()");
   component->init();
   // 100 N/m from 10 mm on, along z, as the law file has it; by the library's clock.

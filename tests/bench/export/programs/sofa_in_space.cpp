@@ -6,6 +6,7 @@
 namespace {
 
 struct Timed : kerf_liver::LiverForceFeedback {
+  Timed() { d_activate.setValue(true); }
   double elapsed_s() override { return 1e-3; }
 };
 
