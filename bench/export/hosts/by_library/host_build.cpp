@@ -53,6 +53,7 @@ fs::path kerf_library() {
 
 fs::path build_driver(const BuildFolder& build, const fs::path& folder,
                       const std::vector<std::string>& options) {
+  build.write("no_memory.h", host_text("no_memory.h.in"));
   fs::path program = build.path() / "driver";
   const fs::path source = build.path() / "driver.cpp";
   const fs::path library = kerf_library();
