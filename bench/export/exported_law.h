@@ -49,6 +49,8 @@ struct Host {
   /// @throws std::system_error that names the program and the package where the host is not installed.
   std::vector<double> (*forces)(const ExportedLaw& law, const std::filesystem::path& folder,
                                 std::span<const HostSample> samples) = nullptr;
+
+  std::string_view in_its_place{};  ///< what forces() runs in place of the host itself; empty: the host
 };
 
 // Each in a folder of its own.
