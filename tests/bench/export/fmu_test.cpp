@@ -107,8 +107,9 @@ TEST_F(Fmu, IsAnArchiveThatEveryImporterReads) {
   for (const HostFile& file : *parts_) names.push_back(file.name);
   EXPECT_THAT(names,
               ElementsAre("modelDescription.xml", testing::MatchesRegex("binaries/[a-z0-9_]+-linux/liver.so"),
-                          "sources/buildDescription.xml", "sources/liver_fmu.c", "sources/liver.c",
-                          "documentation/liver.law.toml", "documentation/licenses/license.txt"));
+                          "sources/buildDescription.xml", "documentation/liver.law.toml",
+                          "documentation/licenses/license.txt", "sources/liver_fmu.c", "sources/liver.c",
+                          "sources/fmi3_types.h", "sources/fmi3_not_offered.h"));
   EXPECT_EQ(test::read_text(*folder_ / "documentation/liver.law.toml"), test::liver().text);
   EXPECT_EQ(fmu_host().files(test::liver()).at(0).content, *archive_) << "not the same again";
 }

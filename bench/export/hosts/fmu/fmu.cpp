@@ -29,7 +29,8 @@ std::string platform() {
   return std::string(machine.machine) + "-linux";
 }
 
-std::string source_of(const ExportedLaw& law) {
+/// The C of the unit, of which NAME_fmu.c includes the rest.
+std::vector<HostFile> sources_of(const ExportedLaw& law) {
   std::string names;
   std::string values;
   for (const FmuConstant& constant : fmu_constants(law.file)) {
@@ -38,29 +39,31 @@ std::string source_of(const ExportedLaw& law) {
   }
   auto keys = law_keys(law);
   keys.insert(keys.end(), {{"TOKEN", fmu_token(law)}, {"NAMES", names}, {"VALUES", values}});
-  return filled_in(c_host_text("fmu.c.in"), keys);
+  return {{law.name + "_fmu.c", filled_in(c_host_text("fmu.c.in"), keys)},
+          {law.name + ".c", law.plain_c},
+          {"fmi3_types.h", std::string(c_host_text("fmi3_types.h.in"))},
+          {"fmi3_not_offered.h", std::string(c_host_text("fmi3_not_offered.h.in"))}};
 }
 
-std::string library_of(const ExportedLaw& law, const std::string& source) {
+std::string library_of(const ExportedLaw& law, const std::vector<HostFile>& sources) {
   const ScratchFolder folder;
-  write_whole_file(folder / (law.name + ".c"), law.plain_c);
-  write_whole_file(folder / (law.name + "_fmu.c"), source);
+  for (const HostFile& source : sources) write_whole_file(folder / source.name, source.content);
   const fs::path library = folder / (law.name + ".so");
-  compile_c(folder / (law.name + "_fmu.c"), library,
+  compile_c(folder / sources.front().name, library,
             {"-fPIC", "-shared", "-fvisibility=hidden", "-Wl,-soname," + law.name + ".so"}, {"-lm"});
   return read_whole_file(library);
 }
 
 std::vector<HostFile> fmu_files(const ExportedLaw& law) {
-  const std::string source = source_of(law);
-  return {{law.name + ".fmu",
-           zipped({{"modelDescription.xml", model_description(law)},
-                   {fmt::format("binaries/{}/{}.so", platform(), law.name), library_of(law, source)},
-                   {"sources/buildDescription.xml", build_description(law)},
-                   {fmt::format("sources/{}_fmu.c", law.name), source},
-                   {fmt::format("sources/{}.c", law.name), law.plain_c},
-                   {fmt::format("documentation/{}.law.toml", law.name), law.text},
-                   {"documentation/licenses/license.txt", std::string(c_host_text("LICENSE"))}})}};
+  const std::vector<HostFile> sources = sources_of(law);
+  std::vector<HostFile> parts{
+      {"modelDescription.xml", model_description(law)},
+      {fmt::format("binaries/{}/{}.so", platform(), law.name), library_of(law, sources)},
+      {"sources/buildDescription.xml", build_description(law)},
+      {fmt::format("documentation/{}.law.toml", law.name), law.text},
+      {"documentation/licenses/license.txt", std::string(c_host_text("LICENSE"))}};
+  for (const HostFile& source : sources) parts.push_back({"sources/" + source.name, source.content});
+  return {{law.name + ".fmu", zipped(parts)}};
 }
 
 /// The importer's own look at the archive: what it is to be started with.
