@@ -1,0 +1,64 @@
+// The module is used by Debian's Python.
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bench/export/example_export.h"
+#include "exported_law.h"
+#include "support/program.h"
+
+namespace kerf::bench {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class PythonModule : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(python_)) GTEST_SKIP() << "no " << python_;
+    test::write_files(python_host().files(test::liver()), folder_.path());
+  }
+  // Debian's own, as its packages are not seen by others.
+  static constexpr auto python_ = "/usr/bin/python3";
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(PythonModule, IsTheLawWithAndWithoutNumPyAndRefusesWhatIsNone) {
+  const auto outcome = test::run(
+      {python_, "-B", KERF_SOURCE_DIR "/tests/bench/export/check_python.py", folder_.path().string()});
+  if (outcome.exit_status == 77) GTEST_SKIP() << outcome.output;
+  EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
+}
+
+TEST_F(PythonModule, GivesTheForcesOfTheLawToTheBit) {
+  std::vector<HostSample> samples = test::wandering(2000);
+  for (const bool with_faults : {false, true}) {
+    if (with_faults) {
+      samples[100].position = std::nan("");
+      samples[200].elapsed_s = -1.0;
+    }
+    const std::vector<double> expected = test::forces_of_liver(samples);
+    const std::vector<double> got = python_host().forces(test::liver(), folder_.path(), samples);
+    ASSERT_EQ(got.size(), expected.size());
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      EXPECT_TRUE(std::isnan(expected[i]) ? std::isnan(got[i]) : got[i] == expected[i]) << i;
+    }
+  }
+}
+
+TEST(PythonExport, TakesNoWordOfPython) {
+  ExportedLaw law = test::liver();
+  law.name = "lambda";
+  EXPECT_THAT([&] { static_cast<void>(python_host().files(law)); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("'lambda' is a word of Python itself")));
+}
+
+}  // namespace
+}  // namespace kerf::bench
