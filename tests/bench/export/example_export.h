@@ -1,5 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
@@ -44,5 +49,18 @@ inline std::vector<bench::HostSample> wandering(std::size_t count) {
 
 /// The forces of liver.c itself, compiled into the test.
 [[nodiscard]] std::vector<double> forces_of_liver(const std::vector<bench::HostSample>& samples);
+
+/// Where two are not the same to the bit; every not-a-number is the same.
+inline std::vector<std::size_t> differing(const std::vector<double>& left, const std::vector<double>& right) {
+  std::vector<std::size_t> where;
+  for (std::size_t i = 0; i < std::max(left.size(), right.size()); ++i) {
+    if (i >= left.size() || i >= right.size() ||
+        (std::isnan(left[i])
+             ? !std::isnan(right[i])
+             : std::bit_cast<std::uint64_t>(left[i]) != std::bit_cast<std::uint64_t>(right[i])))
+      where.push_back(i);
+  }
+  return where;
+}
 
 }  // namespace kerf::test

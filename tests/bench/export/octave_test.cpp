@@ -16,6 +16,7 @@ namespace kerf::bench {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::ThrowsMessage;
 
 class Octave : public testing::Test {
@@ -56,18 +57,11 @@ TEST_F(Octave, SaysHowToBuildItWhereItIsNotBuilt) {
 
 TEST_F(Octave, GivesTheForcesOfTheLawToTheBit) {
   std::vector<HostSample> samples = test::wandering(2000);
-  for (const bool with_faults : {false, true}) {
-    if (with_faults) {
-      samples[100].position = std::nan("");
-      samples[200].elapsed_s = -1.0;
-    }
-    const std::vector<double> expected = test::forces_of_liver(samples);
-    const std::vector<double> got = octave_host().forces(test::liver(), folder_.path(), samples);
-    ASSERT_EQ(got.size(), expected.size());
-    for (std::size_t i = 0; i < got.size(); ++i) {
-      EXPECT_TRUE(std::isnan(expected[i]) ? std::isnan(got[i]) : got[i] == expected[i]) << i;
-    }
-  }
+  samples[1000].position = std::nan("");
+  samples[1500].elapsed_s = -1.0;
+  EXPECT_THAT(test::differing(octave_host().forces(test::liver(), folder_.path(), samples),
+                              test::forces_of_liver(samples)),
+              IsEmpty());
 }
 
 TEST(OctaveExport, TakesNoWordOfOctave) {
