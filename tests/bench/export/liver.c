@@ -29,10 +29,10 @@ LIVER_API int liver_step_depth(liver_state* state, double penetration, double ve
   arm = state->arm_force * decay;
   if (state->started) arm += b * (depth - state->last_penetration) / elapsed_s * (1.0 - decay);
   total = k1 * depth + arm;
-  if (!isfinite(total)) return 1;
   state->arm_force = arm;
   state->last_penetration = depth;
   state->started = 1;
+  if (!isfinite(total)) return 1; /* the state is of no use after that, which the hosts have to mind */
   if (penetration > 0.0 && total > 0.0) *force = total;
   return 0;
 }

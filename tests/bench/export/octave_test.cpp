@@ -45,7 +45,7 @@ TEST_F(Octave, CallsTheLawAsItsHelpSaysAndRefusesWhatIsNone) {
   const auto outcome = octave("addpath('" KERF_SOURCE_DIR "/tests/bench/export'); check_octave()");
   EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
   const auto shown = octave("help liver");
-  EXPECT_THAT(shown.output, HasSubstr("the law kelvin, fitted on the axis theta"));
+  EXPECT_THAT(shown.output, HasSubstr("the law kelvin, for the axis theta"));
   EXPECT_THAT(shown.output, HasSubstr("POSITION [rad]"));
 }
 
@@ -70,6 +70,13 @@ TEST(OctaveExport, TakesNoWordOfOctave) {
   EXPECT_THAT([&] { static_cast<void>(octave_host().files(law)); },
               ThrowsMessage<std::invalid_argument>(
                   HasSubstr("'end' is a word of Octave itself; give the law file another name")));
+}
+
+TEST(OctaveExport, KeepsWhatALawFileSaysWithinItsLine) {
+  ExportedLaw law = test::liver();
+  law.file.axis = "a\n\"\"\"\\b";
+  const std::vector<HostFile> files = octave_host().files(law);
+  EXPECT_THAT(files.back().content, HasSubstr("for the axis a_____b"));
 }
 
 }  // namespace

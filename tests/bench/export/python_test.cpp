@@ -54,5 +54,12 @@ TEST(PythonExport, TakesNoWordOfPython) {
               ThrowsMessage<std::invalid_argument>(HasSubstr("'lambda' is a word of Python itself")));
 }
 
+TEST(PythonExport, KeepsWhatALawFileSaysWithinItsLine) {
+  ExportedLaw law = test::liver();
+  law.file.axis = "a\n\"\"\"\\b";
+  const std::vector<HostFile> files = python_host().files(law);
+  EXPECT_THAT(files.back().content, HasSubstr("for the axis a_____b"));
+}
+
 }  // namespace
 }  // namespace kerf::bench

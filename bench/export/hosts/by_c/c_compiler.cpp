@@ -38,6 +38,15 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
   static_cast<void>(compile(std::move(words), source, name));
 }
 
+std::string axis_in_words(const LawFile& file) {
+  if (file.axis.empty()) return "an axis without a name";
+  std::string words = "the axis " + file.axis;
+  for (char& c : words) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\'' || c == '\\') c = '_';
+  }
+  return words;
+}
+
 std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law) {
   const LawFile& file = law.file;
   return {{"NAME", law.name},
@@ -45,7 +54,7 @@ std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw
           {"SHA256", law.sha256},
           {"SOFTWARE", software()},
           {"MODEL", std::string(file.law.model())},
-          {"AXIS", file.axis},
+          {"AXIS", axis_in_words(file)},
           {"POSITION_UNIT", file.position_unit},
           {"FORCE_UNIT", file.force_unit}};
 }

@@ -16,8 +16,11 @@ namespace kerf::bench {
 void compile_c(const std::filesystem::path& source, const std::filesystem::path& output,
                const std::vector<std::string>& options, const std::vector<std::string>& libraries);
 
+/// "the axis theta": a file may have any text for it, so without what would end a comment or a literal.
+[[nodiscard]] std::string axis_in_words(const LawFile& file);
+
 /// What the texts of these hosts are filled in with (own_code/compiler.h): NAME, UPPER (the name as macros
-/// begin), SHA256, SOFTWARE, MODEL, AXIS, POSITION_UNIT, FORCE_UNIT.
+/// begin), SHA256, SOFTWARE, MODEL, AXIS (in words), POSITION_UNIT, FORCE_UNIT.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law);
 
 /// @throws std::invalid_argument for a name that is one of the words, of a language where it then names

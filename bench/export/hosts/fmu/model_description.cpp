@@ -15,6 +15,8 @@
 #include <kerf/models/parameter.h>
 #include <kerf/version.h>
 
+#include "hosts/by_c/c_compiler.h"
+
 namespace kerf::bench {
 namespace {
 
@@ -147,7 +149,7 @@ std::string model_description(const ExportedLaw& law) {
   root.append_attribute("modelName") = law.name.c_str();
   root.append_attribute("instantiationToken") = fmu_token(law).c_str();
   root.append_attribute("description") =
-      fmt::format("Force law {} on the axis {}: {}. Law file of SHA-256 {}.", file.law.model(), file.axis,
+      fmt::format("Force law {} for {}: {}. Law file of SHA-256 {}.", file.law.model(), axis_in_words(file),
                   models::law_info(file.law.model()).equation, law.sha256)
           .c_str();
   root.append_attribute("license") = "Apache-2.0, of the code that Kerf made";
