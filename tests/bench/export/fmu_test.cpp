@@ -26,7 +26,7 @@ using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr std::uint32_t time_ = 0;
+constexpr std::uint32_t simulated_time = 0;
 constexpr std::uint32_t position = 1;
 constexpr std::uint32_t velocity = 2;
 constexpr std::uint32_t force = 3;
@@ -36,30 +36,30 @@ constexpr std::uint32_t contact_position = 4;
 class Fmu : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new test::TemporaryFolder;
+    folder = new test::TemporaryFolder;
     const std::vector<HostFile> files = fmu_host().files(test::liver());
-    test::write_files(files, folder_->path());
-    archive_ = new std::string(files.at(0).content);
-    parts_ = new std::vector<HostFile>(unzipped(*archive_));
-    test::write_files(*parts_, folder_->path());
-    library_ = new test::FmuLibrary(*folder_ / part("binaries/"));
+    test::write_files(files, folder->path());
+    archive = new std::string(files.at(0).content);
+    parts = new std::vector<HostFile>(unzipped(*archive));
+    test::write_files(*parts, folder->path());
+    library = new test::FmuLibrary(*folder / part("binaries/"));
   }
   static void TearDownTestSuite() {
-    delete library_;
-    delete parts_;
-    delete archive_;
-    delete folder_;
+    delete library;
+    delete parts;
+    delete archive;
+    delete folder;
   }
   /// The name of the first file that begins so.
   static std::string part(const std::string& begin) {
-    for (const HostFile& file : *parts_) {
+    for (const HostFile& file : *parts) {
       if (file.name.starts_with(begin)) return file.name;
     }
     return "none";
   }
   static pugi::xml_document description() {
     pugi::xml_document document;
-    document.load_file((*folder_ / "modelDescription.xml").c_str());
+    document.load_file((*folder / "modelDescription.xml").c_str());
     return document;
   }
   static std::string token() {
@@ -80,15 +80,15 @@ class Fmu : public testing::Test {
     return all;
   }
 
-  static test::TemporaryFolder* folder_;
-  static std::string* archive_;
-  static std::vector<HostFile>* parts_;
-  static test::FmuLibrary* library_;
+  static test::TemporaryFolder* folder;
+  static std::string* archive;
+  static std::vector<HostFile>* parts;
+  static test::FmuLibrary* library;
 };
-test::TemporaryFolder* Fmu::folder_;
-std::string* Fmu::archive_;
-std::vector<HostFile>* Fmu::parts_;
-test::FmuLibrary* Fmu::library_;
+test::TemporaryFolder* Fmu::folder;
+std::string* Fmu::archive;
+std::vector<HostFile>* Fmu::parts;
+test::FmuLibrary* Fmu::library;
 
 TEST_F(Fmu, DescribesItselfAsTheSchemaHasIt) {
   pugi::xml_document document = description();
@@ -102,16 +102,16 @@ TEST_F(Fmu, DescribesItselfAsTheSchemaHasIt) {
 }
 
 TEST_F(Fmu, IsAnArchiveThatEveryImporterReads) {
-  EXPECT_THAT(test::broken_zip_rules(*archive_), IsEmpty());
+  EXPECT_THAT(test::broken_zip_rules(*archive), IsEmpty());
   std::vector<std::string> names;
-  for (const HostFile& file : *parts_) names.push_back(file.name);
+  for (const HostFile& file : *parts) names.push_back(file.name);
   EXPECT_THAT(names,
               ElementsAre("modelDescription.xml", testing::MatchesRegex("binaries/[a-z0-9_]+-linux/liver.so"),
                           "sources/buildDescription.xml", "documentation/liver.law.toml",
                           "documentation/licenses/license.txt", "sources/liver_fmu.c", "sources/liver.c",
                           "sources/fmi3_types.h", "sources/fmi3_not_offered.h"));
-  EXPECT_EQ(test::read_text(*folder_ / "documentation/liver.law.toml"), test::liver().text);
-  EXPECT_EQ(fmu_host().files(test::liver()).at(0).content, *archive_) << "not the same again";
+  EXPECT_EQ(test::read_text(*folder / "documentation/liver.law.toml"), test::liver().text);
+  EXPECT_EQ(fmu_host().files(test::liver()).at(0).content, *archive) << "not the same again";
 }
 
 TEST_F(Fmu, NamesThePartsOfItsUnits) {
@@ -127,15 +127,15 @@ TEST_F(Fmu, NamesThePartsOfItsUnits) {
 }
 
 TEST_F(Fmu, ExportsEveryFunctionOfTheStandard) {
-  for (const std::string& name : test::fmi3_functions()) EXPECT_TRUE(library_->has(name)) << name;
-  EXPECT_FALSE(library_->has("liver_step"));
-  EXPECT_STREQ(library_->get_version(), "3.0");
+  for (const std::string& name : test::fmi3_functions()) EXPECT_TRUE(library->has(name)) << name;
+  EXPECT_FALSE(library->has("liver_step"));
+  EXPECT_STREQ(library->get_version(), "3.0");
 }
 
 TEST_F(Fmu, CompilesWithoutAWarningAsC99) {
   for (const char* const compiler : {"gcc", "clang"}) {
     const auto outcome = test::run({"/usr/bin/env", compiler, "-std=c99", "-Wall", "-Wextra", "-pedantic",
-                                    "-Werror", "-fsyntax-only", (*folder_ / "sources/liver_fmu.c").string()});
+                                    "-Werror", "-fsyntax-only", (*folder / "sources/liver_fmu.c").string()});
     if (outcome.exit_status == 127) GTEST_SKIP() << "no " << compiler;
     EXPECT_EQ(outcome.exit_status, 0) << outcome.errors;
   }
@@ -143,7 +143,7 @@ TEST_F(Fmu, CompilesWithoutAWarningAsC99) {
 
 TEST_F(Fmu, GivesTheForcesOfTheLawToTheBit) {
   const std::vector<HostSample> samples = test::wandering(3000);
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   ASSERT_EQ(fmu.begin(2.0), test::fmi_ok);
   EXPECT_THAT(forces(fmu, samples), ElementsAreArray(test::forces_of_liver(samples)));
   EXPECT_EQ(fmu.call("fmi3Terminate"), test::fmi_ok);
@@ -157,7 +157,7 @@ TEST_F(Fmu, IsDrivenTheSameByTheProgramThatVerifiesIt) {
   std::vector<HostSample> samples = test::wandering(500);
   samples[100].position = std::nan("");
   samples[200].elapsed_s = 0.0;
-  const std::vector<double> forces = fmu_host().forces(test::liver(), folder_->path(), samples);
+  const std::vector<double> forces = fmu_host().forces(test::liver(), folder->path(), samples);
   EXPECT_THAT(test::differing(forces, test::forces_of_liver(samples)), IsEmpty());
   EXPECT_TRUE(std::isnan(forces.at(100)) && std::isnan(forces.at(200)));
 }
@@ -165,8 +165,8 @@ TEST_F(Fmu, IsDrivenTheSameByTheProgramThatVerifiesIt) {
 TEST_F(Fmu, KeepsTwoInstancesApart) {
   const std::vector<HostSample> samples = test::wandering(400);
   const std::vector<HostSample> others(samples.begin() + 50, samples.end());
-  test::FmuInstance one(*library_, token());
-  test::FmuInstance other(*library_, token());
+  test::FmuInstance one(*library, token());
+  test::FmuInstance other(*library, token());
   ASSERT_EQ(one.begin(), test::fmi_ok);
   ASSERT_EQ(other.begin(), test::fmi_ok);
   std::vector<double> of_one;
@@ -181,7 +181,7 @@ TEST_F(Fmu, KeepsTwoInstancesApart) {
 
 TEST_F(Fmu, IsAsNewAfterAReset) {
   const std::vector<HostSample> samples = test::wandering(300);
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   ASSERT_EQ(fmu.begin(), test::fmi_ok);
   const std::vector<double> first = forces(fmu, samples);
   ASSERT_EQ(fmu.call("fmi3Reset"), test::fmi_ok);
@@ -196,44 +196,44 @@ TEST_F(Fmu, GoesOnFromASavedState) {
   const std::vector<HostSample> samples = test::wandering(600);
   const std::vector<HostSample> begin(samples.begin(), samples.begin() + 300);
   const std::vector<HostSample> end(samples.begin() + 300, samples.end());
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   ASSERT_EQ(fmu.begin(), test::fmi_ok);
   forces(fmu, begin);
   void* state = nullptr;
-  ASSERT_EQ(library_->get_state(fmu.get(), &state), test::fmi_ok);
+  ASSERT_EQ(library->get_state(fmu.get(), &state), test::fmi_ok);
   const double time = fmu.time;
   const std::vector<double> first = forces(fmu, end);
 
-  ASSERT_EQ(library_->set_state(fmu.get(), state), test::fmi_ok);
+  ASSERT_EQ(library->set_state(fmu.get(), state), test::fmi_ok);
   fmu.time = time;
   EXPECT_THAT(forces(fmu, end), ElementsAreArray(first));
 
   std::size_t size = 0;
-  ASSERT_EQ(library_->state_size(fmu.get(), state, &size), test::fmi_ok);
+  ASSERT_EQ(library->state_size(fmu.get(), state, &size), test::fmi_ok);
   std::vector<std::uint8_t> bytes(size);
-  ASSERT_EQ(library_->serialize(fmu.get(), state, bytes.data(), size), test::fmi_ok);
-  EXPECT_EQ(library_->free_state(fmu.get(), &state), test::fmi_ok);
+  ASSERT_EQ(library->serialize(fmu.get(), state, bytes.data(), size), test::fmi_ok);
+  EXPECT_EQ(library->free_state(fmu.get(), &state), test::fmi_ok);
   EXPECT_EQ(state, nullptr);
-  test::FmuInstance another(*library_, token());
-  ASSERT_EQ(library_->deserialize(another.get(), bytes.data(), size, &state), test::fmi_ok);
-  ASSERT_EQ(library_->set_state(another.get(), state), test::fmi_ok);
+  test::FmuInstance another(*library, token());
+  ASSERT_EQ(library->deserialize(another.get(), bytes.data(), size, &state), test::fmi_ok);
+  ASSERT_EQ(library->set_state(another.get(), state), test::fmi_ok);
   another.time = time;
   EXPECT_THAT(forces(another, end), ElementsAreArray(first));
-  EXPECT_EQ(library_->free_state(another.get(), &state), test::fmi_ok);
+  EXPECT_EQ(library->free_state(another.get(), &state), test::fmi_ok);
 }
 
 TEST_F(Fmu, RefusesAStateThatIsNotItsOwn) {
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   ASSERT_EQ(fmu.begin(), test::fmi_ok);
   void* state = nullptr;
   std::size_t size = 0;
-  ASSERT_EQ(library_->get_state(fmu.get(), &state), test::fmi_ok);
-  ASSERT_EQ(library_->state_size(fmu.get(), state, &size), test::fmi_ok);
+  ASSERT_EQ(library->get_state(fmu.get(), &state), test::fmi_ok);
+  ASSERT_EQ(library->state_size(fmu.get(), state, &size), test::fmi_ok);
   std::vector<std::uint8_t> bytes(size);
-  ASSERT_EQ(library_->serialize(fmu.get(), state, bytes.data(), size), test::fmi_ok);
+  ASSERT_EQ(library->serialize(fmu.get(), state, bytes.data(), size), test::fmi_ok);
   void* made = nullptr;
   const auto refused = [&](const std::string& why) {
-    EXPECT_EQ(library_->deserialize(fmu.get(), bytes.data(), bytes.size(), &made), test::fmi_error);
+    EXPECT_EQ(library->deserialize(fmu.get(), bytes.data(), bytes.size(), &made), test::fmi_error);
     EXPECT_THAT(fmu.last_said(), HasSubstr(why));
     EXPECT_EQ(made, nullptr);
   };
@@ -243,16 +243,16 @@ TEST_F(Fmu, RefusesAStateThatIsNotItsOwn) {
   refused("no state of this FMU");
   bytes.pop_back();
   refused("a state of this FMU has");
-  EXPECT_EQ(library_->serialize(fmu.get(), state, bytes.data(), 3), test::fmi_error);
-  EXPECT_EQ(library_->set_state(fmu.get(), nullptr), test::fmi_error);
-  EXPECT_EQ(library_->set_state(fmu.get(), state), test::fmi_ok) << "after errors, back to before them";
+  EXPECT_EQ(library->serialize(fmu.get(), state, bytes.data(), 3), test::fmi_error);
+  EXPECT_EQ(library->set_state(fmu.get(), nullptr), test::fmi_error);
+  EXPECT_EQ(library->set_state(fmu.get(), state), test::fmi_ok) << "after errors, back to before them";
   EXPECT_EQ(forces(fmu, {{.position = 0.4, .velocity = 0.0, .elapsed_s = 0.001}}).size(), 1U);
-  EXPECT_EQ(library_->free_state(fmu.get(), &state), test::fmi_ok);
+  EXPECT_EQ(library->free_state(fmu.get(), &state), test::fmi_ok);
 }
 
 TEST_F(Fmu, ShowsTheNumbersOfItsLawAndLetsNobodyChangeThem) {
-  test::FmuInstance fmu(*library_, token());
-  ASSERT_EQ(library_->initialize(fmu.get(), false, 0.0, 0.0, false, 0.0), test::fmi_ok);
+  test::FmuInstance fmu(*library, token());
+  ASSERT_EQ(library->initialize(fmu.get(), false, 0.0, 0.0, false, 0.0), test::fmi_ok);
   double value = 0.0;
   ASSERT_EQ(fmu.get(contact_position, value), test::fmi_ok);
   EXPECT_EQ(value, 0.5);
@@ -273,10 +273,10 @@ class FmuBadCall : public Fmu, public testing::WithParamInterface<BadCall> {};
 
 TEST_P(FmuBadCall, IsAnErrorWithOneLineAndWhatFollowsIsTooUntilAReset) {
   const std::vector<HostSample> samples = test::wandering(50);
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   ASSERT_EQ(fmu.begin(), test::fmi_ok);
   forces(fmu, samples);
-  EXPECT_EQ(GetParam().call(fmu, *library_), test::fmi_error);
+  EXPECT_EQ(GetParam().call(fmu, *library), test::fmi_error);
   ASSERT_EQ(fmu.said().size(), 1U);
   EXPECT_THAT(fmu.last_said(), HasSubstr("logStatusError | fmi3"));
   EXPECT_THAT(fmu.last_said(), HasSubstr(GetParam().said));
@@ -315,7 +315,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadCall{"SettingTheForce", "force is not to be set",
                 [](FmuInstance& fmu, const FmuLibrary&) { return fmu.set(force, 1.0); }},
         BadCall{"SettingTheTime", "time is not to be set",
-                [](FmuInstance& fmu, const FmuLibrary&) { return fmu.set(time_, 1.0); }},
+                [](FmuInstance& fmu, const FmuLibrary&) { return fmu.set(simulated_time, 1.0); }},
         BadCall{"SettingAConstant", "contact.position is not to be set",
                 [](FmuInstance& fmu, const FmuLibrary&) { return fmu.set(contact_position, 1.0); }},
         BadCall{"SettingWhatIsNotThere", "there is no variable 99",
@@ -344,7 +344,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<BadCall>& info) { return info.param.what; });
 
 TEST_F(Fmu, RefusesStepsBeforeItIsInitializedAndSetsAfterItsEnd) {
-  test::FmuInstance fmu(*library_, token());
+  test::FmuInstance fmu(*library, token());
   double value = 0.0;
   EXPECT_EQ(fmu.get(force, value), test::fmi_error);
   EXPECT_THAT(
@@ -362,11 +362,11 @@ TEST_F(Fmu, RefusesStepsBeforeItIsInitializedAndSetsAfterItsEnd) {
 }
 
 TEST_F(Fmu, StopsWhereItWasToldTo) {
-  test::FmuInstance fmu(*library_, token());
-  EXPECT_EQ(library_->initialize(fmu.get(), false, 0.0, 1.0, true, 0.5), test::fmi_error);
+  test::FmuInstance fmu(*library, token());
+  EXPECT_EQ(library->initialize(fmu.get(), false, 0.0, 1.0, true, 0.5), test::fmi_error);
   EXPECT_THAT(fmu.last_said(), HasSubstr("stopTime is 0.5; expected a number from startTime, 1, on"));
   ASSERT_EQ(fmu.call("fmi3Reset"), test::fmi_ok);
-  ASSERT_EQ(library_->initialize(fmu.get(), false, 0.0, 0.0, true, 0.3), test::fmi_ok);
+  ASSERT_EQ(library->initialize(fmu.get(), false, 0.0, 0.0, true, 0.3), test::fmi_ok);
   ASSERT_EQ(fmu.call("fmi3ExitInitializationMode"), test::fmi_ok);
   EXPECT_EQ(fmu.step(0.0, 0.1), test::fmi_ok);
   EXPECT_EQ(fmu.step(0.1, 0.1), test::fmi_ok);
@@ -376,7 +376,7 @@ TEST_F(Fmu, StopsWhereItWasToldTo) {
 }
 
 TEST_F(Fmu, IsNotInstantiatedForAnotherFmu) {
-  test::FmuInstance fmu(*library_, "another");
+  test::FmuInstance fmu(*library, "another");
   EXPECT_EQ(fmu.get(), nullptr);
   EXPECT_THAT(fmu.last_said(),
               HasSubstr("the instantiationToken is 'another', of another FMU; expected '0123"));
@@ -385,14 +385,14 @@ TEST_F(Fmu, IsNotInstantiatedForAnotherFmu) {
 }
 
 TEST_F(Fmu, SaysWhatIsWrongToWhoAskedForNoLogAndToNobodyWhereThereIsNone) {
-  test::FmuInstance fmu(*library_, token(), false);
+  test::FmuInstance fmu(*library, token(), false);
   EXPECT_EQ(fmu.set(force, 1.0), test::fmi_error);
   EXPECT_EQ(fmu.said().size(), 1U);
-  void* const silent = library_->instantiate("test", token().c_str(), nullptr, false, true, false, false,
-                                             nullptr, 0, nullptr, nullptr, nullptr);
+  void* const silent = library->instantiate("test", token().c_str(), nullptr, false, true, false, false,
+                                            nullptr, 0, nullptr, nullptr, nullptr);
   const double value = 1.0;
-  EXPECT_EQ(library_->set(silent, &force, 1, &value, 1), test::fmi_error);
-  library_->free_instance(silent);
+  EXPECT_EQ(library->set(silent, &force, 1, &value, 1), test::fmi_error);
+  library->free_instance(silent);
 }
 
 }  // namespace

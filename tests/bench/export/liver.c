@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-typedef struct liver_state {
+typedef struct liver_state { // NOLINT(readability-identifier-naming): C
   double arm_force, last_penetration;
   int started;
 } liver_state;

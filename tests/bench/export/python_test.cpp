@@ -23,17 +23,17 @@ using testing::ThrowsMessage;
 class PythonModule : public testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(python_)) GTEST_SKIP() << "no " << python_;
+    if (!std::filesystem::exists(debians_python)) GTEST_SKIP() << "no " << debians_python;
     test::write_files(python_host().files(test::liver()), folder_.path());
   }
   // Debian's own, as its packages are not seen by others.
-  static constexpr auto python_ = "/usr/bin/python3";
+  static constexpr auto debians_python = "/usr/bin/python3";
   test::TemporaryFolder folder_;
 };
 
 TEST_F(PythonModule, IsTheLawWithAndWithoutNumPyAndRefusesWhatIsNone) {
   const auto outcome = test::run(
-      {python_, "-B", KERF_SOURCE_DIR "/tests/bench/export/check_python.py", folder_.path().string()});
+      {debians_python, "-B", KERF_SOURCE_DIR "/tests/bench/export/check_python.py", folder_.path().string()});
   if (outcome.exit_status == 77) GTEST_SKIP() << outcome.output;
   EXPECT_EQ(outcome.exit_status, 0) << outcome.output << outcome.errors;
 }
