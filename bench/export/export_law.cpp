@@ -33,7 +33,8 @@ std::string identifier_of(const std::filesystem::path& law) {
 }  // namespace
 
 std::span<const Host> hosts() {
-  static const std::vector<Host> all{plain_c_host()};
+  static const std::vector<Host> all{plain_c_host(), fmu_host(),  octave_host(), python_host(),
+                                     chai3d_host(),  sofa_host(), unity_host()};
   return all;
 }
 

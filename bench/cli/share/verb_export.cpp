@@ -55,7 +55,13 @@ void run_export(const ExportArguments& arguments, Context& context) {
   context.result["law"] = {{"file", arguments.law}, {"sha256", law.sha256}, {"model", law.file.law.model()}};
   context.result["folder"] = output;
   context.result["files"] = names;
-  if (arguments.verify) tell(verify(host, law, folder.path(), arguments.samples), law, context);
+  if (arguments.verify) {
+    if (!host.in_its_place.empty()) {
+      context.result["ran"] = host.in_its_place;
+      context.say(fmt::format("what ran is not {} itself: {}", host.name, host.in_its_place));
+    }
+    tell(verify(host, law, folder.path(), arguments.samples), law, context);
+  }
   folder.commit();
   for (const std::string& name : names) context.say(fmt::format("{}/{}", output, name));
 }

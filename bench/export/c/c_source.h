@@ -15,8 +15,5 @@ namespace kerf::bench {
 
 /// What is known of a law, as NAME_describe() gives it.
 [[nodiscard]] nlohmann::ordered_json described(const ExportedLaw& law);
-/// How it came about, and where it was seen to hold, in a line each.
-[[nodiscard]] std::string fit_in_words(const LawFile& law);
-[[nodiscard]] std::string range_in_words(const LawFile& law);
 
 }  // namespace kerf::bench

@@ -7,6 +7,6 @@
 namespace kerf::bench {
 
 /// The files of the folder page/: page.html and what it loads.
-[[nodiscard]] std::span<const PageFile> session_page() noexcept;
+[[nodiscard]] std::span<const EmbeddedFile> session_page() noexcept;
 
 }  // namespace kerf::bench

@@ -7,6 +7,6 @@
 namespace kerf::bench {
 
 /// texts.toml, as it is in the program.
-[[nodiscard]] std::span<const PageFile> shipped_texts_file() noexcept;
+[[nodiscard]] std::span<const EmbeddedFile> shipped_texts_file() noexcept;
 
 }  // namespace kerf::bench

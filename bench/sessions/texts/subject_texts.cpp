@@ -71,7 +71,7 @@ std::string read_text(const Place& place, const toml::table& table, std::string_
 }
 
 std::shared_ptr<const SubjectTexts> parse_shipped(std::string_view language) {
-  const PageFile& file = shipped_texts_file().front();
+  const EmbeddedFile& file = shipped_texts_file().front();
   const Place place{std::string(file.name)};
   const toml::table root = parse_toml(std::string(file.content), place.file());
   place.allow_only(root, text_names, "the texts");

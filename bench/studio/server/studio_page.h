@@ -7,6 +7,6 @@
 namespace kerf::bench {
 
 /// The bundled page: studio.html and what it loads.
-[[nodiscard]] std::span<const PageFile> studio_page() noexcept;
+[[nodiscard]] std::span<const EmbeddedFile> studio_page() noexcept;
 
 }  // namespace kerf::bench

@@ -21,8 +21,8 @@ std::string with_token(std::string_view html, const std::string& token) {
 
 }  // namespace
 
-HttpResponse page_file(std::span<const PageFile> files, std::string_view path, const std::string& token) {
-  for (const PageFile& it : files) {
+HttpResponse page_file(std::span<const EmbeddedFile> files, std::string_view path, const std::string& token) {
+  for (const EmbeddedFile& it : files) {
     const bool is_page = it.name.ends_with(".html");
     if (is_page ? path != "/" : path.substr(0, 1) != "/" || path.substr(1) != it.name) continue;
     return {.type = std::string(type_of(it.name)),

@@ -1,10 +1,14 @@
 #include "hosts/by_c/c_compiler.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <kerf/version.h>
 
@@ -23,7 +27,6 @@ std::string upper_case(std::string name) {
 
 }  // namespace
 
-
 void compile_c(const std::filesystem::path& source, const std::filesystem::path& output,
                const std::vector<std::string>& options, const std::vector<std::string>& libraries) {
   std::vector<std::string> words = compiler_named("CC", "cc");
@@ -35,12 +38,45 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
   static_cast<void>(compile(std::move(words), source, name));
 }
 
-std::vector<std::pair<std::string_view, std::string>> names_of(const ExportedLaw& law) {
-  return {{"NAME", law.name}, {"UPPER", upper_case(law.name)}, {"SOFTWARE", software()}};
+std::string axis_in_words(const LawFile& file) {
+  if (file.axis.empty()) return "an axis without a name";
+  std::string words = "the axis " + file.axis;
+  for (char& c : words) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\'' || c == '\\') c = '_';
+  }
+  return words;
+}
+
+std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law) {
+  const LawFile& file = law.file;
+  return {{"NAME", law.name},
+          {"UPPER", upper_case(law.name)},
+          {"SHA256", law.sha256},
+          {"SOFTWARE", software()},
+          {"MODEL", std::string(file.law.model())},
+          {"AXIS", axis_in_words(file)},
+          {"POSITION_UNIT", file.position_unit},
+          {"FORCE_UNIT", file.force_unit}};
+}
+
+void require_no_word_of(const std::string& name, std::string_view language, std::string_view words) {
+  if (fmt::format(" {} ", words).find(fmt::format(" {} ", name)) != std::string::npos)
+    throw std::invalid_argument(
+        fmt::format("'{}' is a word of {} itself; give the law file another name", name, language));
+}
+
+void require_program(const std::string& program, const std::string& package) {
+  const char* const path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe): at set-up
+  std::istringstream folders(path == nullptr ? "/usr/bin:/bin" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return;
+  }
+  throw std::system_error(std::make_error_code(std::errc::no_such_file_or_directory),
+                          fmt::format("{} (Debian's package {})", program, package));
 }
 
 std::string_view c_host_text(std::string_view name) {
-  for (const PageFile& file : c_host_texts())
+  for (const EmbeddedFile& file : c_host_texts())
     if (file.name == name) return file.content;
   throw std::logic_error(fmt::format("no text of a host is named {}", name));
 }

@@ -88,7 +88,7 @@ std::vector<std::string> plugin_argument(const ExportedLaw& law) {
 }
 
 std::string_view host_text(std::string_view name) {
-  for (const PageFile& file : host_texts())
+  for (const EmbeddedFile& file : host_texts())
     if (file.name == name) return file.content;
   throw std::logic_error(fmt::format("no text of a host is named {}", name));
 }

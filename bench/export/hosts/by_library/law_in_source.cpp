@@ -10,6 +10,7 @@
 #include <kerf/version.h>
 
 #include "hosts/by_library/host_texts.h"
+#include "law_in_words.h"
 #include "laws/plugin_mention.h"
 
 namespace kerf::bench {
@@ -72,12 +73,6 @@ std::string in_words(const std::vector<AxisInWords>& axes) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::string fit_in_words(const FitProvenance& fit) {
-  if (fit.recording_uuid.empty()) return "none, the file names no recording";
-  return fmt::format("to recording {} (SHA-256 {}), RMSE {} N, {}, by {}", fit.recording_uuid,
-                     fit.recording_sha256, fit.rmse_n, fit.date, fit.software);
-}
-
 }  // namespace
 
 std::string quoted(std::string_view text, Language language) {
@@ -102,8 +97,8 @@ std::string provenance_comment(const ExportedLaw& law) {
   if (const std::string plugin = plugin_in_words(law.file.law); !plugin.empty()) say("Of", plugin);
   say("SHA-256 of the law file", law.sha256);
   say("Axes", in_words(axes_of(law.file)));
-  say("Fit", fit_in_words(law.file.fit));
-  say("Range", law.file.fit.recording_uuid.empty() ? "not known" : "what that recording went through");
+  say("Fit", fit_in_words(law.file));
+  say("Range", range_in_words(law.file));
   say("Exported by", kerf::software());
   return lines;
 }

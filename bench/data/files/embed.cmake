@@ -14,5 +14,5 @@ endforeach()
 file(
   WRITE "${OUTPUT}"
   "#include \"${HEADER}\"\n\nnamespace kerf::bench {\nnamespace {\n\n${arrays}"
-  "constexpr PageFile ${FUNCTION}_all[] = {\n${table}};\n\n}  // namespace\n\n"
-  "std::span<const PageFile> ${FUNCTION}() noexcept { return ${FUNCTION}_all; }\n\n}  // namespace kerf::bench\n")
+  "constexpr EmbeddedFile ${FUNCTION}_all[] = {\n${table}};\n\n}  // namespace\n\n"
+  "std::span<const EmbeddedFile> ${FUNCTION}() noexcept { return ${FUNCTION}_all; }\n\n}  // namespace kerf::bench\n")

@@ -1,7 +1,7 @@
-# embed_page(TARGET FUNCTION HEADER FILES...): files of a page become part of a library.
-function(embed_page target function header)
+# embed_files(TARGET FUNCTION HEADER FILES...): files, of a page or as texts, become part of a library.
+function(embed_files target function header)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/${function}_files.cpp)
-  set(script ${PROJECT_SOURCE_DIR}/bench/web/pages/embed.cmake)
+  set(script ${PROJECT_SOURCE_DIR}/bench/data/files/embed.cmake)
   add_custom_command(
     OUTPUT ${output}
     COMMAND ${CMAKE_COMMAND} -D OUTPUT=${output} -D FUNCTION=${function} -D HEADER=${header} -D "FILES=${ARGN}" -P ${script}
