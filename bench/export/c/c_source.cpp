@@ -17,19 +17,12 @@
 namespace kerf::bench {
 namespace {
 
-/// Text as lines of a comment that nothing in it can end.
+/// Text as lines of a comment.
 std::string as_comment(const std::string& text) {
   std::string comment;
   std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    for (std::size_t at = 0; at + 1 < line.size(); ++at) {
-      const bool begins_or_ends =
-          (line[at] == '*' && line[at + 1] == '/') || (line[at] == '/' && line[at + 1] == '*');
-      if (begins_or_ends) line.insert(at + 1, " ");
-    }
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    comment += line.empty() ? " *\n" : " *     " + line + "\n";
-  }
+  for (std::string line; std::getline(lines, line);)
+    comment += line.empty() ? " *\n" : " *     " + in_comment(line) + "\n";
   return comment;
 }
 
@@ -110,11 +103,11 @@ std::string c_source(const ExportedLaw& exported) {
   const traced::Program program = traced::trace(law.law.model(), law.law.values(), law.law.options());
   return filled_in(c_host_text("law.c.in"),
                    {{"MODEL", std::string(law.law.model())},
-                    {"LAW", std::filesystem::path(law.name).filename().string()},
+                    {"LAW", in_comment(std::filesystem::path(law.name).filename().string())},
                     {"SOFTWARE", software()},
                     {"EQUATION", std::string(models::law_info(law.law.model()).equation)},
                     {"SHA256", exported.sha256},
-                    {"FIT", fit_in_words(law)},
+                    {"FIT", in_comment(fit_in_words(law))},
                     {"RANGE", range_in_words(law)},
                     {"POSITION_UNIT", law.position_unit},
                     {"FORCE_UNIT", law.force_unit},

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -63,60 +64,73 @@ TEST_P(ExportedC, IsTheSameLawToTheLastBit) {
   const test::TemporaryFolder folder;
   const ExportedLaw law = exported(GetParam(), folder);
   write_for(plain_c_host(), law, folder.path());
-  const Verified verified = verify(plain_c_host(), law, folder.path(), 30'000);
+  const Verified verified = verify(plain_c_host(), law, folder.path(), 20'000);
   EXPECT_EQ(verified.largest_ulp, 0.0) << "at sample " << verified.at;
   EXPECT_EQ(verified.faults, 0U);
   EXPECT_GT(verified.most_force, 0.0);
-}
-
-TEST_P(ExportedC, CompilesWithoutAWarningAsC99AndAsCpp) {
-  const test::TemporaryFolder folder;
-  const ExportedLaw law = exported(GetParam(), folder);
-  write_for(plain_c_host(), law, folder.path());
-  const std::string file = (folder.path() / (law.name + ".c")).string();
-  for (const char* const compiler :
-       {"gcc -std=c99", "clang -std=c99", "g++ -x c++ -std=c++17", "clang++ -x c++ -std=c++17"}) {
-    const std::string command =
-        std::string(compiler) + " -Wall -Wextra -pedantic -Werror -fsyntax-only " + file;
-    EXPECT_EQ(std::system(command.c_str()), 0) << command;  // NOLINT(concurrency-mt-unsafe): one thread
-  }
 }
 
 const models::OptionValue yes = true;
 const models::OptionValue no = false;
 const models::OptionValue single = std::string("float");
 
-INSTANTIATE_TEST_SUITE_P(
-    Laws, ExportedC,
-    testing::Values(
-        Case{"kelvin", "kelvin"}, Case{"kelvin_pulling", "kelvin", {{"bilateral", yes}}},
-        Case{"kelvin_backward", "kelvin", {{"integrator", std::string("semi_implicit")}}},
-        Case{"kelvin_single", "kelvin", {{"precision", single}}}, Case{"maxwell", "maxwell"},
-        Case{"maxwell_single", "maxwell", {{"precision", single}, {"bilateral", yes}}},
-        Case{"springpot", "springpot"},
-        Case{"springpot_alone", "springpot", {{"spring", no}, {"bilateral", yes}}},
-        Case{"exponential", "exponential"},
-        Case{"exponential_offset", "exponential", {{"offset", yes}, {"zero_at_contact", yes}}},
-        Case{"exponential_single", "exponential", {{"precision", single}, {"viscous", no}}},
-        Case{"hunt_crossley", "hunt_crossley"},
-        Case{"hunt_crossley_single", "hunt_crossley", {{"precision", single}}}, Case{"friction", "friction"},
-        Case{"piecewise", "piecewise"},
-        Case{"piecewise_aided",
-             "piecewise",
-             {{"loop", yes}, {"velocity_corner", 10.0}, {"ramp_band", 0.05}, {"reversal_scale", 40.0}}},
-        Case{"piecewise_single", "piecewise", {{"precision", single}}}, Case{"recording", "recording"},
-        Case{"recording_aided",
-             "recording",
-             {{"loop", yes}, {"velocity_corner", 10.0}, {"ramp_band", 0.05}, {"reversal_scale", 40.0}}},
-        Case{"recording_single", "recording", {{"precision", single}}},
-        Case{"scissors_analytic", "scissors_analytic"},
-        Case{
-            "scissors_analytic_aided", "scissors_analytic", {{"velocity_corner", 10.0}, {"ramp_band", 0.05}}},
-        Case{"precontact", "precontact"},
-        Case{"precontact_paper", "precontact", {{"form", std::string("paper")}}},
-        Case{"fracture", "fracture"}, Case{"fracture_held", "fracture", {{"hysteresis", 1e-3}}},
-        Case{"fuzzy_rupture", "fuzzy_rupture"}, Case{"fuzzy_kelvin", "fuzzy_kelvin"}),
-    [](const auto& info) { return info.param.name; });
+const std::vector<Case> cases{
+    Case{"kelvin", "kelvin"},
+    Case{"kelvin_pulling", "kelvin", {{"bilateral", yes}}},
+    Case{"kelvin_backward", "kelvin", {{"integrator", std::string("semi_implicit")}}},
+    Case{"kelvin_single", "kelvin", {{"precision", single}}},
+    Case{"maxwell", "maxwell"},
+    Case{"maxwell_single", "maxwell", {{"precision", single}, {"bilateral", yes}}},
+    Case{"springpot", "springpot"},
+    Case{"springpot_alone", "springpot", {{"spring", no}, {"bilateral", yes}}},
+    Case{"exponential", "exponential"},
+    Case{"exponential_offset", "exponential", {{"offset", yes}, {"zero_at_contact", yes}}},
+    Case{"exponential_single", "exponential", {{"precision", single}, {"viscous", no}}},
+    Case{"hunt_crossley", "hunt_crossley"},
+    Case{"hunt_crossley_single", "hunt_crossley", {{"precision", single}}},
+    Case{"friction", "friction"},
+    Case{"piecewise", "piecewise"},
+    Case{"piecewise_aided",
+         "piecewise",
+         {{"loop", yes}, {"velocity_corner", 10.0}, {"ramp_band", 0.05}, {"reversal_scale", 40.0}}},
+    Case{"piecewise_single", "piecewise", {{"precision", single}}},
+    Case{"recording", "recording"},
+    Case{"recording_aided",
+         "recording",
+         {{"loop", yes}, {"velocity_corner", 10.0}, {"ramp_band", 0.05}, {"reversal_scale", 40.0}}},
+    Case{"recording_single", "recording", {{"precision", single}}},
+    Case{"scissors_analytic", "scissors_analytic"},
+    Case{"scissors_analytic_aided", "scissors_analytic", {{"velocity_corner", 10.0}, {"ramp_band", 0.05}}},
+    Case{"precontact", "precontact"},
+    Case{"precontact_paper", "precontact", {{"form", std::string("paper")}}},
+    Case{"fracture", "fracture"},
+    Case{"fracture_held", "fracture", {{"hysteresis", 1e-3}}},
+    Case{"fuzzy_rupture", "fuzzy_rupture"},
+    Case{"fuzzy_kelvin", "fuzzy_kelvin"}};
+
+INSTANTIATE_TEST_SUITE_P(Laws, ExportedC, testing::ValuesIn(cases),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(ExportToC, CompilesWithoutAWarningAsC99AndAsCpp) {
+  const test::TemporaryFolder folder;
+  std::string files;
+  for (const Case& one : cases) {
+    // One of each kind of state, table and precision.
+    if (!std::set<std::string>{"kelvin_single", "maxwell_single", "springpot", "piecewise_aided",
+                               "recording_single", "fracture", "fuzzy_kelvin", "precontact"}
+             .contains(one.name))
+      continue;
+    const ExportedLaw law = exported(one, folder);
+    write_for(plain_c_host(), law, folder.path());
+    files += " " + (folder.path() / (law.name + ".c")).string();
+  }
+  for (const char* const compiler :
+       {"gcc -std=c99", "clang -std=c99", "g++ -x c++ -std=c++17", "clang++ -x c++ -std=c++17"}) {
+    const std::string command =
+        std::string(compiler) + " -Wall -Wextra -pedantic -Werror -fsyntax-only" + files;
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;  // NOLINT(concurrency-mt-unsafe): one thread
+  }
+}
 
 TEST(ExportToC, IsRefusedWithTheReasonWhereItCannotCarryALaw) {
   const test::TemporaryFolder folder;

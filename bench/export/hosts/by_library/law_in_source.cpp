@@ -29,30 +29,6 @@ void append_quoted(std::string& literal, char c, Language language) {
   }
 }
 
-/// A text of a file within a comment of one line: letters and signs of any language stay, what could end the
-/// line or turn its direction goes.
-std::string in_comment(std::string_view text) {
-  std::string line;
-  for (std::size_t at = 0; at < text.size(); ++at) {
-    const auto byte = static_cast<unsigned char>(text[at]);
-    const auto next = at + 1 < text.size() ? static_cast<unsigned char>(text[at + 1]) : 0U;
-    if (byte < 0x20 || byte == 0x7f) {
-      line += ' ';
-    } else if (byte == '\\') {
-      line += '/';
-    } else if (byte == 0xc2 && next < 0xa0) {  // U+0080 to U+009F
-      line += ' ';
-      ++at;
-    } else if (byte == 0xe2 && (next == 0x80 || next == 0x81)) {  // U+2000 to U+207F
-      line += ' ';
-      at += 2;
-    } else {
-      line += text[at];
-    }
-  }
-  return line;
-}
-
 struct AxisInWords {
   std::string name, position_unit, force_unit;
 };
