@@ -13,6 +13,7 @@
 #include <kerf/version.h>
 
 #include "hosts/by_c/c_host_texts.h"
+#include "law_in_words.h"
 #include "own_code/compiler.h"
 
 namespace kerf::bench {
@@ -23,6 +24,14 @@ std::string upper_case(std::string name) {
   std::ranges::transform(name, name.begin(),
                          [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   return name;
+}
+
+/// What a law file says, as it may stand in a comment or a literal of any language.
+std::string harmless(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\'' || c == '\\') c = '_';
+  }
+  return text;
 }
 
 }  // namespace
@@ -39,12 +48,7 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
 }
 
 std::string axis_in_words(const LawFile& file) {
-  if (file.axis.empty()) return "an axis without a name";
-  std::string words = "the axis " + file.axis;
-  for (char& c : words) {
-    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\'' || c == '\\') c = '_';
-  }
-  return words;
+  return file.axis.empty() ? "an axis without a name" : "the axis " + harmless(file.axis);
 }
 
 std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law) {
@@ -55,6 +59,8 @@ std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw
           {"SOFTWARE", software()},
           {"MODEL", std::string(file.law.model())},
           {"AXIS", axis_in_words(file)},
+          {"FIT", harmless(fit_in_words(file))},
+          {"RANGE", harmless(range_in_words(file))},
           {"POSITION_UNIT", file.position_unit},
           {"FORCE_UNIT", file.force_unit}};
 }

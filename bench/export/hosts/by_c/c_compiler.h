@@ -20,7 +20,7 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
 [[nodiscard]] std::string axis_in_words(const LawFile& file);
 
 /// What the texts of these hosts are filled in with (own_code/compiler.h): NAME, UPPER (the name as macros
-/// begin), SHA256, SOFTWARE, MODEL, AXIS (in words), POSITION_UNIT, FORCE_UNIT.
+/// begin), SHA256, SOFTWARE, MODEL, POSITION_UNIT, FORCE_UNIT; in words AXIS, FIT, RANGE.
 [[nodiscard]] std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law);
 
 /// @throws std::invalid_argument for a name that is one of the words, of a language where it then names

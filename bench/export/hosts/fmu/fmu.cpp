@@ -4,9 +4,11 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <sys/utsname.h>
 
+#include "c/c_source.h"
 #include "exported_law.h"
 #include "files/whole_file.h"
 #include "hosts/by_c/c_compiler.h"
@@ -61,6 +63,7 @@ std::vector<HostFile> fmu_files(const ExportedLaw& law) {
       {fmt::format("binaries/{}/{}.so", platform(), law.name), library_of(law, sources)},
       {"sources/buildDescription.xml", build_description(law)},
       {fmt::format("documentation/{}.law.toml", law.name), law.text},
+      {fmt::format("documentation/{}.json", law.name), described(law).dump(2) + "\n"},
       {"documentation/licenses/license.txt", std::string(c_host_text("LICENSE"))}};
   for (const HostFile& source : sources) parts.push_back({"sources/" + source.name, source.content});
   return {{law.name + ".fmu", zipped(parts)}};

@@ -16,6 +16,7 @@
 #include <kerf/version.h>
 
 #include "hosts/by_c/c_compiler.h"
+#include "law_in_words.h"
 
 namespace kerf::bench {
 namespace {
@@ -149,8 +150,9 @@ std::string model_description(const ExportedLaw& law) {
   root.append_attribute("modelName") = law.name.c_str();
   root.append_attribute("instantiationToken") = fmu_token(law).c_str();
   root.append_attribute("description") =
-      fmt::format("Force law {} for {}: {}. Law file of SHA-256 {}.", file.law.model(), axis_in_words(file),
-                  models::law_info(file.law.model()).equation, law.sha256)
+      fmt::format("Force law {} for {}: {}. Fit: {}. Valid: {}. Law file of SHA-256 {}.", file.law.model(),
+                  axis_in_words(file), models::law_info(file.law.model()).equation, fit_in_words(file),
+                  range_in_words(file), law.sha256)
           .c_str();
   root.append_attribute("license") = "Apache-2.0, of the code that Kerf made";
   root.append_attribute("generationTool") = software().c_str();
@@ -166,7 +168,7 @@ std::string model_description(const ExportedLaw& law) {
   static_cast<void>(time);
   variables
       .add(fmu_position, "position", "input", "continuous", file.position_unit, "of the tool on the axis")
-      .append_attribute("start") = 0.0;
+      .append_attribute("start") = fmt::format("{:.17g}", file.contact.position).c_str();
   variables.add(fmu_velocity, "velocity", "input", "continuous", file.position_unit + "/s", "its derivative")
       .append_attribute("start") = 0.0;
   variables
