@@ -1,0 +1,154 @@
+#!/usr/bin/python3
+"""The documents as a site: whole, without the net, with a reference of all that there is. Arguments: the tree, kerf, a folder for the site."""
+
+import html.parser
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import urllib.parse
+from pathlib import Path
+
+ROOT, KERF, SITE = Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3])
+# Where a browser takes what it shows or runs, by the element.
+RESOURCES = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("object", "data"), ("video", "src")}
+
+
+class Page(html.parser.HTMLParser):
+    """What a page of the site names, and takes."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.links, self.resources, self.ids, self.text = [], [], set(), []
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name == "id":
+                self.ids.add(value)
+            elif (tag, name) in RESOURCES:
+                self.resources.append(value)
+            elif (tag, name) == ("a", "href"):
+                self.links.append(value)
+
+    def handle_data(self, data):
+        self.text.append(data)
+
+
+def build(root, output):
+    return subprocess.run([root / "scripts/site", "--program", KERF, "-o", output], capture_output=True, text=True, check=False)
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        shutil.rmtree(SITE, ignore_errors=True)
+        done = build(ROOT, SITE)
+        assert done.returncode == 0, done.stderr
+        cls.pages = {path: Page(path) for path in sorted(SITE.rglob("*.html"))}
+
+    def page(self, name):
+        return self.pages[SITE / name]
+
+    def test_links_lead_to_pages_and_places_of_it(self):
+        self.assertGreater(len(self.pages), 100)
+        broken = []
+        for path, page in self.pages.items():
+            for link in {*page.links, *page.resources}:
+                target, place = urllib.parse.urldefrag(link)
+                if re.match(r"[a-z]+:", target) or path.name == "404.html":
+                    continue
+                there = Path(os.path.normpath(path.parent / urllib.parse.unquote(target))) if target else path
+                if not there.is_file() or (place and there in self.pages and urllib.parse.unquote(place) not in self.pages[there].ids):
+                    broken.append(f"{path.relative_to(SITE)}: {link}")
+        self.assertEqual(broken, [])
+
+    def test_takes_nothing_from_the_net(self):
+        taken = {path: [one for one in page.resources if re.match(r"(?:https?:)?//", one)] for path, page in self.pages.items()}
+        for path in SITE.rglob("*.css"):
+            taken[path] = re.findall(r"(?:@import[^;]*|url\([\"']?)((?:https?:)?//[^)\"';]*)", path.read_text())
+        self.assertEqual({path: found for path, found in taken.items() if found}, {})
+
+    def test_tells_of_every_verb_as_its_help_does(self):
+        verbs = re.findall(r"^(?:[a-z]+ +| +)([a-z]+) +[A-Z]", subprocess.check_output([KERF, "--help"], text=True), re.M)
+        self.assertGreater(len(verbs), 25)
+        for verb in verbs:
+            text = "".join(self.page(f"reference/verbs/{verb}.html").text)
+            for option in re.findall(r"^  (?:-\w,)?(--[a-z-]+)", subprocess.check_output([KERF, verb, "--help"], text=True), re.M):
+                self.assertIn(option, text, verb)
+
+    def test_tells_of_every_law_with_its_parameters(self):
+        page = self.page("reference/laws.html")
+        for law in subprocess.check_output([KERF, "laws"], text=True).splitlines():
+            name = law.split()[0] if law.strip() else ""
+            if re.fullmatch("[a-z_0-9]+", name) and "=" in law:
+                self.assertIn(name, page.ids)
+        self.assertIn("parallel_stiffness", page.text)
+
+    def test_tells_of_every_function_of_the_library(self):
+        text = "".join(self.page("reference/c/kerf.html").text)
+        functions = re.findall(r"\b(kerf_\w+)@", (ROOT / "libkerf/libkerf1.symbols").read_text())
+        self.assertGreater(len(functions), 20)
+        for function in functions:
+            self.assertRegex(text, rf"\b{function}\(")
+
+    def test_shows_the_sources_that_documents_point_to(self):
+        self.assertEqual((SITE / "sources/models/include/kerf/models/law_facts.h.txt").read_bytes(),
+                         (ROOT / "models/include/kerf/models/law_facts.h").read_bytes())
+
+
+class SiteOfABrokenTree(unittest.TestCase):
+    """A tree with a page or two, and what scripts/site reads of the whole one."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = Path(self.folder.name) / "tree"
+        for name in ["scripts/site", "scripts/site.d", "libkerf/include", "models/include/kerf", "drivers/include",
+                     "drivers/emulators/kerf-emulate.1"]:
+            (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+            (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, self.root / name)
+        # Where the reference leads.
+        named = {f"docs/{name}.md" for name in re.findall(r"docs/([a-z-]+)\.md", (ROOT / "mkdocs.yml").read_text())}
+        for page in named:
+            (self.root / page).parent.mkdir(exist_ok=True)
+            (self.root / page).write_text("# A page\n\n## Exit status\n")
+        head = (ROOT / "mkdocs.yml").read_text().partition("\nnav:")[0]
+        pages = "".join(f"  - {page}\n" for page in sorted(named))
+        (self.root / "README.md").write_text("# Kerf\n")
+        (self.root / "mkdocs.yml").write_text(f"{head}\nnav:\n  - README.md\n{pages}  - reference/verbs.md\n  - Verbs: reference/verbs/\n"
+                                              "  - reference/laws.md\n  - C: reference/c/\n")
+        self.site = Path(self.folder.name) / "site"
+
+    def test_is_refused_and_an_earlier_one_stays(self):
+        self.assertEqual(build(self.root, self.site).stderr, "")
+        before = {path: path.read_bytes() for path in self.site.rglob("*.html")}
+        (self.root / "README.md").write_text("# Kerf\n\n[x](docs/nowhere.md) ![x](docs/nowhere.png)\n")
+        done = build(self.root, self.site)
+        self.assertEqual(done.returncode, 4)
+        for complaint in ["docs/nowhere.md", "docs/nowhere.png", "2 warnings"]:
+            self.assertIn(complaint, done.stderr)
+        (self.root / "README.md").write_text("# Kerf\n")
+        (self.root / "docs/lost.md").write_text("# Lost\n")
+        done = build(self.root, self.site)
+        self.assertEqual((done.returncode, done.stderr), (4, "scripts/site: mkdocs.yml names no place for docs/lost.md\n"))
+        self.assertEqual({path: path.read_bytes() for path in self.site.rglob("*.html")}, before)
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir() if path.name not in {"tree", "site"}], [])
+
+    def test_of_a_program_or_into_a_folder_that_will_not_do_is_one_line(self):
+        done = subprocess.run([ROOT / "scripts/site", "--program", self.root / "kerf", "-o", self.site], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+        self.assertIn("scripts/build release", done.stderr)
+        done = build(ROOT, self.root)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
+        self.assertTrue((self.root / "mkdocs.yml").exists())
+
+
+if __name__ == "__main__":
+    if not Path("/usr/share/mkdocs/themes/material").is_dir():
+        print("skipped: mkdocs-material is not installed")
+        sys.exit(77)
+    unittest.main(argv=sys.argv[:1])
