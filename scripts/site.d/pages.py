@@ -23,21 +23,23 @@ def documents(root):
     return sorted(found)
 
 
-def copy(root, output):
-    """Writes them below `output`, with the pictures that they show and the sources that they point to."""
-    pages = documents(root)
-    for page in pages:
+def copy(root, output, told):
+    """Writes them below `output`, with the pictures that they show and the sources that they point to; of sources that `told` has, the
+    page that it names is meant."""
+    for page in documents(root):
         text = (root / page).read_text(encoding="utf-8")
         (output / page).parent.mkdir(parents=True, exist_ok=True)
-        (output / page).write_text(LINK.sub(lambda link, page=page: _led(root, output, page, link), text), encoding="utf-8")
+        (output / page).write_text(LINK.sub(lambda link, page=page: _led(root, output, told, page, link), text), encoding="utf-8")
 
 
-def _led(root, output, page, link):
+def _led(root, output, told, page, link):
     """Where a link leads on the site. What leads nowhere is left as it is: mkdocs complains of it."""
     target, place = link["target"], link["place"] or ""
     if not target or re.match(r"[a-z]+:", target):
         return link[0]
     there = Path(os.path.normpath(page.parent / target))
+    if str(there) in told:
+        return os.path.relpath(told[str(there)], page.parent)
     if (root / there).is_dir():
         if (root / there / "README.md").exists():
             return f"{target.rstrip('/')}/README.md{place}"

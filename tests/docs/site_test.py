@@ -38,15 +38,15 @@ class Page(html.parser.HTMLParser):
         self.text.append(data)
 
 
-def build(root, output):
-    return subprocess.run([root / "scripts/site", "--program", KERF, "-o", output], capture_output=True, text=True, check=False)
+def build(root, program, output):
+    return subprocess.run([root / "scripts/site", "--program", program, "-o", output], capture_output=True, text=True, check=False)
 
 
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         shutil.rmtree(SITE, ignore_errors=True)
-        done = build(ROOT, SITE)
+        done = build(ROOT, KERF, SITE)
         assert done.returncode == 0, done.stderr
         cls.pages = {path: Page(path) for path in sorted(SITE.rglob("*.html"))}
 
@@ -98,10 +98,27 @@ class Site(unittest.TestCase):
     def test_shows_the_sources_that_documents_point_to(self):
         self.assertEqual((SITE / "sources/models/include/kerf/models/law_facts.h.txt").read_bytes(),
                          (ROOT / "models/include/kerf/models/law_facts.h").read_bytes())
+        self.assertIn("../reference/c/device.html", self.page("docs/own-device.html").links)
+
+
+# What has one verb, and no law.
+PROGRAM = r"""#!/bin/sh
+[ "$1" = laws ] && { echo '{"laws": []}'; exit; }
+mkdir -p "$3/man1"
+echo '.SH VERBS
+.SS start
+.TP
+\fBkerf demo\fR
+Shows' >"$3/man1/kerf.1"
+echo '.SH NAME
+kerf\-demo \- Shows
+.SH SYNOPSIS
+\fBkerf demo\fR' >"$3/man1/kerf-demo.1"
+"""
 
 
 class SiteOfABrokenTree(unittest.TestCase):
-    """A tree with a page or two, and what scripts/site reads of the whole one."""
+    """A tree of a few pages, with what scripts/site reads of the whole one."""
 
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
@@ -111,38 +128,41 @@ class SiteOfABrokenTree(unittest.TestCase):
                      "drivers/emulators/kerf-emulate.1"]:
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, self.root / name)
-        # Where the reference leads.
-        named = {f"docs/{name}.md" for name in re.findall(r"docs/([a-z-]+)\.md", (ROOT / "mkdocs.yml").read_text())}
-        for page in named:
-            (self.root / page).parent.mkdir(exist_ok=True)
-            (self.root / page).write_text("# A page\n\n## Exit status\n")
-        head = (ROOT / "mkdocs.yml").read_text().partition("\nnav:")[0]
-        pages = "".join(f"  - {page}\n" for page in sorted(named))
+        (self.root / "docs").mkdir()
+        pages = ["laws", "library", "own-law", "own-device", "command-line"]  # where the reference leads
+        for page in pages:
+            (self.root / f"docs/{page}.md").write_text("# A page\n\n## Exit status\n")
         (self.root / "README.md").write_text("# Kerf\n")
-        (self.root / "mkdocs.yml").write_text(f"{head}\nnav:\n  - README.md\n{pages}  - reference/verbs.md\n  - Verbs: reference/verbs/\n"
+        named = "".join(f"  - docs/{page}.md\n" for page in pages)
+        head = (ROOT / "mkdocs.yml").read_text().partition("\nnav:")[0]
+        (self.root / "mkdocs.yml").write_text(f"{head}\nnav:\n  - README.md\n{named}  - reference/verbs.md\n  - Verbs: reference/verbs/\n"
                                               "  - reference/laws.md\n  - C: reference/c/\n")
+        self.program = Path(self.folder.name) / "program"
+        self.program.write_text(PROGRAM)
+        self.program.chmod(0o755)
         self.site = Path(self.folder.name) / "site"
 
     def test_is_refused_and_an_earlier_one_stays(self):
-        self.assertEqual(build(self.root, self.site).stderr, "")
-        before = {path: path.read_bytes() for path in self.site.rglob("*.html")}
+        (self.site / "search").mkdir(parents=True)
+        (self.site / "index.html").write_text("an earlier one")
         (self.root / "README.md").write_text("# Kerf\n\n[x](docs/nowhere.md) ![x](docs/nowhere.png)\n")
-        done = build(self.root, self.site)
+        done = build(self.root, self.program, self.site)
         self.assertEqual(done.returncode, 4)
         for complaint in ["docs/nowhere.md", "docs/nowhere.png", "2 warnings"]:
             self.assertIn(complaint, done.stderr)
         (self.root / "README.md").write_text("# Kerf\n")
         (self.root / "docs/lost.md").write_text("# Lost\n")
-        done = build(self.root, self.site)
+        done = build(self.root, self.program, self.site)
         self.assertEqual((done.returncode, done.stderr), (4, "scripts/site: mkdocs.yml names no place for docs/lost.md\n"))
-        self.assertEqual({path: path.read_bytes() for path in self.site.rglob("*.html")}, before)
-        self.assertEqual([path.name for path in Path(self.folder.name).iterdir() if path.name not in {"tree", "site"}], [])
+        self.assertEqual({path.name: path.is_file() and path.read_text() for path in self.site.iterdir()},
+                         {"search": False, "index.html": "an earlier one"})
+        self.assertEqual([path.name for path in Path(self.folder.name).iterdir() if path.name not in {"tree", "program", "site"}], [])
 
     def test_of_a_program_or_into_a_folder_that_will_not_do_is_one_line(self):
         done = subprocess.run([ROOT / "scripts/site", "--program", self.root / "kerf", "-o", self.site], capture_output=True, text=True, check=False)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
         self.assertIn("scripts/build release", done.stderr)
-        done = build(ROOT, self.root)
+        done = build(ROOT, KERF, self.root)
         self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1))
         self.assertTrue((self.root / "mkdocs.yml").exists())
 
