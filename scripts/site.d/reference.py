@@ -7,7 +7,7 @@ from pathlib import Path
 
 import c_header
 import manual
-import stubs
+import python_package
 
 # Of each header: what it is for, and which page tells of it in prose.
 HEADERS = [
@@ -32,9 +32,8 @@ def write(root, program, output):
     for name, header, prose, about in HEADERS:
         text = c_header.page(f"`<kerf/{name}.h>`: {about}", (root / header).read_text(encoding="utf-8"), f"../../{prose}")
         (output / f"c/{name}.md").write_text(text, encoding="utf-8")
-    found = sorted((root / "python/kerf").glob("*.pyi"))
-    if found:
-        (output / "python.md").write_text(stubs.page(found), encoding="utf-8")
+    if (root / "python/kerf/__init__.py").exists():
+        (output / "python.md").write_text(python_package.page(root / "python/kerf"), encoding="utf-8")
 
 
 def _asked(program, *words):

@@ -13,6 +13,9 @@ import urllib.parse
 from pathlib import Path
 
 ROOT, KERF, SITE = Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3])
+sys.path.insert(0, str(ROOT / "scripts/site.d"))
+import python_package  # noqa: E402
+
 # Where a browser takes what it shows or runs, by the element.
 RESOURCES = {("script", "src"), ("img", "src"), ("link", "href"), ("iframe", "src"), ("source", "src"), ("object", "data"), ("video", "src")}
 
@@ -99,6 +102,26 @@ class Site(unittest.TestCase):
         self.assertEqual((SITE / "sources/models/include/kerf/models/law_facts.h.txt").read_bytes(),
                          (ROOT / "models/include/kerf/models/law_facts.h").read_bytes())
         self.assertIn("../reference/c/device.html", self.page("docs/own-device.html").links)
+
+
+class PythonPage(unittest.TestCase):
+    def test_tells_of_what_the_package_offers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            package = Path(folder)
+            (package / "__init__.py").write_text('"""Recordings."""\nfrom .rows import Rows, look\n__all__ = ["Rows", "look"]\n')
+            (package / "rows.py").write_text("raise NotReadWhereThereIsAStub\n")
+            (package / "_core.pyi").write_text("def hidden() -> None: ...\n")
+            (package / "rows.pyi").write_text(
+                'class Rows:\n    count: int  #: of them\n    @property\n    def first(self) -> float:\n        """The first."""\n'
+                "    def _own(self) -> None: ...\n\ndef hidden() -> None: ...\n\n"
+                'def look(path: str, *, at: int = 0) -> Rows:\n    """Opens.\n    :param path, at: where\n    :raises ValueError: no rows\n    """\n')
+            self.assertEqual(python_package.page(package), "\n".join([
+                "# Python: `import kerf`\n", "Recordings.\n", "## rows\n",
+                "### `kerf.Rows`\n", "```python\nclass Rows:\n    count: int  #: of them\n```\n",
+                "#### `kerf.Rows.first`\n", "```python\nfirst: float\n```\n", "The first.\n",
+                "### `kerf.look`\n", "```python\nlook(path: str, *, at: int=0) -> Rows\n```\n",
+                "Opens.\n\n- `path, at`: where\n- raises `ValueError`: no rows\n",
+            ]))  # fmt: skip
 
 
 # What has one verb, and no law.
