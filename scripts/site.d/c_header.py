@@ -2,6 +2,8 @@
 
 import re
 
+import pages
+
 _SECTION = re.compile(r"^/\* ---- (.+) ---- \*/$")
 # What a reader of the page does not need.
 _GUARDS = re.compile(r"^(?:#(?:if|ifn?def|else|endif|include|define KERF_API|define KERF_\w+_H$)|extern \"C\"|\})")
@@ -60,4 +62,4 @@ def _words(comment):
         if line.strip().startswith("- ") and out and out[-1] and not out[-1].startswith("- "):
             out.append("")
         out.append(text)
-    return "\n".join(out).strip()
+    return pages.linked("\n".join(out).strip(), "../../")

@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+import pages
+
 _LETTERS = {r"\-": "-", r"\(aq": "'", r"\(ga": "`", r"\(ha": "^", r"\(ti": "~", r"\e": "\\", r"\&": ""}
 # The same on every page, and told in one place.
 _SHARED = {"NAME", "EXIT STATUS", "FILES", "SEE ALSO"}
@@ -16,8 +18,7 @@ def plain(text):
 
 def prose(text):
     """Words, with what Markdown would take for its own kept from it and documents as links."""
-    escaped = re.sub(r"([*_<>`|\[\]])", r"\\\1", plain(text))
-    return re.sub(r"\bdocs/([a-z-]+\.md)", r"[docs/\1](../../docs/\1)", escaped)
+    return pages.linked(re.sub(r"([*_<>`|\[\]])", r"\\\1", plain(text)), "../../")
 
 
 def _code(text):
@@ -78,8 +79,8 @@ def _page(parts, level, title):
     return "\n".join(out)
 
 
-def pages(folder):
-    """Names and texts: verbs.md, which lists all, and a page for each verb with those that it has itself."""
+def verbs(folder):
+    """Names and texts of pages: verbs.md, which lists all, and a page for each verb with those that it has itself."""
     manual = {path.stem: sections(path.read_text(encoding="utf-8")) for path in Path(folder).glob("*.1")}
     out = {"verbs.md": _list_of_verbs(manual["kerf"])}
     for page in sorted(manual):

@@ -32,6 +32,11 @@ def copy(root, output, told):
         (output / page).write_text(LINK.sub(lambda link, page=page: _led(root, output, told, page, link), text), encoding="utf-8")
 
 
+def linked(text, up):
+    """The documents that a text names as docs/NAME.md, as links from a page; `up` leads from there to the root."""
+    return re.sub(r"\bdocs/[a-z-]+\.md", lambda found: f"[{found[0]}]({up}{found[0]})", text)
+
+
 def _led(root, output, told, page, link):
     """Where a link leads on the site. What leads nowhere is left as it is: mkdocs complains of it."""
     target, place = link["target"], link["place"] or ""

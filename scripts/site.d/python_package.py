@@ -4,6 +4,8 @@ import ast
 import re
 from pathlib import Path
 
+import pages
+
 # Of methods with two underscores those that one would look up; the others go without saying.
 _TOLD = {"__init__", "__call__", "__getitem__", "__len__"}
 
@@ -29,6 +31,7 @@ def _docstring(node):
     text = ast.get_docstring(node)
     if not text:
         return []
+    text = re.sub(r"^(?!    ).+$", lambda line: pages.linked(line[0], "../"), text, flags=re.MULTILINE)
     text = re.sub(r"^:param ([\w, ]+):", r"- `\1`:", text, flags=re.MULTILINE)
     text = re.sub(r"^:raises? ([\w.]+):", r"- raises `\1`:", text, flags=re.MULTILINE)
     text = re.sub(r"^:(returns?):", r"- \1:", text, flags=re.MULTILINE)

@@ -26,7 +26,7 @@ def write(root, program, output):
         made = Path(folder) / "pages"
         subprocess.run([program, "pages", "-o", made], check=True, stdout=subprocess.DEVNULL)
         (made / "man1/kerf-emulate.1").write_text((root / "drivers/emulators/kerf-emulate.1").read_text())
-        for name, text in manual.pages(made / "man1").items():
+        for name, text in manual.verbs(made / "man1").items():
             (output / name).write_text(text, encoding="utf-8")
     (output / "laws.md").write_text(laws(program), encoding="utf-8")
     for name, header, prose, about in HEADERS:
