@@ -69,6 +69,12 @@ class Site(unittest.TestCase):
                     broken.append(f"{path.relative_to(SITE)}: {link}")
         self.assertEqual(broken, [])
 
+    def test_shows_lists_and_tables_as_such(self):
+        """Forges begin a list or a table right below a line, and take two blanks for what belongs to an item; mkdocs does neither."""
+        as_text = [f"{path.relative_to(SITE)}: {line[:80]}" for path in self.pages
+                   for line in re.findall(r"<p>(?:(?!</p>).)*?^(?:<p>)?([-*|] .*?)$", path.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)]
+        self.assertEqual(as_text, [])
+
     def test_takes_nothing_from_the_net(self):
         taken = {path: [one for one in page.resources if re.match(r"(?:https?:)?//", one)] for path, page in self.pages.items()}
         for path in SITE.rglob("*.css"):
