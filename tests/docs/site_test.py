@@ -158,11 +158,14 @@ class SiteOfABrokenTree(unittest.TestCase):
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             (shutil.copytree if (ROOT / name).is_dir() else shutil.copy)(ROOT / name, self.root / name)
         (self.root / "docs").mkdir()
-        pages = ["laws", "library", "own-law", "own-device", "command-line"]  # where the reference leads
+        # Where the reference leads.
+        pages = {"laws", "library", "own-law", "own-device", "command-line"}
+        for header in self.root.rglob("*.h"):
+            pages |= set(re.findall(r"\bdocs/([a-z-]+)\.md", header.read_text(encoding="utf-8")))
         for page in pages:
             (self.root / f"docs/{page}.md").write_text("# A page\n\n## Exit status\n")
         (self.root / "README.md").write_text("# Kerf\n")
-        named = "".join(f"  - docs/{page}.md\n" for page in pages)
+        named = "".join(f"  - docs/{page}.md\n" for page in sorted(pages))
         head = (ROOT / "mkdocs.yml").read_text().partition("\nnav:")[0]
         (self.root / "mkdocs.yml").write_text(f"{head}\nnav:\n  - README.md\n{named}  - reference/verbs.md\n  - Verbs: reference/verbs/\n"
                                               "  - reference/laws.md\n  - C: reference/c/\n")
