@@ -236,16 +236,16 @@ KERF_API double kerf_state_energy(const kerf_state* state);
 
 /** One tick of a law along one axis, in the sense of the host's axis: the contact of the law file is applied.
  *
- *  position   [m or rad]
- *  velocity   its derivative; NaN: the host has none. Then it is the difference of the positions over the
- * elapsed time, low-passed at first order with a corner of 20 Hz (it lags by some 8 ms), as Kerf's drivers
- * make it: zero in the first such step. A host gives velocities always or never; where it does now and then,
- * the difference is taken over the steps between two without. elapsed_s  since the state's last step, > 0, of
- * any length: a law takes a stall as one tick. NaN: the host has none. Then the library asks the machine's
- * monotonic clock; the first step is 1 ms long. force      the answer [N or N·m]; always written, 0 with
- * KERF_LAW_FAULT
+ * - position [m or rad]
+ * - velocity: its derivative; NaN: the host has none. Then it is the difference of the positions over the
+ *   elapsed time, low-passed at first order with a corner of 20 Hz (it lags by some 8 ms), as Kerf's drivers
+ *   make it: zero in the first such step. A host gives velocities always or never; where it does now and
+ *   then, the difference is taken over the steps between two without.
+ * - elapsed_s: since the state's last step, > 0, of any length: a law takes a stall as one tick. NaN: the
+ *   host has none. Then the library asks the machine's monotonic clock; the first step is 1 ms long.
+ * - force: the answer [N or N·m]; always written, 0 with KERF_LAW_FAULT
  *
- *  Returns 0, or KERF_LAW_FAULT for a number that is not finite, time that has not passed, or a law in space:
+ * Returns 0, or KERF_LAW_FAULT for a number that is not finite, time that has not passed, or a law in space:
  * the state is then as if the tick had not been, but for its clock. */
 KERF_API uint32_t kerf_step(kerf_state* state, double position, double velocity, double elapsed_s,
                             double* force);

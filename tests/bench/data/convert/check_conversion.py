@@ -1,10 +1,15 @@
-"""check_conversion.py ENDING FOLDER NAME...: holds FOLDER/NAME.ENDING, a converted recording, against FOLDER/NAME.h5 as h5py reads
-it, number by number and bit by bit; exits with 77 where a reader is not installed. Readers that are not Kerf's: pandas, SciPy, and mcap_reader.py beside this file."""
+"""check_conversion.py READER FOLDER NAME...: holds FOLDER/NAME, a converted recording of the reader's ending, against FOLDER/NAME.h5 as h5py
+reads it, number by number and bit by bit; exits with 77 where a reader is not installed. Readers that are not Kerf's: pandas, SciPy,
+Octave, Foxglove's of MCAP (mcap_core:NODE:NODE_MODULES), and mcap_reader.py beside this file, which looks at every byte."""
 
 import csv
 import json
 import math
+import shutil
+import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 try:
     import h5py
@@ -107,8 +112,49 @@ def flat(topic: str, message: dict) -> dict:
     return found
 
 
-def check_mcap(path: str, expected: Expected):
-    mcap = mcap_reader.Mcap(path)
+# Each variable as its bytes, in a file of its name; then what units it has.
+OCTAVE = """
+s = load(argv(){1});
+names = setdiff(fieldnames(s), {"units", "dictionary", "about", "events"});
+for i = 1:numel(names)
+  file = fopen(fullfile(argv(){2}, names{i}), "w");
+  fwrite(file, s.(names{i}), class(s.(names{i})));
+  fclose(file);
+endfor
+units = fieldnames(s.units);
+for i = 1:numel(units)
+  printf("%s %s\\n", units{i}, s.units.(units{i}));
+endfor
+"""
+
+
+def check_by_octave(path: str, expected: Expected):
+    with tempfile.TemporaryDirectory() as folder:
+        script = Path(folder) / "script.m"
+        script.write_text(OCTAVE)
+        said = subprocess.run(["octave-cli", "--norc", "--quiet", script, path, folder], check=True, capture_output=True, text=True)
+        units = dict(line.split(" ") for line in said.stdout.splitlines())
+        for name, (values, unit) in expected.columns.items():
+            variable = "".join(c if c.isascii() and c.isalnum() else "_" for c in name)
+            assert same(numpy.fromfile(f"{folder}/{variable}", values.dtype), values), name
+            assert units[variable] == unit.replace("·", "*"), name
+
+
+class McapByCore:
+    """What Foxglove's reader says, in the shape of mcap_reader.Mcap."""
+
+    def __init__(self, path: str, node: str, modules: str):
+        script = Path(__file__).with_name("read_mcap.mjs")
+        read = json.loads(subprocess.run([node, script, path, modules], check=True, capture_output=True).stdout)
+        self.schemas = {int(number): tuple(schema) for number, schema in read["schemas"].items()}
+        self.channels = {int(number): tuple(channel) for number, channel in read["channels"].items()}
+        self.messages = [(channel, sequence, int(log), int(publish), data) for channel, sequence, log, publish, data in read["messages"]]
+        self.metadata = read["metadata"]
+        self.attachments = {name: data.encode() for name, data in read["attachments"].items()}
+
+
+def check_mcap(path: str, expected: Expected, reader=mcap_reader.Mcap):
+    mcap = reader(path)
     times = expected.columns["time"][0]
     log_times = [expected.start_ns + round(1e9 * float(time)) for time in times]
     by_topic = {}
@@ -148,8 +194,18 @@ def check_mcap(path: str, expected: Expected):
 
 
 def main() -> int:
-    ending, folder, *names = sys.argv[1:]
-    check = {"csv": check_csv, "mat": check_mat, "mcap": check_mcap}[ending]
+    reader, folder, *names = sys.argv[1:]
+    reader, *where = reader.split(":")
+    check, ending = {
+        "pandas": (check_csv, "csv"),
+        "scipy": (check_mat, "mat"),
+        "octave": (check_by_octave, "mat"),
+        "mcap": (check_mcap, "mcap"),
+        "mcap_core": (lambda path, expected: check_mcap(path, expected, lambda path: McapByCore(path, *where)), "mcap"),
+    }[reader]
+    if reader == "octave" and not shutil.which("octave-cli"):
+        print("Octave is not installed")
+        return 77
     for name in names:
         print(name)
         check(f"{folder}/{name}.{ending}", Expected(f"{folder}/{name}.h5"))

@@ -77,9 +77,9 @@ class Conversion : public testing::Test {
 
 class ConversionReadByOthers : public Conversion {
  protected:
-  void expect_the_recordings_in(const std::string& ending) {
+  void expect_the_recordings_in(const std::string& ending, const std::string& reader) {
     if (!fs::exists(python)) GTEST_SKIP() << "no " << python;
-    std::vector<std::string> command{python, "-B", checker, ending, folder_.path().string()};
+    std::vector<std::string> command{python, "-B", checker, reader, folder_.path().string()};
     const std::vector<std::pair<std::string, schema::Recording>> recordings{
         {"everything", test::sample_recording(20'000)},  // two blocks of rows, and several chunks of MCAP
         {"three axes", three_axes(300)},
@@ -97,9 +97,17 @@ class ConversionReadByOthers : public Conversion {
   }
 };
 
-TEST_F(ConversionReadByOthers, IsToPandasTheRecordingToTheBit) { expect_the_recordings_in("csv"); }
-TEST_F(ConversionReadByOthers, IsToSciPyTheRecordingToTheBit) { expect_the_recordings_in("mat"); }
-TEST_F(ConversionReadByOthers, IsToAReaderOfMcapTheRecordingToTheBit) { expect_the_recordings_in("mcap"); }
+TEST_F(ConversionReadByOthers, IsToPandasTheRecordingToTheBit) { expect_the_recordings_in("csv", "pandas"); }
+TEST_F(ConversionReadByOthers, IsToSciPyTheRecordingToTheBit) { expect_the_recordings_in("mat", "scipy"); }
+TEST_F(ConversionReadByOthers, IsToOctaveTheRecordingToTheBit) { expect_the_recordings_in("mat", "octave"); }
+TEST_F(ConversionReadByOthers, IsToAReaderOfMcapTheRecordingToTheBit) {
+  expect_the_recordings_in("mcap", "mcap");
+}
+#ifdef KERF_NODE
+TEST_F(ConversionReadByOthers, IsToFoxglovesReaderTheRecordingToTheBit) {
+  expect_the_recordings_in("mcap", "mcap_core:" KERF_NODE ":" KERF_NODE_MODULES);
+}
+#endif
 
 bool same_bits(const std::vector<double>& left, const std::vector<double>& right) {
   return left.size() == right.size() &&
