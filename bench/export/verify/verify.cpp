@@ -15,20 +15,17 @@ namespace {
 
 /// How deep a law has something to say [m or rad].
 double depth_of(const LawFile& law) {
-  double depth = 0.0;
+  if (law.fit.range) return std::max(std::abs(law.fit.range->least), std::abs(law.fit.range->most));
+  // Deep enough for what gives way.
+  double depth = law.position_unit == "rad" ? 0.8 : 0.08;
   const auto infos = law.law.parameters();
   for (std::size_t i = 0; i < infos.size(); ++i) {
     if (infos[i].quantity == models::Quantity::position)
       depth = std::max(depth, std::abs(law.law.values()[i]));
   }
-  for (const char* const option : {"last", "most_depth", "reference_depth"}) {
-    const auto given = law.law.options().find(option);
-    if (given == law.law.options().end()) continue;
-    if (const double* const value = std::get_if<double>(&given->second)) depth = std::max(depth, *value);
-  }
-  if (law.fit.range) depth = std::max(depth, law.fit.range->most);
-  const double usual = law.position_unit == "rad" ? 0.4 : 0.02;
-  return depth > 0.0 ? depth : usual;
+  if (const auto last = law.law.options().find("last"); last != law.law.options().end())
+    depth = std::max(depth, std::abs(std::get<double>(last->second)));
+  return depth;
 }
 
 /// Places between two numbers among all of their kind, where neighbours are one apart.
