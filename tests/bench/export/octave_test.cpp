@@ -76,7 +76,7 @@ TEST(OctaveExport, KeepsWhatALawFileSaysWithinItsLine) {
   ExportedLaw law = test::liver();
   law.file.axis = "a\n\"\"\"\\b";
   const std::vector<HostFile> files = octave_host().files(law);
-  EXPECT_THAT(files.back().content, HasSubstr("for the axis a_____b"));
+  EXPECT_THAT(files.back().content, HasSubstr("for the axis a '''/b"));
 }
 
 }  // namespace

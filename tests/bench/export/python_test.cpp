@@ -58,7 +58,7 @@ TEST(PythonExport, KeepsWhatALawFileSaysWithinItsLine) {
   ExportedLaw law = test::liver();
   law.file.axis = "a\n\"\"\"\\b";
   const std::vector<HostFile> files = python_host().files(law);
-  EXPECT_THAT(files.back().content, HasSubstr("for the axis a_____b"));
+  EXPECT_THAT(files.back().content, HasSubstr("for the axis a '''/b"));
 }
 
 }  // namespace

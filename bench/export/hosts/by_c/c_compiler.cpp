@@ -26,12 +26,11 @@ std::string upper_case(std::string name) {
   return name;
 }
 
-/// What a law file says, as it may stand in a comment or a literal of any language.
-std::string harmless(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == '"' || c == '\'' || c == '\\') c = '_';
-  }
-  return text;
+/// What a law file says, within a comment of C and Octave and the text that a module of Python begins with.
+std::string within_comments(std::string_view text) {
+  std::string line = in_comment(text);
+  std::ranges::replace(line, '"', '\'');
+  return line;
 }
 
 }  // namespace
@@ -48,7 +47,7 @@ void compile_c(const std::filesystem::path& source, const std::filesystem::path&
 }
 
 std::string axis_in_words(const LawFile& file) {
-  return file.axis.empty() ? "an axis without a name" : "the axis " + harmless(file.axis);
+  return file.axis.empty() ? "an axis without a name" : "the axis " + within_comments(file.axis);
 }
 
 std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw& law) {
@@ -59,8 +58,8 @@ std::vector<std::pair<std::string_view, std::string>> law_keys(const ExportedLaw
           {"SOFTWARE", software()},
           {"MODEL", std::string(file.law.model())},
           {"AXIS", axis_in_words(file)},
-          {"FIT", harmless(fit_in_words(file))},
-          {"RANGE", harmless(range_in_words(file))},
+          {"FIT", within_comments(fit_in_words(file))},
+          {"RANGE", within_comments(range_in_words(file))},
           {"POSITION_UNIT", file.position_unit},
           {"FORCE_UNIT", file.force_unit}};
 }
