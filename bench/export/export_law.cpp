@@ -57,7 +57,8 @@ ExportedLaw read_for(const Host& host, const std::filesystem::path& law, const s
       exported.plain_c = c_source(exported);
     } catch (const std::invalid_argument& why) {
       throw std::invalid_argument(
-          fmt::format("{}: {}; --as chai3d, sofa and unity carry it by libkerf", law.string(), why.what()));
+          fmt::format("{}: {}; libkerf carries every law (docs/library.md), and --as unity calls it",
+                      law.string(), why.what()));
     }
   }
   return exported;
@@ -66,7 +67,14 @@ ExportedLaw read_for(const Host& host, const std::filesystem::path& law, const s
 std::vector<std::string> write_for(const Host& host, const ExportedLaw& law,
                                    const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const HostFile& file : host.files(law)) {
+  const std::vector<HostFile> files = [&] {
+    try {
+      return host.files(law);
+    } catch (const std::invalid_argument& why) {
+      throw std::invalid_argument(fmt::format("{}: {}", law.file.name, why.what()));
+    }
+  }();
+  for (const HostFile& file : files) {
     const std::filesystem::path path = folder / file.name;
     std::filesystem::create_directories(path.parent_path());
     write_whole_file(path, file.content);

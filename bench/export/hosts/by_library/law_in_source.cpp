@@ -124,7 +124,7 @@ std::vector<std::pair<std::string_view, std::string>> values_in_space(const Expo
   if (axes.empty())
     throw std::invalid_argument(fmt::format(
         "{} gives a tool's place in m along x, y, z and takes a force in N, and this law's axes are "
-        "{}: such a law goes into an own program ('kerf export --as c', docs/library.md)",
+        "{}: such a law goes into a program of one's own by libkerf (docs/library.md)",
         host, in_words(axes_of(law.file))));
   std::vector<std::pair<std::string_view, std::string>> values{
       {"LAW_ON_AXES", std::string(host_text("law_on_axes.in"))}, {"AXES", axes}};
