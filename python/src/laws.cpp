@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -71,52 +72,72 @@ struct Trajectory {
   bool one_period = false;  ///< elapsed_s is one number for all rows
 
   [[nodiscard]] double period_s(std::size_t row) const noexcept { return elapsed_s[one_period ? 0 : row]; }
+  [[nodiscard]] std::span<const double> periods(std::size_t first, std::size_t count) const noexcept {
+    return one_period ? std::span(elapsed_s, 1) : std::span(elapsed_s + first, count);
+  }
 };
 
 /// As kerf_step() of libkerf derives velocities that its host lacks.
-void derive(HeldState& state, const double* position, std::size_t axes,
-            models::AxisValues& velocity) noexcept {
+void derive(HeldState& state, const double* position, std::size_t axes, double* velocity) noexcept {
   const bool finite = std::all_of(position, position + axes, [](double one) { return std::isfinite(one); });
   for (std::size_t axis = 0; axis < axes; ++axis)
     velocity[axis] = finite ? state.filter.update(axis, position[axis], state.now_s) : 0.0;
   if (finite) state.filter.advance(state.now_s);
 }
 
-/// @returns whether the law faulted.
-bool step_row(HeldState& state, const Trajectory& along, std::size_t row, bool resisting,
-              double* force) noexcept {
-  const HeldLaw& law = *state.law;
-  const double period_s = along.period_s(row);
-  state.now_s += period_s;
-  const double* const position = along.position + row * along.axes;
-  models::SpatialMotion motion;
-  if (along.velocity == nullptr)
-    derive(state, position, along.axes, motion.velocity);
-  else
-    std::copy_n(along.velocity + row * along.axes, along.axes, motion.velocity.begin());
-  if (!law.spatial) {
-    const models::Contact& contact = law.file.contact;
-    const models::Response response =
-        law.file.law.step(state.memory, contact.motion(*position, motion.velocity[0]), period_s);
-    *force = resisting ? response.force : contact.force_on_axis(response.force);
-    return response.fault;
+/// Rows of a law along one axis; not a number where the law faults.
+void step_line(HeldState& state, const Trajectory& along, bool resisting, double* force) noexcept {
+  constexpr std::size_t most = 512;  // as many as stay in the first cache
+  std::array<models::Motion, most> motion;
+  const bench::LawFile& file = state.law->file;
+  for (std::size_t first = 0; first < along.rows; first += most) {
+    const std::size_t count = std::min(most, along.rows - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double* const position = along.position + first + i;
+      double velocity = 0.0;
+      state.now_s += along.period_s(first + i);
+      if (along.velocity == nullptr)
+        derive(state, position, 1, &velocity);
+      else
+        velocity = along.velocity[first + i];
+      motion[i] = file.contact.motion(*position, velocity);
+    }
+    const std::span<double> block(force + first, count);
+    file.law.steps(state.memory, std::span(motion).first(count), along.periods(first, count), block);
+    if (resisting) continue;
+    for (double& one : block) one = file.contact.force_on_axis(one);
   }
-  std::copy_n(position, along.axes, motion.position.begin());
-  const models::SpatialResponse response = law.file.law.step(state.memory, motion, period_s);
-  std::copy_n(response.force.begin(), along.axes, force);
-  return response.fault;
 }
 
-/// @returns the first row in which the law faulted.
-std::optional<std::size_t> step_rows(HeldState& state, const Trajectory& along, bool resisting,
-                                     OnFault on_fault, double* force) noexcept {
-  std::optional<std::size_t> first;
+/// Rows of a law in space; not a number where the law faults.
+void step_space(HeldState& state, const Trajectory& along, double* force) noexcept {
   for (std::size_t row = 0; row < along.rows; ++row) {
-    double* const here = force + row * along.axes;
-    if (!step_row(state, along, row, resisting, here)) continue;
-    if (!first) first = row;
-    if (on_fault == OnFault::error) break;
-    if (on_fault == OnFault::nan) std::fill_n(here, along.axes, no_number);
+    const double period_s = along.period_s(row);
+    state.now_s += period_s;
+    const std::size_t at = row * along.axes;
+    models::SpatialMotion motion;
+    std::copy_n(along.position + at, along.axes, motion.position.begin());
+    if (along.velocity == nullptr)
+      derive(state, along.position + at, along.axes, motion.velocity.data());
+    else
+      std::copy_n(along.velocity + at, along.axes, motion.velocity.begin());
+    const models::SpatialResponse response = state.law->file.law.step(state.memory, motion, period_s);
+    if (response.fault)
+      std::fill_n(force + at, along.axes, no_number);
+    else
+      std::copy_n(response.force.begin(), along.axes, force + at);
+  }
+}
+
+/// Does with rows in which the law faulted what was asked for. @returns the first of them.
+std::optional<std::size_t> find_faults(const Trajectory& along, OnFault on_fault, double zero,
+                                       std::span<double> force) noexcept {
+  std::optional<std::size_t> first;
+  for (std::size_t at = 0; at < force.size(); ++at) {
+    if (!std::isnan(force[at])) continue;
+    if (!first) first = at / along.axes;
+    if (on_fault != OnFault::zero) break;
+    force[at] = zero;
   }
   return first;
 }
@@ -221,11 +242,17 @@ Numbers render(HeldState& state, const py::object& position, const py::object& v
   Numbers force = arrays.like_position();
   double* const to = force.mutable_data();
   const Trajectory& along = arrays.along();
+  // As a loop has it: on an axis that grows into the tissue its sign is negative.
+  const double zero = law.spatial || resisting ? 0.0 : law.file.contact.force_on_axis(0.0);
   std::optional<std::size_t> fault;
   {
     const Taken one_at_a_time(state);
     const py::gil_scoped_release others_may_run;
-    fault = step_rows(state, along, resisting, otherwise, to);
+    if (law.spatial)
+      step_space(state, along, to);
+    else
+      step_line(state, along, resisting, to);
+    fault = find_faults(along, otherwise, zero, {to, along.rows * along.axes});
   }
   if (fault && otherwise == OnFault::error) refuse_fault(along, *fault);
   return force;

@@ -148,7 +148,7 @@ class Recordings(InFolder):
     def test_tell_their_axes_events_and_cycles(self):
         recording = kerf.Recording(self.scissors)
         self.assertEqual([(axis.name, axis.position_unit, axis.force_unit) for axis in recording.axes], [("theta", "rad", "N"), ("x_s", "m", "N")])
-        self.assertEqual(recording.events[0].kind, "start")
+        self.assertEqual(recording.events[0].kind, "soft_start")
         self.assertIsNone(recording.cycles)
         cycles = kerf.Recording(self.punch).cycles
         self.assertEqual((cycles.axis, cycles.closing.shape), ("position", (7, len(cycles.grid))))
