@@ -108,8 +108,10 @@ struct RegisteredLaw final : AnyLaw {
     }
     return {not_a_number};
   }
-  void steps(AnyState& state, std::span<const Motion> motion, std::span<const double> period_s,
-             std::span<double> force) const noexcept override {
+  // Flat: what a call would leave in memory would be waited for in the next tick.
+  [[gnu::flatten]] void steps(AnyState& state, std::span<const Motion> motion,
+                              std::span<const double> period_s,
+                              std::span<double> force) const noexcept override {
     if constexpr (!SpatialLaw<L> && std::is_trivially_copyable_v<typename L::State>) {
       if (state.law != Of) return AnyLaw::steps(state, motion, period_s, force);
       // Beside the memory that it is kept in, so that it need not be written back in each tick.

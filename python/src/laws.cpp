@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -85,32 +86,48 @@ void derive(HeldState& state, const double* position, std::size_t axes, double* 
   if (finite) state.filter.advance(state.now_s);
 }
 
-/// Rows of a law along one axis; not a number where the law faults.
-void step_line(HeldState& state, const Trajectory& along, bool resisting, double* force) noexcept {
+bool any_is_nan(std::span<const double> values) noexcept {
+  bool any = false;
+  for (const double one : values) any |= std::isnan(one);
+  return any;
+}
+
+/// Rows of a law along one axis; not a number where the law faults. @returns whether it does.
+bool step_line(HeldState& state, const Trajectory& along, bool resisting, double* force) noexcept {
   constexpr std::size_t most = 512;  // as many as stay in the first cache
   std::array<models::Motion, most> motion;
   const bench::LawFile& file = state.law->file;
+  const models::Contact contact = file.contact;
+  bool any_fault = false;
   for (std::size_t first = 0; first < along.rows; first += most) {
     const std::size_t count = std::min(most, along.rows - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double* const position = along.position + first + i;
-      double velocity = 0.0;
-      state.now_s += along.period_s(first + i);
-      if (along.velocity == nullptr)
-        derive(state, position, 1, &velocity);
-      else
-        velocity = along.velocity[first + i];
-      motion[i] = file.contact.motion(*position, velocity);
+    const double* const position = along.position + first;
+    const std::span<const double> periods = along.periods(first, count);
+    if (along.velocity != nullptr) {
+      for (std::size_t i = 0; i < count; ++i)
+        motion[i] = contact.motion(position[i], along.velocity[first + i]);
+      state.now_s += along.one_period ? static_cast<double>(count) * periods[0]
+                                      : std::accumulate(periods.begin(), periods.end(), 0.0);
+    } else {
+      for (std::size_t i = 0; i < count; ++i) {
+        double velocity = 0.0;
+        state.now_s += along.period_s(first + i);
+        derive(state, position + i, 1, &velocity);
+        motion[i] = contact.motion(position[i], velocity);
+      }
     }
     const std::span<double> block(force + first, count);
-    file.law.steps(state.memory, std::span(motion).first(count), along.periods(first, count), block);
+    file.law.steps(state.memory, std::span(motion).first(count), periods, block);
+    any_fault |= any_is_nan(block);
     if (resisting) continue;
-    for (double& one : block) one = file.contact.force_on_axis(one);
+    for (double& one : block) one = contact.force_on_axis(one);
   }
+  return any_fault;
 }
 
-/// Rows of a law in space; not a number where the law faults.
-void step_space(HeldState& state, const Trajectory& along, double* force) noexcept {
+/// Rows of a law in space; not a number where the law faults. @returns whether it does.
+bool step_space(HeldState& state, const Trajectory& along, double* force) noexcept {
+  bool any_fault = false;
   for (std::size_t row = 0; row < along.rows; ++row) {
     const double period_s = along.period_s(row);
     state.now_s += period_s;
@@ -122,11 +139,13 @@ void step_space(HeldState& state, const Trajectory& along, double* force) noexce
     else
       std::copy_n(along.velocity + at, along.axes, motion.velocity.begin());
     const models::SpatialResponse response = state.law->file.law.step(state.memory, motion, period_s);
+    any_fault |= response.fault;
     if (response.fault)
       std::fill_n(force + at, along.axes, no_number);
     else
       std::copy_n(response.force.begin(), along.axes, force + at);
   }
+  return any_fault;
 }
 
 /// Does with rows in which the law faulted what was asked for. @returns the first of them.
@@ -248,11 +267,8 @@ Numbers render(HeldState& state, const py::object& position, const py::object& v
   {
     const Taken one_at_a_time(state);
     const py::gil_scoped_release others_may_run;
-    if (law.spatial)
-      step_space(state, along, to);
-    else
-      step_line(state, along, resisting, to);
-    fault = find_faults(along, otherwise, zero, {to, along.rows * along.axes});
+    if (law.spatial ? step_space(state, along, to) : step_line(state, along, resisting, to))
+      fault = find_faults(along, otherwise, zero, {to, along.rows * along.axes});
   }
   if (fault && otherwise == OnFault::error) refuse_fault(along, *fault);
   return force;
