@@ -47,6 +47,21 @@ What is needed to build programs with libkerf in C99 or C++20, by CMake or
 pkg-config; the laws themselves as C++ templates with a static library; and
 the headers by which Kerf makes a plug-in of somebody's own law.")
 
+if(KERF_WITH_PYTHON)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON3-KERF_PACKAGE_SECTION python)
+  # Files are read by the programs of kerf, of the same version.
+  set(CPACK_DEBIAN_PYTHON3-KERF_PACKAGE_DEPENDS
+      "kerf (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next}), \
+python3-numpy")
+  set(CPACK_DEBIAN_PYTHON3-KERF_PACKAGE_SUGGESTS "python3-pandas")
+  set(CPACK_DEBIAN_PYTHON3-KERF_DESCRIPTION
+      "Force laws of haptic cutting, for Python
+Reads recordings of Kerf as NumPy arrays and pandas frames, fits force laws to
+them and renders trajectories through laws, to the last bit as Kerf itself
+does.")
+endif()
+
 # kerf_package(PACKAGE COMPONENTS...): a package of these components, and what Debian asks of each in a component of its own that nothing
 # else installs.
 function(kerf_package package)
@@ -74,15 +89,34 @@ file(CONFIGURE OUTPUT ${control}/shlibs CONTENT "libkerf 1 libkerf1 (>= ${PROJEC
 file(CONFIGURE OUTPUT ${control}/triggers CONTENT "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_LIBKERF1_PACKAGE_CONTROL_EXTRA ${control}/symbols ${control}/shlibs ${control}/triggers)
 
+# Compiled when it is installed, as Debian's own packages for Python are.
+file(CONFIGURE OUTPUT ${control}/python/postinst CONTENT "#!/bin/sh
+set -e
+if [ \"$1\" = configure ] && command -v py3compile >/dev/null; then py3compile -p python3-kerf; fi
+")
+file(CONFIGURE OUTPUT ${control}/python/prerm CONTENT "#!/bin/sh
+set -e
+if command -v py3clean >/dev/null; then py3clean -p python3-kerf; fi
+")
+file(CHMOD ${control}/python/postinst ${control}/python/prerm PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
+     WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_PYTHON3-KERF_PACKAGE_CONTROL_EXTRA ${control}/python/postinst ${control}/python/prerm)
+
+set(packages kerf libkerf1 libkerf-dev)
+if(KERF_WITH_PYTHON)
+  list(APPEND packages python3-kerf)
+endif()
 set(components_kerf program udev documentation examples)
 set(components_libkerf1 runtime)
 set(components_libkerf-dev development)
+set(components_python3-kerf python)
 # Libraries of several architectures lie side by side; the program serves any.
 set(multi_arch_kerf foreign)
 set(multi_arch_libkerf1 same)
 set(multi_arch_libkerf-dev same)
+set(multi_arch_python3-kerf no)
 set(CPACK_COMPONENTS_ALL "")
-foreach(package kerf libkerf1 libkerf-dev)
+foreach(package IN LISTS packages)
   string(TOUPPER ${package} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package})
   # CMake has a variable for the second field from 3.31 on.
@@ -90,6 +124,6 @@ foreach(package kerf libkerf1 libkerf-dev)
   list(APPEND CPACK_COMPONENTS_ALL ${components_${package}} debian-${package})
 endforeach()
 include(CPack)
-foreach(package kerf libkerf1 libkerf-dev)
+foreach(package IN LISTS packages)
   kerf_package(${package} ${components_${package}})
 endforeach()

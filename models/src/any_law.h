@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -26,6 +28,25 @@ struct AnyState {
   const Place law;
 };
 
+/// Whether a law is asked at all: numbers that are finite, and time that passes.
+[[nodiscard]] inline bool is_sound(const Motion& motion, double period_s) noexcept {
+  return std::isfinite(motion.penetration) && std::isfinite(motion.velocity) && period_s > 0.0 &&
+         std::isfinite(period_s);
+}
+
+/// Ticks by a step that gives a number that is not finite where it faults.
+template <typename Step>
+void step_each(std::span<const Motion> motion, std::span<const double> period_s, std::span<double> force,
+               const Step& step) noexcept {
+  const bool one_period = period_s.size() == 1;
+  for (std::size_t i = 0; i < motion.size(); ++i) {
+    const double period = period_s[one_period ? 0 : i];
+    const double given =
+        is_sound(motion[i], period) ? step(motion[i], period) : std::numeric_limits<double>::quiet_NaN();
+    force[i] = std::isfinite(given) ? given : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 struct AnyLaw {
   AnyLaw() = default;
   AnyLaw(const AnyLaw&) = delete;
@@ -38,6 +59,12 @@ struct AnyLaw {
                                     double period_s) const noexcept = 0;
   [[nodiscard]] virtual AxisValues step(AnyState& state, const SpatialMotion& motion,
                                         double period_s) const noexcept = 0;
+  /// As Law::steps().
+  virtual void steps(AnyState& state, std::span<const Motion> motion, std::span<const double> period_s,
+                     std::span<double> force) const noexcept {
+    step_each(motion, period_s, force,
+              [&](const Motion& tick, double period) noexcept { return step(state, tick, period); });
+  }
   /// Not a number: the law has none, or the state is another law's.
   [[nodiscard]] virtual double stored_energy(const AnyState& state) const noexcept = 0;
 };

@@ -108,6 +108,23 @@ struct RegisteredLaw final : AnyLaw {
     }
     return {not_a_number};
   }
+  // Flat: what a call would leave in memory would be waited for in the next tick.
+  [[gnu::flatten]] void steps(AnyState& state, std::span<const Motion> motion,
+                              std::span<const double> period_s,
+                              std::span<double> force) const noexcept override {
+    if constexpr (!SpatialLaw<L> && std::is_trivially_copyable_v<typename L::State>) {
+      if (state.law != Of) return AnyLaw::steps(state, motion, period_s, force);
+      // Beside the memory that it is kept in, so that it need not be written back in each tick.
+      auto& kept = static_cast<StateOf<L, Of>&>(state).value;
+      auto value = kept;
+      step_each(motion, period_s, force, [&](const Motion& tick, double period) noexcept {
+        return static_cast<double>(law.step(value, tick, period));
+      });
+      kept = value;
+    } else {
+      AnyLaw::steps(state, motion, period_s, force);
+    }
+  }
   [[nodiscard]] double stored_energy(const AnyState& state) const noexcept override {
     if constexpr (requires(const typename L::State& of) { law.stored_energy(of); }) {
       static_assert(noexcept(law.stored_energy(std::declval<const typename L::State&>())));
@@ -223,13 +240,16 @@ std::string_view Law::model() const noexcept { return law_->name(); }
 Law::State Law::initial_state() const { return State(law_->initial_state()); }
 
 Response Law::step(State& state, const Motion& motion, double period_s) const noexcept {
-  if (!std::isfinite(motion.penetration) || !std::isfinite(motion.velocity) || !(period_s > 0.0) ||
-      !std::isfinite(period_s)) {
-    return {.force = 0.0, .fault = true};
-  }
+  if (!is_sound(motion, period_s)) return {.force = 0.0, .fault = true};
   const double force = state.state_ ? law_->step(*state.state_, motion, period_s) : not_a_number;
   if (!std::isfinite(force)) return {.force = 0.0, .fault = true};
   return {.force = force, .fault = false};
+}
+
+void Law::steps(State& state, std::span<const Motion> motion, std::span<const double> period_s,
+                std::span<double> force) const noexcept {
+  if (state.state_) return law_->steps(*state.state_, motion, period_s, force);
+  std::fill(force.begin(), force.end(), not_a_number);
 }
 
 SpatialResponse Law::step(State& state, const SpatialMotion& motion, double period_s) const noexcept {
@@ -252,10 +272,11 @@ double Law::stored_energy(const State& state) const noexcept {
 }
 
 std::vector<double> Law::along(std::span<const Motion> motion, std::span<const double> period_s) const {
-  std::vector<double> force;
-  force.reserve(motion.size());
+  std::vector<double> force(motion.size());
   State state = initial_state();
-  for (std::size_t i = 0; i < motion.size(); ++i) force.push_back(step(state, motion[i], period_s[i]).force);
+  steps(state, motion, period_s, force);
+  for (double& one : force)
+    if (std::isnan(one)) one = 0.0;  // as step() faults
   return force;
 }
 

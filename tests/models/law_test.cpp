@@ -202,6 +202,23 @@ TEST_P(EveryLaw, RefusesUnknownOptionsAndAWrongNumberOfValues) {
   EXPECT_THROW((void)Law::make(law.model(), std::vector<double>{}, law.options()), std::invalid_argument);
 }
 
+TEST_P(EveryLaw, TakesTicksTogetherAsOneByOne) {
+  const std::vector<Motion> motion{{-0.1, 0.5},         {0.001, 0.5},  {0.0015, 0.5},
+                                   {not_a_number, 0.0}, {0.001, -0.5}, {0.0012, 0.2}};
+  const std::vector<double> period_s{1e-3, 1e-3, 0.2, 1e-3, 0.0, 1e-3};
+  Law::State together = law.initial_state();
+  Law::State apart = law.initial_state();
+  std::vector<double> force(motion.size());
+  for (const bool is_first : {true, false}) {
+    law.steps(together, motion, period_s, force);
+    for (std::size_t i = 0; i < motion.size(); ++i) {
+      const Response expected = law.step(apart, motion[i], period_s[i]);
+      EXPECT_EQ(std::isnan(force[i]), expected.fault) << i;
+      if (!expected.fault) EXPECT_EQ(force[i], expected.force) << i << (is_first ? "" : ", going on");
+    }
+  }
+}
+
 TEST(Law, AlongAMotionGivesWhatItsStepsGiveFromAFreshStateEachTime) {
   const Law law = Law::make("kelvin", std::vector{8.0, 7.0, 130.0});
   const std::vector<Motion> motion{{0.1, 0.5}, {0.2, 0.5}, {0.2, 0.0}};

@@ -50,6 +50,19 @@ class Debian(unittest.TestCase):
         self.assertIn("libkerf1 (= %s)" % version, output_of("dpkg-deb", "--field", self.package("libkerf-dev"), "Depends"))
         self.assertIn("gnuplot", output_of("dpkg-deb", "--field", self.package("kerf"), "Recommends"))
 
+    def test_of_python_need_the_program_and_the_python_that_they_are_for(self):
+        if not (BUILD / "python").exists():
+            self.skipTest("built without the Python package")
+        python = self.package("python3-kerf")
+        depends = output_of("dpkg-deb", "--field", python, "Depends")
+        version = output_of("dpkg-deb", "--field", python, "Version").strip()
+        for name in ["kerf (= %s)" % version, "python3 (>= 3.", "python3 (<< 3.", "python3-numpy", "libceres"]:
+            self.assertIn(name, depends)
+        files = output_of("dpkg-deb", "--contents", python)
+        for name in ["__init__.py", "laws.py", "_core.pyi", "py.typed"]:
+            self.assertIn("./usr/lib/python3/dist-packages/kerf/" + name, files)
+        self.assertRegex(files, r"\./usr/lib/python3/dist-packages/kerf/_core\.cpython-3\d+-[a-z0-9_-]+\.so\n")
+
     def test_lie_beside_those_of_other_architectures(self):
         for name, wanted in [("kerf", "foreign"), ("libkerf1", "same"), ("libkerf-dev", "same")]:
             self.assertEqual(output_of("dpkg-deb", "--field", self.package(name), "Multi-Arch").strip(), wanted, name)

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "files/disk_room.h"
-#include "files/file_names.h"
 #include "files/json_file.h"
 #include "files/whole_file.h"
 #include "files/whole_folder.h"
@@ -17,7 +16,6 @@
 #include "laws/plugin_laws.h"
 #include "program/progress.h"
 #include "program/verbs.h"
-#include "recordings/whole_recording.h"
 #include "run/run.h"
 
 namespace kerf::bench {
@@ -25,31 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What names each file apart from the others: its stem, with a number where two have the same.
-std::vector<std::string> names_of(const std::vector<std::string>& files) {
-  NewNames new_names;
-  std::vector<std::string> names;
-  for (const std::string& file : files) names.push_back(new_names.take(fs::path(file).stem()).string());
-  return names;
-}
-
 void run_together(const FitArguments& arguments, Context& context) {
   const fs::path folder = arguments.output;
   if (!arguments.force) refuse_to_replace_fits(arguments.options, folder);
   require_disk(folder, bytes_of_results, "law files and tables");
-  const auto names = names_of(arguments.recordings);
-  std::vector<schema::Recording> recordings;
-  std::vector<FitSource> sources;
-  for (const std::string& file : arguments.recordings) recordings.push_back(read_fitted_columns(file));
   auto named = name_meanwhile({arguments.recordings.begin(), arguments.recordings.end()});
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    sources.push_back(source_of(arguments, recordings[i], names[i], i));
-    sources.back().taken = [&recording = recordings[i]] { drop_rows(recording); };
-  }
-  RecordingFit fit = fit_recordings(sources, options_of(arguments, sources.front()));
-  if (const std::string reason = fit.refusal(); !reason.empty()) {
-    throw std::invalid_argument(fmt::format("{}: {}", arguments.recordings.front(), reason));
-  }
+  RecordingFit fit = fit_files(arguments.recordings, arguments);
   warn_of(fit);
   context.result = fits_as_json(fit);
   if (std::none_of(fit.laws.begin(), fit.laws.end(),

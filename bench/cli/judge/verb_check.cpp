@@ -22,7 +22,7 @@ struct CheckVerbArguments {
   std::string law;
   std::string record;
   std::string output;
-  ContactArguments contact;
+  AskedContact contact;
   std::optional<double> floor;
 };
 

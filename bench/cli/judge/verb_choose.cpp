@@ -35,13 +35,13 @@ struct ChooseVerbArguments {
   std::string scene;
   std::string output;
   std::string axis;
-  ContactArguments contact;
+  AskedContact contact;
   bool no_loop = false;
   bool force = false;
   std::optional<double> record_s;
   LoopCheckOptions loop;
   ChooseOptions choose;
-  JndArguments jnd;
+  AskedJnd jnd;
   std::string rows = "contact";
   std::string cycles = "good";
 };

@@ -37,7 +37,7 @@ struct ReplayVerbArguments {
   std::string record;
   std::string axis;
   std::string cycles;
-  ContactArguments contact;
+  AskedContact contact;
   std::optional<double> from_s;
   std::optional<double> to_s;
   PathOptions path;

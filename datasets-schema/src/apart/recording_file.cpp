@@ -81,9 +81,15 @@ void RecordingFile::read(Column column, std::uint64_t first_row, std::uint64_t r
                          std::span<double> values) const {
   const auto& self = *implementation_;
   if (!is_of_floats(column)) return self.read(index_of(column), first_row, rows, values);
+  if (rows != values.size()) throw std::invalid_argument("values and rows differ in number");
   std::vector<float> floats(values.size());
-  self.read(index_of(column), first_row, rows, std::span(floats));
+  read_timing(column, first_row, floats);
   std::ranges::copy(floats, values.begin());
+}
+
+void RecordingFile::read_timing(Column column, std::uint64_t first_row, std::span<float> values) const {
+  if (!is_of_floats(column)) throw std::invalid_argument("not a part of a tick");
+  implementation_->read(index_of(column), first_row, values.size(), values);
 }
 
 void RecordingFile::read_channel(std::size_t channel, std::uint64_t first_row,

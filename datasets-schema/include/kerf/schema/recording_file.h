@@ -47,6 +47,8 @@ class RecordingFile final : public RecordedRows {
   void read_channel(std::size_t channel, std::uint64_t first_row, std::span<double> values) const override;
   void read_ticks(std::uint64_t first_row, std::span<std::uint64_t> values) const override;
   void read_flags(std::uint64_t first_row, std::span<std::uint32_t> values) const override;
+  /// The parts of a tick as the file has them, in single precision; otherwise as read().
+  void read_timing(Column column, std::uint64_t first_row, std::span<float> values) const;
 
  private:
   struct Implementation;

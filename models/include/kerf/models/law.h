@@ -95,6 +95,10 @@ class Law {
   /// that has to be integrated in sub-steps (scissors_mesh) advances by two nominal ticks at most, is held
   /// for the rest, and trails a tool that went far no slower than a hand moves.
   [[nodiscard]] Response step(State& state, const Motion& motion, double period_s) const noexcept;
+  /// Ticks of a scalar law one after the other, each as step() takes it but in less time; not a number where
+  /// it faults, in a spatial law everywhere. `period_s`: one for all ticks, or one each; `force`: one each.
+  void steps(State& state, std::span<const Motion> motion, std::span<const double> period_s,
+             std::span<double> force) const noexcept;
   /// One tick of a spatial law; of a scalar law, a fault.
   [[nodiscard]] SpatialResponse step(State& state, const SpatialMotion& motion,
                                      double period_s) const noexcept;

@@ -43,6 +43,10 @@ struct Connection {
 /// program is taken for one of them.
 [[nodiscard]] std::filesystem::path helper_program(std::string_view name);
 
+/// Where they lie for a program that is none of the house and has loaded a part of it: the Python module. Set
+/// up before threads are started.
+void look_for_helpers_in(std::filesystem::path folder);
+
 /// The first descriptor that a helper is given; further ones follow it.
 inline constexpr int first_descriptor = 3;
 
