@@ -55,34 +55,43 @@ std::string as_ranges(const std::vector<std::uint64_t>& numbers) {
   return text;
 }
 
+GatheredCells::Bytes::Bytes(const fs::path& file, bool complete) {
+  if (complete) {
+    mapped_ = std::make_unique<MappedFile>(file);
+  } else {
+    read_ = read_named_file(file, std::numeric_limits<std::uintmax_t>::max());
+  }
+}
+
 GatheredCells::GatheredCells(const PlanFile& plan, const fs::path& folder) : places_(plan.plan.cells()) {
   for (const fs::path& file : shard_files_in(folder)) take(plan, {.file = file});
 }
 
 void GatheredCells::take(const PlanFile& plan, FoundShard shard) {
   const auto number = static_cast<std::uint32_t>(files_.size());
-  files_.emplace_back(shard.file);
   shard.complete = shard.file.extension() == ".shard";
+  files_.emplace_back(shard.file, shard.complete);
   const auto refuse = [&](const std::string& why) {
     throw std::invalid_argument(fmt::format("{}: {}", shard.file.string(), why));
   };
-  shard.content = read_shard(shard.file, [&](const CellRecord& record, std::uintmax_t at) {
-    if (const auto* const layout = std::get_if<LayoutRecord>(&record)) {
-      layouts_.try_emplace(layout->layout, CellLayout::from_text(layout->text));
-      return;
-    }
-    const auto* const computed = std::get_if<ComputedCell>(&record);
-    const std::uint64_t cell = computed != nullptr ? computed->cell : std::get<FailedCell>(record).cell;
-    if (cell >= places_.size()) refuse(fmt::format("it has cell {}, which the plan does not", cell));
-    if (computed != nullptr) {
-      const auto layout = layouts_.find(computed->layout);
-      if (layout == layouts_.end() ||
-          layout->second.columns.size() * sizeof(double) != computed->numbers.size())
-        refuse(fmt::format("cell {} has numbers of which it is not said what they are", cell));
-    }
-    ++(computed != nullptr ? shard.computed : shard.failed);
-    take_cell(cell, {.at = at, .file = number, .computed = computed != nullptr}, record);
-  });
+  shard.content =
+      read_shard(files_.back().text(), shard.file, [&](const CellRecord& record, std::uintmax_t at) {
+        if (const auto* const layout = std::get_if<LayoutRecord>(&record)) {
+          layouts_.try_emplace(layout->layout, CellLayout::from_text(layout->text));
+          return;
+        }
+        const auto* const computed = std::get_if<ComputedCell>(&record);
+        const std::uint64_t cell = computed != nullptr ? computed->cell : std::get<FailedCell>(record).cell;
+        if (cell >= places_.size()) refuse(fmt::format("it has cell {}, which the plan does not", cell));
+        if (computed != nullptr) {
+          const auto layout = layouts_.find(computed->layout);
+          if (layout == layouts_.end() ||
+              layout->second.columns.size() * sizeof(double) != computed->numbers.size())
+            refuse(fmt::format("cell {} has numbers of which it is not said what they are", cell));
+        }
+        ++(computed != nullptr ? shard.computed : shard.failed);
+        take_cell(cell, {.at = at, .file = number, .computed = computed != nullptr}, record);
+      });
   if (shard.content.whole_bytes == 0) return;  // a run that has just begun it
   if (shard.content.plan_sha256 != plan.sha256)
     refuse(fmt::format("it is of another plan ({}), and this one is {}",

@@ -62,13 +62,24 @@ class GatheredCells {
     bool computed = false;
   };
 
+  /// The bytes of a shard. One that is not complete is read at once: who goes on with it may cut off its end.
+  class Bytes {
+   public:
+    Bytes(const std::filesystem::path& file, bool complete);
+    [[nodiscard]] std::string_view text() const noexcept { return mapped_ ? mapped_->text() : read_; }
+
+   private:
+    std::unique_ptr<MappedFile> mapped_;
+    std::string read_;
+  };
+
   void take(const PlanFile& plan, FoundShard shard);
   void take_cell(std::uint64_t cell, const RecordPlace& place, const CellRecord& record);
   void note_difference(std::uint64_t cell, const ComputedCell& one, const ComputedCell& other);
   [[nodiscard]] CellRecord record_at(const RecordPlace& place) const;
 
   std::vector<FoundShard> shards_;
-  std::deque<MappedFile> files_;
+  std::deque<Bytes> files_;
   std::set<std::string> software_;
   std::map<std::uint64_t, CellLayout> layouts_;
   std::vector<RecordPlace> places_;

@@ -33,7 +33,7 @@ SweepPlan moved_to(const SweepPlan& plan, const fs::path& folder) {
   for (const auto& [name, file] : plan.files) moved.files[renamed(name)] = file;
   for (SweepBlock& block : moved.blocks) {
     for (std::size_t i = 0; i < moved.inputs.size(); ++i) {
-      if (moved.inputs[i].kind != SweepInput::Kind::recording || block.inputs[i].size() == 0) continue;
+      if (!moved.inputs[i].is_file() || block.inputs[i].size() == 0) continue;
       std::vector<SweepValue> values;
       for (const SweepValue& value : block.inputs[i].listed())
         values.emplace_back(renamed(std::get<std::string>(value)));
@@ -154,9 +154,9 @@ void require_planned_files(const SweepPlan& plan, const ShardRange& range) {
   std::uint64_t first = 0;
   for (const SweepBlock& block : plan.blocks) {
     const std::uint64_t cells = block.cells();
-    // Recordings change slowest, so that those of a part of a block are neighbours.
+    // Files change slowest, so that those of a part of a block are neighbours.
     if (first < range.end && first + cells > range.begin && block.inputs.front().size() > 0 &&
-        plan.inputs.front().kind == SweepInput::Kind::recording) {
+        plan.inputs.front().is_file()) {
       const std::uint64_t each = cells / block.inputs.front().size();
       const std::uint64_t begin = (std::max(range.begin, first) - first) / each;
       const std::uint64_t end = (std::min(range.end, first + cells) - first + each - 1) / each;
@@ -170,7 +170,7 @@ void require_planned_files(const SweepPlan& plan, const ShardRange& range) {
     const NamedFile named(file);
     if (named.size() != plan.files.at(name).bytes || sha256_of(file) != plan.files.at(name).sha256)
       throw std::invalid_argument(fmt::format(
-          "{}: it is not the recording that was planned with; plan anew, or bring it back", file.string()));
+          "{}: it is not the file that was planned with; plan anew, or bring it back", file.string()));
   }
 }
 

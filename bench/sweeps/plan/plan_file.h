@@ -43,7 +43,7 @@ void write_plan(const std::filesystem::path& file, const SweepPlan& plan,
 ///         it was written.
 [[nodiscard]] PlanFile read_plan(const std::filesystem::path& file);
 
-/// That the recordings of some cells are what they were when the sweep was planned: each is hashed once.
+/// That the files of some cells are what they were when the sweep was planned: each is hashed once.
 /// @throws std::invalid_argument that names the first that is missing or another one.
 void require_planned_files(const SweepPlan& plan, const ShardRange& range);
 

@@ -33,9 +33,9 @@ SweepValue value_of(const Place& place, const toml::node& node, const SweepInput
   return value;
 }
 
-/// A recording by the name that the plan has it under; a folder stands for all recordings in it.
-void add_recordings(const Place& place, const toml::node& node, const std::string& name, SweepPlan& plan,
-                    std::vector<SweepValue>& values) {
+/// A file by the name that the plan has it under; a folder stands for all recordings in it.
+void add_files(const Place& place, const toml::node& node, const std::string& name, SweepPlan& plan,
+               std::vector<SweepValue>& values) {
   std::vector<fs::path> found{plan.folder / name};
   try {
     if (fs::is_directory(found.front())) found = recordings_in(found.front());
@@ -90,8 +90,8 @@ InputValues values_of(const Place& place, const toml::node& node, const SweepInp
   std::vector<SweepValue> values;
   const auto add = [&](const toml::node& one) {
     const SweepValue value = value_of(place, one, input);
-    if (input.kind == SweepInput::Kind::recording) {
-      add_recordings(place, one, std::get<std::string>(value), plan, values);
+    if (input.is_file()) {
+      add_files(place, one, std::get<std::string>(value), plan, values);
     } else {
       values.push_back(value);
     }

@@ -18,7 +18,7 @@ using SweepValue = std::variant<double, std::string>;
 
 /// Something that a verb takes and a sweep varies.
 struct SweepInput {
-  enum class Kind : std::uint8_t { number, whole, text, recording };
+  enum class Kind : std::uint8_t { number, whole, text, file, recording };
 
   std::string name;
   Kind kind = Kind::number;
@@ -30,7 +30,9 @@ struct SweepInput {
   std::optional<SweepValue> standard{};  ///< where it is not given
   bool required = false;
 
-  [[nodiscard]] bool is_text() const noexcept { return kind == Kind::text || kind == Kind::recording; }
+  /// The content of what it names counts, and not the name.
+  [[nodiscard]] bool is_file() const noexcept { return kind == Kind::file || kind == Kind::recording; }
+  [[nodiscard]] bool is_text() const noexcept { return kind == Kind::text || is_file(); }
   /// What is wrong with a value; empty if nothing is.
   [[nodiscard]] std::string wrong_with(const SweepValue& value) const;
 };

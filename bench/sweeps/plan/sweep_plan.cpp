@@ -92,8 +92,8 @@ std::string SweepPlan::name_of(const SweepCell& cell) const {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto& value = cell.values()[i];
     if (!value || value == inputs[i].standard) continue;
-    const bool is_file = inputs[i].kind == SweepInput::Kind::recording;
-    named[inputs[i].name] = is_file ? files.at(std::get<std::string>(*value)).sha256 : value_text(*value);
+    named[inputs[i].name] =
+        inputs[i].is_file() ? files.at(std::get<std::string>(*value)).sha256 : value_text(*value);
   }
   std::string text = fmt::format("kerf.cell 1\n{}\n", verb->name);
   for (const auto& [name, value] : named) text += fmt::format("{}={}\n", name, value);

@@ -1,6 +1,7 @@
 #include "run/run_shard.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <limits>
@@ -39,7 +40,9 @@ class Tally {
   }
   [[nodiscard]] const ShardRange& range() const noexcept { return range_; }
   [[nodiscard]] State at(std::uint64_t cell) const { return states_.at(cell - range_.begin); }
-  [[nodiscard]] std::uint64_t count(State state) const noexcept { return counts_[static_cast<int>(state)]; }
+  [[nodiscard]] std::uint64_t count(State state) const noexcept {
+    return counts_[static_cast<std::size_t>(state)];
+  }
   [[nodiscard]] std::uint64_t missing() const noexcept {
     return states_.size() - count(State::computed) - count(State::failed);
   }
@@ -49,8 +52,8 @@ class Tally {
     if (cell < range_.begin || cell >= range_.end)
       throw std::invalid_argument(fmt::format("cell {} is none of this shard", cell));
     State& now = states_[cell - range_.begin];
-    if (now != State::missing) --counts_[static_cast<int>(now)];
-    ++counts_[static_cast<int>(state)];
+    if (now != State::missing) --counts_[static_cast<std::size_t>(now)];
+    ++counts_[static_cast<std::size_t>(state)];
     now = state;
   }
 

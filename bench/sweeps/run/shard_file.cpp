@@ -66,8 +66,12 @@ fs::path partial_shard(fs::path place) {
 
 ShardContent read_shard(const fs::path& file,
                         const std::function<void(const CellRecord&, std::uintmax_t at)>& take) {
-  const MappedFile mapped(file);
-  std::string_view left = mapped.text();
+  return read_shard(MappedFile(file).text(), file, take);
+}
+
+ShardContent read_shard(std::string_view bytes, const fs::path& file,
+                        const std::function<void(const CellRecord&, std::uintmax_t at)>& take) {
+  std::string_view left = bytes;
   ShardContent content;
   bool begun = false;
   std::uintmax_t at = 0;
@@ -80,10 +84,10 @@ ShardContent read_shard(const fs::path& file,
     at += frame->size;
     left.remove_prefix(frame->size);
   }
-  if (!begun && !mapped.text().empty() && !may_become_frame(mapped.text()))
+  if (!begun && !bytes.empty() && !may_become_frame(bytes))
     refuse_shard(file, "it is no shard of a sweep, or damaged from its beginning on");
   content.whole_bytes = at;
-  content.bytes = mapped.text().size();
+  content.bytes = bytes.size();
   return content;
 }
 

@@ -38,9 +38,12 @@ struct ShardContent {
   std::uintmax_t bytes = 0;        ///< of the file
 };
 
-/// Goes through the records of a shard's file, each of which looks into memory that is there for the call
-/// alone. `at`: where its frame begins.
-/// @throws std::invalid_argument if its beginning is that of no shard.
+/// Goes through the records in the bytes of a shard's file. `at`: where the frame of one begins.
+/// @throws std::invalid_argument, with the name of the file, if its beginning is that of no shard.
+ShardContent read_shard(std::string_view bytes, const std::filesystem::path& file,
+                        const std::function<void(const CellRecord&, std::uintmax_t at)>& take);
+/// The same of a file that nobody changes meanwhile; records look into memory that is there for the call
+/// alone.
 ShardContent read_shard(const std::filesystem::path& file,
                         const std::function<void(const CellRecord&, std::uintmax_t at)>& take);
 

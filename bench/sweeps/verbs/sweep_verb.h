@@ -45,11 +45,14 @@ class CellWork {
 struct SweepVerb {
   std::string_view name;
   std::string_view what;
-  std::vector<SweepInput> (*inputs)();  ///< the last one changes fastest in a product
+  /// The last one changes fastest in a product; what is a file stands first, if anything is.
+  std::vector<SweepInput> (*inputs)();
   std::unique_ptr<CellWork> (*begin)(const SweepPlan& plan);
 };
 
+extern const SweepVerb sweep_of_checks;
 extern const SweepVerb sweep_of_fits;
+extern const SweepVerb sweep_of_identify;
 extern const SweepVerb sweep_of_stability;
 
 [[nodiscard]] std::span<const SweepVerb* const> sweep_verbs();

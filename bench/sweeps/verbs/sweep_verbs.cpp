@@ -8,7 +8,8 @@
 namespace kerf::bench {
 
 std::span<const SweepVerb* const> sweep_verbs() {
-  static constexpr std::array<const SweepVerb*, 2> all{&sweep_of_fits, &sweep_of_stability};
+  static constexpr std::array<const SweepVerb*, 4> all{&sweep_of_fits, &sweep_of_stability,
+                                                       &sweep_of_identify, &sweep_of_checks};
   return all;
 }
 

@@ -32,7 +32,7 @@ class SweepFile : public test::SweepFolder {
 TEST_F(SweepFile, IsRefusedWithItsLine) {
   EXPECT_THAT(refusal("verb = \"fit\"\n"), HasSubstr("w.toml:1: expected version = 1"));
   EXPECT_THAT(refusal("version = 1\nverb = \"fits\"\n"),
-              HasSubstr("w.toml:2: a sweep runs no verb 'fits'; it runs fit, stability"));
+              HasSubstr("w.toml:2: a sweep runs no verb 'fits'; it runs fit, stability, identify, check"));
   EXPECT_THAT(refusal("version = 1\nverb = \"stability\"\n"), HasSubstr("a sweep needs [cells]"));
   EXPECT_THAT(refusal_of_cells("mass = 1\n"), HasSubstr("cells of 'stability' need 'stiffness'"));
   EXPECT_THAT(refusal_of_cells("mass = 1\nstiffnes = 1\n"), HasSubstr("w.toml:5: unknown key 'stiffnes'"));

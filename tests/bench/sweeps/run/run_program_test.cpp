@@ -114,7 +114,7 @@ TEST_F(SweepRun, RefusesRecordingsThatAreNotWhatTheyWere) {
   schema::write_recording(file("r.h5"), test::punch({.seconds = 2.0, .seed = 3}));
   const Outcome changed = run_it();
   EXPECT_EQ(changed.exit_status, 2);
-  EXPECT_THAT(changed.errors, HasSubstr("r.h5: it is not the recording that was planned with"));
+  EXPECT_THAT(changed.errors, HasSubstr("r.h5: it is not the file that was planned with"));
   fs::remove(file("r.h5"));
   EXPECT_EQ(run_it().exit_status, 2);
 }
