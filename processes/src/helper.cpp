@@ -46,7 +46,8 @@ std::filesystem::path helper_program(std::string_view name) {
   return (std::filesystem::is_directory(helpers, error) ? helpers : programs) / name;
 }
 
-int start(const std::filesystem::path& program, std::span<const int> descriptors, pid_t& process) {
+int start(const std::filesystem::path& program, std::span<const int> descriptors, pid_t& process,
+          std::span<const std::string> arguments) {
   // Above where they are put, so that none is overwritten before it is duplicated.
   const int above = first_descriptor + static_cast<int>(descriptors.size());
   std::vector<Descriptor> high;
@@ -67,9 +68,12 @@ int start(const std::filesystem::path& program, std::span<const int> descriptors
   sigfillset(&every);
   posix_spawnattr_setsigmask(&attributes, &every);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK);
-  std::string name = program.filename().string();
-  std::array<char*, 2> arguments{name.data(), nullptr};
-  const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, arguments.data(), environ);
+  std::vector<std::string> words{program.filename().string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> command;
+  for (std::string& word : words) command.push_back(word.data());
+  command.push_back(nullptr);
+  const int error = posix_spawn(&process, program.c_str(), &actions, &attributes, command.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   return error;

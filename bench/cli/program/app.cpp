@@ -52,7 +52,7 @@ std::vector<Group> groups() {
           {"judge", {add_choose, add_check, add_chart, add_stability, add_reproduce}},
           {"replay", {add_replay, add_regress, add_compare}},
           {"experiment", {add_session}},
-          {"study", {add_study}},
+          {"study", {add_study, add_sweep}},
           {"share", {add_report, add_convert, add_export}},
           {"", {add_pages}}};  // hidden: for the build
 }
@@ -64,7 +64,7 @@ std::vector<const CLI::App*> shown_verbs(const CLI::App& app) {
 
 /// `kerf --help`: every verb in a line, by group.
 std::string overview(const CLI::App& app) {
-  std::string text = fmt::format("{}\nUsage: kerf VERB [OPTIONS]\n\n", app.get_description());
+  std::string text = fmt::format("{}\nUsage: kerf VERB [OPTIONS]\n", app.get_description());
   std::string group;
   for (const CLI::App* const verb : shown_verbs(app)) {
     text += fmt::format("{:12}{:11}{}\n", verb->get_group() == group ? "" : verb->get_group(),

@@ -10,7 +10,14 @@
 namespace kerf::bench {
 
 /// Exit status of the program; docs/command-line.md has the table.
-enum class Exit : int { done = 0, check_failed = 1, bad_input = 2, device_error = 3, file_error = 4 };
+enum class Exit : int {
+  done = 0,
+  check_failed = 1,
+  bad_input = 2,
+  device_error = 3,
+  file_error = 4,
+  to_be_continued = 75  ///< EX_TEMPFAIL, which queues of clusters know
+};
 
 /// What every verb is given beside its own options.
 // NOLINTNEXTLINE(bugprone-exception-escape): of what moves JSON, which does not throw

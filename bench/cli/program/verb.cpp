@@ -104,6 +104,11 @@ Option Verb::add_flag(const std::string& name, bool& variable, const std::string
   return Option(*verb_.add_flag(name, variable, description));
 }
 
+Verb& Verb::hidden() {
+  verb_.group("");
+  return *this;
+}
+
 Verb& Verb::takes_laws(Context& context) {
   add_option("--plugin", context.plugins,
              "MYLAW.so: a law of your own, from now on known by its name; may be repeated (docs/own-law.md)")

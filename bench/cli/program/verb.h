@@ -56,6 +56,8 @@ class Verb {
   /// URI is put before the verb's action runs.
   Option add_uri(const std::string& name, std::string& variable, const std::string& description);
   Option add_flag(const std::string& name, bool& variable, const std::string& description);
+  /// No help, page or completion tells of it: a program calls it.
+  Verb& hidden();
   /// Adds --plugin: laws of shared objects, which are loaded before the verb's action runs.
   Verb& takes_laws(Context& context);
   /// Adds --map: texts among the recordings that the variable names are imported before the verb's action

@@ -36,6 +36,7 @@ void add_segment(CLI::App& app, Context& context);
 void add_session(CLI::App& app, Context& context);
 void add_stability(CLI::App& app, Context& context);
 void add_study(CLI::App& app, Context& context);
+void add_sweep(CLI::App& app, Context& context);
 void add_studio(CLI::App& app, Context& context);  // with KERF_STUDIO alone
 void add_train(CLI::App& app, Context& context);
 void add_validate(CLI::App& app, Context& context);

@@ -361,8 +361,9 @@ RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop
   return Run(options, stop).run();
 }
 
-StopOnSignal::StopOnSignal() {
+StopOnSignal::StopOnSignal(Also also) : also_(also) {
   stop_requested = false;
+  if (also_ == Also::user_signal) (void)std::signal(SIGUSR1, [](int) { stop_requested = true; });
   for (const int signal : stop_signals) {
     const auto before = std::signal(signal, [](int) { stop_requested = true; });
     // What was started with nohup stays alive without its terminal.
@@ -371,6 +372,7 @@ StopOnSignal::StopOnSignal() {
   if (std::signal(SIGTSTP, stop_process) == SIG_IGN) (void)std::signal(SIGTSTP, SIG_IGN);
 }
 StopOnSignal::~StopOnSignal() {
+  if (also_ == Also::user_signal) (void)std::signal(SIGUSR1, SIG_DFL);
   for (const int signal : stop_signals) (void)std::signal(signal, SIG_DFL);
   (void)std::signal(SIGTSTP, SIG_DFL);
 }

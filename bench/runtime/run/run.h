@@ -94,14 +94,19 @@ struct RunResult {
 /// @throws drivers::DeviceError, std::invalid_argument, std::system_error (the recording could not be begun).
 [[nodiscard]] RunResult run_on_device(const RunOptions& options, const std::atomic<bool>& stop);
 
-/// A flag that Ctrl-C, Ctrl-\, SIGTERM and the end of the terminal set while the object lives.
+/// A flag that Ctrl-C, Ctrl-\, SIGTERM and the end of the terminal set while the object lives; of what is
+/// asked for, SIGUSR1 too, by which a queue says that its time is nearly over.
 class StopOnSignal {
  public:
-  StopOnSignal();
+  enum class Also : std::uint8_t { nothing, user_signal };
+  explicit StopOnSignal(Also also = Also::nothing);
   StopOnSignal(const StopOnSignal&) = delete;
   StopOnSignal& operator=(const StopOnSignal&) = delete;
   ~StopOnSignal();
   [[nodiscard]] const std::atomic<bool>& requested() const noexcept;
+
+ private:
+  Also also_;
 };
 
 }  // namespace kerf::bench

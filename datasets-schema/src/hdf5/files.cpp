@@ -42,8 +42,8 @@ TemporaryFile::TemporaryFile(std::filesystem::path target)
   std::filesystem::remove(path_, ignored);  // of a process of the same number that was killed here
 }
 
-h5::WritableFile TemporaryFile::create() {
-  auto file = h5::WritableFile::create(path_, h5::WritableFile::Format::oldest_readers);
+h5::WritableFile TemporaryFile::create(h5::WritableFile::Format format) {
+  auto file = h5::WritableFile::create(path_, format);
   mark_ = WriteMark(path_);
   return file;
 }

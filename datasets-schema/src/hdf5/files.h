@@ -22,7 +22,8 @@ class TemporaryFile {
   ~TemporaryFile();
 
   /// Begins the file. @throws h5::Error
-  [[nodiscard]] h5::WritableFile create();
+  [[nodiscard]] h5::WritableFile create(
+      h5::WritableFile::Format format = h5::WritableFile::Format::oldest_readers);
   /// Gives it the name of its target. @throws as take_name() does.
   void commit(Existing existing);
 

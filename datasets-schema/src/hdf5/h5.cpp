@@ -70,6 +70,7 @@ WritableFile WritableFile::create(const std::filesystem::path& file, Format form
   const auto version = format == Format::live_readers ? H5F_LIBVER_V110 : H5F_LIBVER_V18;
   call(H5Pset_libver_bounds, access.id(), version, version);
   const auto creation = property_list(H5P_FILE_CREATE);
+  if (format == Format::timeless) call(H5Pset_obj_track_times, creation.id(), hbool_t{false});
   if (format == Format::live_readers) {
     // A kill can cut a write in two where it crosses a page of memory. No part of the file's own structure
     // does: each lies within a page, and is there as it was before or as it is after.
@@ -194,8 +195,9 @@ bool is_group(hid_t parent, const std::string& path) { return is_kind(parent, pa
 
 bool is_dataset(hid_t parent, const std::string& path) { return is_kind(parent, path, H5I_DATASET); }
 
-Handle create_group(hid_t parent, const std::string& path) {
+Handle create_group(hid_t parent, const std::string& path, bool timeless) {
   const auto creation = property_list(H5P_GROUP_CREATE);
+  if (timeless) call(H5Pset_obj_track_times, creation.id(), hbool_t{false});
   call(H5Pset_link_creation_order, creation.id(), 0U | H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   return Handle(
       call(H5Gcreate2, parent, path.c_str(), utf8_names(H5P_LINK_CREATE).id(), creation.id(), H5P_DEFAULT));

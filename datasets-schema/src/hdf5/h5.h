@@ -62,7 +62,11 @@ using Extent = std::vector<hsize_t>;
 /// on nothing more reaches the disk, and check() tells why.
 class WritableFile {
  public:
-  enum class Format { oldest_readers, live_readers };
+  enum class Format {
+    oldest_readers,
+    live_readers,
+    timeless  ///< as the first, and its root does not say when it was made
+  };
 
   WritableFile() = default;
   WritableFile(WritableFile&&) noexcept = default;
@@ -108,7 +112,8 @@ class WritableFile {
 // The tree.
 [[nodiscard]] bool is_group(hid_t parent, const std::string& path);
 [[nodiscard]] bool is_dataset(hid_t parent, const std::string& path);
-[[nodiscard]] Handle create_group(hid_t parent, const std::string& path);
+/// `timeless`: without the time at which it was made.
+[[nodiscard]] Handle create_group(hid_t parent, const std::string& path, bool timeless = false);
 [[nodiscard]] Handle open(hid_t parent, const std::string& path);
 /// A dataset whose rows are read once, from the first to the last: no chunk of it is kept, and none is copied
 /// on its way, unless it has to be unpacked.
@@ -155,6 +160,7 @@ struct DatasetOptions {
   const void* fill = nullptr;  ///< value of rows that never reached the file
   bool compressed = false;     ///< shuffle and deflate, without loss
   bool contiguous = false;     ///< in one piece, which cannot grow
+  bool timeless = false;       ///< without the time at which it was made
 };
 [[nodiscard]] Handle create_dataset(hid_t parent, const std::string& path, hid_t type,
                                     const DatasetOptions& options);

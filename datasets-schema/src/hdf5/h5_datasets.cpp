@@ -33,6 +33,7 @@ Handle create_dataset(hid_t parent, const std::string& path, hid_t type, const D
     call(H5Pset_shuffle, creation.id());
     call(H5Pset_deflate, creation.id(), hardest);
   }
+  if (options.timeless) call(H5Pset_obj_track_times, creation.id(), hbool_t{false});
   if (options.fill != nullptr) call(H5Pset_fill_value, creation.id(), type, options.fill);
   return Handle(call(H5Dcreate2, parent, path.c_str(), type,
                      dataspace(options.extent, !options.contiguous).id(), utf8_names(H5P_LINK_CREATE).id(),

@@ -47,7 +47,8 @@ const std::set<Words> without_output{{"devices"},
                                      {"session", "status"},
                                      {"study", "run"},
                                      {"study", "report"},
-                                     {"study", "verify"}};
+                                     {"study", "verify"},
+                                     {"sweep", "status"}};
 
 const std::vector<Words> with_input{
     {"demo", "--text", "INPUT", "-o", "FOLDER/out"},
@@ -108,6 +109,11 @@ const std::vector<Words> with_input{
     {"session", "share", "INPUT", "--key-file", "FOLDER/key", "-o", "FOLDER/out"},
     {"session", "share", "FOLDER/s.h5", "--key-file", "INPUT", "-o", "FOLDER/out"},
     {"session", "simulate", "INPUT"},
+    {"sweep", "plan", "INPUT"},
+    {"sweep", "run", "INPUT"},
+    {"sweep", "status", "INPUT"},
+    {"sweep", "merge", "INPUT"},
+    {"sweep", "submit", "INPUT", "--engine", "slurm"},
     {"session", "plan", "INPUT", "--participants", "2", "-o", "FOLDER/out"},
     {"session", "note", "INPUT", "a test", "--key-file", "FOLDER/key"},
     {"session", "drop", "INPUT", "S01", "--reason", "a test", "--key-file", "FOLDER/key"},
@@ -166,6 +172,10 @@ const std::vector<Words> with_output{
     {"session", "share", "FOLDER/s.h5", "--key-file", "FOLDER/key", "--reason", "a test", "-o", "BELOW"},
     {"session", "simulate", "FOLDER/p.protocol.toml", "-o", "BELOW"},
     {"study", "new", KERF_SOURCE_DIR "/examples/data", "-o", "BELOW"},
+    {"sweep", "plan", "FOLDER/w.toml", "--no-sample", "-o", "OUTPUT"},
+    {"sweep", "run", "FOLDER/w.plan.json", "-o", "BELOW"},
+    {"sweep", "merge", "FOLDER/w.plan.json", "-o", "BELOW"},
+    {"sweep", "submit", "FOLDER/w.plan.json", "--engine", "slurm", "-o", "OUTPUT"},
     {"report", "FOLDER/r.h5", "-o", "OUTPUT"},
     {"convert", "FOLDER/r.h5", "-o", "OUTPUT.csv"},
     {"convert", "FOLDER/r.h5", "-o", "OUTPUT.mat"},
@@ -194,6 +204,9 @@ class ExitStatus : public testing::Test {
       test::write_text(folder_ / law, test::law_called(law));
     test::write_text(folder_ / "p.protocol.toml",
                      test::protocol_text("design = \"abx\"\ntrials = 4\ndevice = \"sim:scissors\"\n"));
+    test::write_text(folder_ / "w.toml",
+                     "version = 1\nverb = \"stability\"\n[cells]\nmass = 1\nstiffness = 1\n");
+    EXPECT_EQ(run_kerf({"sweep", "plan", (folder_ / "w.toml").string(), "--no-sample"}).exit_status, 0);
     EXPECT_EQ(run_kerf({"session", "key", (folder_ / "key").string()}).exit_status, 0);
     EXPECT_EQ(run_kerf(filled_in({"session", "new", "FOLDER/p.protocol.toml", "--no-check", "--subject", "S1",
                                   "--key-file", "FOLDER/key", "-o", "FOLDER/s.h5"},

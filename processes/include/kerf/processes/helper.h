@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -54,7 +55,7 @@ inline constexpr int first_descriptor = 3;
 /// standard ones, deaf to signals, in a session of its own: what ends this program from outside, or its
 /// group, does not end the helper. @returns an error number; 0: it runs.
 [[nodiscard]] int start(const std::filesystem::path& program, std::span<const int> descriptors,
-                        pid_t& process);
+                        pid_t& process, std::span<const std::string> arguments = {});
 
 /// Waits until a child that is about to end has ended. @returns its status as of waitpid().
 int wait_for(pid_t process) noexcept;

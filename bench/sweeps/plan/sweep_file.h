@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "plan/sweep_plan.h"
+
+namespace kerf::bench {
+
+/// Reads what a person wrote of a sweep: SWEEP.toml, docs/sweeps.md. Its shards are 0 where it names none.
+/// @throws std::invalid_argument with file and line.
+[[nodiscard]] SweepPlan read_sweep(const std::filesystem::path& file);
+
+}  // namespace kerf::bench
