@@ -1,10 +1,9 @@
 #include "exported_law.h"
-#include "files/whole_file.h"
 #include "hosts/by_c/c_compiler.h"
 #include "hosts/by_c/c_host_texts.h"
-#include "hosts/by_c/scratch_folder.h"
 #include "own_code/compiler.h"
 #include "verify/host_program.h"
+#include "verify/scratch_folder.h"
 
 namespace kerf::bench {
 namespace {
@@ -14,7 +13,7 @@ std::vector<HostFile> plain_c_files(const ExportedLaw& law) { return {{law.name 
 std::vector<double> plain_c_forces(const ExportedLaw& law, const std::filesystem::path& folder,
                                    std::span<const HostSample> samples) {
   const ScratchFolder scratch;
-  write_whole_file(scratch / "verify.c", filled_in(c_host_text("verify.c.in"), {{"NAME", law.name}}));
+  scratch.write("verify.c", filled_in(c_host_text("verify.c.in"), {{"NAME", law.name}}));
   compile_c(scratch / "verify.c", scratch / "verify", {"-I" + std::filesystem::absolute(folder).string()},
             {"-lm"});
   return forces_of_program({scratch / "verify"}, folder, samples, "gcc");

@@ -45,7 +45,7 @@ TEST(Chai3d, TakesTheLawOfAPlugin) {
 // programs/chai3d_effect.cpp: tools beside each other, other directions, what is beyond the last tool.
 TEST(Chai3d, IsAnEffectForWhoeverCompilesItWithoutAWarning) {
   if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
-  const BuildFolder folder;
+  const ScratchFolder folder;
   write_chai3d_stubs(folder);
   test::write_files(chai3d_host(), test::exported("wall", std::string(test::wall)), folder.path());
   for (const std::string compiler : {"g++", "clang++"})

@@ -8,7 +8,7 @@ namespace kerf::bench {
 namespace {
 
 /// Packages as CMake finds those of Kerf, CHAI3D and SOFA, with the stubs for headers.
-void write_packages(const BuildFolder& folder) {
+void write_packages(const ScratchFolder& folder) {
   write_chai3d_stubs(folder);
   write_sofa_stubs(folder);
   folder.write("KerfConfig.cmake",
@@ -28,7 +28,7 @@ void write_packages(const BuildFolder& folder) {
 // Both in one project, as its programs and plug-ins: a run of CMake takes longer than what it builds.
 TEST(Recipes, BuildWhatTheyStandBeside) {
   if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
-  const BuildFolder folder;
+  const ScratchFolder folder;
   write_packages(folder);
   const ExportedLaw law = test::exported("wall", std::string(test::wall));
   test::write_files(chai3d_host(), law, folder.path() / "effect");

@@ -27,7 +27,7 @@ TEST(Sofa, GivesTheForcesOfTheLibraryToTheLastBit) {
 // with v24.06, the registration with v24.12.
 TEST(Sofa, IsAPluginOfEitherVersionForWhoeverCompilesItWithoutAWarning) {
   if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
-  const BuildFolder folder;
+  const ScratchFolder folder;
   write_sofa_stubs(folder);
   test::write_files(sofa_host(), test::exported("wall", std::string(test::wall)), folder.path());
   for (const auto& [compiler, version] : {std::pair("g++", "231200"), std::pair("clang++", "241200")})
@@ -42,7 +42,7 @@ TEST(Sofa, IsAPluginOfEitherVersionForWhoeverCompilesItWithoutAWarning) {
 
 TEST(Sofa, TurnsALawInSpaceIntoTheScene) {
   if (!test::hosts_can_load_libkerf) GTEST_SKIP() << "a sanitizer's library";
-  const BuildFolder folder;
+  const ScratchFolder folder;
   write_sofa_stubs(folder);
   const std::string text = test::read_text(test::example_file("fuzzy_kelvin_3d"));
   test::write_files(sofa_host(), test::exported("liver", text), folder.path());

@@ -19,25 +19,6 @@ namespace kerf::bench {
 
 namespace fs = std::filesystem;
 
-BuildFolder::BuildFolder() {
-  std::string name = (fs::temp_directory_path() / "kerf-host-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-  path_ = std::move(name);
-}
-
-BuildFolder::~BuildFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-void BuildFolder::write(const fs::path& name, std::string_view content) const {
-  const fs::path file = path_ / name;
-  fs::create_directories(file.parent_path());
-  std::ofstream stream(file, std::ios::binary);
-  stream << content << std::flush;
-  if (!stream) throw std::system_error(errno, std::generic_category(), file.string());
-}
-
 fs::path kerf_library() {
   std::error_code error;
   for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); folder.has_relative_path();
@@ -51,7 +32,7 @@ fs::path kerf_library() {
       "libkerf.so.1 beside this program, which the exported source calls (Debian's package libkerf1)");
 }
 
-fs::path build_driver(const BuildFolder& build, const fs::path& folder,
+fs::path build_driver(const ScratchFolder& build, const fs::path& folder,
                       const std::vector<std::string>& options) {
   build.write("no_memory.h", host_text("no_memory.h.in"));
   fs::path program = build.path() / "driver";
@@ -72,9 +53,9 @@ fs::path build_driver(const BuildFolder& build, const fs::path& folder,
   return program;
 }
 
-void write_chai3d_stubs(const BuildFolder& build) { build.write("chai3d.h", host_text("chai3d.h.in")); }
+void write_chai3d_stubs(const ScratchFolder& build) { build.write("chai3d.h", host_text("chai3d.h.in")); }
 
-void write_sofa_stubs(const BuildFolder& build) {
+void write_sofa_stubs(const ScratchFolder& build) {
   build.write("sofa_stubs.h", host_text("sofa_stubs.h.in"));
   for (const char* const header :
        {"sofa/version.h", "sofa/component/haptics/ForceFeedback.h", "sofa/core/ObjectFactory.h"})

@@ -19,7 +19,7 @@ std::vector<HostFile> chai3d_files(const ExportedLaw& law) {
 std::vector<double> chai3d_forces(const ExportedLaw& law, const std::filesystem::path& folder,
                                   std::span<const HostSample> samples) {
   require_one_axis(law, "CHAI3D");
-  const BuildFolder build;
+  const ScratchFolder build;
   write_chai3d_stubs(build);
   build.write("driver.cpp", filled_in(host_text("chai3d_driver.cpp.in"), {{"NAME", law.name}}));
   std::vector<std::string> words{build_driver(build, folder, {"-std=c++14", "-O1"}).string()};

@@ -7,9 +7,9 @@
 #include "files/whole_file.h"
 #include "hosts/by_c/c_compiler.h"
 #include "hosts/by_c/c_host_texts.h"
-#include "hosts/by_c/scratch_folder.h"
 #include "own_code/compiler.h"
 #include "verify/host_program.h"
+#include "verify/scratch_folder.h"
 
 namespace kerf::bench {
 namespace {

@@ -19,7 +19,7 @@ std::vector<HostFile> sofa_files(const ExportedLaw& law) {
 std::vector<double> sofa_forces(const ExportedLaw& law, const std::filesystem::path& folder,
                                 std::span<const HostSample> samples) {
   require_one_axis(law, "SOFA");
-  const BuildFolder build;
+  const ScratchFolder build;
   write_sofa_stubs(build);
   build.write("driver.cpp", filled_in(host_text("sofa_driver.cpp.in"), law_values(law, Language::cpp)));
   std::vector<std::string> words{build_driver(build, folder, {"-std=c++17", "-O1"}).string()};

@@ -26,7 +26,7 @@ std::vector<HostFile> unity_files(const ExportedLaw& law) {
 std::vector<double> unity_forces(const ExportedLaw& law, const std::filesystem::path& folder,
                                  std::span<const HostSample> samples) {
   require_one_axis(law, "Unity");
-  const BuildFolder build;
+  const ScratchFolder build;
   build.write("driver.cs", filled_in(host_text("unity_driver.cs.in"), law_values(law, Language::csharp)));
   std::filesystem::create_symlink(kerf_library(), build.path() / "libkerf.so");
   const std::string source = std::filesystem::absolute(folder / file_name(law)).string();

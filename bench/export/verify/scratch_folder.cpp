@@ -1,8 +1,10 @@
-#include "hosts/by_c/scratch_folder.h"
+#include "verify/scratch_folder.h"
 
 #include <cerrno>
 #include <cstdlib>
 #include <system_error>
+
+#include "files/whole_file.h"
 
 namespace kerf::bench {
 
@@ -15,6 +17,12 @@ ScratchFolder::ScratchFolder() {
 ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+}
+
+void ScratchFolder::write(const std::filesystem::path& name, std::string_view content) const {
+  const std::filesystem::path file = path_ / name;
+  std::filesystem::create_directories(file.parent_path());
+  write_whole_file(file, content);
 }
 
 }  // namespace kerf::bench
