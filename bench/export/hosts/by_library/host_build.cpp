@@ -1,14 +1,11 @@
 #include "hosts/by_library/host_build.h"
 
-#include <cerrno>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp() is POSIX
 
 #include <kerf/models/foreign.h>
 
