@@ -125,6 +125,7 @@ const std::vector<Words> with_input{
     {"study", "verify", "FOLDER/nowhere"},
     {"report", "INPUT", "-o", "FOLDER/out.html"},
     {"convert", "INPUT", "-o", "FOLDER/out.csv"},
+    {"export", "INPUT", "--as", "c", "-o", "FOLDER/out"},
     {"report", "FOLDER/r.h5", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--fits", "INPUT", "-o", "FOLDER/out.html"},
     {"report", "FOLDER/r.h5", "--check", "INPUT", "-o", "FOLDER/out.html"},
@@ -180,6 +181,7 @@ const std::vector<Words> with_output{
     {"convert", "FOLDER/r.h5", "-o", "OUTPUT.csv"},
     {"convert", "FOLDER/r.h5", "-o", "OUTPUT.mat"},
     {"convert", "FOLDER/r.h5", "-o", "OUTPUT.mcap"},
+    {"export", "FOLDER/k.law.toml", "--as", "c", "-o", "BELOW"},
 };
 
 constexpr const char* law_along_z = R"(model = "kelvin"
