@@ -46,6 +46,9 @@ struct Visitor {
   }
 };
 
+template <typename OnNumber, typename OnMode>
+Visitor(OnNumber, OnMode) -> Visitor<OnNumber, OnMode>;
+
 template <typename State>
 auto modes_of(State& state) {
   std::vector<std::pair<std::string, int>> modes;
