@@ -52,8 +52,8 @@ class FittedLaw:
 
     @property
     def parameters(self) -> dict[str, Estimate]:
-        return {name: Estimate(one["value"], one["unit"], one["std_error"], *one[self._interval], one["interval_by"])
-                for name, one in self.json["parameters"].items()}
+        return {name: Estimate(one["value"], one["unit"], one["std_error"], one[self._interval][0], one[self._interval][1],
+                               one["interval_by"]) for name, one in self.json["parameters"].items()}
 
     @property
     def rmse(self) -> float:

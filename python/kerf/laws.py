@@ -127,7 +127,7 @@ class Law:
     @property
     def parameters(self) -> dict[str, Parameter]:
         """Parameters by name, in the order of the law."""
-        return {name: Parameter(*rest) for name, *rest in self._held.parameters}
+        return {one[0]: Parameter(*one[1:]) for one in self._held.parameters}
 
     @property
     def options(self) -> dict[str, OptionValue]:
@@ -205,8 +205,8 @@ class Law:
         :raises ValueError: rows that cannot be replayed, with row and time; an axis that is not there
         """
         path = os.fspath(getattr(recording, "path", recording))
-        *arrays, figures = _core.replay(path, self._held, self.model, start, stop, list(cycles), bridge, speed)
-        return Replay(*arrays, json.loads(figures))
+        time, force, flags, figures = _core.replay(path, self._held, self.model, start, stop, list(cycles), bridge, speed)
+        return Replay(time, force, flags, json.loads(figures))
 
     def _require_own(self, state: State) -> None:
         if state._held.law is not self._held:

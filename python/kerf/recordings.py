@@ -146,7 +146,8 @@ class Recording:
             return None
         names = ("", "opening", "open_to_close", "closing", "close_to_open")
         phases = tuple(Phase(cycle, names[phase], begin, end) for cycle, phase, begin, end in found["phases"])
-        return Cycles(**{**found, "phases": phases})
+        values: dict[str, Any] = {**found, "phases": phases}
+        return Cycles(**values)
 
     @property
     def cycle_flags(self) -> tuple[CycleFlag, ...]:
