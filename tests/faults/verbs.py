@@ -22,6 +22,14 @@ stroke = { value = 0.3, unit = "s" }
 pause = { value = 0.05, unit = "s" }
 """
 
+WALLS = """version = 1
+verb = "stability"
+[cells]
+mass = [0.1, 0.2]
+stiffness = [100, 100000]
+seconds = 0.05
+"""
+
 
 @dataclass(frozen=True)
 class Verb:
@@ -93,6 +101,9 @@ VERBS = [
     Verb("convert to CSV", "convert {in}/short.h5 -o r.csv", ("r.csv", "r.dictionary.csv", "r.events.csv")),
     Verb("convert to MAT", "convert {in}/short.h5 -o r.mat", ("r.mat",)),
     Verb("convert to MCAP", "convert {in}/short.h5 -o r.mcap", ("r.mcap",)),
+    Verb("sweep plan", "sweep plan {in}/walls.toml --no-sample -o w.plan.json", ("w.plan.json",)),
+    Verb("sweep merge", "sweep merge {in}/walls.plan.json -o merged", ("merged",), (), 0.2),
+    Verb("sweep submit", "sweep submit {in}/walls.plan.json --engine slurm -o w.sbatch", ("w.sbatch",)),
     # New ones here: the faults of those above stay the ones that a seed draws.
 ]  # fmt: skip
 
@@ -109,6 +120,7 @@ class Bench:
         self.environment = dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"), LC_ALL="C.UTF-8")
         self.inputs.mkdir()
         (self.inputs / "suite.toml").write_text(SUITE)
+        (self.inputs / "walls.toml").write_text(WALLS)
         shutil.copy(examples / "kelvin.law.toml", self.inputs)
         for command in (
             "record --device sim:scissors --seconds 6 --virtual -o cut.h5", "segment cut.h5",
@@ -118,6 +130,7 @@ class Bench:
             "session new {examples}/sessions/abx.protocol.toml --subject S01 --key-file keeper.key -o S01.h5",
             "session new {examples}/sessions/abx.protocol.toml --subject S03 --key-file keeper.key -o done.h5",
             "session run done.h5 --key-file keeper.key --rehearse --no-check",
+            "sweep plan walls.toml --no-sample", "sweep run walls.plan.json -j 1",
             "check kelvin.law.toml --device sim:scissors --seconds 0.1",  # keeps the floor of this machine
         ):  # fmt: skip
             made = subprocess.run(self.words(command), cwd=self.inputs, env=self.environment, capture_output=True, text=True,

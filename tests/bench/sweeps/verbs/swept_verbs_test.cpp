@@ -31,11 +31,12 @@ class SweptVerbs : public test::SweepFolder {
 
 TEST_F(SweptVerbs, IdentifyFindsWhatItsVerbFinds) {
   const PlanFile plan = plan_of(
-      "version = 1\nverb = \"identify\"\n[cells]\ndevice = \"sim:axis?tells=on\"\ndevice_seed = [4, "
+      "version = 1\nverb = \"identify\"\n[cells]\ndevice = \"sim:axis?hand=off&jitter=0.2ms\"\ndevice_seed = "
+      "[4, "
       "5]\nseconds = 6\n");
   const CellNumbers numbers = computed(plan, 1);
-  const Outcome outcome =
-      test::run_kerf({"identify", "sim:axis?tells=on&seed=5", "--seconds", "6", "--seed", "1", "--json"});
+  const Outcome outcome = test::run_kerf(
+      {"identify", "sim:axis?hand=off&jitter=0.2ms&seed=5", "--seconds", "6", "--seed", "1", "--json"});
   const auto model = nlohmann::json::parse(outcome.output).at("axes").at(0).dump();
   EXPECT_THAT(model, testing::HasSubstr(nlohmann::json(value_of(numbers, "mass_found")).dump()));
   EXPECT_THAT(model, testing::HasSubstr(nlohmann::json(value_of(numbers, "coulomb_found_upper")).dump()));
