@@ -75,11 +75,7 @@ auto contact_step(const Element& element, typename Element::State& state, Signal
   if constexpr (std::is_floating_point_v<T>) {
     const bool drawn = x < state.penetration && element.least_force(state, x, period_s) < T(0);
     if (state.started && (drawn || state.reachable >= T(0))) {
-      // In a copy, so that who steps many ticks may hold its state in registers.
-      typename Element::State apart = state;
-      const T force = drawn_step(element, apart, x, period_s);
-      state = apart;
-      return force;
+      return drawn_step(element, state, x, period_s);
     }
   }
   return element.bilateral_step(state, x, period_s);
