@@ -54,10 +54,11 @@ SweepScript slurm_script(const PlanFile& plan, const SubmitOptions& options) {
       "goes\n"
       "# on where the same task is run again: here by asking for it; a site may list 75 in RequeueExit "
       "instead.\n";
-  text += "trap 'kill -USR1 $shard 2>/dev/null' USR1 TERM\n";
+  text += "trap 'stopped=yes; [ -z \"$shard\" ] || kill -USR1 $shard' USR1 TERM\n";
   text += run_command(plan, options, "\"$SLURM_ARRAY_TASK_ID\"") + " &\n";
   text +=
       "shard=$!\n"
+      "[ -z \"$stopped\" ] || kill -USR1 $shard  # it came before there was a shard to tell\n"
       "wait $shard; status=$?\n"
       "while kill -0 $shard 2>/dev/null; do wait $shard; status=$?; done\n"
       "[ $status -ne 75 ] || scontrol requeue \"${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}\"\n"

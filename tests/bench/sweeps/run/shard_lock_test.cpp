@@ -64,6 +64,16 @@ TEST_F(ShardLocked, IsTakenFromAProcessThatIsGone) {
   EXPECT_NE(told.find("left it behind"), std::string::npos);
 }
 
+TEST_F(ShardLocked, StaysWithAProcessThatLivesAlsoWhereFilesHaveNoLocks) {
+  LockHolder living;
+  {
+    const ShardLock lock(place_, guarded_, {});
+    living = ShardLock::holder_of(place_);
+  }
+  leave_behind(living);
+  EXPECT_NE(refusal().find("process " + std::to_string(::getpid())), std::string::npos);
+}
+
 const LockHolder elsewhere{.host = "node7", .boot = "another", .process = 4711, .started = "5"};
 
 TEST_F(ShardLocked, IsTakenFromAnotherMachineThatGivesNoSignOfLife) {
