@@ -78,7 +78,7 @@ void add_export(CLI::App& app, Context& context) {
                "  kerf export fits/kelvin.law.toml --as fmu -o liver --verify\n\n"
                "The hosts:" +
                    known +
-                   "\n\nEach file carries the law's SHA-256, its fit, where it was fitted, and the version. "
+                   "\nEach file carries the law's SHA-256, its fit, where it was fitted, and the version. "
                    "What cannot be\ncarried is refused with the reason. How each is built and used: "
                    "docs/export.md.",
                [arguments, &context] { run_export(*arguments, context); });
