@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "files/embedded_file.h"
+#include "embed/embedded_file.h"
 #include "http/http_server.h"
 
 namespace kerf::bench {

@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "files/embedded_file.h"
+#include "embed/embedded_file.h"
 
 namespace kerf::bench {
 
