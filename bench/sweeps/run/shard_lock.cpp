@@ -83,7 +83,7 @@ LockHolder LockHolder::from_text(const std::string& text) {
     const std::string value = line.substr(blank + 1);
     if (key == "host") holder.host = value;
     if (key == "boot") holder.boot = value;
-    if (key == "process") holder.process = std::atol(value.c_str());
+    if (key == "process") holder.process = std::strtol(value.c_str(), nullptr, 10);
     if (key == "started") holder.started = value;
     if (key == "job") holder.job = value;
   }
