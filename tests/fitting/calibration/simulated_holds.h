@@ -55,7 +55,7 @@ inline SimulatedHolds simulate(const Simulated& how, std::uint64_t seed) {
   made.holds.components = {"fx", "fy", "fz", "tx", "ty", "tz"};
   Eigen::MatrixXd sensitivity(6, 6);
   for (Eigen::Index i = 0; i < 6; ++i) {
-    made.holds.signals.push_back("u" + std::to_string(i + 1));
+    made.holds.signals.emplace_back("u").append(std::to_string(i + 1));
     for (Eigen::Index k = 0; k < 6; ++k)
       sensitivity(i, k) =
           ((i == k ? 8.0 : 0.0) + 8.0 * how.cross_talk * normal()) / full[static_cast<std::size_t>(k)];
