@@ -91,6 +91,22 @@ TEST(LawFile, AnErrorThatIsNoNumberIsRefusedInItsPlace) {
               HasSubstr("'rmse' must be one number"));
 }
 
+TEST(LawFile, OfAnEarlierVersionKnowsNoRangeOfItsFit) {
+  const LawFile file = parse_law_file(liver + "[fit]\nrecording = \"0d7c\"\n", "liver.law.toml");
+  EXPECT_EQ(file.fit.recording_uuid, "0d7c");
+  EXPECT_FALSE(file.fit.range);
+}
+
+TEST(LawFile, HalfARangeOfItsFitIsRefused) {
+  EXPECT_THAT(refusal(liver + "[fit]\npenetration = { value = [0, 1], unit = \"rad\" }\n"),
+              HasSubstr("no 'speed'"));
+  EXPECT_THAT(
+      refusal(
+          liver +
+          "[fit]\npenetration = { value = [0], unit = \"rad\" }\nspeed = { value = 1, unit = \"rad/s\" }\n"),
+      HasSubstr("'penetration' must be 2 finite numbers"));
+}
+
 TEST(LawFile, OfASpatialLawHasNoContact) {
   const LawFile file{.law = test::example("blade"), .contact = {}, .axis = {}, .fit = {}};
   const std::string text = to_toml(file);
@@ -111,7 +127,8 @@ TEST(LawFile, RoundTripsEveryKindOfParameterAndOption) {
               .recording_sha256 = "ab",
               .rmse_n = 0.25,
               .date = "2026-11-20",
-              .software = "kerf"}};
+              .software = "kerf",
+              .range = FittedRange{.least = -0.01, .most = 1.0 / 3.0, .fastest = 2.5}}};
   const test::TemporaryFolder folder;
   write_law_file(folder / "x.law.toml", file);
   const LawFile again = read_law_file(folder / "x.law.toml");
@@ -124,6 +141,10 @@ TEST(LawFile, RoundTripsEveryKindOfParameterAndOption) {
   EXPECT_EQ(again.position_unit, "rad");
   EXPECT_EQ(again.fit.recording_uuid, "0d7c");
   EXPECT_EQ(again.fit.rmse_n, 0.25);
+  ASSERT_TRUE(again.fit.range);
+  EXPECT_EQ(again.fit.range->least, -0.01);
+  EXPECT_EQ(again.fit.range->most, 1.0 / 3.0);
+  EXPECT_EQ(again.fit.range->fastest, 2.5);
   EXPECT_EQ(to_toml(again), to_toml(file));
 }
 
