@@ -15,6 +15,7 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables.h>
 #include <kerf/schema/validate.h>
 
 /// What reads files with HDF5 in the very process that calls it. Damage can make HDF5 fall over: only
@@ -90,6 +91,7 @@ class OpenRecording {
 [[nodiscard]] Session read_session(const std::filesystem::path& file);
 [[nodiscard]] Session read_session_facts(const std::filesystem::path& file);
 [[nodiscard]] std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry);
+[[nodiscard]] SweepTablesFacts read_sweep_tables_facts(const std::filesystem::path& file);
 [[nodiscard]] std::string schema_of(const std::filesystem::path& file);
 [[nodiscard]] std::vector<Violation> validate(const std::filesystem::path& file);
 

@@ -59,6 +59,12 @@ auto fields(Is<Session> auto& x) {
   return std::tie(x.uuid, x.created, x.software, x.subject, x.number, x.subjects, x.protocol, x.laws, x.key,
                   x.entries);
 }
+auto fields(Is<SweepColumn> auto& x) { return std::tie(x.name, x.unit, x.type); }
+auto fields(Is<SweepTableFacts> auto& x) { return std::tie(x.name, x.rows, x.columns); }
+auto fields(Is<SweepTablesFacts::Texts> auto& x) { return std::tie(x.input, x.count); }
+auto fields(Is<SweepTablesFacts> auto& x) {
+  return std::tie(x.plan_sha256, x.plan, x.software, x.cells, x.tables, x.values);
+}
 auto fields(Is<Violation> auto& x) { return std::tie(x.where, x.found, x.expected); }
 
 template <typename T>

@@ -24,7 +24,8 @@ enum class Ask : std::uint32_t {
   session_facts,
   sealed,  ///< of the entry `first`
   schema,
-  violations
+  violations,
+  sweep_facts
 };
 
 struct Request {

@@ -73,6 +73,8 @@ class Server {
         return put(in_process::schema_of(file_));
       case Ask::violations:
         return put(in_process::validate(file_));
+      case Ask::sweep_facts:
+        return put(in_process::read_sweep_tables_facts(file_));
     }
   }
 

@@ -6,6 +6,7 @@
 #include <kerf/schema/recording.h>
 #include <kerf/schema/regression.h>
 #include <kerf/schema/session.h>
+#include <kerf/schema/sweep_tables.h>
 #include <kerf/schema/validate.h>
 
 #include "apart/reader_process.h"
@@ -102,6 +103,10 @@ Session read_session_facts(const std::filesystem::path& file) { return SessionFi
 std::vector<std::uint8_t> read_sealed(const std::filesystem::path& file, std::size_t entry) {
   return ReaderProcess(file, "a session")
       .ask<std::vector<std::uint8_t>>({.what = Ask::sealed, .first = entry});
+}
+
+SweepTablesFacts read_sweep_tables_facts(const std::filesystem::path& file) {
+  return ReaderProcess(file, "the tables of a sweep").ask<SweepTablesFacts>({.what = Ask::sweep_facts});
 }
 
 std::string schema_of(const std::filesystem::path& file) {

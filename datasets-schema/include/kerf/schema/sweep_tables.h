@@ -28,6 +28,31 @@ struct SweepColumn {
   Type type = Type::number;
 };
 
+/// A table, without its values.
+struct SweepTableFacts {
+  std::string name;
+  std::uint64_t rows = 0;
+  std::vector<SweepColumn> columns;
+};
+
+/// What a file of a sweep's tables says beside their values.
+struct SweepTablesFacts {
+  std::string plan_sha256;
+  std::string plan;      ///< JSON
+  std::string software;  ///< of the programs that computed it
+  std::string cells;     ///< "20 computed, 0 failed, 0 missing"
+  std::vector<SweepTableFacts> tables;
+  /// Of an input that is a text how many there are.
+  struct Texts {
+    std::string input;
+    std::uint64_t count = 0;
+  };
+  std::vector<Texts> values;
+};
+
+/// @throws FormatError in one line; std::invalid_argument (there is no such file, or it may not be read).
+[[nodiscard]] SweepTablesFacts read_sweep_tables_facts(const std::filesystem::path& file);
+
 /// Writes what a sweep came to: an HDF5 file that holds no time and no name of a machine, so that the same
 /// numbers are the same bytes.
 ///

@@ -13,7 +13,7 @@ struct Violation {
   std::string expected;
 };
 
-/// What a file says that it is: "kerf.recording", "kerf.regression", "kerf.session"; empty if it says nothing
+/// What a file says that it is: "kerf.recording", "kerf.regression", "kerf.session", "kerf.sweep"; empty if it says nothing
 /// or cannot be read.
 [[nodiscard]] std::string schema_of(const std::filesystem::path& file);
 
