@@ -123,12 +123,11 @@ void run_info(const InfoVerbArguments& arguments, Context& context) {
 
 void add_info(CLI::App& app, Context& context) {
   auto arguments = std::make_shared<InfoVerbArguments>();
-  Verb verb =
-      add_verb(app, context, "info",
-               "Say what is in a recording, also while it is made, a session, stored forces or a sweep",
-               "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
-               "info --schema",
-               [arguments, &context] { run_info(*arguments, context); });
+  Verb verb = add_verb(
+      app, context, "info", "Say what is in a recording, also while it is made, a session or stored forces",
+      "kerf info cut.h5\n  kerf info --follow cut.h5\n  kerf info cut.h5.partial --json\n  kerf "
+      "info --schema",
+      [arguments, &context] { run_info(*arguments, context); });
   verb.add_option("recording", arguments->recording,
                   "The recording, or the NAME.partial of one not closed; a session, stored forces, sweep.h5");
   verb.takes_texts(context, arguments->recording);

@@ -60,9 +60,11 @@ TEST_F(SweptChoice, IsJudgedOnASimulatedDeviceWithoutAClock) {
       .loop = {.device_uri = "sim:axis"}, .tried_by = TriedBy::virtual_time, .begins = {}};
   const schema::Recording recording = schema::read_recording(file("r.h5"));
   options.choose.candidates.max_segments = 2;
+  options.choose.time_ticks = false;
   take_jnd_of(recording.axes[0], options.choose.fit);
   const std::atomic<bool> never{false};
   const LawChoice choice = choose_on_device(recording, "r.h5", std::move(options), never).choice;
+  for (const Candidate& one : choice.candidates) EXPECT_EQ(one.tick_us, 0.0) << one.law.name;
   const Candidate& taken = choice.candidates.at(*choice.taken);
   ASSERT_EQ(numbers.table, taken.law.name);
   ASSERT_NE(taken.stability.stable, Stable::not_judged) << taken.stability.why;
@@ -219,6 +221,13 @@ TEST_F(SweptSession, HasThePowerThatItsVerbSays) {
   EXPECT_EQ(value_of("false_alarms"), told.at("false_alarms").at("share").get<double>());
   EXPECT_EQ(value_of("answers_needed"), told.at("answers_needed").get<double>());
   EXPECT_EQ(value_of("d_prime_true"), told.at("truth").at("d_prime").get<double>());
+}
+
+TEST_F(SweptSession, TakesItsInputsInTheOrderThatIsDocumented) {
+  const Outcome list = sweep({"plan", file("w.toml").string(), "--list"});
+  std::string heads = "cell,name";
+  for (const std::string& name : test::documented_inputs("session simulate")) heads += "," + name;
+  EXPECT_EQ(list.output.substr(0, list.output.find('\n')), heads);
 }
 
 TEST_F(SweptSession, IsAnotherPlanWhereALawOfItsProtocolChanged) {

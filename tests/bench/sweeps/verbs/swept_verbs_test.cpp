@@ -64,6 +64,9 @@ TEST_F(SweptVerbs, GiveTheSameNumbersWhateverWasComputedBefore) {
 TEST(SweepVerbs, SayWhatTheyTake) {
   for (const SweepVerb* const verb : sweep_verbs()) {
     bool after_files = false;
+    std::vector<std::string> names;
+    for (const SweepInput& input : verb->inputs()) names.push_back(input.name);
+    EXPECT_EQ(names, test::documented_inputs(std::string(verb->name))) << "the order of docs/sweeps.md";
     for (const SweepInput& input : verb->inputs()) {
       EXPECT_FALSE(input.what.empty()) << verb->name << ' ' << input.name;
       EXPECT_FALSE(input.required && input.standard) << verb->name << ' ' << input.name;
