@@ -228,6 +228,8 @@ TEST_F(SweptSession, TakesItsInputsInTheOrderThatIsDocumented) {
   std::string heads = "cell,name";
   for (const std::string& name : test::documented_inputs("session simulate")) heads += "," + name;
   EXPECT_EQ(list.output.substr(0, list.output.find('\n')), heads);
+  EXPECT_THAT(list.output, HasSubstr("\n0,2b4e0c0d2dccc0c9567c4342c859cf9e,p.protocol.toml,7,"))
+      << "a cell's name is for ever";
 }
 
 TEST_F(SweptSession, IsAnotherPlanWhereALawOfItsProtocolChanged) {
